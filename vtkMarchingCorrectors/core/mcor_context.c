@@ -8,7 +8,7 @@
 #include "mcor_cap.h"
 #include "mcor_fill.h"
 #include "mcor_input.h"
-#include "mcor_pair_rounds.h"
+#include "mcor_pair.h"
 #include "mcor_plane.h"
 
 #include <stdlib.h>
@@ -83,6 +83,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_box(context);
   mcor_end_rounds(context);
   mcor_release_adaptive(context);
+  mcor_release_pairs(context);
   mcor_release(context, &context->sort.sums);
   mcor_drop_kept(context, 0);
   free(context->source);

@@ -8,7 +8,7 @@
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_fill.h"
-#include "mcor_pair_rounds.h"
+#include "mcor_pair.h"
 #include "mcor_plane.h"
 
 /* One iso value's surface, appended. */
@@ -21,11 +21,11 @@ static mcor_status mcor_extract_iso(
   context->run.iso_number = i;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
-  const bool adaptive = mcor_is_adaptive(context);
-  MCOR_TRY(adaptive ? mcor_select_leaves(context, input, iso) : mcor_select_seeds(context, iso));
+  MCOR_TRY(mcor_is_adaptive(context) ? mcor_select_leaves(context, input, iso)
+                                     : mcor_select_seeds(context, iso));
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
-  MCOR_TRY(adaptive ? mcor_march_leaves(context, iso) : mcor_march(context, iso));
+  MCOR_TRY(mcor_march(context, iso));
   if (last && input->scalar_version == 0)
   {
     mcor_release_nodes(context);
@@ -83,11 +83,6 @@ static mcor_status mcor_extract_all(
                                     : mcor_finish_normals(context, surface));
   }
   MCOR_TRY(mcor_crop_surface(context, input, surface));
-  if (!mcor_is_adaptive(context))
-  {
-    surface->statistics.cells_of_level[0] = surface->statistics.cells_used;
-    surface->statistics.triangles_of_level[0] = surface->statistics.triangles_before_trimming;
-  }
   MCOR_TRY(mcor_is_plane(context) ? mcor_finish_lines(context, surface) : MCOR_OK);
   MCOR_TRY(mcor_measure_surface(context, surface));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));

@@ -215,11 +215,8 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso);
 mcor_status mcor_request_known(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, double iso);
 double mcor_side_margin(const mcor_context* context);
-mcor_status mcor_grow_bricks(mcor_context* context, bool* grown);
-mcor_status mcor_seed_pairs(mcor_context* context, double iso);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
-mcor_status mcor_append_bricks(mcor_context* context);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
 mcor_status mcor_group_batch(
@@ -230,11 +227,7 @@ mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_find_side_flags(mcor_context* context, double iso);
-mcor_status mcor_begin_topology(mcor_context* context);
-mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
-/* Room for the vertices and triangles that are counted; the vertices. */
-mcor_status mcor_emit_vertices(mcor_context* context, double iso);
 mcor_status mcor_correct(mcor_context* context, double iso);
 mcor_status mcor_evaluate_boundary(
   mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
@@ -344,10 +337,10 @@ static inline bool mcor_is_resolved(const mcor_context* context)
   return context->run.options->topology == MCOR_TOPOLOGY_FIELD;
 }
 
-/* Kernel arguments of MCOR_DECISION_PARAMS. */
-#define MCOR_DECISION_ARGS(c)                                                                      \
-  MCOR_INT(mcor_is_resolved(c)), MCOR_BUFFER(&(c)->bricks.neighbours),                             \
-    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->topology.cases),                      \
-    MCOR_BUFFER(&(c)->topology.rows)
+/* Kernel arguments of MCOR_CUT_PARAMS. */
+#define MCOR_CUT_ARGS(c)                                                                           \
+  MCOR_BUFFER(&(c)->case_table), MCOR_INT(mcor_is_resolved(c)),                                    \
+    MCOR_BUFFER(&(c)->bricks.neighbours), MCOR_BUFFER(&(c)->topology.decisions),                   \
+    MCOR_BUFFER(&(c)->topology.cases), MCOR_BUFFER(&(c)->topology.rows)
 
 #endif

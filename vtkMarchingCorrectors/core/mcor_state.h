@@ -63,8 +63,6 @@ typedef struct mcor_brick_data
   int count;
   mcor_buffer bricks;        /* int4: position in bricks */
   mcor_buffer known;         /* ulong: nodes evaluated, all or none of a brick */
-  mcor_buffer cells;         /* ulong: cells to examine for this iso value */
-  mcor_buffer examined;      /* ulong: those whose nodes have been asked for */
   mcor_buffer value, weight; /* real [64] */
   mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
 } mcor_brick_data;
@@ -77,23 +75,24 @@ typedef struct mcor_bricks
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer seed_bits, seeds; /* of complete seeds: bricks as in bits; ulong, cells by slot */
+  mcor_buffer seed_bits, seeds; /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
-  mcor_buffer neighbours; /* see mcor_brick_neighbours */
-  bool neighbours_valid;
-  mcor_buffer placed, slot_of;                       /* of mcor_append_bricks, see mcor_brick.cl */
-  mcor_buffer need, fresh;                           /* fresh: see mcor_march_need */
+  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
+  mcor_buffer cells;                         /* ulong: those that may be used, all or none of a brick */
+  mcor_buffer plain, leaf_of;                /* ulong, int: of adaptive cubes, see mcor_adaptive_cells */
+  mcor_buffer neighbours;                    /* see mcor_brick_neighbours */
+  mcor_buffer need;                          /* see mcor_march_need */
   mcor_buffer bit_counts;                            /* of mcor_count_bits */
   mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
   mcor_buffer regions;                               /* int: those to examine */
-  mcor_buffer pair_cells; /* ulong [block_count][512]: cells between pairs */
   mcor_buffer found;      /* int: what a kernel found in any brick, or how many regions */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */
 typedef struct mcor_mesh
 {
-  mcor_buffer used, edges, vertex_base, triangle_base;
+  mcor_buffer used, plain_used; /* ulong: cells; the latter of adaptive cubes, see mcor_march_classify */
+  mcor_buffer edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
   int cap_first;
@@ -136,7 +135,6 @@ typedef struct mcor_adaptive
 {
   int count;                                 /* leaves where there may be surface */
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
-  int first_slot[MCOR_TREE_LEVEL_LIMIT + 2];
   int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
   mcor_buffer rungs;      /* mcor_rung, of all levels of leaves */
   mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
@@ -150,21 +148,20 @@ typedef struct mcor_adaptive
   int bucket_shift;
   mcor_buffer tables;    /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
   mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
-  mcor_buffer flat;      /* int, of each leaf, scanned */
-  mcor_buffer seeds;     /* ulong: cells that are counted as seeds */
+  mcor_buffer flat;      /* int: loops that lie in one face between leaves */
 } mcor_adaptive;
 
-/* Of adaptive cubes, which cells pairs reach; see mcor_pair.c. Masks are of the leaves where there
- * may be surface. */
-typedef struct mcor_adaptive_pairs
+/* Which cells pairs reach; see mcor_pair.c. Masks are by slot. */
+typedef struct mcor_pairs
 {
   int place_count;
-  mcor_buffer place_keys, place_leaves; /* ulong, sorted; int */
-  mcor_buffer seeds, reached, grown;    /* ulong: marked by pairs; by now; when last looked at */
-  mcor_buffer domain;                   /* ulong: where growth may go */
-  mcor_buffer heard;                    /* int4: cells that other boxes have reached */
-  mcor_buffer found;                    /* int: what a kernel found in any leaf */
-} mcor_adaptive_pairs;
+  mcor_buffer keys, index;             /* while places are found */
+  mcor_buffer place_keys, place_slots; /* ulong, sorted; int */
+  mcor_buffer seeds, reached, grown;   /* ulong: marked by pairs; by now; when last looked at */
+  mcor_buffer domain;                  /* ulong: where growth may go */
+  mcor_buffer heard;                   /* int4: cells that other boxes have reached */
+  mcor_buffer found;                   /* int: what a kernel found in any brick */
+} mcor_pairs;
 
 /* Of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
@@ -172,7 +169,6 @@ typedef struct mcor_topology_data
   mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
   mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
   mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
-  mcor_buffer plain, used; /* ulong: of adaptive cubes, see mcor_adaptive_topology.c */
 } mcor_topology_data;
 
 /* Points at which the field is evaluated, see mcor_make_groups. */
@@ -307,7 +303,7 @@ struct mcor_context
   /* The surface of one iso value. */
   mcor_bricks bricks;
   mcor_adaptive adaptive;
-  mcor_adaptive_pairs adaptive_pairs;
+  mcor_pairs pairs;
   mcor_topology_data topology;
   mcor_mesh mesh;
   mcor_points points;

@@ -73,7 +73,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   if (mcor_is_plane(context))
   {
     mcor_unflatten_statistics(&context->plane, s);
-    mcor_count_squares(context, s);
+    s->nodes_evaluated /= MCOR_BRICK; /* of bricks, whose lowest layer is in the plane */
   }
   s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->run.correction_sum / n : 0;

@@ -3,7 +3,7 @@
 #ifndef mcor_adaptive_h
 #define mcor_adaptive_h
 
-/* Adaptive cubes: what takes the place of seeds and march, and what other phases see of it. Vertices are on
+/* Adaptive cubes: what takes the place of seeds, and what other phases see of it. Vertices are on
  * edges of their level's lattice: node, offset, gradient and correction are in its cells, 2^level cubes. */
 
 #include "mcor_internal.h"
@@ -14,16 +14,18 @@ static inline bool mcor_is_adaptive(const mcor_context* context)
   return context->lattice.top > 0;
 }
 
-/* Bricks that are marched, or leaves where there may be surface. */
-static inline int mcor_marched_count(const mcor_context* context)
-{
-  return mcor_is_adaptive(context) ? context->adaptive.count : context->bricks.now.count;
-}
-
 /* Slots by keys. */
 #define MCOR_SLOT_ARGS(c)                                                                          \
   MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->adaptive.bucket_shift),                           \
     MCOR_BUFFER(&(c)->adaptive.keys), MCOR_BUFFER(&(c)->adaptive.buckets)
+
+/* Kernel arguments of MCOR_LEAF_PARAMS and MCOR_PLAIN_PARAMS. */
+#define MCOR_LEAF_ARGS(c)                                                                          \
+  MCOR_INT((c)->adaptive.count), MCOR_INT(mcor_is_plane(c)), MCOR_BUFFER(&(c)->adaptive.finer),    \
+    MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
+    MCOR_BUFFER(&(c)->bricks.now.valid)
+#define MCOR_PLAIN_ARGS(c)                                                                         \
+  MCOR_INT(mcor_is_adaptive(c)), MCOR_BUFFER(&(c)->bricks.plain), MCOR_BUFFER(&(c)->bricks.leaf_of)
 
 /* What evaluates the field at vertices does so level by level:
  *
@@ -56,10 +58,9 @@ typedef struct mcor_span
 
 mcor_status mcor_next_span(mcor_context* context, mcor_span* span);
 
-/* The leaves where there may be surface, with their nodes' values; then their vertices and
- * triangles. iso: relative to A0, here and below. */
+/* In place of mcor_select_seeds: the leaves where there may be surface, with their nodes' values. iso: relative to A0,
+ * here and below. */
 mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);
-mcor_status mcor_march_leaves(mcor_context* context, double iso);
 void mcor_release_adaptive(mcor_context* context);
 
 /* mcor_adaptive_seed.c. What is known of the nodes of all leaves, while slots are made. */
@@ -76,12 +77,7 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
 /* Takes over to the slots what was found. */
 mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found);
 
-/* mcor_topology.c. Decides, and counts the triangles of each leaf anew. */
-mcor_status mcor_resolve_leaves(mcor_context* context, double iso);
-
-/* mcor_pair.c. Leaves the cells that pairs reach [III-C], of those in mesh.used;
- * adaptive_pairs.seeds: those that pairs mark. */
-mcor_status mcor_keep_reached(mcor_context* context, double iso);
-void mcor_release_adaptive_pairs(mcor_context* context);
+/* mcor_march.c. The used cells that no finer ones touch. */
+const mcor_buffer* mcor_plain_used(const mcor_context* context);
 
 #endif

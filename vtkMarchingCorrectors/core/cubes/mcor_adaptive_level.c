@@ -64,9 +64,8 @@ void mcor_level_vertices(
   const mcor_context* context, bool boundary, int level, int* first, int* count)
 {
   const mcor_mesh* mesh = &context->mesh;
-  const bool one = context->lattice.top == 0;
-  const int begin = boundary ? mesh->march_count : 0;
-  const int end = boundary ? mesh->vertex_count : mesh->march_count;
-  *first = one ? begin : mesh->level_first[boundary][level];
-  *count = (one ? end : mesh->level_first[boundary][level + 1]) - *first;
+  const int last = boundary ? mesh->vertex_count : mesh->march_count; /* those of caps, too */
+  *first = mesh->level_first[boundary][level];
+  *count =
+    (level < context->lattice.top ? mesh->level_first[boundary][level + 1] : last) - *first;
 }

@@ -1,117 +1,138 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1]. */
+/* Extraction [III-D.1], of cubes of one size and of several. Slots are sorted by level, and so are vertices. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_pair_rounds.h"
+#include "mcor_pair.h"
 #include "mcor_plane.h"
 
-/* The used cells, among those examined, of the box and its ring. */
-static mcor_status mcor_classify_cells(mcor_context* context)
+#include <string.h>
+
+/* The used cells that no finer ones touch. */
+const mcor_buffer* mcor_plain_used(const mcor_context* context)
 {
-  mcor_bricks* bricks = &context->bricks;
-  mcor_mesh* mesh = &context->mesh;
-  const int count = bricks->now.count;
-  MCOR_TRY(mcor_reserve(context, &mesh->used, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used)));
-  return mcor_clip_used(context);
+  return mcor_is_adaptive(context) ? &context->mesh.plain_used : &context->mesh.used;
 }
 
-/* From the cells of pairs: one round of growth; *grown is false when no cell was added. */
-static mcor_status mcor_grow_cells(mcor_context* context, bool* grown)
-{
-  mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* flags = &bricks->found;
-  cl_int flag;
-  MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.examined),
-    MCOR_BUFFER(&bricks->fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
-    MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
-  *grown = flag != 0;
-  return flag & 2 ? mcor_append_bricks(context) : MCOR_OK;
-}
+/* ---- Cells ---- */
 
-/* Of the seed cells, which have been counted as not intersected, those that are used. */
-static mcor_status mcor_count_hits(mcor_context* context, const mcor_buffer* seeds)
-{
-  int hits;
-  MCOR_TRY(mcor_count_cells(context, &context->mesh.used, seeds, &hits));
-  context->run.statistics->seed_cells_not_intersected -= hits;
-  return MCOR_OK;
-}
-
-/* Evaluates and grows until nothing is new. Ends with the used cells. */
+/* The cells to examine, of the box and its ring, as `used`. */
 static mcor_status mcor_find_cells(mcor_context* context, double iso)
 {
-  mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
-  const bool pairs = mcor_uses_pairs(context);
-  int used;
-  mcor_end_rounds(context);
-  for (bool first = true, grown = true; grown; first = false)
+  const size_t bytes = (size_t)context->bricks.now.count * sizeof(cl_ulong);
+  MCOR_TRY(mcor_reserve(context, &mesh->used, bytes));
+  MCOR_TRY(mcor_copy(context, &context->bricks.cells, &mesh->used, 0, bytes));
+  MCOR_TRY(mcor_keep_squares(context, &mesh->used));
+  MCOR_TRY(mcor_clip_used(context));
+  return mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK;
+}
+
+/* Cells that are counted as seeds. */
+static const mcor_buffer* mcor_seeds(const mcor_context* context)
+{
+  return mcor_uses_pairs(context) ? &context->pairs.seeds
+    : mcor_is_adaptive(context)   ? &context->bricks.cells
+                                  : &context->bricks.seeds;
+}
+
+/* Of cells that finer ones touch, those that are used, and their edges. */
+static mcor_status mcor_find_hanging(mcor_context* context)
+{
+  mcor_adaptive* adaptive = &context->adaptive;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)context->bricks.now.count;
+  const mcor_buffer* owned;
+  cl_int flat = 0;
+  MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
+  MCOR_TRY(mcor_fill(context, &adaptive->quadrants, 0, n * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
+  MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &adaptive->flat, &flat, sizeof flat));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_hanging", MCOR_MEDIUM, adaptive->count,
+    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain), MCOR_BUFFER(owned),
+    MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat)));
+  MCOR_TRY(mcor_read(context, &adaptive->flat, 0, &flat, sizeof flat));
+  context->run.statistics->flat_loops += flat;
+  return mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong));
+}
+
+/* Element `at` of an array of ints. */
+static mcor_status mcor_read_int(
+  mcor_context* context, const mcor_buffer* buffer, int at, cl_int* element)
+{
+  return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
+}
+
+/* The used cells. */
+static mcor_status mcor_find_used(mcor_context* context)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  const mcor_buffer* seeds = mcor_seeds(context);
+  mcor_mesh* mesh = &context->mesh;
+  mcor_statistics* s = context->run.statistics;
+  int chosen = 0, used, hits;
+  cl_int begin = 0, end;
+  if (seeds != &bricks->seeds) /* which mcor_select_seeds has counted */
   {
-    MCOR_TRY(mcor_find_neighbours(context));
-    MCOR_TRY(mcor_evaluate_nodes(context));
-    MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
-    MCOR_TRY(pairs ? mcor_void_nodes(context) : MCOR_OK);
-    if (first && pairs) /* before other cells join them */
-    {
-      MCOR_TRY(mcor_classify_cells(context));
-      MCOR_TRY(mcor_count_hits(context, &bricks->now.cells));
-    }
-    ++context->run.statistics->march_rounds;
-    MCOR_TRY(pairs ? mcor_grow_cells(context, &grown) : mcor_grow_bricks(context, &grown));
-    MCOR_TRY(pairs && !grown ? mcor_exchange_cells(context, NULL, &grown) : MCOR_OK);
+    MCOR_TRY(mcor_count_cells(context, seeds, &mesh->used, &chosen));
   }
-  if (bricks->slot_of.mem) /* some were appended */
-  {
-    MCOR_TRY(mcor_place_bricks(context));
-    MCOR_TRY(mcor_find_neighbours(context));
-  }
-  MCOR_TRY(mcor_classify_cells(context));
-  MCOR_TRY(pairs ? MCOR_OK : mcor_count_hits(context, &bricks->seeds));
+  MCOR_TRY(mcor_is_adaptive(context) ? mcor_find_hanging(context) : MCOR_OK);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, bricks->now.count,
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours),
+    MCOR_INT(mcor_is_adaptive(context)), MCOR_BUFFER(&bricks->plain),
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(mcor_plain_used(context))));
+  MCOR_TRY(mcor_count_cells(context, seeds, &mesh->used, &hits));
   MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
-  context->run.statistics->cells_used += used;
+  s->seed_cells += chosen;
+  s->seed_cells_not_intersected += chosen - hits;
+  s->cells_used += used;
+  for (int l = 0; l <= context->lattice.top; ++l, begin = end)
+  {
+    MCOR_TRY(mcor_read_int(context, &bricks->bit_counts, bricks->first_slot[l + 1], &end));
+    s->cells_of_level[l] += end - begin;
+  }
   return MCOR_OK;
 }
+
+/* ---- Vertices and triangles ---- */
 
 /* Edges with vertices; numbers of vertices and of triangles. */
 static mcor_status mcor_count_edges(mcor_context* context)
 {
+  const mcor_bricks* bricks = &context->bricks;
   mcor_mesh* mesh = &context->mesh;
   mcor_buffer* tunnels = &context->topology.counts;
-  const int count = context->bricks.now.count;
+  const int count = bricks->now.count;
   const size_t n = (size_t)count, of_tunnels = mcor_is_resolved(context) ? n + 1 : 1;
   int tunnel_count = 0;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, n * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, tunnels, of_tunnels * sizeof(cl_int)));
-  MCOR_TRY(mcor_is_plane(context)
-      ? mcor_count_lines(context)
-      : MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
-          MCOR_DECISION_ARGS(context), MCOR_BUFFER(&mesh->used),
-          MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->case_table),
-          MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-          MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
-  const bool has_tunnels = mcor_is_resolved(context) && !mcor_is_plane(context);
-  MCOR_TRY(has_tunnels ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_CUT_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_BUFFER(&context->adaptive.quadrants), MCOR_BUFFER(mcor_plain_used(context)),
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
+  MCOR_TRY(mcor_is_resolved(context) ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
   context->run.statistics->tunnels += tunnel_count;
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    MCOR_TRY(mcor_read_int(
+      context, &mesh->vertex_base, bricks->first_slot[l + 1], &mesh->level_first[0][l + 1]));
+    mesh->level_first[1][l] = mesh->march_count;
+  }
   return MCOR_OK;
 }
 
-/* Of uniform cubes, and of leaves. */
-mcor_status mcor_emit_vertices(mcor_context* context, double iso)
+static mcor_status mcor_emit_vertices(mcor_context* context, double iso)
 {
   const mcor_brick_data* now = &context->bricks.now;
   mcor_mesh* mesh = &context->mesh;
@@ -120,14 +141,13 @@ mcor_status mcor_emit_vertices(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
-    MCOR_SLOT_ARGS(context), MCOR_INT(mcor_is_adaptive(context)),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->adaptive.rungs),
-    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->node),
-    MCOR_BUFFER(&mesh->ends));
+    MCOR_SLOT_ARGS(context), MCOR_BUFFER(&context->bricks.neighbours),
+    MCOR_BUFFER(&context->adaptive.rungs), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
+    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends));
 }
 
-/* Triangles, and their cells, of which those between the sides are owned. */
+/* Triangles, or lines, and their cells, of which those between the sides are owned. */
 static mcor_status mcor_emit_triangles(
   mcor_context* context, const int sides[6], mcor_buffer* cells)
 {
@@ -135,35 +155,62 @@ static mcor_status mcor_emit_triangles(
   const mcor_mesh* mesh = &context->mesh;
   const bool follows = mcor_follows_cells(context);
   const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
+  const char* emit = mcor_is_plane(context) ? "mcor_plane_lines" : "mcor_march_triangles";
   MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-    MCOR_DECISION_ARGS(context), MCOR_SIDES_ARGS(sides), MCOR_INT(follows),
-    MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
-    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&now->above),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
+  return MCOR_LAUNCH(context, emit, MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_LEAF_ARGS(context), MCOR_PLAIN_ARGS(context), MCOR_CUT_ARGS(context),
+    MCOR_SIDES_ARGS(sides), MCOR_INT(follows), MCOR_INT(context->lattice.blocks[0]),
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&context->adaptive.rungs),
+    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells),
+    MCOR_BUFFER(&mesh->triangles));
+}
+
+/* Counts the triangles of each level, in the box where there is one. */
+static mcor_status mcor_count_triangles(mcor_context* context)
+{
+  mcor_statistics* s = context->run.statistics;
+  cl_int begin = 0, end;
+  for (int l = 0; l <= context->lattice.top; ++l, begin = end)
+  {
+    int count;
+    MCOR_TRY(mcor_read_int(
+      context, &context->mesh.triangle_base, context->bricks.first_slot[l + 1], &end));
+    MCOR_TRY(mcor_count_owned_triangles(context, begin, end, &count));
+    s->triangles_of_level[l] += count;
+    s->triangles_before_trimming += count;
+  }
+  return MCOR_OK;
 }
 
 /* Vertices and triangles. iso: relative to A0. */
 mcor_status mcor_march(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
-  int owned;
+  mesh->march_count = mesh->vertex_count = mesh->triangle_count = 0;
+  memset(mesh->level_first, 0, sizeof mesh->level_first);
+  if (context->bricks.now.count == 0)
+  {
+    return mcor_uses_pairs(context) ? mcor_attend_growth(context) : MCOR_OK;
+  }
+  MCOR_TRY(mcor_find_neighbours(context));
   MCOR_TRY(mcor_find_cells(context, iso));
+  MCOR_TRY(mcor_find_used(context));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));
+  if (mesh->triangle_count == 0)
+  {
+    return MCOR_OK;
+  }
   MCOR_TRY(mcor_emit_vertices(context, iso));
-  MCOR_TRY(
-    mcor_emit_in_box(context, mcor_is_plane(context) ? mcor_emit_lines : mcor_emit_triangles));
-  MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
-  context->run.statistics->triangles_before_trimming += owned;
-  return MCOR_OK;
+  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
+  return mcor_count_triangles(context);
 }
 
 void mcor_release_mesh(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
-  MCOR_RELEASE(context, &m->used, &m->edges, &m->vertex_base, &m->triangle_base, &m->node, &m->ends,
-    &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight, &m->flag,
-    &m->evaluations, &m->means, &m->triangles, &m->scanned);
+  MCOR_RELEASE(context, &m->used, &m->plain_used, &m->edges, &m->vertex_base, &m->triangle_base,
+    &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight,
+    &m->flag, &m->evaluations, &m->means, &m->triangles, &m->scanned);
 }

@@ -5,24 +5,21 @@
 
 #include "mcor_plane.h"
 
-/* Values of all nodes that the cells to examine need and that are not known yet. */
+/* Values of all nodes of the bricks that are not known yet. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &bricks->fresh, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.cells),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.examined),
-    MCOR_BUFFER(&bricks->fresh)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
   /* One item per brick where one gathers for many lanes, else one per node. */
   const bool plane = mcor_is_plane(context); /* there 16 of them, an item for all lanes */
   const size_t items = (size_t)count *
     (size_t)(plane               ? 16 / context->cl.lanes
         : context->cl.lanes == 1 ? 64
                                  : 1);
-  return MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_march_nodes", MCOR_HEAVY, items,
+  return MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_node_values", MCOR_HEAVY, items,
     MCOR_GRID_ARGS(context), MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
@@ -31,7 +28,7 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_sign", MCOR_MEDIUM, bricks->now.count,
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_node_sides", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
     MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
     MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&bricks->now.above),

@@ -5,11 +5,9 @@
  * grown to its end, cells near its sides that are new are told to the boxes there, which go on from those in
  * them and in the ring around them, until none is new anywhere. Then each box has, of its cells and its
  * ring, those that one run over all would have examined: a step of growth begins in a used cell, whose
- * box has right values at its nodes, and ends in a cell of that box or of its ring. Cells of adaptive cubes
- * have a level; uniform ones have level 0. */
+ * box has right values at its nodes, and ends in a cell of that box or of its ring. */
 
-#include "mcor_pair_rounds.h"
-#include "mcor_adaptive.h"
+#include "mcor_pair.h"
 #include "mcor_box.h"
 #include "mcor_ranks.h"
 
@@ -22,22 +20,6 @@ typedef struct mcor_world_cell
 {
   int64_t at[3], level;
 } mcor_world_cell;
-
-/* Cells as they are known here: masks of bricks, which are leaves of adaptive cubes. */
-typedef struct mcor_known_cells
-{
-  int count;
-  const mcor_buffer *bricks, *cells;
-} mcor_known_cells;
-
-static mcor_known_cells mcor_find_known(const mcor_context* context)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  const mcor_adaptive* adaptive = &context->adaptive;
-  return mcor_is_adaptive(context)
-    ? (mcor_known_cells){ adaptive->count, &adaptive->cells, &context->adaptive_pairs.reached }
-    : (mcor_known_cells){ now->count, &now->bricks, &now->cells };
-}
 
 typedef struct mcor_cell_list
 {
@@ -80,7 +62,7 @@ static mcor_status mcor_list_brick(
   mcor_context* context, const cl_int brick[4], cl_ulong cells, mcor_cell_list* list)
 {
   const mcor_lattice* lattice = &context->lattice;
-  const int level = mcor_is_adaptive(context) ? brick[3] : 0;
+  const int level = brick[3];
   for (int c = 0; c < MCOR_BRICK_NODES; ++c)
   {
     const int64_t at[3] = { brick[0] * MCOR_BRICK + (c & 3), brick[1] * MCOR_BRICK + (c >> 2 & 3),
@@ -102,31 +84,32 @@ static mcor_status mcor_list_brick(
 static mcor_status mcor_list_new_cells(mcor_context* context, mcor_cell_list* list)
 {
   mcor_box* box = &context->box;
-  const mcor_known_cells known = mcor_find_known(context);
-  const size_t count = (size_t)known.count;
+  const mcor_brick_data* now = &context->bricks.now;
+  const mcor_buffer* reached = &context->pairs.reached;
+  const size_t count = (size_t)now->count;
   void *bricks, *cells;
-  if (box->told_count < known.count)
+  if (box->told_count < now->count)
   {
     cl_ulong* told = realloc(box->told, count * sizeof *told);
     MCOR_TRY(mcor_allocated(context, told));
     memset(told + box->told_count, 0, (count - (size_t)box->told_count) * sizeof *told);
     box->told = told;
-    box->told_count = known.count;
+    box->told_count = now->count;
   }
   if (count == 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_map(context, known.bricks, count * 4 * sizeof(cl_int), false, &bricks));
-  mcor_status status = mcor_map(context, known.cells, count * sizeof(cl_ulong), false, &cells);
+  MCOR_TRY(mcor_map(context, &now->bricks, count * 4 * sizeof(cl_int), false, &bricks));
+  mcor_status status = mcor_map(context, reached, count * sizeof(cl_ulong), false, &cells);
   for (size_t i = 0; i < count && status == MCOR_OK; ++i)
   {
     const cl_ulong mask = ((const cl_ulong*)cells)[i], fresh = mask & ~box->told[i];
     status = fresh ? mcor_list_brick(context, (const cl_int*)bricks + 4 * i, fresh, list) : MCOR_OK;
     box->told[i] = mask;
   }
-  const mcor_status unmapped = mcor_unmap(context, known.cells, &cells);
-  const mcor_status last = mcor_unmap(context, known.bricks, &bricks);
+  const mcor_status unmapped = mcor_unmap(context, reached, &cells);
+  const mcor_status last = mcor_unmap(context, &now->bricks, &bricks);
   return status != MCOR_OK ? status : unmapped != MCOR_OK ? unmapped : last;
 }
 
@@ -135,9 +118,7 @@ static bool mcor_is_near(const mcor_context* context, int axis, int64_t at, int 
 {
   const mcor_box* box = &context->box;
   const int64_t edge = INT64_C(2) << level; /* see mcor_box_clip */
-  return mcor_is_adaptive(context)
-    ? (at + 2) * edge >= box->near[axis] && (at - 1) * edge <= box->near[3 + axis]
-    : at >= box->begin[axis] - MCOR_BOX_RING && at < box->end[axis] + MCOR_BOX_RING;
+  return (at + 2) * edge >= box->near[axis] && (at - 1) * edge <= box->near[3 + axis];
 }
 
 /* Of a cell's images at whole periods, those in the box and its ring, as the device wants them: four
@@ -164,30 +145,9 @@ static int mcor_place_cell(const mcor_context* context, const mcor_world_cell* c
   return count;
 }
 
-/* Goes on from `count` cells of this box; *fresh: whether one is new. */
-static mcor_status mcor_take_cells(
-  mcor_context* context, const cl_int* cells, int count, bool* fresh)
-{
-  mcor_bricks* bricks = &context->bricks;
-  mcor_buffer *taken = &bricks->pair_cells, *flags = &bricks->found;
-  cl_int flag = 0;
-  MCOR_TRY(mcor_write(context, taken, cells, (size_t)count * 4 * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request_cells", MCOR_LIGHT, count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(count), MCOR_BUFFER(taken), MCOR_BUFFER(&bricks->bits)));
-  MCOR_TRY(mcor_append_bricks(context));
-  MCOR_TRY(mcor_fill(context, flags, 0, sizeof flag));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_take", MCOR_LIGHT, count, MCOR_BLOCK_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(taken), MCOR_BUFFER(&bricks->slot_of),
-    MCOR_BUFFER(&bricks->now.cells), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_read(context, flags, 0, &flag, sizeof flag));
-  mcor_release(context, taken);
-  *fresh = flag != 0;
-  return MCOR_OK;
-}
-
 /* Takes what is in this box of what all boxes tell. */
 static mcor_status mcor_hear_cells(
-  mcor_context* context, const mcor_world_cell* told, int64_t count, mcor_take take, bool* fresh)
+  mcor_context* context, const mcor_world_cell* told, int64_t count, bool* fresh)
 {
   cl_int* places = NULL;
   int64_t found = 0, room = 0;
@@ -207,8 +167,8 @@ static mcor_status mcor_hear_cells(
     }
     found += mcor_place_cell(context, told + i, places + 4 * found);
   }
-  const mcor_take own = take ? take : mcor_take_cells;
-  const mcor_status status = found > 0 ? own(context, places, (int)found, fresh) : MCOR_OK;
+  const mcor_status status =
+    found > 0 ? mcor_take_reached(context, places, (int)found, fresh) : MCOR_OK;
   free(places);
   return status;
 }
@@ -232,7 +192,7 @@ static mcor_status mcor_tell_cells(
   return status;
 }
 
-mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* grown)
+mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
 {
   mcor_cell_list list = { 0 };
   const void* all;
@@ -244,11 +204,10 @@ mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* gro
   }
   mcor_status status = mcor_list_new_cells(context, &list);
   status = status == MCOR_OK ? mcor_tell_cells(context, &list, &all, &count) : status;
-  const bool has_leaves = !mcor_is_adaptive(context) || context->adaptive.count > 0;
-  if (status == MCOR_OK && context->grid.count > 0 && has_leaves)
+  if (status == MCOR_OK && context->grid.count > 0 && context->bricks.now.count > 0)
   {
     bool some;
-    status = mcor_hear_cells(context, all, count, take, &some);
+    status = mcor_hear_cells(context, all, count, &some);
     fresh = some;
   }
   free(list.cells);
@@ -271,7 +230,7 @@ mcor_status mcor_attend_growth(mcor_context* context)
 {
   for (bool grown = true; grown;)
   {
-    MCOR_TRY(mcor_exchange_cells(context, NULL, &grown));
+    MCOR_TRY(mcor_exchange_cells(context, &grown));
   }
   return MCOR_OK;
 }
@@ -281,7 +240,6 @@ mcor_status mcor_attend_rounds(mcor_context* context, int first)
 {
   const bool all = context->run.options->ranks && mcor_uses_pairs(context);
   context->bricks.now.count = all ? 0 : context->bricks.now.count;
-  context->adaptive.count = all ? 0 : context->adaptive.count;
   for (int i = first; i < context->run.options->iso_count && all; ++i)
   {
     MCOR_TRY(mcor_attend_growth(context));

@@ -19,7 +19,7 @@ static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer*
 }
 
 /* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
-mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
+static mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
 {
   cl_int flag;
   MCOR_TRY(mcor_request_beside(context, &context->bricks.need));
@@ -28,9 +28,13 @@ mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
-static mcor_status mcor_count_seeds(mcor_context* context, const mcor_buffer* seeds)
+/* Counts the cells that are seeds: those of all bricks that the regions leave uncertain, whatever of them is known from
+ * earlier iso values. Later, those that the surface uses are taken off. */
+static mcor_status mcor_count_seeds(mcor_context* context)
 {
+  mcor_buffer* seeds = &context->bricks.seeds;
   int count;
+  MCOR_TRY(mcor_keep_squares(context, seeds));
   MCOR_TRY(mcor_count_cells(context, seeds, seeds, &count));
   context->run.statistics->seed_cells += count;
   context->run.statistics->seed_cells_not_intersected += count;
@@ -98,7 +102,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   mcor_buffer* list = &bricks->regions;
   int listed = 0;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
-  MCOR_TRY(mcor_count_seeds(context, &bricks->seeds));
+  MCOR_TRY(mcor_uses_pairs(context) ? MCOR_OK : mcor_count_seeds(context));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
   MCOR_TRY(mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, iso, list, listed));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
@@ -108,17 +112,21 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   return mcor_place_bricks(context);
 }
 
-/* Ends with the bricks in place and their cells to examine set. iso: relative to A0. */
+/* Ends with the bricks in place, and the values of their nodes. iso: relative to A0. */
 mcor_status mcor_select_seeds(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
   MCOR_TRY(mcor_find_side_flags(context, iso));
   MCOR_TRY(mcor_make_blocks(context, iso));
-  if (mcor_uses_pairs(context))
-  {
-    MCOR_TRY(mcor_seed_pairs(context, iso));
-    return mcor_count_seeds(context, &bricks->now.cells);
-  }
   MCOR_TRY(mcor_place_complete(context, iso));
-  return mcor_fill(context, &bricks->now.cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
+  for (bool grown = true; grown;)
+  {
+    MCOR_TRY(mcor_evaluate_nodes(context));
+    MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
+    ++context->run.statistics->march_rounds;
+    MCOR_TRY(mcor_grow_bricks(context, &grown));
+  }
+  bricks->first_slot[0] = 0;
+  bricks->first_slot[1] = bricks->now.count;
+  return mcor_fill(context, &bricks->cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
 }

@@ -30,7 +30,7 @@ static mcor_status mcor_upload_topology_table(mcor_context* context)
 /* The first sample of a level of adaptive cubes: slots are in the order of their levels. */
 static mcor_status mcor_first_sample(mcor_context* context, int level, int* first)
 {
-  const size_t slot = (size_t)context->adaptive.first_slot[level];
+  const size_t slot = (size_t)context->bricks.first_slot[level];
   return mcor_read(
     context, &context->topology.sample_base, slot * sizeof(cl_int), first, sizeof(cl_int));
 }
@@ -93,13 +93,13 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   return MCOR_OK;
 }
 
-static mcor_status mcor_resolve_cells(mcor_context* context, const mcor_buffer* used, double iso)
+static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
 {
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(used),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(mcor_plain_used(context)),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
@@ -110,86 +110,24 @@ static mcor_status mcor_resolve_cells(mcor_context* context, const mcor_buffer* 
     MCOR_BUFFER(&topology->decisions));
 }
 
-/* Tables, and room for what is decided; sample_base: counts. */
-mcor_status mcor_begin_topology(mcor_context* context)
-{
-  mcor_topology_data* topology = &context->topology;
-  const size_t n = (size_t)context->bricks.now.count;
-  MCOR_TRY(mcor_upload_topology_table(context));
-  MCOR_TRY(mcor_reserve(context, &topology->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
-  return mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int));
-}
-
-/* Decides on the faces in `decisions`, of which sample_base has each slot's number; then on the cells
- * whose loops may be a tunnel. used: ulong, cells by slot. iso: relative to A0. */
-mcor_status mcor_decide_topology(mcor_context* context, const mcor_buffer* used, double iso)
-{
-  MCOR_TRY(mcor_resolve_faces(context, iso));
-  return mcor_resolve_cells(context, used, iso);
-}
-
-/* Decides on all ambiguous faces and such cells of the uniform lattice. */
+/* Decides on the ambiguous faces between cells that no finer ones touch; then on those of these cells whose loops may
+ * be a tunnel. iso: relative to A0. */
 mcor_status mcor_resolve_topology(mcor_context* context, double iso)
 {
-  const mcor_mesh* mesh = &context->mesh;
-  const mcor_topology_data* topology = &context->topology;
-  const int count = context->bricks.now.count;
-  MCOR_TRY(mcor_begin_topology(context));
+  mcor_topology_data* topology = &context->topology;
+  const mcor_bricks* bricks = &context->bricks;
+  const int count = bricks->now.count;
+  const size_t n = (size_t)count;
+  MCOR_TRY(mcor_upload_topology_table(context));
+  MCOR_TRY(mcor_reserve(context, &topology->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_INT(true), MCOR_INT(mcor_is_plane(context)),
-    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&context->bricks.now.above),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&bricks->plain),
+    MCOR_BUFFER(mcor_plain_used(context)), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
-  return mcor_decide_topology(context, &mesh->used, iso);
-}
-
-/* ---- Adaptive cubes: faces between cells that are as on the uniform lattice ---- */
-
-/* The slots' neighbours and plain cells, and the faces to decide on. */
-static mcor_status mcor_find_plain_faces(mcor_context* context)
-{
-  const mcor_adaptive* adaptive = &context->adaptive;
-  const int slots = context->bricks.now.count;
-  const size_t n = (size_t)slots;
-  mcor_topology_data* topology = &context->topology;
-  mcor_buffer* neighbours = &context->bricks.neighbours;
-  context->bricks.neighbours_valid = false; /* for the uniform lattice */
-  MCOR_TRY(mcor_fill(context, neighbours, 0xff, n * 14 * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, &topology->plain, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_fill(context, &topology->used, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_plain", MCOR_MEDIUM, adaptive->count,
-    MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
-    MCOR_BUFFER(&context->mesh.used), MCOR_BUFFER(neighbours), MCOR_BUFFER(&topology->plain),
-    MCOR_BUFFER(&topology->used)));
-  return MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, slots, MCOR_INT(slots),
-    MCOR_BUFFER(neighbours), MCOR_INT(false), MCOR_INT(mcor_is_plane(context)),
-    MCOR_BUFFER(&topology->plain), MCOR_BUFFER(&topology->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->decisions),
-    MCOR_BUFFER(&topology->sample_base));
-}
-
-/* Decides, and counts the triangles of each leaf anew. iso: relative to A0. */
-mcor_status mcor_resolve_leaves(mcor_context* context, double iso)
-{
-  const mcor_adaptive* adaptive = &context->adaptive;
-  mcor_topology_data* topology = &context->topology;
-  mcor_buffer* counts = &topology->counts;
-  int tunnels;
-  MCOR_TRY(mcor_begin_topology(context));
-  MCOR_TRY(mcor_find_plain_faces(context));
-  MCOR_TRY(mcor_decide_topology(context, &topology->used, iso));
-  if (mcor_is_plane(context)) /* as many lines as before */
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_reserve(context, counts, ((size_t)adaptive->count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_recount", MCOR_MEDIUM, adaptive->count,
-    MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->tables), MCOR_DECISION_ARGS(context),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->used),
-    MCOR_BUFFER(&context->case_table), MCOR_BUFFER(&context->mesh.triangle_base),
-    MCOR_BUFFER(counts)));
-  MCOR_TRY(mcor_scan(context, counts, adaptive->count, &tunnels));
-  context->run.statistics->tunnels += tunnels;
-  return MCOR_OK;
+  MCOR_TRY(mcor_resolve_faces(context, iso));
+  return mcor_resolve_cells(context, iso);
 }
 
 /* The tables stay. */
@@ -197,5 +135,5 @@ void mcor_release_topology(mcor_context* context)
 {
   mcor_topology_data* t = &context->topology;
   MCOR_RELEASE(context, &t->decisions, &t->counts, &t->sample_base, &t->sample_node,
-    &t->sample_offset, &t->sample_side, &t->plain, &t->used);
+    &t->sample_offset, &t->sample_side);
 }

@@ -215,7 +215,7 @@ static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lowe
   const mcor_buffer* cells, mcor_buffer* clipped)
 {
   const bool adaptive = mcor_is_adaptive(context);
-  const int count = mcor_marched_count(context);
+  const int count = context->bricks.now.count;
   int s[6];
   for (int a = 0; a < 3; ++a)
   {
@@ -224,17 +224,7 @@ static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lowe
   }
   MCOR_TRY(mcor_reserve(context, clipped, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(adaptive ? &context->adaptive.cells : &context->bricks.now.bricks),
-    MCOR_SIDES_ARGS(s), MCOR_INT(adaptive && lower > 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
-}
-
-/* One more node than cells. */
-mcor_status mcor_void_nodes(mcor_context* context)
-{
-  mcor_buffer* valid = &context->bricks.now.valid;
-  return mcor_is_limited(context)
-    ? mcor_clip(context, context->box.near, MCOR_BOX_RING, MCOR_BOX_RING + 1, valid, valid)
-    : MCOR_OK;
+    MCOR_BUFFER(&context->bricks.now.bricks), MCOR_SIDES_ARGS(s), MCOR_INT(adaptive && lower > 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
 }
 
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
@@ -266,7 +256,7 @@ mcor_status mcor_count_cells(
 {
   const mcor_buffer* owned;
   MCOR_TRY(mcor_find_owned(context, cells, &owned));
-  return mcor_count_bits(context, owned, within, mcor_marched_count(context), count);
+  return mcor_count_bits(context, owned, within, context->bricks.now.count, count);
 }
 
 /* ---- Particles ---- */

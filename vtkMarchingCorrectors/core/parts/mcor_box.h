@@ -76,10 +76,7 @@ bool mcor_is_limited(const mcor_context* context);
 mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction: nodes off the box and its ring, of evaluated bricks, are no more valid; so that pairs
- * do not grow there. */
-mcor_status mcor_void_nodes(mcor_context* context);
-/* Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned ones; of
+/* Extraction. Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned ones; of
  * any, those whose particles are at hand. */
 mcor_status mcor_clip_used(mcor_context* context);
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);

@@ -141,7 +141,7 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_buffer* keys = &context->trim.distinct;
-  for (int l = 0; l <= context->lattice.top; ++l)
+  for (int l = 0; l < context->lattice.top; ++l)
   {
     int low = 0, high = cut_count;
     while (low < high)
@@ -155,7 +155,6 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
     }
     mesh->level_first[1][l + 1] = mesh->march_count + low;
   }
-  mesh->level_first[1][0] = mesh->march_count;
   return MCOR_OK;
 }
 
@@ -177,10 +176,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
-  if (mcor_is_adaptive(context))
-  {
-    MCOR_TRY(mcor_find_cut_levels(context, cut_count));
-  }
+  MCOR_TRY(mcor_find_cut_levels(context, cut_count));
   const char* solve =
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
   for (int l = 0; l <= context->lattice.top; ++l)

@@ -81,6 +81,28 @@ __kernel void mcor_adaptive_bricks(const int count, const int top, __global cons
   bricks[i] = (int4)(block.x, block.y, block.z, level);
 }
 
+/* One work-item = one slot. Enters the bricks of its level up from it, and it, into each other's lists, see
+ * mcor_brick_neighbours. */
+__kernel void mcor_adaptive_neighbours(MCOR_SLOT_PARAMS, __global const mcor_rung* rungs,
+  __global const int4* bricks, __global int* neighbours)
+{
+  MCOR_ITEM(slot, slot < slot_count);
+  const int4 own = bricks[slot];
+  __global const mcor_rung* rung = rungs + own.w;
+  for (int d = 1; d < 8; ++d)
+  {
+    const int x = own.x + (d & 1), y = own.y + (d >> 1 & 1), z = own.z + (d >> 2);
+    const int other = x < rung->n[0] && y < rung->n[1] && z < rung->n[2]
+      ? mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, own.w, x, y, z))
+      : -1;
+    if (other >= 0)
+    {
+      neighbours[slot * 14L + d - 1] = other;
+      neighbours[other * 14L + d + 6] = slot;
+    }
+  }
+}
+
 /* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
 __kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count, const int plane,
   __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,

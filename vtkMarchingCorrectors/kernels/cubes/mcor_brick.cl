@@ -113,6 +113,16 @@ ulong mcor_adaptive_key(__global const mcor_rung* rungs, int level, int x, int y
   return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
 }
 
+/* Key of a brick that ascends with its slot, with or without levels. */
+#define MCOR_KEY_PARAMS                                                                            \
+  const int levels, const int blocks_x, const int blocks_y, __global const mcor_rung *rungs
+#define MCOR_KEY_ARGS levels, blocks_x, blocks_y, rungs
+ulong mcor_slot_key(MCOR_KEY_PARAMS, int4 brick)
+{
+  return levels ? mcor_adaptive_key(rungs, brick.w, brick.x, brick.y, brick.z)
+                : mcor_brick_place(blocks_x, blocks_y, brick);
+}
+
 #define MCOR_SLOT_PARAMS                                                                           \
   const int slot_count, const int bucket_shift, __global const ulong *keys,                        \
     __global const int *buckets
@@ -170,90 +180,13 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* While pairs grow, bricks keep their slots, and those that are requested get slots behind them:
- * `placed` has the bits of bricks with slots, slot_of the slot of each number, or -1. */
-
-/* One work-item = one brick. Writes its slot to its number. */
-__kernel void mcor_brick_index(MCOR_BLOCK_PARAMS, const int brick_count,
-  __global const int4* bricks, __global uint* placed, __global int* slot_of)
-{
-  MCOR_ITEM(slot, slot < brick_count);
-  const int4 brick = bricks[slot];
-  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-  mcor_request_brick(placed, m);
-  slot_of[m] = slot;
-}
-
-/* One work-item = one word of 32 bricks. Counts those without slots. */
-__kernel void mcor_brick_count_new(const int word_count, __global const uint* brick_bits,
-  __global const uint* placed, __global int* counts)
-{
-  MCOR_ITEM(word, word < word_count);
-  counts[word] = (int)popcount(brick_bits[word] & ~placed[word]);
-}
-
-/* One work-item = one word of 32 bricks. Reads bits and scanned counts. Gives slots from `first` on
- * to those without, of which nothing is known. */
-__kernel void mcor_brick_append(MCOR_BLOCK_PARAMS, const int first, __global const uint* brick_bits,
-  __global const int* scanned, __global uint* placed, __global int* slot_of, __global int4* bricks,
-  __global int* neighbours, __global ulong* known, __global ulong* cells, __global ulong* examined,
-  __global ulong* above, __global ulong* valid)
-{
-  MCOR_ITEM(word, word < block_count * MCOR_BLOCK_WORDS);
-  int slot = first + scanned[word];
-  for (uint bits = brick_bits[word] & ~placed[word]; bits; bits &= bits - 1, ++slot)
-  {
-    const int m = word * 32 + 31 - (int)clz(bits & -bits);
-    bricks[slot] = mcor_brick_of_number(block_keys, blocks_x, blocks_y, m);
-    slot_of[m] = slot;
-    known[slot] = cells[slot] = examined[slot] = above[slot] = valid[slot] = 0;
-    for (int n = 0; n < 14; ++n)
-    {
-      neighbours[slot * 14L + n] = -1;
-    }
-  }
-  placed[word] |= brick_bits[word];
-}
-
-/* One work-item = one brick with a slot from `first` on. Enters it and its neighbours into each
- * other's lists. */
-__kernel void mcor_brick_join(MCOR_BLOCK_PARAMS, const int first, const int brick_count,
-  __global const int4* bricks, __global const int* slot_of, __global int* neighbours)
-{
-  const int slot = first + get_global_id(0);
-  if (slot >= brick_count)
-  {
-    return;
-  }
-  const int4 brick = bricks[slot];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
-  for (int d = 1; d < 8; ++d)
-  {
-    const int x = d & 1, y = d >> 1 & 1, z = d >> 2;
-    const int up = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, x, y, z);
-    const int down = mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, -x, -y, -z);
-    const int upper = up < 0 ? -1 : slot_of[up], lower = down < 0 ? -1 : slot_of[down];
-    if (upper >= 0)
-    {
-      neighbours[slot * 14L + d - 1] = upper;
-      neighbours[upper * 14L + d + 6] = slot;
-    }
-    if (lower >= 0 && lower < first) /* a new one enters both */
-    {
-      neighbours[slot * 14L + d + 6] = lower;
-      neighbours[lower * 14L + d - 1] = slot;
-    }
-  }
-}
-
 /* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,
  * if it has one. words: of 4 bytes, that the values of a brick's nodes take. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
-  __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_cells,
-  __global const ulong* old_examined, __global const ulong* old_above,
-  __global const ulong* old_valid, const int words, __global const uint* old_value,
-  __global const uint* old_weight, __global ulong* known, __global ulong* cells,
-  __global ulong* examined, __global ulong* above, __global ulong* valid, __global uint* node_value,
+  __global const int4* old_bricks, __global const ulong* old_known,
+  __global const ulong* old_above, __global const ulong* old_valid, const int words,
+  __global const uint* old_value, __global const uint* old_weight, __global ulong* known,
+  __global ulong* above, __global ulong* valid, __global uint* node_value,
   __global uint* node_weight)
 {
   MCOR_ITEM(old, old < old_count);
@@ -264,8 +197,6 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
     return;
   }
   known[slot] = old_known[old];
-  cells[slot] = old_cells[old];
-  examined[slot] = old_examined[old];
   above[slot] = old_above[old];
   valid[slot] = old_valid[old];
   for (int n = 0; n < words; ++n)

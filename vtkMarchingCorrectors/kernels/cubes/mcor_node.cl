@@ -91,3 +91,39 @@ ulong2 mcor_node_signs(
   }
   return (ulong2)(a, v);
 }
+
+#if MCOR_OF_FIELD
+/* One work-item = MCOR_ITEM_NODES nodes of a brick. Where they are needed, reads the particles that
+ * reach them. Writes their values and weights. */
+__kernel void mcor_node_values(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
+  __global const ulong* need, __global real* node_value, __global real* node_weight)
+{
+  const long first_node = (long)get_global_id(0) * MCOR_ITEM_NODES;
+  const int slot = (int)(first_node / 64);
+  if (slot >= brick_count || need[slot] == 0)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(first_node % 64), 1);
+  mcor_node_sums sums;
+  mcor_tile tile;
+  mcor_tile_init(&tile);
+  mcor_node_sum(&grid, &query, &tile, &sums);
+  mcor_node_store(&sums, node_value + first_node, node_weight + first_node);
+}
+
+/* One work-item = one brick. Reads the values of its nodes where these are `evaluated`: they are
+ * known from now on. Writes which are above the iso value, and which are valid. */
+__kernel void mcor_node_sides(const int brick_count, __global const ulong* evaluated,
+  __global ulong* known, __global const real* node_value, __global const real* node_weight,
+  const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)
+{
+  MCOR_ITEM(slot, slot < brick_count && evaluated[slot]);
+  known[slot] |= evaluated[slot];
+  const ulong2 signs =
+    mcor_node_signs(node_value + slot * 64L, node_weight + slot * 64L, iso, node_threshold);
+  above[slot] = signs.x;
+  valid[slot] = signs.y;
+}
+#endif

@@ -3,80 +3,150 @@
 
 /* The paper's seed selection [III-C]: pairs of particles closer than the smoothing length with
  * values on both sides, and all cells on the straight line between them; then the growth from cell
- * to cell through crossed faces. */
+ * to cell through crossed faces, also to larger and smaller ones. Of each level's lattice the cells on the line are
+ * found; those that may be used are marked. Of bricks where there is certainly no surface nothing is known: they have
+ * no used cells. */
 
-#if MCOR_OF_FIELD
-/* What marking takes, last among a kernel's parameters; mcor_adaptive_pair.cl has that of adaptive cubes. */
-#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* cells
-#define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, cells
+/* Bricks by their sorted keys: those with cells that may be used, and those that such bricks are parts of. */
+#define MCOR_PLACE_PARAMS                                                                          \
+  const int place_count, __global const mcor_rung *rungs, __global const ulong *place_keys,        \
+    __global const int *place_slots
+#define MCOR_PLACE_ARGS place_count, rungs, place_keys, place_slots
 
-/* Cells are found before their bricks have slots: `cells` has two words, 64 bits, for each brick
- * of each block. */
-void mcor_pair_seed_cell(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* cells)
+/* What such a brick is, if it has no cells that may be used. */
+#define MCOR_PLACE_SPLIT (-1)
+#define MCOR_PLACE_NONE (-2)
+
+int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
 {
-  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
-  if (m >= 0)
+  __global const mcor_rung* rung = rungs + level;
+  if (x < 0 || y < 0 || z < 0 || x >= rung->n[0] || y >= rung->n[1] || z >= rung->n[2])
   {
-    atomic_or(cells + 2L * m + (z >> 1 & 1), 1u << ((x & 3) | (y & 3) << 2 | (z & 1) << 4));
+    return MCOR_PLACE_NONE;
+  }
+  const ulong key = mcor_adaptive_key(rungs, level, x, y, z);
+  const int at = mcor_find_key(place_keys, 0, place_count, key);
+  return at < place_count && place_keys[at] == key ? place_slots[at] : MCOR_PLACE_NONE;
+}
+
+/* Adds a cell of a level to those of its brick, if that is one. flags: 1 where it is new. */
+void mcor_pair_reach(
+  MCOR_PLACE_PARAMS, int level, int x, int y, int z, __global uint* reached, __global int* flags)
+{
+  const int slot = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
+  const ulong cell = 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+  if (slot >= 0 && mcor_add_cells(reached, slot, cell))
+  {
+    atomic_or(flags, 1);
   }
 }
 
-/* All cells on the line from p to q (edges, relative to cell c), beginning in cell c. Where the
- * line passes an edge or a corner of a cell to within rounding, the cells on both sides are
- * found. */
-void mcor_pair_seed_line(
-  MCOR_BLOCK_PARAMS, const real* p, const real* q, int* c, const int* end, __global uint* cells)
+#if MCOR_OF_LATTICE
+/* One work-item = one brick. Where its `cells` may be used, writes its key, and those of the bricks that it is part
+ * of: of each level one, of the levels up to its own that of itself; else a key beyond all. */
+__kernel void mcor_pair_keys(const int count, const int top,
+  __global const mcor_rung* rungs, __global const int4* bricks,
+  __global const ulong* cells, __global ulong* keys)
+{
+  const int i = get_global_id(0);
+  const ulong none = mcor_adaptive_key(rungs, top + 1, 0, 0, rungs[top + 1].n[2]);
+  for (int l = 0; l <= top && i < count; ++l)
+  {
+    const int4 b = bricks[i];
+    const int up = max(l - b.w, 0);
+    keys[i * (top + 1L) + l] =
+      cells[i] ? mcor_adaptive_key(rungs, b.w + up, b.x >> up, b.y >> up, b.z >> up) : none;
+  }
+}
+
+/* One work-item = one brick. Enters its slot at its key, of which `index` has the place. */
+__kernel void mcor_pair_places(const int count, const int top, __global const int* index,
+  __global const ulong* cells, __global int* place_slots)
+{
+  MCOR_ITEM(i, i < count && cells[i]);
+  place_slots[index[i * (top + 1L)]] = i;
+}
+#endif
+
+/* ---- Cells between pairs ---- */
+
+#if MCOR_OF_FIELD
+/* What marking takes, last among a kernel's parameters. top: the highest level. */
+#define MCOR_MARK_PARAMS MCOR_PLACE_PARAMS, const int top, __global uint *reached
+#define MCOR_MARK_ARGS MCOR_PLACE_ARGS, top, reached
+
+/* Marks a cell of a level if it may be used; whether smaller ones may be there. */
+bool mcor_pair_seed_cell(MCOR_MARK_PARAMS, int level, int x, int y, int z)
+{
+  const int slot = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
+  if (slot >= 0)
+  {
+    mcor_add_cells(reached, slot, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
+  }
+  return slot == MCOR_PLACE_SPLIT;
+}
+
+/* Where a line, of which 1 / gap is the extent along an axis, crosses the side by which it leaves the cell
+ * from `low` on: as a share of the line; beyond it where it ends in the cell. Of all levels that have
+ * this side the same. */
+real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool ends)
+{
+  const long side = step < 0 ? from - low : low + edge - from;
+  return ends ? (real)2 : (real)side * gap;
+}
+
+/* Marks cells of a level on the line between two places, fixed-point numbers. Where the line passes an edge
+ * or a corner of a cell to within rounding, the cells on both sides are found. Whether smaller ones may
+ * be there: those found on a finer lattice are all within these. */
+bool mcor_pair_seed_line(
+  MCOR_MARK_PARAMS, const long* from, const long* to, int level, const fix step_of[3])
 {
   real next[3], gap[3];
-  int step[3], steps = 0;
+  int c[3], end[3], step[3], steps = 0;
+  long edge[3];
   for (int a = 0; a < 3; ++a)
   {
-    const real d = q[a] - p[a];
-    step[a] = d < 0 ? -1 : 1;
-    gap[a] = fabs(d) > (real)1e-20f ? 1 / fabs(d) : (real)1e20f;
-    next[a] = (d < 0 ? p[a] : 1 - p[a]) * gap[a];
+    edge[a] = (long)step_of[a] << level;
+    c[a] = (int)(from[a] / edge[a]);
+    end[a] = (int)(to[a] / edge[a]);
+    step[a] = to[a] < from[a] ? -1 : 1;
+    gap[a] = to[a] == from[a] ? 0 : 1 / (real)abs(to[a] - from[a]);
+    next[a] = mcor_pair_crossing(from[a], c[a] * edge[a], edge[a], step[a], gap[a], c[a] == end[a]);
     steps += abs(end[a] - c[a]);
   }
-  mcor_pair_seed_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
+  bool split = mcor_pair_seed_cell(MCOR_MARK_ARGS, level, c[0], c[1], c[2]);
   for (; steps > 0; --steps)
   {
     int axis = next[1] < next[0] ? 1 : 0;
     axis = next[2] < next[axis] ? 2 : axis;
     for (int a = 0; a < 3; ++a)
     {
-      if (a != axis && next[a] - next[axis] < (real)1e-5f)
+      if (a != axis && c[a] != end[a] && next[a] - next[axis] < (real)1e-5f)
       {
-        mcor_pair_seed_cell(MCOR_BLOCK_ARGS, c[0] + (a == 0 ? step[0] : 0),
-          c[1] + (a == 1 ? step[1] : 0), c[2] + (a == 2 ? step[2] : 0), cells);
+        split |= mcor_pair_seed_cell(MCOR_MARK_ARGS, level, c[0] + (a == 0 ? step[0] : 0),
+          c[1] + (a == 1 ? step[1] : 0), c[2] + (a == 2 ? step[2] : 0));
       }
     }
     c[axis] += step[axis];
-    next[axis] += gap[axis];
-    mcor_pair_seed_cell(MCOR_BLOCK_ARGS, c[0], c[1], c[2], cells);
+    next[axis] = mcor_pair_crossing(
+      from[axis], c[axis] * edge[axis], edge[axis], step[axis], gap[axis], c[axis] == end[axis]);
+    split |= mcor_pair_seed_cell(MCOR_MARK_ARGS, level, c[0], c[1], c[2]);
   }
+  return split;
 }
 
-/* Marks the cells between particles j and k. */
+/* Marks the cells between particles j and k: of large leaves first. */
 void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
 {
-  const fix own[3] = { grid->px[j], grid->py[j], grid->pz[j] };
-  const fix other[3] = { grid->px[k], grid->py[k], grid->pz[k] };
-  real p[3], q[3];
-  int cell[3], end[3];
-  for (int c = 0; c < 3; ++c)
+  const long from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
+  const long to[3] = { grid->px[k], grid->py[k], grid->pz[k] };
+  bool split = true;
+  for (int level = top; level >= 0 && split; --level)
   {
-    /* Relative to the first cell, so that single precision suffices. */
-    cell[c] = (int)(own[c] / grid->step[c]);
-    end[c] = (int)(other[c] / grid->step[c]);
-    p[c] = (real)(own[c] - (fix)cell[c] * grid->step[c]) / (real)grid->step[c];
-    q[c] = p[c] + (real)(other[c] - own[c]) / (real)grid->step[c];
+    split = mcor_pair_seed_line(MCOR_MARK_ARGS, from, to, level, grid->step);
   }
-  mcor_pair_seed_line(MCOR_BLOCK_ARGS, p, q, cell, end, cells);
 }
 
-#endif
-
-#if !MCOR_OF_LATTICE
 /* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that
  * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
@@ -193,12 +263,7 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
 /* One work-item = MCOR_PAIR_VECTORS_OF(MCOR_LANES) groups of MCOR_LANES sorted particles, looked at
  * together first, as most particles are far from the surface. Reads the particles within the
  * smoothing length of each. Marks the cells between pairs that straddle the iso value. */
-#if MCOR_OF_ADAPTIVE
-#define MCOR_PAIR_SEED mcor_adaptive_pair_seed
-#else
-#define MCOR_PAIR_SEED mcor_pair_seed
-#endif
-__kernel void MCOR_PAIR_SEED(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
+__kernel void mcor_pair_seed(MCOR_GRID_PARAMS, __global const uchar* side_flags, const real iso,
   const real h_scale, MCOR_MARK_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;
@@ -222,145 +287,188 @@ __kernel void MCOR_PAIR_SEED(MCOR_GRID_PARAMS, __global const uchar* side_flags,
 
 #endif
 
+/* ---- Growth ---- */
+
 #if MCOR_OF_LATTICE
-/* One work-item = one brick of a block. Reads its cells. Requests the bricks that have their
- * nodes. */
-__kernel void mcor_pair_request(
-  MCOR_BLOCK_PARAMS, __global const ulong* cells, __global uint* brick_bits)
+/* Of a cell's nodes those with a coordinate. */
+uint mcor_leaf_plane(int axis, int at)
 {
-  MCOR_ITEM(own, own < block_count * MCOR_BLOCK_BRICKS && cells[own] != 0);
-  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, own);
-  for (int d = 0; d < 8; ++d)
+  return axis == 0 ? 0x1249249u << at : axis == 1 ? 0x1c0e07u << 3 * at : 0x1ffu << 9 * at;
+}
+
+/* Whether nodes on both sides are among these. */
+bool mcor_leaf_is_crossed(mcor_adaptive_nodes_of nodes, uint among)
+{
+  const uint all = among & (nodes.split | mcor_leaf_corner_nodes(0xff));
+  return (nodes.above & all) != 0 && (nodes.above & all) != all;
+}
+
+/* Used cells of a brick, and those whose lower and upper faces across each axis are crossed. */
+typedef struct
+{
+  ulong used, lower[3], upper[3];
+} mcor_pair_faces;
+
+/* Of its plain cells. corners: of all that are above; crossed: see mcor_cell_crossed. */
+mcor_pair_faces mcor_pair_plain_faces(const ulong* corners, ulong crossed, ulong hanging)
+{
+  mcor_pair_faces faces;
+  faces.used = crossed & ~hanging;
+  for (int a = 0; a < 3; ++a)
   {
-    const int m = mcor_cells_reach(cells[own], d)
-      ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
-      : -1;
-    if (m >= 0)
+    faces.lower[a] = mcor_cell_faces(corners, a, 0) & ~hanging;
+    faces.upper[a] = mcor_cell_faces(corners, a, 1) & ~hanging;
+  }
+  return faces;
+}
+
+/* Adds a cell that has finer nodes. */
+void mcor_pair_add_faces(const mcor_leaf* leaf, int cell, mcor_pair_faces* faces)
+{
+  const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(leaf, cell);
+  faces->used |= (ulong)nodes.used << cell;
+  for (int a = 0; a < 3; ++a)
+  {
+    faces->lower[a] |= (ulong)mcor_leaf_is_crossed(nodes, mcor_leaf_plane(a, 0)) << cell;
+    faces->upper[a] |= (ulong)mcor_leaf_is_crossed(nodes, mcor_leaf_plane(a, 2)) << cell;
+  }
+}
+
+/* Grows cells within their brick to the end. */
+ulong mcor_pair_grow_within(
+  const mcor_leaf* leaf, ulong hanging, ulong cells, ulong domain, mcor_pair_faces* faces)
+{
+  ulong looked_at = 0;
+  for (ulong last = 0; cells != last;)
+  {
+    last = cells;
+    for (ulong rest = cells & hanging & ~looked_at; rest; rest &= rest - 1)
     {
-      mcor_request_brick(brick_bits, m);
+      mcor_pair_add_faces(leaf, mcor_ctz(rest), faces);
+    }
+    looked_at = cells;
+    const ulong used = cells & faces->used;
+    cells |= domain & mcor_cells_beside(used, faces->lower, faces->upper);
+  }
+  return cells;
+}
+
+/* Reaches across a side of a leaf from one of its cells to smaller ones, through the quarters that are
+ * crossed. */
+void mcor_pair_reach_finer(const mcor_leaf* leaf, int4 brick, int cell, int axis, int side,
+  MCOR_PLACE_PARAMS, __global uint* reached, __global int* flags)
+{
+  const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(leaf, cell);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  int at[3] = { 2 * (4 * brick.x + (cell & 3)), 2 * (4 * brick.y + (cell >> 2 & 3)),
+    2 * (4 * brick.z + (cell >> 4)) };
+  at[axis] += side ? 2 : -1;
+  for (int quarter = 0; quarter < 4; ++quarter)
+  {
+    const int i = quarter & 1, j = quarter >> 1;
+    const uint among = mcor_leaf_plane(axis, 2 * side) &
+      (mcor_leaf_plane(u, i) | mcor_leaf_plane(u, i + 1)) &
+      (mcor_leaf_plane(v, j) | mcor_leaf_plane(v, j + 1));
+    if (mcor_leaf_is_crossed(nodes, among))
+    {
+      int to[3] = { at[0], at[1], at[2] };
+      to[u] += i;
+      to[v] += j;
+      mcor_pair_reach(MCOR_PLACE_ARGS, brick.w - 1, to[0], to[1], to[2], reached, flags);
     }
   }
 }
 
-/* One work-item = one brick that has a slot. Writes its cells there. */
-__kernel void mcor_pair_fill(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
-  __global const ulong* pair_cells, __global ulong* cells)
+/* Reaches across a side of a leaf from `cells` that lie at it, through their faces there. */
+void mcor_pair_reach_across(const mcor_leaf* leaf, int4 brick, ulong cells, int axis, int side,
+  MCOR_PLACE_PARAMS, __global uint* reached, __global int* flags)
 {
-  MCOR_ITEM(slot, slot < brick_count);
-  const int4 brick = bricks[slot];
-  cells[slot] = pair_cells[mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z)];
-}
-
-/* Hands cells to a brick; false where it has no slot yet. flags: 1 a cell is new, 2 a brick must be
- * placed. Where no particle reaches there is no brick, and no node is valid. */
-bool mcor_pair_push(MCOR_BLOCK_PARAMS, int4 brick, int slot, ulong pushed, __global uint* requested,
-  __global uint* cells, __global int* flags)
-{
-  if (pushed == 0)
+  const int by = side ? 1 : -1, shift = 3 << 2 * axis;
+  const int4 to = brick + (int4)(axis == 0 ? by : 0, axis == 1 ? by : 0, axis == 2 ? by : 0, 0);
+  const int other = mcor_find_place(MCOR_PLACE_ARGS, brick.w, to.x, to.y, to.z);
+  if (other >= 0)
   {
-    return true;
-  }
-  if (slot >= 0)
-  {
-    pushed = mcor_add_cells(cells, slot, pushed);
-    if (pushed == 0)
+    if (mcor_add_cells(reached, other, side ? cells >> shift : cells << shift))
     {
-      return true;
+      atomic_or(flags, 1);
     }
-    atomic_or(flags, 1);
+    return;
   }
-  for (int d = 0; d < 8; ++d)
+  for (ulong rest = cells; rest; rest &= rest - 1)
   {
-    const int m = mcor_cells_reach(pushed, d)
-      ? mcor_brick_number(
-          MCOR_BLOCK_ARGS, brick.x + (d & 1), brick.y + (d >> 1 & 1), brick.z + (d >> 2))
-      : -1;
-    if (m >= 0 && mcor_request_brick(requested, m))
+    const int cell = mcor_ctz(rest), beyond = side ? cell - shift : cell + shift;
+    if (other == MCOR_PLACE_SPLIT)
     {
-      atomic_or(flags, 2);
+      mcor_pair_reach_finer(leaf, brick, cell, axis, side, MCOR_PLACE_ARGS, reached, flags);
+    }
+    else
+    {
+      mcor_pair_reach(MCOR_PLACE_ARGS, brick.w + 1, (4 * to.x + (beyond & 3)) >> 1,
+        (4 * to.y + (beyond >> 2 & 3)) >> 1, (4 * to.z + (beyond >> 4)) >> 1, reached, flags);
     }
   }
-  return slot >= 0;
 }
 
-/* One work-item = one brick with cells new to this round. Reads node masks. Grows the cells
- * examined by now through crossed faces of used cells, within the brick to the end, and one step
- * into its neighbours. */
-__kernel void mcor_pair_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
-  __global const int* neighbours, __global ulong* examined, __global const ulong* fresh,
-  __global const ulong* above, __global const ulong* valid, __global uint* requested,
-  __global uint* cells, __global int* flags)
+/* One work-item = one brick with cells that are new to this round. Reads its nodes' masks where its cells may be used.
+ * Grows the cells reached by now through crossed faces of used cells, within the brick to the end, and one step
+ * beyond its sides. domain: where nodes have right values. */
+__kernel void mcor_pair_grow(const int brick_count, __global const int* neighbours,
+  MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS, __global const int4* bricks, __global const ulong* allowed,
+  MCOR_PLACE_PARAMS, __global const ulong* domain, __global ulong* grown, __global uint* reached,
+  __global int* flags)
 {
-  MCOR_ITEM(slot, slot < brick_count && fresh[slot] != 0);
-  const ulong before = examined[slot];
-  ulong m[8], faces[3], upper[3];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
+  MCOR_ITEM(i, i < brick_count && allowed[i]);
+  const ulong before = grown[i];
+  /* Others add to them meanwhile: what is missed is there in the next round. */
+  const ulong first = atomic_or(reached + 2L * i, 0), rest = atomic_or(reached + 2L * i + 1, 0);
+  ulong cells = domain[i] & (rest << 32 | first);
+  if (cells == before)
+  {
+    return;
+  }
+  const ulong hanging = levels ? ~plain[i] : 0;
+  ulong m[8];
+  mcor_leaf leaf;
+  mcor_brick_masks(above, neighbours, i, 0, m);
   mcor_cell_corners(m);
-  for (int a = 0; a < 3; ++a)
+  if (hanging)
   {
-    faces[a] = mcor_cell_faces(m, a, 0);
-    upper[a] = mcor_cell_faces(m, a, 1);
+    leaf = mcor_leaf_load(leaf_of[i], plane, finer, tables, above, valid);
   }
-  const ulong crossed = mcor_cell_crossed(m, neighbours, valid, slot);
-  ulong now = before;
-  for (ulong last = 0; now != last;)
+  mcor_pair_faces faces =
+    mcor_pair_plain_faces(m, mcor_cell_crossed(m, neighbours, valid, i), hanging);
+  cells = mcor_pair_grow_within(&leaf, hanging, cells, domain[i], &faces);
+  grown[i] = cells;
+  mcor_add_cells(reached, i, cells);
+  const ulong fresh = cells & ~before & faces.used;
+  for (int face = 0; face < 6 && fresh; ++face)
   {
-    last = now;
-    const ulong used = now & crossed;
-    now |= mcor_cells_beside(used, faces, upper);
-  }
-  const ulong used = now & crossed;
-  const int4 brick = bricks[slot];
-  __global const int* n = neighbours + slot * 14L;
-  bool all = mcor_pair_push(MCOR_BLOCK_ARGS, brick, slot, now & ~before, requested, cells, flags);
-  for (int a = 0; a < 3; ++a)
-  {
-    const int4 by = (int4)(a == 0, a == 1, a == 2, 0);
-    const int d = (1 << a) - 1, far = 3 << 2 * a;
-    all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick - by, n[d + 7],
-      (used & faces[a] & mcor_lowest(a)) << far, requested, cells, flags);
-    all &= mcor_pair_push(MCOR_BLOCK_ARGS, brick + by, n[d],
-      (used & upper[a]) >> far & mcor_lowest(a), requested, cells, flags);
-  }
-  if (!all)
-  {
-    examined[slot] = 0; /* again in the next round, when those bricks exist */
-  }
-}
-
-/* One work-item = one cell that another box, or the other end of a period, has reached. Requests the
- * bricks of its nodes. */
-__kernel void mcor_pair_request_cells(
-  MCOR_BLOCK_PARAMS, const int count, __global const int4* reached, __global uint* brick_bits)
-{
-  MCOR_ITEM(i, i < count);
-  const int4 cell = reached[i];
-  const ulong bit = 1UL << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 3) << 4);
-  for (int d = 0; d < 8; ++d)
-  {
-    const int m = mcor_cells_reach(bit, d)
-      ? mcor_brick_number(MCOR_BLOCK_ARGS, (cell.x >> 2) + (d & 1), (cell.y >> 2) + (d >> 1 & 1),
-          (cell.z >> 2) + (d >> 2))
-      : -1;
-    if (m >= 0)
+    const int axis = face >> 1, side = face & 1;
+    const ulong low = mcor_lowest(axis);
+    const ulong at = side ? faces.upper[axis] & low << (3 << 2 * axis) : faces.lower[axis] & low;
+    if (fresh & at)
     {
-      mcor_request_brick(brick_bits, m);
+      mcor_pair_reach_across(
+        &leaf, bricks[i], fresh & at, axis, side, MCOR_PLACE_ARGS, reached, flags);
     }
   }
 }
 
-/* One work-item = one of these cells. Hands it to its brick; flags: 1 where it is new. */
-__kernel void mcor_pair_take(MCOR_BLOCK_PARAMS, const int count, __global const int4* reached,
-  __global const int* slot_of, __global uint* cells, __global int* flags)
+/* One work-item = one cell, with its level, that another box, or the other end of a period, has reached. Adds it
+ * to its brick's. */
+__kernel void mcor_pair_take(const int count, __global const int4* heard, MCOR_PLACE_PARAMS,
+  __global uint* reached, __global int* flags)
 {
   MCOR_ITEM(i, i < count);
-  const int4 cell = reached[i];
-  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, cell.x >> 2, cell.y >> 2, cell.z >> 2);
-  const int slot = m < 0 ? -1 : slot_of[m];
-  const ulong bit = 1UL << ((cell.x & 3) | (cell.y & 3) << 2 | (cell.z & 3) << 4);
-  if (slot >= 0 && mcor_add_cells(cells, slot, bit))
-  {
-    atomic_or(flags, 1);
-  }
+  const int4 cell = heard[i];
+  mcor_pair_reach(MCOR_PLACE_ARGS, cell.w, cell.x, cell.y, cell.z, reached, flags);
+}
+
+/* One work-item = one brick. Leaves those of its cells that are reached. */
+__kernel void mcor_pair_keep(
+  const int count, __global const ulong* reached, __global ulong* cells)
+{
+  MCOR_ITEM(i, i < count);
+  cells[i] &= reached[i];
 }
 #endif

@@ -5,7 +5,11 @@
  * each other; which of them are connected is asked of the field itself, where the bilinear
  * interpolant of the face has its saddle. The face is evaluated once, by the brick that owns its
  * lowest node, so that both cells read the same answer. Then cells with two loops are asked in the
- * same way, at the saddles of the trilinear interpolant, whether the loops make a tunnel. */
+ * same way, at the saddles of the trilinear interpolant, whether the loops make a tunnel.
+ *
+ * Of adaptive cubes the field decides on faces between two plain cells of one level, and on tunnels in plain cells;
+ * all other ambiguous faces are as in the case table. Which faces these are is up to the leaves alone, so that cells
+ * on both sides agree. */
 
 /* What the field is at a sample. */
 #define MCOR_SAMPLE_BELOW 0
@@ -13,10 +17,10 @@
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads used cells, node masks and, unless `all` are, which cells are plain. Writes
+/* One work-item = one brick. Reads used cells, node masks and, with levels, which cells are plain. Writes
  * the ambiguous faces between plain cells, next to used ones, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
-  const int all, const int plane, __global const ulong* plain, __global const ulong* used,
+  const int levels, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
 {
   MCOR_ITEM(slot, slot < brick_count);
@@ -24,16 +28,16 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   mcor_brick_masks(used, neighbours, slot, 7, u);
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  if (!all)
+  if (levels)
   {
     mcor_brick_masks(plain, neighbours, slot, 7, p);
   }
   int count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const ulong between = all ? ~0UL
-      : plane                 ? p[0]
-                              : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
+    const ulong between = !levels ? ~0UL
+      : plane                     ? p[0]
+                                  : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
     const ulong layer = plane ? 0xffffUL : ~0UL; /* of squares; others of a plane are not ambiguous */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);

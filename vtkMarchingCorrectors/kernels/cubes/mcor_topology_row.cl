@@ -57,11 +57,11 @@ __global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
   return rows + (other ? first + other : row);
 }
 
-/* Decisions on faces and cells, where the topology is resolved. */
-#define MCOR_DECISION_PARAMS                                                                       \
-  const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
-    __global const int *cases, __global const mcor_cell_row *rows
-#define MCOR_DECISION_ARGS resolved, neighbours, decisions, cases, rows
+/* How cells are cut: the case table, and decisions on faces and cells where the topology is resolved. */
+#define MCOR_CUT_PARAMS                                                                            \
+  __global const uchar *case_table, const int resolved, __global const int *neighbours,            \
+    __global const ulong *decisions, __global const int *cases, __global const mcor_cell_row *rows
+#define MCOR_CUT_ARGS case_table, resolved, neighbours, decisions, cases, rows
 
 /* How a cell without finer nodes is cut: as the field decided, or by the case table. */
 typedef struct
@@ -70,8 +70,7 @@ typedef struct
   int triangles, tunnel;
 } mcor_cell_cut;
 
-mcor_cell_cut mcor_cell_cut_of(
-  const ulong* corners, __global const uchar* case_table, MCOR_DECISION_PARAMS, int slot, int cell)
+mcor_cell_cut mcor_cell_cut_of(const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell)
 {
   mcor_cell_cut cut;
   if (resolved)
@@ -89,14 +88,13 @@ mcor_cell_cut mcor_cell_cut_of(
 }
 
 /* The number of triangles of these of a brick's cells; adds to that of tunnels. */
-int mcor_cells_count(const ulong* corners, __global const uchar* case_table, MCOR_DECISION_PARAMS,
-  int slot, ulong cells, int* tunnels)
+int mcor_cells_count(
+  const ulong* corners, MCOR_CUT_PARAMS, int slot, ulong cells, int* tunnels)
 {
   int triangles = 0;
   for (ulong rest = cells; rest; rest &= rest - 1)
   {
-    const mcor_cell_cut cut =
-      mcor_cell_cut_of(corners, case_table, MCOR_DECISION_ARGS, slot, mcor_ctz(rest));
+    const mcor_cell_cut cut = mcor_cell_cut_of(corners, MCOR_CUT_ARGS, slot, mcor_ctz(rest));
     triangles += cut.triangles;
     *tunnels += cut.tunnel;
   }

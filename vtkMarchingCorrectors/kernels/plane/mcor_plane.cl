@@ -2,9 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Marching squares, on the lowest layer of the lattice's cells: a square is the lower face of one. Its
- * nodes above are as those in the plane, so that all that finds cells and nodes holds for squares. */
+ * nodes above are as those in the plane, so that all that finds cells and nodes holds for squares.
+ *
+ * A square's sides are halved where a finer one touches them, so that it is a polygon of 4 to 8 nodes. Each crossed
+ * piece of a side has one vertex, which the squares on both sides of it share; one line in the square begins, or
+ * ends, there. */
 
-#if MCOR_OF_LATTICE
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL
 
@@ -20,14 +23,11 @@ __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __
   }
 }
 
-/* One work-item = one leaf. Of its cells, leaves those that are squares. */
+/* One work-item = one brick. Of its cells, leaves those that are squares. */
 __kernel void mcor_plane_squares(const int count, __global ulong* cells)
 {
-  const int i = get_global_id(0);
-  if (i < count)
-  {
-    cells[i] &= MCOR_PLANE_MASK;
-  }
+  MCOR_ITEM(i, i < count);
+  cells[i] &= MCOR_PLANE_MASK;
 }
 
 /* Corners of a square that are above: bits 0..3 (0, 0), (1, 0), (0, 1), (1, 1). m: of its cells. */
@@ -41,45 +41,95 @@ int mcor_plane_case(const ulong* corners, int cell)
   return above;
 }
 
-/* One work-item = one brick. Reads used squares and node masks. Writes the edge masks (see mcor_march_count)
- * for edges in the plane that have their lower node in the brick and a used square beside them; counts
- * vertices and lines. */
-__kernel void mcor_plane_count(const int brick_count, __global const int* neighbours,
-  __global const ulong* used, __global const ulong* above, __global ulong* edges,
-  __global int* vertex_count, __global int* line_count)
+/* The number of lines in squares. */
+int mcor_plane_count(const ulong* corners, ulong squares)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count)
+  int lines = 0;
+  for (ulong rest = squares; rest; rest &= rest - 1)
   {
-    return;
+    const int above = mcor_plane_case(corners, mcor_ctz(rest));
+    lines += above == 6 || above == 9 ? 2 : 1;
   }
-  ulong m[8], lower[8];
-  mcor_brick_masks(used, neighbours, slot, 7, lower);
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  const ulong changes[2] = { m[0] ^ mcor_from_next(0, m[0], m[1]),
-    m[0] ^ mcor_from_next(1, m[0], m[2]) };
-  const ulong beside[2] = { mcor_from_last(1, lower[0], lower[2]),
-    mcor_from_last(0, lower[0], lower[1]) };
-  __global ulong* to = edges + (long)slot * MCOR_EDGE_MASKS;
-  int vertices = 0, lines = 0;
-  for (int a = 0; a < MCOR_EDGE_MASKS; ++a)
+  return lines;
+}
+
+/* Of the squares beside edges along an axis, as cells around them (see mcor_cell_around): a square is on the upper and
+ * on the lower side of the plane. */
+void mcor_plane_around(int axis, ulong* q)
+{
+  q[0] &= axis == 2 ? 0 : MCOR_PLANE_MASK;
+  q[1] &= axis == 2 ? 0 : MCOR_PLANE_MASK;
+  q[2] = q[0];
+  q[3] = q[1];
+}
+
+/* The nodes around a square, run through with it on the left: bits of mcor_adaptive_cell.h. */
+typedef struct
+{
+  int node[8], count;
+} mcor_plane_ring;
+
+mcor_plane_ring mcor_plane_ring_of(uint split)
+{
+  const int around[8] = { 0, 1, 2, 5, 8, 7, 6, 3 };
+  mcor_plane_ring ring;
+  ring.count = 0;
+  for (int i = 0; i < 8; ++i)
   {
-    to[a] = 0;
+    if (!(i & 1) || (split >> around[i] & 1))
+    {
+      ring.node[ring.count++] = around[i];
+    }
   }
-  for (int a = 0; a < 2; ++a)
+  return ring;
+}
+
+/* Whether side i goes from above to below, and whether its ends are unlike. */
+bool mcor_plane_falls(const mcor_plane_ring* ring, uint above, int i)
+{
+  return (above >> ring->node[i] & 1) && !(above >> ring->node[(i + 1) % ring->count] & 1);
+}
+bool mcor_plane_crosses(const mcor_plane_ring* ring, uint above, int i)
+{
+  return ((above >> ring->node[i] ^ above >> ring->node[(i + 1) % ring->count]) & 1) != 0;
+}
+
+/* Nodes of a plain square. corners: of its brick's cells. */
+uint mcor_plane_corner_nodes(const ulong* corners, int cell)
+{
+  return mcor_leaf_corner_nodes(mcor_plane_case(corners, cell));
+}
+
+/* Axis and lower node of side i, as a slot of mcor_adaptive_cell.h. */
+int mcor_plane_side(const mcor_plane_ring* ring, int i)
+{
+  return mcor_adaptive_slot(ring->node[i], ring->node[(i + 1) % ring->count]);
+}
+
+/* Notes which sides a square uses that finer ones touch: all around in space where squares are on both sides. Returns
+ * the number of its lines. */
+int mcor_plane_mark(
+  const mcor_leaf* leaf, int cell, mcor_adaptive_nodes_of nodes, __global uint* quadrants)
+{
+  const mcor_plane_ring ring = mcor_plane_ring_of(nodes.split);
+  int lines = 0;
+  for (int s = 0; s < ring.count; ++s)
   {
-    to[a] = changes[a] & (lower[0] | beside[a]) & MCOR_PLANE_MASK;
-    to[3 + a] = to[a] & ~(lower[0] & beside[a]);
-    vertices += (int)popcount(to[a]);
+    if (!mcor_plane_crosses(&ring, nodes.above, s))
+    {
+      continue;
+    }
+    lines += mcor_plane_falls(&ring, nodes.above, s);
+    const int side = mcor_plane_side(&ring, s), axis = side >> 5, lower = side & 31;
+    const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, nodes.split, axis, lower);
+    __global uint* words = quadrants + edge.slot * (long)MCOR_QUADRANT_WORDS + 8 * axis;
+    const int across = axis == 0 ? lower / 3 : lower % 3;
+    for (int q = across > 0; q < 4; q += 2) /* on the side where the square is */
+    {
+      atomic_or(words + 2 * q + (edge.node >> 5), 1u << (edge.node & 31));
+    }
   }
-  vertex_count[slot] = vertices;
-  mcor_cell_corners(m);
-  for (ulong rest = used[slot] & MCOR_PLANE_MASK; rest; rest &= rest - 1)
-  {
-    const int corners = mcor_plane_case(m, mcor_ctz(rest));
-    lines += corners == 6 || corners == 9 ? 2 : 1;
-  }
-  line_count[slot] = lines;
+  return lines;
 }
 
 /* Vertex of the edge along an axis from node (x, y) of a brick, or of one beyond it. upper: slots of its
@@ -90,7 +140,7 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   const int d = (x >> 2) | (y >> 2) << 1, n = (x & 3) | (y & 3) << 2;
   const int owner = d ? upper[d - 1] : slot;
   __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
-  return vertex_base[owner] + mcor_march_rank(e, n) + (axis == 1 && (e[0] >> n & 1) ? 1 : 0);
+  return vertex_base[owner] + mcor_edge_rank(e, n) + (axis == 1 && (e[0] >> n & 1) ? 1 : 0);
 }
 
 /* One work-item = one brick. Reads used squares, node masks, decisions and edge numbering. Writes lines, with
@@ -98,50 +148,57 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
  * cells. A line begins where the border of the square, run through with the square on the left, goes from above
  * to below. On an ambiguous square it ends at the crossing before that, or the one after it where what is
  * above is joined. */
-__kernel void mcor_plane_lines(const int brick_count, MCOR_DECISION_PARAMS, MCOR_SIDES_PARAMS,
-  const int follows, const int blocks_x, const int blocks_y, __global const int4* bricks,
-  __global const ulong* used, __global const ulong* above, __global const ulong* edges,
-  __global const int* vertex_base, __global const int* line_base, __global ulong* line_cells,
-  __global int* lines)
+__kernel void mcor_plane_lines(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS,
+  MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS, const int follows, const int blocks_x, const int blocks_y,
+  __global const mcor_rung* rungs, __global const int4* bricks,
+  __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
+  __global const int* line_base, __global ulong* line_cells, __global int* lines)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || used[slot] == 0)
-  {
-    return;
-  }
-  const int around[4] = { 0, 1, 3, 2 }; /* corners */
+  MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
+  const ulong own = levels ? plain[slot] : ~0UL;
   ulong m[8];
+  mcor_leaf leaf;
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
-  const ulong key = mcor_brick_place(blocks_x, blocks_y, bricks[slot]) << 6;
-  const ulong joined = resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] : 0;
-  long to = line_base[slot];
-  for (ulong rest = used[slot] & MCOR_PLANE_MASK; rest; rest &= rest - 1)
+  if (used[slot] & ~own)
   {
-    const int cell = mcor_ctz(rest), x = cell & 3, y = cell >> 2;
-    const int corners = mcor_plane_case(m, cell);
-    const bool back = (corners == 6 || corners == 9) && !(joined >> cell & 1);
-    for (int s = 0; s < 4; ++s)
+    leaf = mcor_leaf_load(leaf_of[slot], plane, finer, tables, above, valid);
+  }
+  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
+  const ulong key = mcor_slot_key(MCOR_KEY_ARGS, bricks[slot]) << 6;
+  const ulong joined = resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] & own : 0;
+  long to = line_base[slot];
+  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    const bool is_plain = own >> cell & 1;
+    mcor_adaptive_nodes_of nodes = { 0, mcor_plane_corner_nodes(m, cell), true };
+    if (!is_plain)
     {
-      if (!(corners >> around[s] & 1) || (corners >> around[(s + 1) & 3] & 1))
+      nodes = mcor_leaf_cell(&leaf, cell);
+    }
+    const mcor_plane_ring ring = mcor_plane_ring_of(nodes.split);
+    for (int s = 0; s < ring.count; ++s)
+    {
+      if (!mcor_plane_falls(&ring, nodes.above, s))
       {
         continue;
       }
-      int end = back ? (s + 3) & 3 : (s + 1) & 3; /* crossed sides are between unlike corners */
-      while ((corners >> around[end] & 1) == (corners >> around[(end + 1) & 3] & 1))
+      const int step = joined >> cell & 1 ? 1 : ring.count - 1;
+      int end = (s + step) % ring.count;
+      while (!mcor_plane_crosses(&ring, nodes.above, end))
       {
-        end = back ? (end + 3) & 3 : (end + 1) & 3;
+        end = (end + step) % ring.count;
       }
-      const int sides[2] = { s, end };
-      int v[2];
-      for (int i = 0; i < 2; ++i)
+      for (int k = 0; k < 2; ++k)
       {
-        v[i] = mcor_plane_vertex(neighbours + slot * 14L, edges, vertex_base, slot,
-          x + (sides[i] == 1), y + (sides[i] == 2), sides[i] & 1);
+        const int side = mcor_plane_side(&ring, k ? end : s), axis = side >> 5, lower = side & 31;
+        lines[3 * to + k] = is_plain
+          ? mcor_plane_vertex(neighbours + slot * 14L, edges, vertex_base, slot,
+              (cell & 3) + lower % 3 / 2, (cell >> 2) + lower / 6, axis)
+          : mcor_leaf_vertex(&leaf, cell, nodes.split, axis, lower, edges, vertex_base);
       }
-      lines[3 * to] = v[0];
-      lines[3 * to + 1] = lines[3 * to + 2] = v[1];
+      lines[3 * to + 2] = lines[3 * to + 1];
       if (follows)
       {
         line_cells[to] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
@@ -150,4 +207,3 @@ __kernel void mcor_plane_lines(const int brick_count, MCOR_DECISION_PARAMS, MCOR
     }
   }
 }
-#endif

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: marching the cells of leaves. A cell beside a finer leaf has nodes in the middle of
+/* Adaptive cubes: the cells of leaves that finer ones touch. Such a cell has nodes in the middle of
  * edges, or of faces, too; mcor_adaptive_cell.h makes its triangles. Such nodes and the edges between them
  * are at whole numbers 0 to 8 of the finer cells from the leaf's first node, and are in the slots of
  * the level below; other edges in those of the leaf's level. */
@@ -143,7 +143,7 @@ mcor_adaptive_nodes_of mcor_leaf_cell(const mcor_leaf* leaf, int cell)
 }
 
 /* An edge of a cell: where it is kept, and which quadrants around it the cell takes up, as bits, see
- * mcor_march_around. */
+ * mcor_cell_around. */
 typedef struct
 {
   int slot, node, axis;
@@ -185,38 +185,7 @@ uint mcor_leaf_corner_nodes(int corners)
   return above;
 }
 
-/* Notes that these cells, which have no finer nodes, use their crossed edges. */
-void mcor_leaf_mark_plain(const mcor_leaf* leaf, ulong cells, __global uint* quadrants)
-{
-  for (int k = 0; k < 12; ++k)
-  {
-    /* In quadrant q around an edge are the cells whose lower corner of it is this one. */
-    const int axis = k >> 2, q = k & 3, b = axis == 0 ? 2 : 1, c = axis == 2 ? 2 : 4;
-    const int corner = (q & 1) * b | (q >> 1) * c;
-    const ulong crossed =
-      cells & (leaf->corners_above[corner] ^ leaf->corners_above[corner | 1 << axis]);
-    for (int d = 0; d < 8 && crossed; ++d)
-    {
-      ulong part = (d & ~corner) == 0 ? crossed : 0; /* by lower node, in the brick up by d */
-      for (int a = 0; a < 3; ++a)
-      {
-        part = !(corner >> a & 1) ? part
-          : d >> a & 1            ? mcor_from_last(a, 0, part)
-                                  : mcor_from_last(a, part, 0);
-      }
-      for (int w = 0; w < 2 && part; ++w)
-      {
-        const uint bits = (uint)(part >> 32 * w);
-        if (bits)
-        {
-          atomic_or(quadrants + leaf->slots[d] * (long)MCOR_QUADRANT_WORDS + 2 * k + w, bits);
-        }
-      }
-    }
-  }
-}
-
-/* The same of a cell that has. */
+/* Notes which edges a cell uses, that finer ones touch. */
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
 {
@@ -249,9 +218,13 @@ void mcor_leaf_mark(
   }
 }
 
+/* Leaves, and the nodes of all bricks. plane: they are squares. */
 #define MCOR_LEAF_PARAMS                                                                           \
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
-    __global const ulong *above, __global const ulong *valid, __global const uchar *case_table
+    __global const ulong *above, __global const ulong *valid
+
+/* Of bricks, where cubes have several levels: which cells are plain, which leaf a brick is. */
+#define MCOR_PLAIN_PARAMS const int levels, __global const ulong *plain, __global const int *leaf_of
 
 /* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
 ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
@@ -260,90 +233,28 @@ ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
     mcor_cell_all(leaf->corners_valid) & ~hanging;
 }
 
-/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes whether it is: whether any of
- * its cells is valid at all nodes and has nodes on both sides. */
-__kernel void mcor_adaptive_mixed(MCOR_LEAF_PARAMS, __global uchar* mixed)
+/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes to its slot which of its cells are
+ * plain, which leaf it is, and whether its cells may be used: whether any of them is valid at all nodes and has nodes
+ * on both sides. */
+__kernel void mcor_adaptive_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+  __global ulong* cells, __global ulong* plain, __global int* leaf_of)
 {
-  MCOR_ITEM(i, i < count && mixed[i]);
+  MCOR_ITEM(i, i < count);
+  const int slot = tables[i * (long)MCOR_LEAF_SLOTS];
+  const ulong hanging = mcor_leaf_hanging_cells(mcor_leaf_hanging(finer[i]));
+  plain[slot] = ~hanging;
+  leaf_of[slot] = i;
+  if (!mixed[i])
+  {
+    return;
+  }
   const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
-  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
   bool some = mcor_leaf_crossed(&leaf, hanging) != 0;
   for (ulong rest = hanging; rest && !some; rest &= rest - 1)
   {
     some = mcor_leaf_cell(&leaf, mcor_ctz(rest)).used;
   }
-  mixed[i] = some;
-}
-
-/* One work-item = one leaf. Writes which of these cells are of mixed leaves. */
-__kernel void mcor_adaptive_seeds(
-  const int count, __global const uchar* mixed, __global const ulong* cells, __global ulong* seeds)
-{
-  MCOR_ITEM(i, i < count);
-  seeds[i] = mixed[i] ? cells[i] : 0;
-}
-
-/* One work-item = one leaf. Reads its nodes' masks where it is mixed. Leaves the used ones of its cells in
- * `used`, and writes which edges they use; counts triangles, and of owned cells loops that lie in one
- * face between leaves. */
-__kernel void mcor_adaptive_classify(MCOR_LEAF_PARAMS, __global const uchar* mixed,
-  __global const ulong* owned, __global uint* quadrants, __global ulong* used,
-  __global int* triangle_count, __global int* flat)
-{
-  MCOR_ITEM(i, i < count);
-  if (!mixed[i])
-  {
-    used[i] = 0;
-    triangle_count[i] = flat[i] = 0;
-    return;
-  }
-  const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
-  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
-  ulong cells = (mcor_leaf_crossed(&leaf, hanging) | hanging) & used[i];
-  const ulong within = owned[i]; /* which may be `used` */
-  int triangles = 0, flat_loops = 0;
-  for (ulong rest = cells & hanging; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
-    int caps = 0;
-    if (!nodes.used)
-    {
-      cells &= ~(1UL << cell);
-      continue;
-    }
-    triangles += mcor_adaptive_count(nodes.split, nodes.above, &caps);
-    flat_loops += within >> cell & 1 ? caps : 0;
-    mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
-  }
-  int tunnels = 0; /* which the field decides on later */
-  triangles += mcor_cells_count(
-    leaf.corners_above, case_table, 0, 0, 0, 0, 0, leaf.slots[0], cells & ~hanging, &tunnels);
-  mcor_leaf_mark_plain(&leaf, cells & ~hanging, quadrants);
-  used[i] = cells;
-  triangle_count[i] = triangles;
-  flat[i] = flat_loops;
-}
-
-/* One work-item = one slot. Reads which quadrants around its edges are used. Writes its edge masks, see
- * MCOR_EDGE_MASKS; counts vertices. */
-__kernel void mcor_adaptive_edges(const int slot_count, __global const uint* quadrants,
-  __global ulong* edges, __global int* vertex_count)
-{
-  MCOR_ITEM(slot, slot < slot_count);
-  __global const uint* words = quadrants + slot * (long)MCOR_QUADRANT_WORDS;
-  __global ulong* to = edges + (long)slot * MCOR_EDGE_MASKS;
-  int vertices = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    ulong q[4];
-    for (int k = 0; k < 4; ++k)
-    {
-      q[k] = (ulong)words[8 * a + 2 * k + 1] << 32 | words[8 * a + 2 * k];
-    }
-    vertices += mcor_march_edges(~0UL, q, a, to);
-  }
-  vertex_count[slot] = vertices;
+  cells[slot] = some ? ~0UL : 0;
 }
 
 /* Vertex of a cell's edge, given as in mcor_adaptive_cell.h. */
@@ -352,7 +263,7 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
 {
   const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, split, axis, lower);
   __global const ulong* e = edges + edge.slot * (long)MCOR_EDGE_MASKS;
-  int number = vertex_base[edge.slot] + mcor_march_rank(e, edge.node);
+  int number = vertex_base[edge.slot] + mcor_edge_rank(e, edge.node);
   for (int a = 0; a < axis; ++a)
   {
     number += (int)((e[a] >> edge.node & 1) + (e[6 + a] >> edge.node & 1));
@@ -362,49 +273,17 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }
 
-/* One work-item = one leaf. Reads used cells, masks and edge numbering. Writes triangles and, if
- * wanted, the keys of their cells. */
-__kernel void mcor_adaptive_triangles(MCOR_LEAF_PARAMS, __global const int4* cells,
-  MCOR_SIDES_PARAMS, MCOR_DECISION_PARAMS, const int follows, __global const mcor_rung* rungs,
-  __global ulong* triangle_cells, __global const ulong* used, __global const ulong* edges,
-  __global const int* vertex_base, __global const int* triangle_base, __global int* triangles)
+/* Writes the triangles of a cell that finer ones touch; returns their number. */
+int mcor_leaf_emit(const mcor_leaf* leaf, int cell, __global const ulong* edges,
+  __global const int* vertex_base, __global int* to)
 {
-  MCOR_ITEM(i, i < count && used[i] != 0);
-  const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
-  const ulong hanging = mcor_leaf_hanging_cells(leaf.hanging);
-  const ulong key = mcor_adaptive_key(rungs, cells[i].w, cells[i].x, cells[i].y, cells[i].z);
-  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, cells[i]);
-  int numbers[3][MCOR_CELL_NODES];
-  if (used[i] & ~hanging)
+  const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(leaf, cell);
+  uchar slots[3 * MCOR_ADAPTIVE_TRIANGLES];
+  const int made = mcor_adaptive_triangulate(nodes.split, nodes.above, slots);
+  for (int k = 0; k < 3 * made; ++k)
   {
-    mcor_march_numbers(leaf.slots + 1, edges, vertex_base, leaf.slots[0], numbers);
+    to[k] =
+      mcor_leaf_vertex(leaf, cell, nodes.split, slots[k] >> 5, slots[k] & 31, edges, vertex_base);
   }
-  __global int* to = triangles + triangle_base[i] * 3L;
-  for (ulong rest = used[i]; rest; rest &= rest - 1)
-  {
-    const int cell = mcor_ctz(rest);
-    const long begin = (to - triangles) / 3;
-    if (hanging >> cell & 1)
-    {
-      const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(&leaf, cell);
-      uchar slots[3 * MCOR_ADAPTIVE_TRIANGLES];
-      const int made = mcor_adaptive_triangulate(nodes.split, nodes.above, slots);
-      for (int k = 0; k < 3 * made; ++k)
-      {
-        *to++ = mcor_leaf_vertex(
-          &leaf, cell, nodes.split, slots[k] >> 5, slots[k] & 31, edges, vertex_base);
-      }
-    }
-    else
-    {
-      const mcor_cell_cut cut =
-        mcor_cell_cut_of(leaf.corners_above, case_table, MCOR_DECISION_ARGS, leaf.slots[0], cell);
-      to = mcor_march_emit(cut.edges, cut.triangles, numbers, cell, to);
-    }
-    const ulong ring = owned >> cell & 1 ? 0 : MCOR_RING_CELL;
-    for (long t = begin; follows && t < (to - triangles) / 3; ++t)
-    {
-      triangle_cells[t] = key << 6 | (ulong)cell | ring;
-    }
-  }
+  return made;
 }

@@ -1,28 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: marching the leaves of the tree.
- *
- * The cells of leaves where there may be surface (mcor_adaptive_seed.c) are all examined, and no more than
- * these. Nodes that are certain have a side without a value; it is evaluated where a cell is crossed that
- * has them. The rest is as on the uniform lattice: values of nodes in slots, masks, edges, vertices,
- * triangles. Slots are sorted by level, and so are vertices; what evaluates the field goes level by level,
- * and sees the search grid in cells of that level (mcor_view_level). */
+/* Adaptive cubes: the nodes of leaves where there may be surface (mcor_adaptive_seed.c), in slots. All cells of these
+ * leaves are examined, and no more. Nodes that are certain have a side without a value; it is evaluated where a cell
+ * is crossed that has them. */
 
 #include "mcor_adaptive.h"
-#include "mcor_box.h"
-#include "mcor_pair_rounds.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
-
-#include <string.h>
-
-/* ---- Nodes ---- */
-
-#define MCOR_LEAF_ARGS(c)                                                                          \
-  MCOR_INT((c)->adaptive.count), MCOR_INT(mcor_is_plane(c)), MCOR_BUFFER(&(c)->adaptive.finer),    \
-    MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
-    MCOR_BUFFER(&(c)->bricks.now.valid), MCOR_BUFFER(&(c)->case_table)
 
 /* Keys of all bricks whose nodes the leaves need. */
 static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
@@ -67,7 +52,7 @@ static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
       low = before ? middle + 1 : low;
       high = before ? high : middle;
     }
-    adaptive->first_slot[l] = low;
+    context->bricks.first_slot[l] = low;
   }
   return mcor_unmap(context, &adaptive->keys, &view);
 }
@@ -128,7 +113,7 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
   const mcor_brick_data* now = &context->bricks.now;
   for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
   {
-    mcor_span span = { .first = adaptive->first_slot[l], .end = adaptive->first_slot[l + 1] };
+    mcor_span span = { .first = context->bricks.first_slot[l], .end = context->bricks.first_slot[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_next_span(context, &span));
     while (span.count > 0)
@@ -149,7 +134,9 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
 {
   mcor_adaptive* adaptive = &context->adaptive;
+  mcor_bricks* bricks = &context->bricks;
   const int count = adaptive->count;
+  const size_t n = (size_t)bricks->now.count;
   MCOR_TRY(
     mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
@@ -161,8 +148,12 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->bricks.now.valid),
     MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->proofs)));
   MCOR_TRY(mcor_evaluate_slots(context, iso));
-  return MCOR_LAUNCH(context, "mcor_adaptive_mixed", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&adaptive->mixed));
+  MCOR_TRY(mcor_fill(context, &bricks->cells, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &bricks->plain, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &bricks->leaf_of, n * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_adaptive_cells", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&bricks->plain),
+    MCOR_BUFFER(&bricks->leaf_of));
 }
 
 /* Leaves whose nodes are evaluated along with their states: more take much memory. */
@@ -204,6 +195,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
     MCOR_TRY(context->tree.leaf_count > 0 ? mcor_write_tree(context) : MCOR_OK);
   }
   context->adaptive.count = 0;
+  ++context->run.statistics->march_rounds;
   if (context->tree.leaf_count == 0) /* none is in the box */
   {
     return MCOR_OK;
@@ -224,164 +216,12 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   return mcor_complete_leaves(context, iso);
 }
 
-/* ---- Cells ---- */
-
-/* Counts the cells of the box that are in mixed leaves, or between pairs there: whatever states told, or values
- * of earlier calls, they are the same ones. */
-static mcor_status mcor_count_seeds(mcor_context* context, int* count)
-{
-  mcor_adaptive* adaptive = &context->adaptive;
-  const mcor_buffer* cells =
-    mcor_uses_pairs(context) ? &context->adaptive_pairs.seeds : &context->mesh.used;
-  MCOR_TRY(mcor_reserve(context, &adaptive->seeds, (size_t)adaptive->count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_seeds", MCOR_MEDIUM, adaptive->count,
-    MCOR_INT(adaptive->count), MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(cells),
-    MCOR_BUFFER(&adaptive->seeds)));
-  return mcor_count_cells(context, &adaptive->seeds, &adaptive->seeds, count);
-}
-
-/* Finds the used cells; counts vertices and triangles. */
-static mcor_status mcor_count_leaves(mcor_context* context, double iso)
-{
-  mcor_adaptive* adaptive = &context->adaptive;
-  mcor_mesh* mesh = &context->mesh;
-  const int count = adaptive->count, slots = context->bricks.now.count;
-  const size_t n = (size_t)count, s = (size_t)slots;
-  const mcor_buffer* owned;
-  int seeds;
-  MCOR_TRY(mcor_fill(context, &adaptive->quadrants, 0, s * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
-  MCOR_TRY(mcor_reserve(context, &adaptive->flat, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, &mesh->used, 0xff, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_keep_squares(context, count));
-  MCOR_TRY(mcor_clip_used(context));
-  MCOR_TRY(mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK);
-  MCOR_TRY(mcor_count_seeds(context, &seeds));
-  MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
-  context->run.statistics->seed_cells += seeds;
-  context->run.statistics->seed_cells_not_intersected += seeds;
-  MCOR_TRY(mcor_reserve(context, &mesh->edges, s * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (s + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_is_plane(context)
-      ? MCOR_LAUNCH(context, "mcor_adaptive_plane_count", MCOR_MEDIUM, count,
-          MCOR_LEAF_ARGS(context), MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->quadrants),
-          MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat))
-      : MCOR_LAUNCH(context, "mcor_adaptive_classify", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
-          MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(owned), MCOR_BUFFER(&adaptive->quadrants),
-          MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
-          MCOR_BUFFER(&adaptive->flat)));
-  return MCOR_LAUNCH(context, "mcor_adaptive_edges", MCOR_MEDIUM, slots, MCOR_INT(slots),
-    MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base));
-}
-
-/* Element `at` of an array of ints. */
-static mcor_status mcor_read_int(
-  mcor_context* context, const mcor_buffer* buffer, int at, cl_int* element)
-{
-  return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
-}
-
-/* Where the vertices of each level begin, and how many cells and triangles it has. */
-static mcor_status mcor_count_by_level(mcor_context* context)
-{
-  mcor_adaptive* adaptive = &context->adaptive;
-  mcor_mesh* mesh = &context->mesh;
-  mcor_statistics* s = context->run.statistics;
-  int caps, used, hits;
-  MCOR_TRY(mcor_scan(context, &adaptive->flat, adaptive->count, &caps));
-  MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
-  s->flat_loops += caps;
-  s->cells_used += used;
-  cl_int cells[2] = { 0, 0 };
-  for (int l = 0; l <= context->tree.top; ++l)
-  {
-    MCOR_TRY(mcor_read_int(
-      context, &mesh->vertex_base, adaptive->first_slot[l + 1], &mesh->level_first[0][l + 1]));
-    MCOR_TRY(
-      mcor_read_int(context, &context->bricks.bit_counts, adaptive->first_leaf[l + 1], &cells[1]));
-    s->cells_of_level[l] += cells[1] - cells[0];
-    cells[0] = cells[1];
-  }
-  mesh->level_first[0][0] = 0;
-  hits = used;
-  MCOR_TRY(mcor_uses_pairs(context)
-      ? mcor_count_cells(context, &mesh->used, &context->adaptive_pairs.seeds, &hits)
-      : MCOR_OK);
-  s->seed_cells_not_intersected -= hits;
-  return MCOR_OK;
-}
-
-/* Triangles, and their cells, of which those between the sides are owned. */
-static mcor_status mcor_emit_leaf_triangles(
-  mcor_context* context, const int sides[6], mcor_buffer* cells)
-{
-  const mcor_adaptive* adaptive = &context->adaptive;
-  mcor_mesh* mesh = &context->mesh;
-  const bool follows = mcor_follows_cells(context);
-  const size_t count = follows ? (size_t)mesh->triangle_count : 1;
-  const char* emit =
-    mcor_is_plane(context) ? "mcor_adaptive_plane_lines" : "mcor_adaptive_triangles";
-  MCOR_TRY(mcor_reserve(context, cells, count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, emit, MCOR_MEDIUM, adaptive->count, MCOR_LEAF_ARGS(context),
-    MCOR_BUFFER(&adaptive->cells), MCOR_SIDES_ARGS(sides), MCOR_DECISION_ARGS(context),
-    MCOR_INT(follows), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(&mesh->triangles));
-}
-
-/* Counts the triangles of each level, in the box where there is one. */
-static mcor_status mcor_count_triangles(mcor_context* context)
-{
-  const mcor_adaptive* adaptive = &context->adaptive;
-  mcor_statistics* s = context->run.statistics;
-  cl_int end = 0;
-  for (int l = 0; l <= context->tree.top; ++l)
-  {
-    const cl_int begin = end;
-    int count;
-    MCOR_TRY(
-      mcor_read_int(context, &context->mesh.triangle_base, adaptive->first_leaf[l + 1], &end));
-    MCOR_TRY(mcor_count_owned_triangles(context, begin, end, &count));
-    s->triangles_of_level[l] += count;
-    s->triangles_before_trimming += count;
-  }
-  return MCOR_OK;
-}
-
-/* Vertices and triangles. iso: relative to A0. */
-mcor_status mcor_march_leaves(mcor_context* context, double iso)
-{
-  mcor_mesh* mesh = &context->mesh;
-  mesh->march_count = mesh->vertex_count = mesh->triangle_count = 0;
-  memset(mesh->level_first, 0, sizeof mesh->level_first);
-  ++context->run.statistics->march_rounds;
-  if (context->adaptive.count == 0)
-  {
-    return mcor_uses_pairs(context) ? mcor_attend_growth(context) : MCOR_OK;
-  }
-  MCOR_TRY(mcor_count_leaves(context, iso));
-  MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_leaves(context, iso) : MCOR_OK);
-  MCOR_TRY(mcor_scan(context, &mesh->vertex_base, context->bricks.now.count, &mesh->march_count));
-  MCOR_TRY(
-    mcor_scan(context, &mesh->triangle_base, context->adaptive.count, &mesh->triangle_count));
-  mesh->vertex_count = mesh->march_count;
-  MCOR_TRY(mcor_count_by_level(context));
-  if (mesh->triangle_count == 0)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_emit_vertices(context, iso));
-  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_leaf_triangles));
-  return mcor_count_triangles(context);
-}
-
 void mcor_release_adaptive(mcor_context* context)
 {
   mcor_adaptive* g = &context->adaptive;
   MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys,
     &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
     &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
-    &g->seeds, &context->grid.view_levels, &context->grid.view_inv_h);
-  mcor_release_adaptive_pairs(context);
+    &context->grid.view_levels, &context->grid.view_inv_h);
   mcor_release_tree(&context->tree);
 }

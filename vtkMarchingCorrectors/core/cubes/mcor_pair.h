@@ -1,19 +1,24 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef mcor_pair_rounds_h
-#define mcor_pair_rounds_h
+#ifndef mcor_pair_h
+#define mcor_pair_h
 
-/* Pairs' cells grow from box to box; see mcor_pair_rounds.c. */
+/* The paper's seeds [III-C]. */
 
 #include "mcor_internal.h"
 
+/* Leaves in mesh.used the cells that pairs reach; pairs.seeds: those that pairs mark. iso: relative to A0. */
+mcor_status mcor_keep_reached(mcor_context* context, double iso);
+void mcor_release_pairs(mcor_context* context);
+
+/* mcor_pair_rounds.c: these cells grow from box to box. */
+
 /* Goes on from `count` cells of this box that others have reached: int4, the level last. *fresh: whether one is
  * new. */
-typedef mcor_status (*mcor_take)(
+mcor_status mcor_take_reached(
   mcor_context* context, const cl_int* cells, int count, bool* fresh);
-
-/* *grown is false when no box has a new cell. take: of adaptive cubes; NULL: of uniform ones. */
-mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* grown);
+/* *grown is false when no box has a new cell. */
+mcor_status mcor_exchange_cells(mcor_context* context, bool* grown);
 mcor_status mcor_attend_growth(mcor_context* context);
 mcor_status mcor_attend_rounds(mcor_context* context, int first);
 void mcor_end_rounds(mcor_context* context);

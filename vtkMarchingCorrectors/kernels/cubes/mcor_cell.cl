@@ -1,0 +1,169 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Cells and edges as masks of a brick: bit x + 4 y + 16 z is the cell, or the edge along an axis, whose lowest node has
+ * that bit. */
+
+/* From node masks of a brick and its upper neighbours: mask c becomes that of each cell's corner c
+ * (bits x, y, z). */
+MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int i = 0; i < 8; ++i)
+    {
+      m[i] = i >> axis & 1 ? mcor_from_next(axis, m[i ^ 1 << axis], m[i]) : m[i];
+    }
+  }
+}
+
+/* Cells of which some corner is set, and those of which all are. */
+ulong mcor_cell_some(const ulong* corners)
+{
+  ulong some = 0;
+  for (int c = 0; c < 8; ++c)
+  {
+    some |= corners[c];
+  }
+  return some;
+}
+
+ulong mcor_cell_all(const ulong* corners)
+{
+  ulong all = ~0UL;
+  for (int c = 0; c < 8; ++c)
+  {
+    all &= corners[c];
+  }
+  return all;
+}
+
+/* Cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on both sides.
+ * */
+ulong mcor_cell_faces(const ulong* corners, int axis, int side)
+{
+  ulong some = 0, all = ~0UL;
+  for (int c = 0; c < 8; ++c)
+  {
+    some |= (c >> axis & 1) == side ? corners[c] : 0;
+    all &= (c >> axis & 1) == side ? corners[c] : ~0UL;
+  }
+  return some & ~all;
+}
+
+/* A brick's cells that are beside these through crossed faces. */
+ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
+{
+  ulong cells = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells |= mcor_from_next(axis, used & lower[axis], 0);
+    cells |= mcor_from_last(axis, used & upper[axis], 0);
+  }
+  return cells;
+}
+
+/* Cells that are valid at all nodes and have nodes on both sides. above: of their corners. */
+ulong mcor_cell_crossed(
+  const ulong* above, __global const int* neighbours, __global const ulong* valid, int slot)
+{
+  ulong m[8];
+  mcor_brick_masks(valid, neighbours, slot, 0, m);
+  mcor_cell_corners(m);
+  return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(m);
+}
+
+/* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below
+ * in the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
+ * neighbours. */
+MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
+{
+  const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
+  q[0] = m[0];
+  q[1] = mcor_from_last(b, m[0], m[1 << b]);
+  q[2] = mcor_from_last(c, m[0], m[1 << c]);
+  q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
+}
+
+/* MCOR_EDGE_MASKS, three an axis: crossed edges; of these, those next to a cell that is not used; of
+ * these, pinched ones: only two cells are used, opposite to each other. Their triangles form two
+ * fans, so that such an edge has two vertices, the second one for the cell below in the first other
+ * axis. */
+
+/* Writes those of a brick's edges along an axis, of which these have a used cell in each quadrant around them;
+ * returns their number of vertices. */
+int mcor_cell_edges(const ulong* q, int axis, __global ulong* to)
+{
+  const ulong crossed = q[0] | q[1] | q[2] | q[3];
+  const ulong pinched = crossed & ((q[0] & q[3] & ~q[1] & ~q[2]) | (q[1] & q[2] & ~q[0] & ~q[3]));
+  to[axis] = crossed;
+  to[3 + axis] = crossed & ~(q[0] & q[1] & q[2] & q[3]);
+  to[6 + axis] = pinched;
+  return (int)(popcount(crossed) + popcount(pinched));
+}
+
+/* Nodes of a brick's cells. */
+#define MCOR_CELL_NODES 125
+
+/* Number of the first vertex of node n's edges among the vertices of its brick. */
+int mcor_edge_rank(__global const ulong* e, int n)
+{
+  const ulong below = (1UL << n) - 1;
+  int rank = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    rank += (int)(popcount(e[axis] & below) + popcount(e[6 + axis] & below));
+  }
+  return rank;
+}
+
+/* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched
+ * edge, -1 less the first of the two. upper: slots of its upper neighbours, or -1. */
+void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
+  __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
+{
+  for (int d = 0; d < 8; ++d)
+  {
+    const int owner = d ? upper[d - 1] : slot;
+    if (owner < 0)
+    {
+      continue;
+    }
+    __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
+    const ulong border =
+      (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) & (d & 4 ? MCOR_LOW_Z : ~0UL);
+    for (ulong rest = (e[0] | e[1] | e[2]) & border; rest; rest &= rest - 1)
+    {
+      const int n = mcor_ctz(rest);
+      const int at = (n & 3) + 5 * (n >> 2 & 3) + 25 * (n >> 4) + 4 * (d & 1) + 20 * (d >> 1 & 1) +
+        100 * (d >> 2);
+      int number = vertex_base[owner] + mcor_edge_rank(e, n);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (e[axis] >> n & 1)
+        {
+          const bool pinched = e[6 + axis] >> n & 1;
+          numbers[axis][at] = pinched ? -1 - number : number;
+          number += 1 + pinched;
+        }
+      }
+    }
+  }
+}
+
+/* Writes the triangles of a cell, given by a row of the case table; returns where the next ones
+ * go. */
+__global int* mcor_cell_emit(__global const uchar* row, int count,
+  const int numbers[3][MCOR_CELL_NODES], int cell, __global int* to)
+{
+  const int first = (cell & 3) + 5 * (cell >> 2 & 3) + 25 * (cell >> 4);
+  for (int i = 0; i < 3 * count; ++i)
+  {
+    /* An edge is its axis and its lower corner within the cell, bits x, y, z. */
+    const int axis = row[i] >> 3, x = row[i] & 1, y = row[i] >> 1 & 1, z = row[i] >> 2 & 1;
+    const int number = numbers[axis][first + x + 5 * y + 25 * z];
+    /* The second fan is the one of cells below in the first other axis. */
+    *to++ = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
+  }
+  return to;
+}

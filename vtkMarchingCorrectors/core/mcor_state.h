@@ -130,7 +130,7 @@ typedef struct mcor_tree
   int region_count, first_region[MCOR_TREE_LEVEL_LIMIT + 2];
 } mcor_tree;
 
-/* Marching of leaves; see mcor_adaptive_march.c. Slots are those of mcor_brick_data. */
+/* Leaves that are marched, and their nodes; see mcor_adaptive_node.c. Slots are those of mcor_brick_data. */
 typedef struct mcor_adaptive
 {
   int count;                                 /* leaves where there may be surface */

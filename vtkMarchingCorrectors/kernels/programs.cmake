@@ -15,7 +15,7 @@ set(mcor_program_sources
   "kernels/grid/mcor_gather_point.cl   FIELD PROBE ADAPTIVE point"
   "kernels/grid/mcor_scan.cl           LATTICE"
   "kernels/grid/mcor_grid.cl           LATTICE FIELD"
-  "kernels/cubes/mcor_brick.cl         LATTICE FIELD ADAPTIVE"
+  "kernels/cubes/mcor_virtual_grid.cl  LATTICE FIELD ADAPTIVE"
   "kernels/cubes/mcor_node.cl          FIELD ADAPTIVE"
   "kernels/cubes/mcor_node_lanes.cl    FIELD ADAPTIVE lanes"
   "kernels/cubes/mcor_node_point.cl    FIELD ADAPTIVE point"

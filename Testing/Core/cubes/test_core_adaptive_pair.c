@@ -35,7 +35,7 @@ static mcor_options pair_options(const double* iso)
 
 /* ---- marked cells ---- */
 
-/* Leaves where there may be surface, after a call: bricks and levels, ascending as below, and masks. */
+/* Leaves with surface, after a call: bricks and levels, ascending as below, and masks. */
 typedef struct leaf_cells
 {
   int count;
@@ -58,19 +58,35 @@ static int compare_leaves(const void* a, const void* b)
 
 static leaf_cells read_leaves(mcor_context* context)
 {
-  leaf_cells l = { .count = context->adaptive.count };
-  const size_t n = (size_t)l.count;
+  leaf_cells l = { .count = 0 };
+  const mcor_bricks* bricks = &context->bricks;
+  const size_t n = (size_t)bricks->now.count;
   l.leaf = malloc((n + 1) * sizeof *l.leaf);
   l.marked = malloc((n + 1) * sizeof *l.marked);
   l.used = malloc((n + 1) * sizeof *l.used);
-  assert_true(l.leaf && l.marked && l.used);
-  CORE_OK(context, mcor_read(context, &context->adaptive.cells, 0, l.leaf, n * sizeof *l.leaf));
+  uint64_t* cells = malloc((n + 1) * sizeof *cells);
+  assert_true(l.leaf && l.marked && l.used && cells);
+  CORE_OK(context, mcor_read(context, &bricks->now.bricks, 0, l.leaf, n * sizeof *l.leaf));
   CORE_OK(context, mcor_read(context, &context->mesh.used, 0, l.used, n * sizeof *l.used));
-  if (context->adaptive_pairs.seeds.mem)
+  CORE_OK(context, mcor_read(context, &bricks->cells, 0, cells, n * sizeof *cells));
+  if (context->pairs.seeds.mem)
   {
-    CORE_OK(context,
-      mcor_read(context, &context->adaptive_pairs.seeds, 0, l.marked, n * sizeof *l.marked));
+    CORE_OK(context, mcor_read(context, &context->pairs.seeds, 0, l.marked, n * sizeof *l.marked));
   }
+  for (size_t i = 0; i < n; ++i)
+  {
+    if (cells[i])
+    {
+      memcpy(l.leaf[l.count], l.leaf[i], sizeof l.leaf[i]);
+      l.marked[l.count] = l.marked[i];
+      l.used[l.count++] = l.used[i];
+    }
+    else
+    {
+      assert_true(l.used[i] == 0);
+    }
+  }
+  free(cells);
   for (int i = 1; i < l.count; ++i)
   {
     assert_true(compare_leaves(l.leaf[i - 1], l.leaf[i]) < 0);
@@ -227,15 +243,7 @@ static void lines_are_marked(void** state)
   const int top = context->tree.top;
   assert_in_range(top, 3, 7);
   leaf_cells l = read_leaves(context);
-  uint8_t* mixed = malloc((size_t)l.count + 1);
-  assert_non_null(mixed);
-  CORE_OK(context, mcor_read(context, &context->adaptive.mixed, 0, mixed, (size_t)l.count));
-  int seeds = 0;
-  for (int i = 0; i < l.count; ++i)
-  {
-    seeds += mixed[i] ? count_cells(l.marked + i, 1) : 0;
-  }
-  free(mixed);
+  const int seeds = count_cells(l.marked, l.count);
   assert_true(seeds > 1000);
   assert_int_equal(surface.statistics.seed_cells, seeds);
   int count;

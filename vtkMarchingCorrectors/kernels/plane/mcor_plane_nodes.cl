@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes in the plane. Each has the bits that mcor_march_nodes would give it. */
+/* Evaluation of the field at nodes in the plane. Each has the bits that mcor_node_values would give it. */
 
 /* Work-items that a brick's 16 nodes are shared among; nodes of one along y. */
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)

@@ -335,9 +335,9 @@ static cl_program core_make_program(mcor_context* context, const char* source)
 {
   const mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
-  /* What the field's topology is made of belongs to the lattice's program. */
-  const mcor_program base =
-    strstr(source, "mcor_topology_") ? MCOR_PROGRAM_LATTICE : MCOR_PROGRAM_FIELD;
+  /* Masks of cells, and what the field's topology is made of, belong to the lattice's program. */
+  const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
+  const mcor_program base = of_lattice ? MCOR_PROGRAM_LATTICE : MCOR_PROGRAM_FIELD;
   const int count = mcor_program_sources(cl, base, sources);
   char options[512];
   mcor_program_options(cl, base, options, sizeof options);

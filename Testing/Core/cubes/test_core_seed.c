@@ -294,7 +294,7 @@ static void test_pairs_in_each_form(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.seeds = MCOR_PAIRS;
-  options.node_threshold = 1e30;
+  options.node_threshold = 0;
   int64_t cells[2];
   for (int form = 0; form < 2; ++form)
   {

@@ -64,8 +64,8 @@ void mcor_level_vertices(
   const mcor_context* context, bool boundary, int level, int* first, int* count)
 {
   const mcor_mesh* mesh = &context->mesh;
-  const int last = boundary ? mesh->vertex_count : mesh->march_count; /* those of caps, too */
-  *first = mesh->level_first[boundary][level];
-  *count =
-    (level < context->lattice.top ? mesh->level_first[boundary][level + 1] : last) - *first;
+  const int begin = boundary ? mesh->march_count : 0;
+  const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with those of caps */
+  *first = level > 0 ? mesh->level_first[boundary][level] : begin;
+  *count = (level < context->lattice.top ? mesh->level_first[boundary][level + 1] : end) - *first;
 }

@@ -127,7 +127,7 @@ static mcor_status mcor_count_edges(mcor_context* context)
   {
     MCOR_TRY(mcor_read_int(
       context, &mesh->vertex_base, bricks->first_slot[l + 1], &mesh->level_first[0][l + 1]));
-    mesh->level_first[1][l] = mesh->march_count;
+    mesh->level_first[1][l] = mesh->march_count; /* until some are cut */
   }
   return MCOR_OK;
 }

@@ -154,9 +154,9 @@ typedef struct mcor_adaptive
 /* Which cells pairs reach; see mcor_pair.c. Masks are by slot. */
 typedef struct mcor_pairs
 {
-  int place_count;
-  mcor_buffer keys, index;             /* while places are found */
-  mcor_buffer place_keys, place_slots; /* ulong, sorted; int */
+  int place_count, bucket_shift;
+  mcor_buffer keys, index;                      /* while places are found */
+  mcor_buffer place_keys, buckets, place_slots; /* ulong, sorted; int */
   mcor_buffer seeds, reached, grown;   /* ulong: marked by pairs; by now; when last looked at */
   mcor_buffer domain;                  /* ulong: where growth may go */
   mcor_buffer heard;                   /* int4: cells that other boxes have reached */

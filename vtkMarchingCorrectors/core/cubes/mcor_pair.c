@@ -60,12 +60,14 @@ static mcor_status mcor_find_places(mcor_context* context)
     MCOR_BUFFER(&pairs->place_slots)));
   MCOR_RELEASE(context, &pairs->keys, &pairs->index);
   mcor_release_sort(context);
-  return MCOR_OK;
+  return mcor_index_keys(context, &pairs->place_keys, pairs->place_count,
+    context->tree.key_limit + 1, &pairs->buckets, &pairs->bucket_shift);
 }
 
 #define MCOR_PLACE_ARGS(c)                                                                         \
-  MCOR_INT((c)->pairs.place_count), MCOR_BUFFER(&(c)->adaptive.rungs),                             \
-    MCOR_BUFFER(&(c)->pairs.place_keys), MCOR_BUFFER(&(c)->pairs.place_slots)
+  MCOR_INT((c)->pairs.place_count), MCOR_INT((c)->pairs.bucket_shift),                             \
+    MCOR_BUFFER(&(c)->pairs.place_keys), MCOR_BUFFER(&(c)->pairs.buckets),                         \
+    MCOR_BUFFER(&(c)->adaptive.rungs), MCOR_BUFFER(&(c)->pairs.place_slots)
 
 /* ---- Cells ---- */
 
@@ -150,6 +152,6 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso)
 void mcor_release_pairs(mcor_context* context)
 {
   mcor_pairs* p = &context->pairs;
-  MCOR_RELEASE(context, &p->keys, &p->index, &p->place_keys, &p->place_slots, &p->reached,
+  MCOR_RELEASE(context, &p->keys, &p->index, &p->place_keys, &p->buckets, &p->place_slots, &p->reached,
     &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
 }

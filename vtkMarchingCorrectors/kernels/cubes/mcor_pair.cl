@@ -9,9 +9,11 @@
 
 /* Bricks by their sorted keys: those with cells that may be used, and those that such bricks are parts of. */
 #define MCOR_PLACE_PARAMS                                                                          \
-  const int place_count, __global const mcor_rung *rungs, __global const ulong *place_keys,        \
+  const int place_count, const int place_shift, __global const ulong *place_keys,                  \
+    __global const int *place_buckets, __global const mcor_rung *rungs,                            \
     __global const int *place_slots
-#define MCOR_PLACE_ARGS place_count, rungs, place_keys, place_slots
+#define MCOR_PLACE_ARGS                                                                            \
+  place_count, place_shift, place_keys, place_buckets, rungs, place_slots
 
 /* What such a brick is, if it has no cells that may be used. */
 #define MCOR_PLACE_SPLIT (-1)
@@ -24,9 +26,9 @@ int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
   {
     return MCOR_PLACE_NONE;
   }
-  const ulong key = mcor_adaptive_key(rungs, level, x, y, z);
-  const int at = mcor_find_key(place_keys, 0, place_count, key);
-  return at < place_count && place_keys[at] == key ? place_slots[at] : MCOR_PLACE_NONE;
+  const int at = mcor_adaptive_find(place_count, place_shift, place_keys, place_buckets,
+    mcor_adaptive_key(rungs, level, x, y, z));
+  return at < 0 ? MCOR_PLACE_NONE : place_slots[at];
 }
 
 /* Adds a cell of a level to those of its brick, if that is one. flags: 1 where it is new. */
@@ -99,7 +101,7 @@ real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool
  * or a corner of a cell to within rounding, the cells on both sides are found. Whether smaller ones may
  * be there: those found on a finer lattice are all within these. */
 bool mcor_pair_seed_line(
-  MCOR_MARK_PARAMS, const long* from, const long* to, int level, const fix step_of[3])
+  MCOR_MARK_PARAMS, const fix* from, const fix* to, int level, const fix step_of[3])
 {
   real next[3], gap[3];
   int c[3], end[3], step[3], steps = 0;
@@ -107,8 +109,8 @@ bool mcor_pair_seed_line(
   for (int a = 0; a < 3; ++a)
   {
     edge[a] = (long)step_of[a] << level;
-    c[a] = (int)(from[a] / edge[a]);
-    end[a] = (int)(to[a] / edge[a]);
+    c[a] = (int)(from[a] / step_of[a]) >> level;
+    end[a] = (int)(to[a] / step_of[a]) >> level;
     step[a] = to[a] < from[a] ? -1 : 1;
     gap[a] = to[a] == from[a] ? 0 : 1 / (real)abs(to[a] - from[a]);
     next[a] = mcor_pair_crossing(from[a], c[a] * edge[a], edge[a], step[a], gap[a], c[a] == end[a]);
@@ -138,8 +140,8 @@ bool mcor_pair_seed_line(
 /* Marks the cells between particles j and k: of large leaves first. */
 void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
 {
-  const long from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
-  const long to[3] = { grid->px[k], grid->py[k], grid->pz[k] };
+  const fix from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
+  const fix to[3] = { grid->px[k], grid->py[k], grid->pz[k] };
   bool split = true;
   for (int level = top; level >= 0 && split; --level)
   {

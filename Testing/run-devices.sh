@@ -26,7 +26,7 @@ while [ $# -gt 0 ]; do
   esac
 done
 [ ${#names[@]} -gt 0 ] || names=(built-in rusticl intel pocl3 arm64)
-for program in core_bits core_rooms; do
+for program in core_bits core_modules; do
   [ -x "$build/bin/$program" ] || mcor_die "$build/bin/$program is missing; Testing/run-tests.sh builds it"
 done
 
@@ -48,7 +48,7 @@ run() { # NAME SETTING...
   # shellcheck disable=SC2086  # no argument where size is empty
   {
     timeout 3000 env "$@" "${programs[@]}"/core_bits $size
-    timeout 3000 env "$@" "${programs[@]}"/core_rooms
+    timeout 3000 env "$@" "${programs[@]}"/core_modules
   } >"$scratch/$name.txt" 2>"$scratch/$name.log"
   echo $((SECONDS - begin)) >"$scratch/$name.seconds"
   grep -v -e '^form' -e ': 0 points' "$scratch/$name.txt" >"$scratch/$name.hashes"
@@ -82,7 +82,7 @@ compare_forms() { # NAME SETTING...
 build_core() { # FOLDER CMAKE ARGUMENTS...
   cmake -S . -B "$scratch/$1" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DMCOR_BUILD_VTK=OFF \
     -DMCOR_BUILD_EXAMPLES=OFF -DMCOR_AHEAD=all "${@:2}" &&
-    cmake --build "$scratch/$1" --target core_bits core_rooms
+    cmake --build "$scratch/$1" --target core_bits core_modules
 }
 
 # For arm64, by clang and Debian's libraries for it. The test library is taken from a package of that

@@ -58,10 +58,10 @@ void fuzz_check_bits(const void* a, const void* b, size_t bytes);
 void fuzz_check_same(const mcor_surface* a, const mcor_surface* b);
 void fuzz_check_failure(const mcor_context* context, mcor_status status);
 
-/* fuzz_rooms.c. Sets box, period, walls and cubes; then globals, ranks, probe and derivatives of the same
+/* fuzz_modules.c. Sets box, period, walls and cubes; then globals, ranks, probe and derivatives of the same
  * call. */
-void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
-void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call);
+void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
+void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call);
 
 /* fuzz_plane.c. Where lines cross the free surface; and a call whose particles share a coordinate. */
 void fuzz_gauge(fuzz_bytes* bytes, const fuzz_call* call);

@@ -370,10 +370,10 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size)
   fuzz_particles(&bytes, &call);
   fuzz_parts(rules, &call);
   const unsigned change = fuzz_byte(&bytes) + (unsigned)size;
-  const unsigned rooms = fuzz_byte(&bytes);
-  fuzz_regions(rooms, &bytes, &call);
+  const unsigned modules = fuzz_byte(&bytes);
+  fuzz_regions(modules, &bytes, &call);
   fuzz_calls(&call, change, size);
-  fuzz_other_calls(rooms, &bytes, &call);
+  fuzz_other_calls(modules, &bytes, &call);
   const unsigned more = fuzz_byte(&bytes);
   if (more & 1)
   {

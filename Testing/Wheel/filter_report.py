@@ -26,6 +26,18 @@ def hash_of(array):
     return f"{values.dtype} {values.shape} {hashlib.sha256(values.tobytes()).hexdigest()[:16]}"
 
 
+def report_mesh(surface):
+    """Hashes of what a surface consists of."""
+    data = surface.GetPointData()
+    found = {"arrays": {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}}
+    if surface.GetNumberOfPoints():
+        found["points"] = hash_of(surface.GetPoints().GetData())
+        for part, cells in ("triangles", surface.GetPolys()), ("lines", surface.GetLines()):
+            found[part] = hashlib.sha256(
+                vtk_to_numpy(cells.GetConnectivityArray()).astype("i8").tobytes()).hexdigest()[:16]
+    return found
+
+
 def report(file, scalar, value, properties):
     reader, extract, said = vtkXMLPolyDataReader(), vtkMarchingCorrectors(), []
     reader.SetFileName(file)
@@ -44,20 +56,12 @@ def report(file, scalar, value, properties):
     extract.AddObserver("ErrorEvent", lambda *_: None)
     extract.Update()
     surface = extract.GetOutput()
-    data, fields = surface.GetPointData(), surface.GetFieldData()
-    arrays = {data.GetArrayName(i): hash_of(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
-    found = {"warnings": said, "error": extract.GetErrorMessage(), "arrays": arrays,
-             "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
-             "measures": extract.GetSurfaceMeasures(), "cells": f"{extract.GetEstimatedCells():.9g}",
-             "fields": {name: vtk_to_numpy(data.GetArray(name)).tolist() for name in STATISTICS
-                        for data in (fields, extract.GetRunStatistics()) if data.HasArray(name)}}
-    if surface.GetNumberOfPoints():
-        found["points"] = hash_of(surface.GetPoints().GetData())
-        found["triangles"] = hashlib.sha256(vtk_to_numpy(
-            surface.GetPolys().GetConnectivityArray()).astype("i8").tobytes()).hexdigest()[:16]
-        found["lines"] = hashlib.sha256(vtk_to_numpy(
-            surface.GetLines().GetConnectivityArray()).astype("i8").tobytes()).hexdigest()[:16]
-    return found
+    fields = surface.GetFieldData()
+    return {"warnings": said, "error": extract.GetErrorMessage(), **report_mesh(surface),
+            "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
+            "measures": extract.GetSurfaceMeasures(), "cells": f"{extract.GetEstimatedCells():.9g}",
+            "fields": {name: vtk_to_numpy(data.GetArray(name)).tolist() for name in STATISTICS
+                       for data in (fields, extract.GetRunStatistics()) if data.HasArray(name)}}
 
 
 def main():

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same files through the wheel's filter, its accessor, and the C++ filter: the same warnings, errors, arrays,
-bits and statistics. The C++ filter runs in the Python that it was built for."""
+"""The same files through the wheel's filter, its accessor, the C++ filter and the program: the same warnings, errors,
+arrays, bits and statistics. The C++ filter runs in the Python that it was built for."""
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pyvista
+from filter_report import report_mesh
 
 import marchingcorrectors as mc
 
@@ -100,6 +102,19 @@ WANTED = {"unused type": "'ParticleType' is not used.*44880 x 0, 55348 x 1", "is
           "units": "node threshold", "all trimmed": "vertex threshold 5", "bad attribute": "'T' is NaN"}
 
 
+# The program's options for the filter's properties.
+OPTIONS = {
+    "FluidArrayName": lambda name: ["--fluid", name + "=0"], "FreeSurface": lambda on: ["--free-surface"],
+    "Solids": lambda number: ["--solids", ["weight", "ignore", "wall", "auto"][number]],
+    "Kernel": lambda number: ["--kernel", {4: "wendland"}[number]], "Dimension": lambda number: ["--dimension", str(number)],
+    "VertexThreshold": lambda value: ["--vertex-threshold", str(value)],
+    "SmoothingLengthArrayName": lambda name: ["--smoothing-length", name],
+    "DetectPeriod": lambda on: ["--periodic", "auto"], "Capping": lambda on: ["--capping"],
+    "CubeSizeMode": lambda number: ["--cubes", ["uniform", "adaptive"][number]], "UseBox": lambda on: [],
+    "Box": lambda sides: ["--box=" + ",".join(map(str, sides))], "Filled": lambda on: ["--filled"],
+}
+
+
 class Test(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -142,6 +157,34 @@ class Test(unittest.TestCase):
         for name, found, expected in zip(self.cases, self.wheel["cases"], cxx["cases"]):
             for part in sorted({*found, *expected}):
                 self.assertEqual(found.get(part), expected.get(part), f"{name}: {part}")
+
+    @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
+    def test_program(self):
+        """What it says beside the filter's sentence: how to give its own options, and that a surface is empty."""
+        folder = Path(self.folder.name)
+        for (name, (file, scalar, value, properties)), found in zip(self.cases.items(), self.wheel["cases"]):
+            output, statistics = folder / "program.vtp", folder / "program.json"
+            output.unlink(missing_ok=True)
+            words = [word for key, setting in properties.items() for word in OPTIONS[key](setting)]
+            words += [] if "FreeSurface" in properties else ["--scalar", scalar, f"--iso={value}"]
+            done = subprocess.run([os.environ["MCOR_TEST_PROGRAM"], file, str(output), "--stats", str(statistics), *words],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 1 if found["error"] else 0, f"{name}: {done.stderr}")
+            if found["error"]:
+                self.assertIn(re.split(r"[.:] ", found["error"])[0], done.stderr, name)
+                continue
+            run = json.loads(statistics.read_text())
+            self.assertEqual([re.sub("^the surface is empty: ", "", said) for said in run["warnings"]],
+                             found["warnings"], name)
+            mesh = report_mesh(pyvista.read(output))
+            for part in sorted({"arrays", "points", "triangles", "lines"} & {*mesh, *found}):
+                self.assertEqual(mesh.get(part), found.get(part), f"{name}: {part}")
+            for number in "points", "triangles", "lines", "length", "area", "virtual_cells", "seed_cells", "cells_used", \
+                    "fluid_particles", "scalar_range", "smoothing_length_range":
+                expected = found["fields"].get("".join(part.capitalize() for part in number.split("_")))
+                if number in run["statistics"] or expected is not None:
+                    self.assertEqual(np.ravel(run["statistics"].get(number)).tolist(), np.ravel(expected).tolist(),
+                                     f"{name}: {number}")
 
     def test_accessor(self):
         """As doubles, with the same arrays and sentences."""

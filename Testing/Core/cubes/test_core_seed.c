@@ -61,11 +61,16 @@ static void check_complete(
 
 static void test_complete(void** state)
 {
-  static const int fields[][2] = { { MCOR_SHEPARD, 9 }, { MCOR_SUM, 3 },
-    { MCOR_WEIGHT_SUM, 3 } }; /* field, how many kernels of the list */
   static const mcor_sph_kernel kernels[] = { MCOR_CUBIC_SPLINE, MCOR_M_PRIME_4, MCOR_QUINTIC_SPLINE,
     MCOR_QUADRATIC, MCOR_WENDLAND_C2, MCOR_QUARTIC_SPLINE, MCOR_WENDLAND_C4, MCOR_WENDLAND_C6,
     MCOR_SINC_6 };
+  enum
+  {
+    all = sizeof kernels / sizeof kernels[0]
+  };
+  assert_int_equal(all, MCOR_SPH_KERNEL_COUNT);
+  static const int fields[][2] = { { MCOR_SHEPARD, all }, { MCOR_SUM, 3 },
+    { MCOR_WEIGHT_SUM, 3 } }; /* field, how many kernels of the list */
   for (int f = 0; f < 3; ++f)
   {
     for (int k = 0; k < fields[f][1]; ++k)

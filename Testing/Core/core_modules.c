@@ -11,10 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double rooms_weight = 0.4, rooms_isos[2] = { 0.6, 1.1 };
+static const double modules_weight = 0.4, modules_isos[2] = { 0.6, 1.1 };
 
 /* Particles of spacing 1, and beside them some of spacing 4. */
-static core_set rooms_set(void)
+static core_set modules_set(void)
 {
   core_set set = core_make_set(27 + 27);
   for (int i = 0; i < 54; ++i)
@@ -34,7 +34,8 @@ static core_set rooms_set(void)
   return set;
 }
 
-static void rooms_print(const mcor_context* context, const char* name, int64_t count, uint64_t hash)
+static void modules_print(
+  const mcor_context* context, const char* name, int64_t count, uint64_t hash)
 {
   printf("form %d lanes, %s\n", context->cl.lanes, context->cl.is_cpu ? "CPU" : "GPU");
   printf("%s: %lld, %016llx %s\n", name, (long long)count, (unsigned long long)hash,
@@ -42,7 +43,7 @@ static void rooms_print(const mcor_context* context, const char* name, int64_t c
   fflush(stdout);
 }
 
-static int rooms_surface(
+static int modules_surface(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
 {
   mcor_surface surface;
@@ -52,7 +53,7 @@ static int rooms_surface(
   {
     levels += surface.statistics.cells_of_level[l] > 0;
   }
-  rooms_print(context, name, surface.triangle_count, core_hash(&surface));
+  modules_print(context, name, surface.triangle_count, core_hash(&surface));
   const int good = status == MCOR_OK && surface.triangle_count > 0 &&
     (levels > 1 || options->level_limit == 0) &&
     (surface.statistics.cap_triangles > 0 || !options->capping);
@@ -60,9 +61,9 @@ static int rooms_surface(
   return good;
 }
 
-static mcor_options rooms_options(mcor_field field)
+static mcor_options modules_options(mcor_field field)
 {
-  mcor_options options = core_options(field == MCOR_WEIGHT_SUM ? &rooms_weight : rooms_isos);
+  mcor_options options = core_options(field == MCOR_WEIGHT_SUM ? &modules_weight : modules_isos);
   options.field = field;
   options.cube_size_factor = 1;
   options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
@@ -71,27 +72,27 @@ static mcor_options rooms_options(mcor_field field)
   return options;
 }
 
-static int rooms_adaptive(mcor_context* context, const mcor_input* input)
+static int modules_adaptive(mcor_context* context, const mcor_input* input)
 {
-  mcor_options options = rooms_options(MCOR_WEIGHT_SUM);
+  mcor_options options = modules_options(MCOR_WEIGHT_SUM);
   options.level_limit = MCOR_CUBE_LEVELS - 1;
-  int good = rooms_surface(context, "adaptive, free surface", input, &options);
-  options.iso_values = rooms_isos;
+  int good = modules_surface(context, "adaptive, free surface", input, &options);
+  options.iso_values = modules_isos;
   options.field = MCOR_SHEPARD;
   options.iso_count = 2;
   options.wall_share = 0.5;
   options.vertex_threshold = 0.3;
-  good = rooms_surface(context, "adaptive, scalar", input, &options) && good;
+  good = modules_surface(context, "adaptive, scalar", input, &options) && good;
   for (int s = 0; s < 6; ++s)
   {
     options.box[s] = s % 2 == 0 ? -10 : (s == 1 ? 14 : 20);
   }
-  return rooms_surface(context, "adaptive, box", input, &options) && good;
+  return modules_surface(context, "adaptive, box", input, &options) && good;
 }
 
-static int rooms_uniform(mcor_context* context, const mcor_input* input)
+static int modules_uniform(mcor_context* context, const mcor_input* input)
 {
-  mcor_options options = rooms_options(MCOR_SHEPARD);
+  mcor_options options = modules_options(MCOR_SHEPARD);
   mcor_input fine = *input;
   fine.count = 27;
   options.cube_size_factor = 0.6;
@@ -100,24 +101,24 @@ static int rooms_uniform(mcor_context* context, const mcor_input* input)
   {
     options.box[s] = s % 2 == 0 ? -3 : (s == 1 ? 1 : 5);
   }
-  const int good = rooms_surface(context, "box", &fine, &options);
+  const int good = modules_surface(context, "box", &fine, &options);
   memset(options.box, 0, sizeof options.box);
   options.point_keys = options.triangle_keys = 0;
   options.field = MCOR_WEIGHT_SUM;
-  options.iso_values = &rooms_weight;
+  options.iso_values = &modules_weight;
   options.capping = 1;
   for (int s = 0; s < 4; ++s)
   {
     options.periodic[s] = s % 2 == 0 ? 1 : 9;
   }
-  return rooms_surface(context, "period, caps", &fine, &options) && good;
+  return modules_surface(context, "period, caps", &fine, &options) && good;
 }
 
 /* The lowest layer of the fine particles; then that of the coarse ones, too. */
-static int rooms_plane(mcor_context* context, const mcor_input* input)
+static int modules_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;
-  core_set set = rooms_set();
+  core_set set = modules_set();
   for (int i = 9; i < 18; ++i)
   {
     memcpy(set.position + 3 * i, set.position + 3 * (i + 18), 3 * sizeof(double));
@@ -136,7 +137,7 @@ static int rooms_plane(mcor_context* context, const mcor_input* input)
     flat.volume = core_array(set.volume, 1);
     flat.scalar = core_array(set.scalar, 1);
     flat.solid = set.solid;
-    mcor_options options = rooms_options((mcor_field)field);
+    mcor_options options = modules_options((mcor_field)field);
     options.level_limit = levels ? MCOR_CUBE_LEVELS - 1 : 0;
     options.seeds = levels && field == MCOR_SHEPARD ? MCOR_PAIRS : MCOR_COMPLETE;
     options.topology = MCOR_TOPOLOGY_FIELD;
@@ -148,7 +149,7 @@ static int rooms_plane(mcor_context* context, const mcor_input* input)
     const mcor_status status = mcor_extract(context, &flat, &options, &surface);
     const uint64_t hash = core_hash_bytes(core_hash(&surface), surface.line_points,
       (size_t)surface.line_point_count * sizeof *surface.line_points);
-    rooms_print(context, "plane", surface.line_count, hash);
+    modules_print(context, "plane", surface.line_count, hash);
     good = status == MCOR_OK && surface.line_count > 0 &&
       (surface.statistics.cells_of_level[1] > 0) == (levels > 0) && good;
     mcor_free_surface(&surface);
@@ -157,7 +158,7 @@ static int rooms_plane(mcor_context* context, const mcor_input* input)
   return good;
 }
 
-static int rooms_probe(mcor_context* context, const mcor_input* input)
+static int modules_probe(mcor_context* context, const mcor_input* input)
 {
   const double at[15] = { 0, 0, 0, 1.2, 0.3, 0.7, 10.5, 2, 3, 60, 0, 0, 2, 2, 2 };
   double* points = core_copy(at, sizeof at);
@@ -165,7 +166,7 @@ static int rooms_probe(mcor_context* context, const mcor_input* input)
   int good = 1;
   for (int field = MCOR_SHEPARD; field <= MCOR_SUM; ++field)
   {
-    mcor_options options = rooms_options((mcor_field)field);
+    mcor_options options = modules_options((mcor_field)field);
     mcor_samples samples;
     const mcor_status status = mcor_probe(context, input, &options, &array, 5, &samples);
     good = status == MCOR_OK && samples.valid[0] && !samples.valid[3] && good;
@@ -177,19 +178,19 @@ static int rooms_probe(mcor_context* context, const mcor_input* input)
       hash = core_hash_bytes(hash, samples.values[a], bytes);
       hash = core_hash_bytes(hash, samples.gradients[a], 3 * bytes);
     }
-    rooms_print(context, "probe", samples.count, hash);
+    modules_print(context, "probe", samples.count, hash);
     mcor_free_samples(&samples);
   }
   free(points);
   return good;
 }
 
-static int rooms_derive(mcor_context* context, const mcor_input* input)
+static int modules_derive(mcor_context* context, const mcor_input* input)
 {
   int good = 1;
   for (int form = MCOR_GRADIENT_CORRECTED; form <= MCOR_GRADIENT_STANDARD; ++form)
   {
-    const mcor_options options = rooms_options(MCOR_SHEPARD);
+    const mcor_options options = modules_options(MCOR_SHEPARD);
     mcor_derivatives d;
     const mcor_status status = mcor_derive(context, input, &options, (mcor_gradient)form, &d);
     good = status == MCOR_OK && d.gradients[0] && d.gradients[1] && good;
@@ -199,39 +200,39 @@ static int rooms_derive(mcor_context* context, const mcor_input* input)
     {
       hash = core_hash_bytes(hash, d.gradients[a], n * (a == 0 ? 9 : 3) * sizeof(double));
     }
-    rooms_print(context, "derive", d.count, hash);
+    modules_print(context, "derive", d.count, hash);
     mcor_free_derivatives(&d);
   }
   return good;
 }
 
-static int rooms_gauge(mcor_context* context, const mcor_input* input)
+static int modules_gauge(mcor_context* context, const mcor_input* input)
 {
   static const mcor_gauge_line lines[3] = { { .from = { 1, 1.1, -4 }, .to = { 1, 1.1, 6 } },
     { .from = { -3, 0.2, 0.3 }, .to = { 30, 7, 9 } },
     { .from = { 99, 0, 0 }, .to = { 99, 0, 1 } } };
-  const mcor_options options = rooms_options(MCOR_WEIGHT_SUM);
+  const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
   mcor_gauges found;
   const mcor_status status = mcor_gauge(context, input, &options, lines, 3, &found);
   const size_t bytes = (size_t)found.crossing_count * sizeof(double);
-  rooms_print(context, "gauge", found.crossing_count,
+  modules_print(context, "gauge", found.crossing_count,
     core_hash_bytes(CORE_HASH_OF_NOTHING, found.crossings, bytes));
   const int good = status == MCOR_OK && found.crossing_count > 3;
   mcor_free_gauges(&found);
   return good;
 }
 
-typedef struct rooms_run
+typedef struct modules_run
 {
   const char* name;
   int (*run)(mcor_context*, const mcor_input*);
-} rooms_run;
+} modules_run;
 
 int main(int argc, char** argv)
 {
-  static const rooms_run runs[] = { { "adaptive", rooms_adaptive }, { "uniform", rooms_uniform },
-    { "plane", rooms_plane }, { "probe", rooms_probe }, { "derive", rooms_derive },
-    { "gauge", rooms_gauge } };
+  static const modules_run runs[] = { { "adaptive", modules_adaptive },
+    { "uniform", modules_uniform }, { "plane", modules_plane }, { "probe", modules_probe },
+    { "derive", modules_derive }, { "gauge", modules_gauge } };
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {
@@ -239,7 +240,7 @@ int main(int argc, char** argv)
     mcor_free_context(context);
     return 1;
   }
-  core_set set = rooms_set();
+  core_set set = modules_set();
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
   mcor_input input = core_input(&set);

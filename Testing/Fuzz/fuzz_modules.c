@@ -11,24 +11,24 @@
 
 #define FUZZ_POINTS 24
 
-void fuzz_regions(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
+void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call)
 {
   static const double shares[] = { 0.5, 0.1, 0.9, 1e-3, 0.999999, 1, -1, NAN };
   mcor_options* o = &call->options;
-  for (int a = 0; a < 3 && rooms & 1; ++a)
+  for (int a = 0; a < 3 && modules & 1; ++a)
   {
     o->box[2 * a] = fuzz_side(bytes);
     o->box[2 * a + 1] = o->box[2 * a] + fabs(fuzz_side(bytes));
   }
-  for (int a = 0; a < 3 && rooms >> 1 & 1; ++a)
+  for (int a = 0; a < 3 && modules >> 1 & 1; ++a)
   {
     const double from = fuzz_side(bytes), length = fuzz_side(bytes);
     o->periodic[2 * a] = length < 1 ? 0 : from;
     o->periodic[2 * a + 1] = length < 1 ? 0 : from + length;
   }
-  o->capping = (rooms & 3) == 2;
-  o->wall_share = rooms >> 2 & 1 ? shares[fuzz_byte(bytes) % 8] : 0;
-  if (rooms >> 6 & 1)
+  o->capping = (modules & 3) == 2;
+  o->wall_share = modules >> 2 & 1 ? shares[fuzz_byte(bytes) % 8] : 0;
+  if (modules >> 6 & 1)
   {
     const unsigned b = fuzz_byte(bytes);
     o->level_limit = (int)(b % 29) - 2;
@@ -272,23 +272,23 @@ static void fuzz_derive(fuzz_bytes* bytes, const fuzz_call* call)
   mcor_free_derivatives(&d);
 }
 
-void fuzz_other_calls(unsigned rooms, fuzz_bytes* bytes, fuzz_call* call)
+void fuzz_other_calls(unsigned modules, fuzz_bytes* bytes, fuzz_call* call)
 {
   call->input.particles_version = call->input.scalar_version = 0;
-  if (rooms >> 3 & 1)
+  if (modules >> 3 & 1)
   {
     fuzz_globals(call);
     fuzz_halves(call);
   }
-  if (rooms >> 4 & 1)
+  if (modules >> 4 & 1)
   {
     fuzz_probe(bytes, call);
   }
-  if (rooms >> 5 & 1)
+  if (modules >> 5 & 1)
   {
     fuzz_derive(bytes, call);
   }
-  if (rooms >> 7 & 1)
+  if (modules >> 7 & 1)
   {
     fuzz_ranks(fuzz_byte(bytes), call);
   }

@@ -244,6 +244,8 @@ bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
+/* Among the sorted edges of cut vertices, trim.distinct, that between two vertices; -1: it is not cut. */
+int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
 mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
@@ -257,11 +259,9 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);
+/* all: vertices that no triangle uses, too. */
 mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
-/* All vertices of a mesh without triangles. */
-mcor_status mcor_append_points(
-  mcor_context* context, const mcor_input* input, mcor_surface* surface);
+  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface);
 /* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
 #define MCOR_SURFACE_ARRAYS 11
 typedef struct mcor_surface_array

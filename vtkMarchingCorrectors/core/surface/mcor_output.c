@@ -12,31 +12,16 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Views of the mesh's vertices; see mcor_is_output. */
-enum
-{
-  MCOR_VIEW_SCANNED,
-  MCOR_VIEW_NODE,
-  MCOR_VIEW_OFFSET,
-  MCOR_VIEW_LINEAR,
-  MCOR_VIEW_VALUE,
-  MCOR_VIEW_GRADIENT,
-  MCOR_VIEW_WEIGHT,
-  MCOR_VIEW_FLAG,
-  MCOR_VIEW_COUNT
-};
-
-/* The vertices of one iso value on their way to the surface. */
+/* The vertices of one iso value on their way to the surface: views of the mesh's, see mcor_is_output. */
 typedef struct mcor_download
 {
-  void* views[MCOR_VIEW_COUNT];
-  const cl_int *scanned, *node;
-  const void *offset, *linear, *value, *gradient, *weight;
-  const uint8_t* flag;
+  void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   uint8_t* owned; /* see mcor_find_counted */
   uint64_t* cuts; /* see mcor_keep_cuts */
 } mcor_download;
+#define MCOR_DOWNLOADS 8
 
 /* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
 static mcor_status mcor_count_used(mcor_context* context, int* count)
@@ -68,46 +53,21 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
 }
 
 static void mcor_list_mappings(
-  const mcor_context* context, mcor_download* d, mcor_mapping mappings[MCOR_VIEW_COUNT])
+  const mcor_context* context, mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
 {
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  mappings[MCOR_VIEW_SCANNED] = (mcor_mapping){ &mesh->scanned, (n + 1) * sizeof(cl_int), NULL };
-  mappings[MCOR_VIEW_NODE] = (mcor_mapping){ &mesh->node, n * 4 * sizeof(cl_int), NULL };
-  mappings[MCOR_VIEW_OFFSET] = (mcor_mapping){ &mesh->offset, n * 4 * real, NULL };
-  mappings[MCOR_VIEW_LINEAR] =
-    (mcor_mapping){ &mesh->linear, (size_t)mesh->march_count * real, NULL };
-  mappings[MCOR_VIEW_VALUE] = (mcor_mapping){ &mesh->field_value, n * real, NULL };
-  mappings[MCOR_VIEW_GRADIENT] = (mcor_mapping){ &mesh->gradient, n * 4 * real, NULL };
-  mappings[MCOR_VIEW_WEIGHT] = (mcor_mapping){ &mesh->vertex_weight, n * real, NULL };
-  mappings[MCOR_VIEW_FLAG] = (mcor_mapping){ &mesh->flag, n, NULL };
-  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
-  {
-    mappings[i].data = &d->views[i];
-  }
-}
-
-static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
-{
-  mcor_mapping mappings[MCOR_VIEW_COUNT];
-  mcor_list_mappings(context, d, mappings);
-  MCOR_TRY(mcor_map_all(context, mappings, MCOR_VIEW_COUNT));
-  d->scanned = d->views[MCOR_VIEW_SCANNED];
-  d->node = d->views[MCOR_VIEW_NODE];
-  d->offset = d->views[MCOR_VIEW_OFFSET];
-  d->linear = d->views[MCOR_VIEW_LINEAR];
-  d->value = d->views[MCOR_VIEW_VALUE];
-  d->gradient = d->views[MCOR_VIEW_GRADIENT];
-  d->weight = d->views[MCOR_VIEW_WEIGHT];
-  d->flag = d->views[MCOR_VIEW_FLAG];
-  return MCOR_OK;
-}
-
-static mcor_status mcor_unmap_vertices(mcor_context* context, mcor_download* d)
-{
-  mcor_mapping mappings[MCOR_VIEW_COUNT];
-  mcor_list_mappings(context, d, mappings);
-  return mcor_unmap_all(context, mappings, MCOR_VIEW_COUNT, MCOR_OK);
+  const mcor_mapping all[MCOR_DOWNLOADS] = {
+    { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned },
+    { &mesh->node, n * 4 * sizeof(cl_int), &d->node },
+    { &mesh->offset, n * 4 * real, &d->offset },
+    { &mesh->linear, (size_t)mesh->march_count * real, &d->linear },
+    { &mesh->field_value, n * real, &d->value },
+    { &mesh->gradient, n * 4 * real, &d->gradient },
+    { &mesh->vertex_weight, n * real, &d->weight },
+    { &mesh->flag, n, &d->flag },
+  };
+  memcpy(mappings, all, sizeof all);
 }
 
 /* Room for `count` more elements of `width` bytes; *array may be NULL. */
@@ -169,17 +129,23 @@ typedef struct mcor_delivery
   mcor_tally tallies[MCOR_SLICES];
 } mcor_delivery;
 
+static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
+{
+  return (const cl_int*)d->node + 4 * v;
+}
+
 /* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it
  * lies on the border that the node threshold leaves. */
 static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
-  return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
+  return v < context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
+                                       : ((const uint8_t*)d->flag)[v];
 }
 
 /* Of a length of the virtual grid that of vertex v's level: see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
-  const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
+  const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
   return level > 0 ? ldexp(length, level) : length;
 }
 
@@ -187,7 +153,7 @@ static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int64_t v)
 {
   return v < context->mesh.march_count ? fabs(mcor_get_real(context, d->linear, v)) *
-      mcor_length_of(d, v, context->lattice.edge[d->node[4 * v + 3] & 3])
+      mcor_length_of(d, v, context->lattice.edge[mcor_node_of(d, v)[3] & 3])
                                        : 0;
 }
 
@@ -264,12 +230,13 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   double iso, mcor_surface* s, int64_t to)
 {
   const double cube = mcor_length_of(d, v, context->lattice.cube);
-  const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
+  const cl_int* at = mcor_node_of(d, v);
+  const int level = at[3] >> MCOR_LEVEL_SHIFT;
   double gradient[3];
   for (int a = 0; a < 3; ++a)
   {
     /* The origin is a whole number of cells of all levels. */
-    const double node = (double)((context->lattice.origin[a] >> level) + d->node[4 * v + a]);
+    const double node = (double)((context->lattice.origin[a] >> level) + at[a]);
     s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) *
       mcor_length_of(d, v, context->lattice.edge[a]);
     gradient[a] = mcor_get_real(context, d->gradient, 4 * v + a);
@@ -283,7 +250,7 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
     mcor_store_normal(gradient, s->normals + 3 * to);
     if (mcor_is_cap(context, v))
     {
-      mcor_cap_normal(context, d->node + 4 * v, s->normals + 3 * to);
+      mcor_cap_normal(context, at, s->normals + 3 * to);
     }
   }
   if (s->weight_sum)
@@ -316,14 +283,15 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
 {
   mcor_delivery* delivery = data;
   const mcor_download* d = delivery->download;
+  const cl_int* scanned = d->scanned;
   mcor_surface* surface = delivery->surface;
   mcor_tally tally = { 0 };
   for (int64_t v = first; v < last; ++v)
   {
-    if (mcor_is_output(d->scanned, v))
+    if (mcor_is_output(scanned, v))
     {
       mcor_store_point(
-        delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
+        delivery->context, d, v, delivery->iso, surface, surface->point_count + scanned[v]);
       if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(delivery->context, v))
       {
         mcor_count_correction(delivery->context, d, v, &tally);
@@ -425,11 +393,10 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
     (long long)(base + count));
+  mcor_mapping mappings[MCOR_DOWNLOADS];
+  mcor_list_mappings(context, download, mappings);
+  MCOR_TRY(count > 0 ? mcor_map_all(context, mappings, MCOR_DOWNLOADS) : MCOR_OK);
   if (count > 0)
-  {
-    MCOR_TRY(mcor_map_vertices(context, download));
-  }
-  if (count > 0 && !all)
   {
     mcor_number_lines(context, download->scanned, base);
   }
@@ -473,32 +440,22 @@ static void mcor_release_vertices(mcor_context* context)
     &m->vertex_weight, &m->means, &m->flag, &m->scanned, &context->trim.eigenvalue);
 }
 
-static mcor_status mcor_append_vertices(
+/* Appends the mesh of one iso value to the surface. */
+mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
 {
   mcor_download download = { 0 };
+  mcor_mapping mappings[MCOR_DOWNLOADS];
   mcor_status status = mcor_keep_cuts(context, &download.cuts);
   mcor_release_construction(context);
   if (status == MCOR_OK)
   {
     status = mcor_append_mesh(context, input, iso, all, &download, surface);
   }
-  const mcor_status unmapped = mcor_unmap_vertices(context, &download);
+  mcor_list_mappings(context, &download, mappings);
+  status = mcor_unmap_all(context, mappings, MCOR_DOWNLOADS, status);
   mcor_release_vertices(context);
   free(download.owned);
   free(download.cuts);
-  return status != MCOR_OK ? status : unmapped;
-}
-
-/* Appends the mesh of one iso value to the surface. */
-mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
-{
-  return mcor_append_vertices(context, input, iso, false, surface);
-}
-
-mcor_status mcor_append_points(
-  mcor_context* context, const mcor_input* input, mcor_surface* surface)
-{
-  return mcor_append_vertices(context, input, 0, true, surface);
+  return status;
 }

@@ -8,6 +8,7 @@
 #include "mcor_plane.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define MCOR_TRIM_STEPS 25
 
@@ -133,6 +134,20 @@ mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
   const size_t attributes = (size_t)context->attributes.count;
   MCOR_TRY(mcor_extend(context, &mesh->means, attributes * reals, attributes * new_reals));
   return mcor_extend(context, &mesh->flag, o, n);
+}
+
+static int mcor_compare_keys(const void* x, const void* y)
+{
+  const cl_ulong *a = x, *b = y;
+  return (*a > *b) - (*a < *b);
+}
+
+int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
+{
+  const cl_ulong key = p < q ? (cl_ulong)p << 32 | (cl_ulong)q : (cl_ulong)q << 32 | (cl_ulong)p;
+  const cl_ulong* cut =
+    count > 0 ? bsearch(&key, cuts, (size_t)count, sizeof key, mcor_compare_keys) : NULL;
+  return cut ? (int)(cut - cuts) : -1;
 }
 
 /* Finds where the cut vertices of each level begin: a cut vertex has that of the lower one of its edge's

@@ -59,7 +59,7 @@ static mcor_status mcor_extract_all(
   MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
     "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
     "first.");
-  MCOR_TRY(mcor_list_attributes(context, input, surface));
+  MCOR_TRY(mcor_begin_surface(context, input, surface));
   if (input->count == 0)
   {
     return mcor_attend_rounds(context, 0);

@@ -249,19 +249,21 @@ int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
 mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
-mcor_status mcor_list_attributes(
-  mcor_context* context, const mcor_input* input, mcor_surface* surface);
 mcor_status mcor_list_components(
-  mcor_context* context, const mcor_input* input, int64_t* not_finite);
+  mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite);
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
 bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
+mcor_status mcor_find_nearest(mcor_context* context); /* of all vertices */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);
 /* all: vertices that no triangle uses, too. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface);
+/* mcor_surface.c. Prepares the surface's attributes: those to leave out, and of the others the components that vary. */
+mcor_status mcor_begin_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface);
 /* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
 #define MCOR_SURFACE_ARRAYS 11
 typedef struct mcor_surface_array
@@ -271,6 +273,14 @@ typedef struct mcor_surface_array
 } mcor_surface_array;
 void mcor_list_surface_arrays(
   mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
+/* Room for so many more elements of `width` bytes behind `old` ones; *array may be NULL. */
+mcor_status mcor_grow(
+  mcor_context* context, void** array, int64_t old, int64_t count, size_t width);
+/* Room for more points in all arrays that are asked for. */
+mcor_status mcor_grow_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
+/* Moves a triangle, and its keys, to another's place. */
+void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
 /* mcor_point_key.c */
 mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts);
 /* In the order of vertices: by block, brick and node, each by z, y, x. Fits 2^61, as the lattice has no more

@@ -28,14 +28,12 @@ static inline int mcor_marched_count(const mcor_context* context)
 /* What evaluates the field at vertices does so level by level:
  *
  *   for (int l = 0; l <= context->lattice.top; ++l)
- *     mcor_level_vertices(context, boundary, l, &first, &count);
- *     mcor_view_level(context, l);
+ *     mcor_group_level(context, boundary, l, &groups);
  *     ...
  *   mcor_view_level(context, 0); */
 
-/* Vertices of a level, on lattice edges or of the trim boundary. */
-void mcor_level_vertices(
-  const mcor_context* context, bool boundary, int level, int* first, int* count);
+/* Views a level, and groups its vertices: on lattice edges, or of the trim boundary. */
+mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups);
 
 /* From now on MCOR_GRID_ARGS are in cells of a level. */
 mcor_status mcor_view_level(mcor_context* context, int level);

@@ -60,13 +60,14 @@ mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
   return MCOR_OK;
 }
 
-void mcor_level_vertices(
-  const mcor_context* context, bool boundary, int level, int* first, int* count)
+mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups)
 {
   const mcor_mesh* mesh = &context->mesh;
   const bool one = context->lattice.top == 0;
   const int begin = boundary ? mesh->march_count : 0;
   const int end = boundary ? mesh->vertex_count : mesh->march_count;
-  *first = one ? begin : mesh->level_first[boundary][level];
-  *count = (one ? end : mesh->level_first[boundary][level + 1]) - *first;
+  const int first = one ? begin : mesh->level_first[boundary][level];
+  const int count = (one ? end : mesh->level_first[boundary][level + 1]) - first;
+  MCOR_TRY(mcor_view_level(context, level));
+  return mcor_make_groups(context, &mesh->node, first, count, groups);
 }

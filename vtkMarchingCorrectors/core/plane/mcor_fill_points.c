@@ -210,11 +210,8 @@ static mcor_status mcor_append_fill_triangles(
   mcor_context* context, const mcor_filling* fill, const int32_t* number, mcor_surface* surface)
 {
   const int64_t first = surface->triangle_count, count = fill->triangle_count;
-  const size_t all = (size_t)(first + count);
-  int32_t* triangles = realloc(surface->triangles, all * 3 * sizeof *triangles + 1);
-  surface->triangles = triangles ? triangles : surface->triangles;
-  surface->band_value = malloc((size_t)count * sizeof *surface->band_value + 1);
-  MCOR_TRY(mcor_allocated(context, triangles && surface->band_value));
+  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));
+  MCOR_TRY(mcor_grow(context, (void**)&surface->band_value, 0, count, sizeof(double)));
   MCOR_TRY(mcor_extend_kept(context, count, surface));
   for (int64_t t = 0; t < count; ++t)
   {
@@ -222,7 +219,7 @@ static mcor_status mcor_append_fill_triangles(
     for (int c = 0; c < 3; ++c)
     {
       const int32_t ref = from->corner[c];
-      triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : number[ref];
+      surface->triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : number[ref];
     }
     surface->band_value[t] = fill->lines[from->band - 1].value;
     if (context->box.kept)

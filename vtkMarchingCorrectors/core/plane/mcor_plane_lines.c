@@ -176,13 +176,7 @@ static void mcor_keep_filled(mcor_surface* surface)
   {
     if (!mcor_is_line(surface->triangles + 3 * t))
     {
-      memmove(surface->triangles + 3 * count, surface->triangles + 3 * t, 3 * sizeof(int32_t));
-      for (int k = 0; k < MCOR_TRIANGLE_KEY && surface->triangle_keys; ++k)
-      {
-        surface->triangle_keys[MCOR_TRIANGLE_KEY * count + k] =
-          surface->triangle_keys[MCOR_TRIANGLE_KEY * t + k];
-      }
-      ++count;
+      mcor_move_triangle(surface, t, count++);
     }
   }
   if (!filled)

@@ -53,15 +53,12 @@ mcor_status mcor_correct(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
-  int count = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
-  MCOR_TRY(mcor_reserve_vertices(context, count));
+  MCOR_TRY(mcor_reserve_vertices(context, mesh->march_count));
   for (int l = 0; l <= context->lattice.top; ++l)
   {
-    int first, groups;
-    mcor_level_vertices(context, false, l, &first, &count);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
+    int groups;
+    MCOR_TRY(mcor_group_level(context, false, l, &groups));
     MCOR_TRY(
       MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
         MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),

@@ -18,10 +18,11 @@
 typedef struct mcor_download
 {
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
-  uint8_t* owned; /* see mcor_find_counted */
-  uint64_t* cuts; /* see mcor_keep_cuts */
+  void *eigenvalue, *nearest; /* where they are asked for */
+  uint8_t* owned;             /* see mcor_find_counted */
+  uint64_t* cuts;             /* see mcor_keep_cuts */
 } mcor_download;
-#define MCOR_DOWNLOADS 8
+#define MCOR_DOWNLOADS 10
 
 /* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
 static mcor_status mcor_count_used(mcor_context* context, int* count)
@@ -52,64 +53,30 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
   return status;
 }
 
-static void mcor_list_mappings(
+/* Returns how many. */
+static int mcor_list_mappings(
   const mcor_context* context, mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
 {
   const mcor_mesh* mesh = &context->mesh;
+  const mcor_options* options = context->run.options;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  const mcor_mapping all[MCOR_DOWNLOADS] = {
-    { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned },
-    { &mesh->node, n * 4 * sizeof(cl_int), &d->node },
-    { &mesh->offset, n * 4 * real, &d->offset },
+  const mcor_mapping all[] = { { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned },
+    { &mesh->node, n * 4 * sizeof(cl_int), &d->node }, { &mesh->offset, n * 4 * real, &d->offset },
     { &mesh->linear, (size_t)mesh->march_count * real, &d->linear },
-    { &mesh->field_value, n * real, &d->value },
-    { &mesh->gradient, n * 4 * real, &d->gradient },
-    { &mesh->vertex_weight, n * real, &d->weight },
-    { &mesh->flag, n, &d->flag },
-  };
+    { &mesh->field_value, n * real, &d->value }, { &mesh->gradient, n * 4 * real, &d->gradient },
+    { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag } };
+  int count = 8;
   memcpy(mappings, all, sizeof all);
-}
-
-/* Room for `count` more elements of `width` bytes; *array may be NULL. */
-static mcor_status mcor_grow(
-  mcor_context* context, void** array, int64_t old, int64_t count, size_t width)
-{
-  const size_t bytes = (size_t)(old + count) * width + 1;
-  void* grown = realloc(*array, bytes);
-  MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for a surface of %lld points could not be allocated.", (long long)(old + count));
-  mcor_use_large_pages(grown, bytes);
-  *array = grown;
-  return MCOR_OK;
-}
-
-static mcor_status mcor_grow_surface(
-  mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points)
-{
-  const mcor_options* o = context->run.options;
-  const int64_t n = s->point_count;
-  const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
-    o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
-    o->nearest_particle, o->point_keys };
-  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
-  mcor_list_surface_arrays(s, arrays);
-  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
+  if (options->boundary_eigenvalue)
   {
-    if (wanted[i])
-    {
-      MCOR_TRY(mcor_grow(context, arrays[i].array, n, points, arrays[i].width));
-    }
+    mappings[count++] = (mcor_mapping){ &context->trim.eigenvalue, n * real, &d->eigenvalue };
   }
-  for (int a = 0; a < input->attribute_count; ++a)
+  if (options->nearest_particle)
   {
-    const size_t components = (size_t)mcor_components(&input->attributes[a]);
-    if (s->attribute_not_finite[a] < 0)
-    {
-      MCOR_TRY(
-        mcor_grow(context, (void**)&s->attributes[a], n, points, components * sizeof(double)));
-    }
+    mappings[count++] =
+      (mcor_mapping){ &context->attributes.nearest, n * sizeof(cl_int), &d->nearest };
   }
-  return MCOR_OK;
+  return count;
 }
 
 /* Statistics of some vertices. */
@@ -257,6 +224,15 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   {
     s->weight_sum[to] = (float)mcor_get_real(context, d->weight, v);
   }
+  if (s->boundary_eigenvalue)
+  {
+    s->boundary_eigenvalue[to] = (float)mcor_get_real(context, d->eigenvalue, v);
+  }
+  if (s->nearest_particle)
+  {
+    const cl_int nearest = ((const cl_int*)d->nearest)[v];
+    s->nearest_particle[to] = nearest < 0 ? -1 : mcor_source_of(context, nearest);
+  }
   if (s->correction_length)
   {
     s->correction_length[to] = (float)mcor_correction_of(context, d, v);
@@ -357,31 +333,19 @@ static mcor_status mcor_deliver_triangles(
   return MCOR_OK;
 }
 
-/* Evaluated for the array alone, as only trimming needs it, and there at other vertices. */
-static mcor_status mcor_add_boundary_eigenvalue(
-  mcor_context* context, const cl_int* scanned, mcor_surface* surface)
+/* What only arrays of the surface need. */
+static mcor_status mcor_evaluate_extras(mcor_context* context)
 {
-  const mcor_mesh* mesh = &context->mesh;
-  const int vertices = mesh->vertex_count;
-  if (vertices == 0 || !context->run.options->boundary_eigenvalue)
+  const mcor_options* options = context->run.options;
+  mcor_buffer* eigenvalue = &context->trim.eigenvalue;
+  if (options->boundary_eigenvalue) /* trimming needs it at other vertices */
   {
-    return MCOR_OK;
+    MCOR_TRY(mcor_reserve(
+      context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
+    MCOR_TRY(mcor_evaluate_boundary(context, false, eigenvalue));
+    MCOR_TRY(mcor_evaluate_boundary(context, true, eigenvalue));
   }
-  mcor_buffer* values = &context->trim.eigenvalue;
-  MCOR_TRY(mcor_reserve(context, values, (size_t)vertices * context->cl.real_size));
-  MCOR_TRY(mcor_evaluate_boundary(context, false, values));
-  MCOR_TRY(mcor_evaluate_boundary(context, true, values));
-  void* view;
-  MCOR_TRY(mcor_map(context, values, (size_t)vertices * context->cl.real_size, false, &view));
-  float* to = surface->boundary_eigenvalue + surface->point_count;
-  for (int v = 0; v < vertices; ++v)
-  {
-    if (mcor_is_output(scanned, v))
-    {
-      to[scanned[v]] = (float)mcor_get_real(context, view, v);
-    }
-  }
-  return mcor_unmap(context, values, &view);
+  return options->nearest_particle ? mcor_find_nearest(context) : MCOR_OK;
 }
 
 static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,
@@ -393,11 +357,12 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
     (long long)(base + count));
-  mcor_mapping mappings[MCOR_DOWNLOADS];
-  mcor_list_mappings(context, download, mappings);
-  MCOR_TRY(count > 0 ? mcor_map_all(context, mappings, MCOR_DOWNLOADS) : MCOR_OK);
   if (count > 0)
   {
+    mcor_mapping mappings[MCOR_DOWNLOADS];
+    const int mapped = mcor_list_mappings(context, download, mappings);
+    MCOR_TRY(mcor_evaluate_extras(context));
+    MCOR_TRY(mcor_map_all(context, mappings, mapped));
     mcor_number_lines(context, download->scanned, base);
   }
   MCOR_TRY(mcor_keep_cells(context, surface));
@@ -407,7 +372,6 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   if (count > 0)
   {
     MCOR_TRY(mcor_deliver_vertices(context, download, iso, surface));
-    MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->scanned, surface));
     MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));
   }
   surface->point_count += count;
@@ -452,8 +416,8 @@ mcor_status mcor_append_output(
   {
     status = mcor_append_mesh(context, input, iso, all, &download, surface);
   }
-  mcor_list_mappings(context, &download, mappings);
-  status = mcor_unmap_all(context, mappings, MCOR_DOWNLOADS, status);
+  const int mapped = mcor_list_mappings(context, &download, mappings);
+  status = mcor_unmap_all(context, mappings, mapped, status);
   mcor_release_vertices(context);
   free(download.owned);
   free(download.cuts);

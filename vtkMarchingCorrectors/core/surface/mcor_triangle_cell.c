@@ -78,23 +78,12 @@ mcor_status mcor_trim_cells(
 
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface)
 {
-  mcor_box* box = &context->box;
-  const size_t count = (size_t)(surface->triangle_count + more);
-  bool good = true;
-  if (box->is_part)
-  {
-    uint8_t* kept = realloc(box->kept, count + 1);
-    box->kept = kept ? kept : box->kept;
-    good = kept != NULL;
-  }
-  if (context->run.options->triangle_keys)
-  {
-    uint64_t* keys = realloc(surface->triangle_keys, count * MCOR_TRIANGLE_KEY * sizeof *keys + 1);
-    surface->triangle_keys = keys ? keys : surface->triangle_keys;
-    good = good && keys;
-  }
-  MCOR_TRY(mcor_allocated(context, good));
-  return MCOR_OK;
+  const int64_t old = surface->triangle_count;
+  void **kept = (void**)&context->box.kept, **keys = (void**)&surface->triangle_keys;
+  MCOR_TRY(context->box.is_part ? mcor_grow(context, kept, old, more, 1) : MCOR_OK);
+  return context->run.options->triangle_keys
+    ? mcor_grow(context, keys, old, more, MCOR_TRIANGLE_KEY * sizeof(uint64_t))
+    : MCOR_OK;
 }
 
 /* Takes the cells of the mesh's triangles along with the surface. */
@@ -166,16 +155,14 @@ static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, i
   }
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
-    for (int c = 0; c < 3 && kept[i]; ++c)
+    if (kept[i])
     {
-      surface->triangles[3 * triangles + c] = number[surface->triangles[3 * i + c]];
+      mcor_move_triangle(surface, i, triangles++);
     }
-    for (int k = 0; k < MCOR_TRIANGLE_KEY && kept[i] && surface->triangle_keys; ++k)
-    {
-      surface->triangle_keys[MCOR_TRIANGLE_KEY * triangles + k] =
-        surface->triangle_keys[MCOR_TRIANGLE_KEY * i + k];
-    }
-    triangles += kept[i];
+  }
+  for (int64_t i = 0; i < 3 * triangles; ++i)
+  {
+    surface->triangles[i] = number[surface->triangles[i]];
   }
   surface->triangle_count = triangles;
   return points;

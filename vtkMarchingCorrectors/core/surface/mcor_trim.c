@@ -18,10 +18,8 @@ mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor
   const mcor_mesh* mesh = &context->mesh;
   for (int l = 0; l <= context->lattice.top; ++l)
   {
-    int first, count, groups;
-    mcor_level_vertices(context, of_boundary, l, &first, &count);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
+    int groups;
+    MCOR_TRY(mcor_group_level(context, of_boundary, l, &groups));
     MCOR_TRY(
       MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
         MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
@@ -200,10 +198,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
   for (int l = 0; l <= context->lattice.top; ++l)
   {
-    int first, count, groups;
-    mcor_level_vertices(context, true, l, &first, &count);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
+    int groups;
+    MCOR_TRY(mcor_group_level(context, true, l, &groups));
     MCOR_TRY(MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
       MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
       MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),

@@ -350,28 +350,23 @@ mcor_status mcor_flatten(
   return mcor_has_positions(input) && !is_flat ? mcor_flatten_positions(context, flat) : MCOR_OK;
 }
 
+void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)
+{
+  char from[3 * sizeof(double)], *to = numbers;
+  memcpy(from, numbers, 3 * width);
+  for (int a = 0; a < 3; ++a)
+  {
+    memcpy(to + (size_t)mcor_plane_axis(plane, a) * width, from + (size_t)a * width, width);
+  }
+}
+
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant)
 {
   for (int64_t i = 0; i < count && numbers; ++i)
   {
-    double* x = numbers + 3 * i;
-    const double u = x[0], v = x[1];
-    x[mcor_plane_axis(plane, 0)] = u;
-    x[mcor_plane_axis(plane, 1)] = v;
-    x[mcor_plane_axis(plane, 2)] = constant;
-  }
-}
-
-void mcor_unflatten_floats(const mcor_plane* plane, float* numbers, int64_t count)
-{
-  for (int64_t i = 0; i < count && numbers; ++i)
-  {
-    float* x = numbers + 3 * i;
-    const float u = x[0], v = x[1];
-    x[mcor_plane_axis(plane, 0)] = u;
-    x[mcor_plane_axis(plane, 1)] = v;
-    x[mcor_plane_axis(plane, 2)] = 0;
+    numbers[3 * i + 2] = constant;
+    mcor_turn_back(plane, numbers + 3 * i, sizeof *numbers);
   }
 }
 
@@ -393,16 +388,7 @@ void mcor_turn_measure(mcor_measure* measure, bool back)
 
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* s)
 {
-  double extent[3];
-  int64_t origin[3], cells[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const int axis = mcor_plane_axis(plane, a);
-    extent[axis] = s->fluid_extent[a];
-    origin[axis] = s->lattice_origin[a];
-    cells[axis] = s->lattice_cells[a];
-  }
-  memcpy(s->fluid_extent, extent, sizeof extent);
-  memcpy(s->lattice_origin, origin, sizeof origin);
-  memcpy(s->lattice_cells, cells, sizeof cells);
+  mcor_turn_back(plane, s->fluid_extent, sizeof *s->fluid_extent);
+  mcor_turn_back(plane, s->lattice_origin, sizeof *s->lattice_origin);
+  mcor_turn_back(plane, s->lattice_cells, sizeof *s->lattice_cells);
 }

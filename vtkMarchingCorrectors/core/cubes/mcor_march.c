@@ -94,13 +94,11 @@ static mcor_status mcor_count_edges(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, tunnels, of_tunnels * sizeof(cl_int)));
-  MCOR_TRY(mcor_is_plane(context)
-      ? mcor_count_lines(context)
-      : MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
-          MCOR_DECISION_ARGS(context), MCOR_BUFFER(&mesh->used),
-          MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->case_table),
-          MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-          MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
+  MCOR_TRY(MCOR_LAUNCH(context, mcor_is_plane(context) ? "mcor_plane_count" : "mcor_march_count",
+    MCOR_MEDIUM, count, MCOR_INT(count), MCOR_DECISION_ARGS(context), MCOR_BUFFER(&mesh->used),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->case_table),
+    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(tunnels)));
   const bool has_tunnels = mcor_is_resolved(context) && !mcor_is_plane(context);
   MCOR_TRY(has_tunnels ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
   context->run.statistics->tunnels += tunnel_count;
@@ -135,8 +133,9 @@ static mcor_status mcor_emit_triangles(
   const mcor_mesh* mesh = &context->mesh;
   const bool follows = mcor_follows_cells(context);
   const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
+  const char* emit = mcor_is_plane(context) ? "mcor_plane_lines" : "mcor_march_triangles";
   MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+  return MCOR_LAUNCH(context, emit, MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_DECISION_ARGS(context), MCOR_SIDES_ARGS(sides), MCOR_INT(follows),
     MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
     MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&now->above),
@@ -153,8 +152,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));
   MCOR_TRY(mcor_emit_vertices(context, iso));
-  MCOR_TRY(
-    mcor_emit_in_box(context, mcor_is_plane(context) ? mcor_emit_lines : mcor_emit_triangles));
+  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
   MCOR_TRY(mcor_count_owned_triangles(context, 0, mesh->triangle_count, &owned));
   context->run.statistics->triangles_before_trimming += owned;
   return MCOR_OK;

@@ -66,10 +66,8 @@ double mcor_plane_factor(mcor_sph_kernel kernel);
 /* mcor_plane_march.c: what nodes in the plane are, those above are too; nothing else is a brick. */
 mcor_status mcor_spread_signs(mcor_context* context);
 mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso);
-mcor_status mcor_count_lines(mcor_context* context);
 /* Of all cells of leaves those that are squares. */
 mcor_status mcor_keep_squares(mcor_context* context, int leaves);
-mcor_status mcor_emit_lines(mcor_context* context, const int sides[6], mcor_buffer* cells);
 
 /* mcor_plane_lines.c: normals from lines where the gradient gives none, while all of the box's ring are there. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);

@@ -28,33 +28,6 @@ mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->seed_bits));
 }
 
-/* In place of mcor_march_count. */
-mcor_status mcor_count_lines(mcor_context* context)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const int count = context->bricks.now.count;
-  return MCOR_LAUNCH(context, "mcor_plane_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base));
-}
-
-/* In place of mcor_march_triangles. */
-mcor_status mcor_emit_lines(mcor_context* context, const int sides[6], mcor_buffer* cells)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  const mcor_mesh* mesh = &context->mesh;
-  const bool follows = mcor_follows_cells(context);
-  const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
-  MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_plane_lines", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-    MCOR_DECISION_ARGS(context), MCOR_SIDES_ARGS(sides), MCOR_INT(follows),
-    MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
-    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&now->above),
-    MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base),
-    MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
-}
-
 mcor_status mcor_keep_squares(mcor_context* context, int leaves)
 {
   return !mcor_is_plane(context) ? MCOR_OK

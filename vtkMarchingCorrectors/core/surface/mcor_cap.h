@@ -102,7 +102,6 @@ typedef struct mcor_cap_face
   int plane;              /* nodes along the axis; the next ones within are beside it */
   int across[2];          /* the other axes: right-handed, this one being the third */
   int first[2], count[2]; /* of nodes along these */
-  int owned[2], end[2];   /* squares of the box, from there; others are of the ring around it */
   /* Of tiles, MCOR_CAP_TILE nodes along an edge: how many there might be along these; the number of each,
    * 0 of those that no particle reaches; how many others; where each of these is. */
   int tiles[2];
@@ -140,6 +139,8 @@ static inline void mcor_cap_node(
  * does. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
+/* Whether it is a side of this call's box, too. */
+bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
 /* The nodes of caps along an axis, [range[0], range[1]]: of the box and its ring. */
 void mcor_cap_range(const mcor_context* context, int axis, int range[2]);
 /* Whether there is room for the caps. */
@@ -162,21 +163,15 @@ mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   const mcor_cap_face* opposite, mcor_cap_points* points, mcor_cap_face* face);
 void mcor_free_cap_face(mcor_cap_face* face);
 
-/* Views of the bricks that are marched; decisions: NULL where the field is not asked. */
-enum
+/* A brick that is marched, where it is, and masks: of nodes, and of the cells and faces that have their lowest node
+ * there. */
+typedef struct mcor_seen_brick
 {
-  MCOR_VIEW_BRICKS,
-  MCOR_VIEW_KNOWN,
-  MCOR_VIEW_ABOVE,
-  MCOR_VIEW_VALID,
-  MCOR_VIEW_USED,
-  MCOR_VIEW_DECISIONS,
-  MCOR_BRICK_VIEWS
-};
-typedef void (*mcor_look)(
-  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data);
-/* Calls `look` with them, if there are any. */
-mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data);
+  const cl_int* at; /* in bricks */
+  cl_ulong known, above, valid, used, joined[3];
+} mcor_seen_brick;
+typedef void (*mcor_see_brick)(const mcor_seen_brick* brick, void* data);
+mcor_status mcor_see_bricks(mcor_context* context, mcor_see_brick see, void* data);
 
 /* Calls `visit` for all particles on the device: where each is, in nodes from the lattice's origin; how far it
  * reaches, in cubes, or a bit more. */

@@ -4,11 +4,11 @@
 /* Nodes where fluid meets solids: on which side of the iso value they are, and how far from where the solids'
  * share of the weight is too great. Where marching has evaluated them its answer is taken. */
 
-#include "mcor_box.h"
 #include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define MCOR_WALL_LIMIT (1 << 20) /* bricks */
 
@@ -133,27 +133,17 @@ static mcor_status mcor_sort_wall(mcor_context* context, mcor_wall* wall)
 
 /* ---- what marching knows ---- */
 
-static void mcor_take_wall_masks(
-  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
 {
   const mcor_wall* wall = data;
-  const cl_int* bricks = views[MCOR_VIEW_BRICKS];
-  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
-                 *used = views[MCOR_VIEW_USED], *decisions = views[MCOR_VIEW_DECISIONS];
-  for (int slot = 0; slot < context->bricks.now.count; ++slot)
+  const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(seen->at));
+  if (number >= 0)
   {
-    const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(bricks + 4 * (size_t)slot));
-    if (number >= 0)
-    {
-      mcor_wall_brick* brick = &wall->bricks[number];
-      brick->is_known = known[slot] != 0;
-      brick->above = known[slot] & above[slot];
-      brick->used = used[slot];
-      for (size_t a = 0; a < 3 && decisions; ++a)
-      {
-        brick->joined[a] = decisions[(size_t)slot * MCOR_DECISION_MASKS + a];
-      }
-    }
+    mcor_wall_brick* brick = &wall->bricks[number];
+    brick->is_known = seen->known != 0;
+    brick->above = seen->above;
+    brick->used = seen->used;
+    memcpy(brick->joined, seen->joined, sizeof seen->joined);
   }
 }
 

@@ -44,6 +44,12 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper)
   return options->capping && periodic ? last : -1;
 }
 
+bool mcor_has_cap_side(const mcor_context* context, int axis, int upper)
+{
+  const int plane = mcor_cap_plane(context, axis, upper);
+  return plane >= 0 && plane == (upper ? context->box.last : context->box.first)[axis];
+}
+
 bool mcor_makes_caps(const mcor_context* context)
 {
   bool makes = false;
@@ -78,7 +84,6 @@ void mcor_cap_range(const mcor_context* context, int axis, int range[2])
 static void mcor_set_cap_extent(
   const mcor_context* context, int axis, int upper, mcor_cap_face* face)
 {
-  const mcor_box* box = &context->box;
   *face = (mcor_cap_face){ .axis = axis,
     .upper = upper,
     .plane = mcor_cap_plane(context, axis, upper),
@@ -90,13 +95,10 @@ static void mcor_set_cap_extent(
     mcor_cap_range(context, a, range);
     face->first[i] = range[0];
     face->count[i] = range[1] - range[0] + 1;
-    face->owned[i] = box->first[a] - face->first[i];
-    face->end[i] = box->last[a] - face->first[i];
     if (a == 2 && mcor_is_plane(context)) /* one row of squares stands for the side's edges */
     {
-      face->first[i] = face->owned[i] = 0;
+      face->first[i] = 0;
       face->count[i] = 2;
-      face->end[i] = 1;
     }
   }
 }
@@ -237,7 +239,6 @@ mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face)
 mcor_status mcor_check_caps(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
-  const mcor_box* box = &context->box;
   double least = INFINITY;
   for (int i = 0; i < options->iso_count; ++i)
   {
@@ -246,10 +247,8 @@ mcor_status mcor_check_caps(mcor_context* context)
   mcor_status status = MCOR_OK;
   for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
   {
-    const int first = mcor_cap_plane(context, a, 0), last = mcor_cap_plane(context, a, 1);
-    const bool has_lower = first >= 0 && box->first[a] == first,
-               has_upper = last >= 0 && box->last[a] == last;
-    if (!box->is_empty && (has_lower || has_upper))
+    const bool has_lower = mcor_has_cap_side(context, a, 0);
+    if (!context->box.is_empty && (has_lower || mcor_has_cap_side(context, a, 1)))
     {
       mcor_cap_face face;
       mcor_set_cap_extent(context, a, !has_lower, &face);
@@ -268,7 +267,7 @@ static void mcor_mark_plane(
   const mcor_cap_face* face, const cl_int* brick, int plane, cl_ulong mask, int flag, uint8_t* to)
 {
   const int at = plane - brick[face->axis] * MCOR_BRICK;
-  if (at < 0 || at >= MCOR_BRICK)
+  if (mask == 0 || at < 0 || at >= MCOR_BRICK)
   {
     return;
   }
@@ -286,59 +285,51 @@ static void mcor_mark_plane(
   }
 }
 
-static void mcor_take_masks(
-  const mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+static void mcor_take_brick(const mcor_seen_brick* brick, void* data)
 {
   mcor_cap_face* face = data;
-  const int inner = face->plane + (face->upper ? -1 : 1), cell = face->plane - face->upper;
-  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
-                 *valid = views[MCOR_VIEW_VALID], *used = views[MCOR_VIEW_USED],
-                 *decisions = views[MCOR_VIEW_DECISIONS];
-  for (int slot = 0; slot < context->bricks.now.count; ++slot)
-  {
-    const cl_int* brick = (const cl_int*)views[MCOR_VIEW_BRICKS] + 4 * (size_t)slot;
-    const cl_ulong k = known[slot];
-    mcor_mark_plane(face, brick, face->plane, k, MCOR_CAP_KNOWN, face->state);
-    mcor_mark_plane(face, brick, face->plane, k & above[slot], MCOR_CAP_ABOVE, face->state);
-    mcor_mark_plane(face, brick, face->plane, k & valid[slot], MCOR_CAP_VALID, face->state);
-    mcor_mark_plane(face, brick, inner, k, MCOR_CAP_KNOWN, face->within);
-    mcor_mark_plane(face, brick, inner, k & valid[slot], MCOR_CAP_VALID, face->within);
-    mcor_mark_plane(face, brick, cell, used[slot], MCOR_CAP_USED, face->state);
-    if (decisions)
-    {
-      mcor_mark_plane(face, brick, face->plane,
-        decisions[(size_t)slot * MCOR_DECISION_MASKS + (size_t)face->axis], MCOR_CAP_JOINED,
-        face->state);
-    }
-  }
+  const int plane = face->plane, inner = plane + (face->upper ? -1 : 1), cell = plane - face->upper;
+  mcor_mark_plane(face, brick->at, plane, brick->known, MCOR_CAP_KNOWN, face->state);
+  mcor_mark_plane(face, brick->at, plane, brick->above, MCOR_CAP_ABOVE, face->state);
+  mcor_mark_plane(face, brick->at, plane, brick->valid, MCOR_CAP_VALID, face->state);
+  mcor_mark_plane(face, brick->at, inner, brick->known, MCOR_CAP_KNOWN, face->within);
+  mcor_mark_plane(face, brick->at, inner, brick->valid, MCOR_CAP_VALID, face->within);
+  mcor_mark_plane(face, brick->at, cell, brick->used, MCOR_CAP_USED, face->state);
+  mcor_mark_plane(face, brick->at, plane, brick->joined[face->axis], MCOR_CAP_JOINED, face->state);
 }
 
-mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data)
+mcor_status mcor_see_bricks(mcor_context* context, mcor_see_brick see, void* data)
 {
   const mcor_brick_data* now = &context->bricks.now;
   const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
-  const int count = n == 0 ? 0 : mcor_is_resolved(context) ? MCOR_BRICK_VIEWS : MCOR_VIEW_DECISIONS;
-  void* views[MCOR_BRICK_VIEWS] = { NULL };
-  const mcor_mapping mappings[MCOR_BRICK_VIEWS] = {
-    [MCOR_VIEW_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_VIEW_BRICKS] },
-    [MCOR_VIEW_KNOWN] = { &now->known, mask, &views[MCOR_VIEW_KNOWN] },
-    [MCOR_VIEW_ABOVE] = { &now->above, mask, &views[MCOR_VIEW_ABOVE] },
-    [MCOR_VIEW_VALID] = { &now->valid, mask, &views[MCOR_VIEW_VALID] },
-    [MCOR_VIEW_USED] = { &context->mesh.used, mask, &views[MCOR_VIEW_USED] },
-    [MCOR_VIEW_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
-      &views[MCOR_VIEW_DECISIONS] }
-  };
+  const bool resolved = mcor_is_resolved(context);
+  void *bricks = NULL, *known = NULL, *above = NULL, *valid = NULL, *used = NULL, *joined = NULL;
+  const mcor_mapping mappings[] = { { &now->bricks, 4 * n * sizeof(cl_int), &bricks },
+    { &now->known, mask, &known }, { &now->above, mask, &above }, { &now->valid, mask, &valid },
+    { &context->mesh.used, mask, &used },
+    { &context->topology.decisions, MCOR_DECISION_MASKS * mask, &joined } };
+  const int count = n == 0 ? 0 : resolved ? 6 : 5;
   mcor_status status = mcor_map_all(context, mappings, count);
-  if (status == MCOR_OK && count > 0)
+  for (size_t slot = 0; slot < n && status == MCOR_OK; ++slot)
   {
-    look(context, views, data);
+    const cl_ulong k = ((const cl_ulong*)known)[slot];
+    mcor_seen_brick brick = { .at = (const cl_int*)bricks + 4 * slot,
+      .known = k,
+      .above = k & ((const cl_ulong*)above)[slot],
+      .valid = k & ((const cl_ulong*)valid)[slot],
+      .used = ((const cl_ulong*)used)[slot] };
+    for (size_t a = 0; a < 3 && resolved; ++a)
+    {
+      brick.joined[a] = ((const cl_ulong*)joined)[slot * MCOR_DECISION_MASKS + a];
+    }
+    see(&brick, data);
   }
   return mcor_unmap_all(context, mappings, count, status);
 }
 
 mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_face* face)
 {
-  return mcor_see_bricks(context, mcor_take_masks, face);
+  return mcor_see_bricks(context, mcor_take_brick, face);
 }
 
 /* ---- what it does not know ---- */

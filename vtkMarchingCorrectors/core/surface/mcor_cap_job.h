@@ -61,7 +61,10 @@ typedef struct mcor_cap_square
   bool is_joined; /* nodes above, where it is ambiguous */
 } mcor_cap_square;
 
-/* mcor_cap_square.c. Adds what trimming leaves of a square, number job->square, to the cap. */
+/* mcor_cap_square.c. Begins square `number`, or a cell of a cap at walls, by its lowest node; across: the axis of the
+ * side, along which the box does not end; -1: none. */
+void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across);
+/* Adds what trimming leaves of a square to the cap. */
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square);
 mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3]);
 mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);

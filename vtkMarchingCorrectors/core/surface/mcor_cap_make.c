@@ -12,7 +12,6 @@
  * squares of its cells, and of the ring around it: so its own squares' vertices have the keys, and the order,
  * that they have in the whole. */
 
-#include "mcor_box.h"
 #include "mcor_cap_job.h"
 
 #include <stdlib.h>
@@ -82,11 +81,9 @@ static mcor_status mcor_visit_cap_square(void* data, const mcor_cap_face* face, 
   }
   mcor_cap_node(job->context, face, u, v, square.node);
   const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
-  const bool owned =
-    u >= face->owned[0] && u < face->end[0] && v >= face->owned[1] && v < face->end[1];
-  job->square = MCOR_CAP_SQUARE | side << 42 | (cl_ulong)(face->first[1] + v) << 21 |
-    (cl_ulong)(face->first[0] + u) | (owned ? 0 : MCOR_RING_CELL);
-  job->lookups = 0;
+  mcor_begin_cap_square(job,
+    side << 42 | (cl_ulong)(face->first[1] + v) << 21 | (cl_ulong)(face->first[0] + u), square.node,
+    face->axis);
   return mcor_add_cap_square(job, &square);
 }
 
@@ -101,10 +98,10 @@ static mcor_status mcor_cap_side(
 static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
 {
   const mcor_context* context = job->context;
-  const int first = mcor_cap_plane(context, axis, 0), last = mcor_cap_plane(context, axis, 1);
-  const bool has_lower = first >= 0 && context->box.first[axis] == first,
-             has_upper = last >= 0 && context->box.last[axis] == last,
-             are_one = has_lower && last - first == context->lattice.period[axis];
+  const bool has_lower = mcor_has_cap_side(context, axis, 0),
+             has_upper = mcor_has_cap_side(context, axis, 1);
+  const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
+  const bool are_one = has_lower && apart == context->lattice.period[axis];
   mcor_cap_face lower = { 0 }, upper = { 0 };
   mcor_status status = has_lower ? mcor_cap_side(job, axis, 0, NULL, &lower) : MCOR_OK;
   if (has_upper && status == MCOR_OK)

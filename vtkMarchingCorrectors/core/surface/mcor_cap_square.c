@@ -257,6 +257,18 @@ static mcor_status mcor_add_cap_polygon(
   return MCOR_OK;
 }
 
+void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across)
+{
+  const mcor_box* box = &job->context->box;
+  bool owned = true;
+  for (int a = 0; a < (mcor_is_plane(job->context) ? 2 : 3); ++a)
+  {
+    owned = owned && (a == across || (node[a] >= box->first[a] && node[a] < box->last[a]));
+  }
+  job->square = MCOR_CAP_SQUARE | number | (owned ? 0 : MCOR_RING_CELL);
+  job->lookups = 0;
+}
+
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square)
 {
   const bool* above = square->above;

@@ -280,14 +280,7 @@ static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* 
 static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* cell)
 {
   mcor_cap_job* cap = job->cap;
-  const mcor_box* box = &cap->context->box;
-  bool owned = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    owned = owned && cell->node[a] >= box->first[a] && cell->node[a] < box->last[a];
-  }
-  cap->square = MCOR_CAP_SQUARE | MCOR_WALL_CELL | cell->key | (owned ? 0 : MCOR_RING_CELL);
-  cap->lookups = 0;
+  mcor_begin_cap_square(cap, MCOR_WALL_CELL | cell->key, cell->node, -1);
   cap->border->count = 0;
   for (int side = 0; side < 6; ++side)
   {

@@ -8,19 +8,12 @@
 
 #include <stdlib.h>
 
-/* Vertices get room for those that trimming adds, so that nothing is copied then. */
 mcor_status mcor_reserve_vertices(mcor_context* context, int count)
 {
   mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)count, real = context->cl.real_size;
-  MCOR_TRY(mcor_reserve(context, &mesh->offset, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->linear, n * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->field_value, n * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->gradient, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->vertex_weight, n * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->flag, n));
-  MCOR_TRY(mcor_reserve(context, &mesh->means, n * (size_t)context->attributes.count * real));
-  return mcor_reserve(context, &mesh->evaluations, n);
+  MCOR_TRY(mcor_extend_vertices(context, 0, count));
+  MCOR_TRY(mcor_reserve(context, &mesh->linear, (size_t)count * context->cl.real_size));
+  return mcor_reserve(context, &mesh->evaluations, (size_t)count);
 }
 
 /* owners: see mcor_find_counted. */

@@ -43,10 +43,11 @@ int mcor_plane_case(const ulong* corners, int cell)
 
 /* One work-item = one brick. Reads used squares and node masks. Writes the edge masks (see mcor_march_count)
  * for edges in the plane that have their lower node in the brick and a used square beside them; counts
- * vertices and lines. */
-__kernel void mcor_plane_count(const int brick_count, __global const int* neighbours,
-  __global const ulong* used, __global const ulong* above, __global ulong* edges,
-  __global int* vertex_count, __global int* line_count)
+ * vertices and lines. It takes what mcor_march_count takes. */
+__kernel void mcor_plane_count(const int brick_count, MCOR_DECISION_PARAMS,
+  __global const ulong* used, __global const ulong* above, __global const uchar* case_table,
+  __global ulong* edges, __global int* vertex_count, __global int* line_count,
+  __global int* tunnel_count)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count)
@@ -97,12 +98,12 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
  * what is above on their left, as triangles whose last corner is given twice; and, if wanted, the keys of their
  * cells. A line begins where the border of the square, run through with the square on the left, goes from above
  * to below. On an ambiguous square it ends at the crossing before that, or the one after it where what is
- * above is joined. */
+ * above is joined. It takes what mcor_march_triangles takes. */
 __kernel void mcor_plane_lines(const int brick_count, MCOR_DECISION_PARAMS, MCOR_SIDES_PARAMS,
   const int follows, const int blocks_x, const int blocks_y, __global const int4* bricks,
   __global const ulong* used, __global const ulong* above, __global const ulong* edges,
-  __global const int* vertex_base, __global const int* line_base, __global ulong* line_cells,
-  __global int* lines)
+  __global const uchar* case_table, __global const int* vertex_base, __global const int* line_base,
+  __global ulong* line_cells, __global int* lines)
 {
   const int slot = get_global_id(0);
   if (slot >= brick_count || used[slot] == 0)

@@ -195,7 +195,7 @@ typedef struct mcor_trim_data
   mcor_buffer margin;                /* real, at vertices; see mcor_trim_margin */
   mcor_buffer remaining, cuts;       /* per batch of triangles */
   mcor_buffer keys, distinct, index; /* of cut edges */
-  mcor_buffer triangles;
+  mcor_buffer triangles, cells;      /* what remains, until it is the mesh's and the box's */
 } mcor_trim_data;
 
 /* mcor_scan.c. flags and order: of mcor_unique. */

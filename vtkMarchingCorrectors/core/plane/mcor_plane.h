@@ -40,9 +40,6 @@ void mcor_turn_measure(mcor_measure* measure, bool back);
 /* Turns the numbers of the lattice and the extent back. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
 
-/* Of cells that were counted in whole bricks those in the plane. */
-void mcor_count_squares(const mcor_context* context, mcor_statistics* statistics);
-
 /* The axis of the caller along which turned coordinate a goes; a = 2: the constant one. */
 static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {
@@ -63,11 +60,13 @@ void mcor_unflatten_doubles(
 /* Normalisation of the SPH kernel in two dimensions over that in three. */
 double mcor_plane_factor(mcor_sph_kernel kernel);
 
-/* mcor_plane_march.c: what nodes in the plane are, those above are too; nothing else is a brick. */
+/* Marching squares: what nodes in the plane are, those above are too; nothing else is a brick. */
 mcor_status mcor_spread_signs(mcor_context* context);
 mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso);
 /* Of all cells of leaves those that are squares. */
 mcor_status mcor_keep_squares(mcor_context* context, int leaves);
+/* Of cells that were counted in whole bricks those in the plane. */
+void mcor_count_squares(const mcor_context* context, mcor_statistics* statistics);
 
 /* mcor_plane_lines.c: normals from lines where the gradient gives none, while all of the box's ring are there. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);

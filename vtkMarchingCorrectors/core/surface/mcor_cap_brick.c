@@ -26,17 +26,6 @@ const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[
 
 /* ---- which bricks ---- */
 
-static mcor_status mcor_note_fluid(mcor_context* context, mcor_wall* wall, const int at[3])
-{
-  const int32_t found = mcor_find_number(&wall->index, mcor_cap_key(at));
-  if (found >= 0)
-  {
-    wall->bricks[found].has_fluid = true;
-  }
-  (void)context;
-  return MCOR_OK;
-}
-
 static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
 {
   const int32_t next = (int32_t)wall->count;
@@ -59,11 +48,12 @@ static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, c
   return MCOR_OK;
 }
 
-/* Calls `reach` for the bricks that a particle at x, in nodes, reaches. A cell is looked at from its lowest node: one
- * node more; another one for rounding. */
-static mcor_status mcor_reach_wall(mcor_context* context, mcor_wall* wall, const double x[3],
-  double reach, mcor_status (*visit)(mcor_context* context, mcor_wall* wall, const int at[3]))
+/* Of a particle at x, in nodes: adds the bricks that it reaches if it is solid; else, once these are there, notes it
+ * at them. A cell is looked at from its lowest node: one node more; another one for rounding. */
+static mcor_status mcor_reach_wall(
+  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
 {
+  mcor_wall* wall = data;
   int from[3], to[3], at[3];
   for (int a = 0; a < 3; ++a)
   {
@@ -71,7 +61,7 @@ static mcor_status mcor_reach_wall(mcor_context* context, mcor_wall* wall, const
     const double nodes = reach / mcor_edge_of(&context->lattice, a) + 2;
     from[a] = (int)fmax(floor(x[a] - nodes), range[0]) / MCOR_BRICK;
     to[a] = (int)fmin(ceil(x[a] + nodes), range[1]);
-    to[a] = to[a] < range[0] ? -1 : to[a] / MCOR_BRICK;
+    to[a] = to[a] < range[0] || is_solid == wall->has_bricks ? -1 : to[a] / MCOR_BRICK;
   }
   for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
   {
@@ -79,25 +69,16 @@ static mcor_status mcor_reach_wall(mcor_context* context, mcor_wall* wall, const
     {
       for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
       {
-        MCOR_TRY(visit(context, wall, at));
+        const int32_t found = is_solid ? -1 : mcor_find_number(&wall->index, mcor_cap_key(at));
+        MCOR_TRY(is_solid ? mcor_add_wall_brick(context, wall, at) : MCOR_OK);
+        if (found >= 0)
+        {
+          wall->bricks[found].has_fluid = true;
+        }
       }
     }
   }
   return MCOR_OK;
-}
-
-/* Adds the bricks that solids reach. */
-static mcor_status mcor_reach_solid(
-  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
-{
-  return is_solid ? mcor_reach_wall(context, data, x, reach, mcor_add_wall_brick) : MCOR_OK;
-}
-
-/* Of the bricks that there are, notes those that fluid reaches. */
-static mcor_status mcor_reach_fluid(
-  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
-{
-  return is_solid ? MCOR_OK : mcor_reach_wall(context, data, x, reach, mcor_note_fluid);
 }
 
 static int mcor_compare_wall_bricks(const void* x, const void* y)
@@ -190,8 +171,9 @@ mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_
   {
     mcor_cap_range(context, a, wall->range[a]);
   }
-  MCOR_TRY(mcor_visit_particles(context, mcor_reach_solid, wall));
-  MCOR_TRY(mcor_visit_particles(context, mcor_reach_fluid, wall));
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  wall->has_bricks = true;
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
   MCOR_TRY(mcor_sort_wall(context, wall));
   MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
   return mcor_evaluate_wall(context, wall, points);

@@ -89,6 +89,7 @@ typedef struct mcor_wall
   mcor_table index; /* numbers of bricks */
   mcor_wall_brick* bricks;
   int64_t count, room;
+  bool has_bricks; /* all that solids reach */
   int range[3][2]; /* nodes, from and to: of the box, the ring around it, and what is beside */
 } mcor_wall;
 

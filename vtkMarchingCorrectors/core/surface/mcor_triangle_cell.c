@@ -53,27 +53,6 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
   return mcor_unmap(context, buffer, &view);
 }
 
-/* Trimming is about to leave `remaining` triangles; see mcor_box_trim. */
-mcor_status mcor_trim_cells(
-  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining)
-{
-  mcor_box* box = &context->box;
-  const mcor_mesh* mesh = &context->mesh;
-  if (!mcor_follows_cells(context))
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer trimmed = { 0 };
-  MCOR_TRY(mcor_reserve(context, &trimmed, (size_t)remaining * sizeof(cl_ulong)));
-  const mcor_status status = MCOR_LAUNCH(context, "mcor_box_trim", MCOR_MEDIUM,
-    mcor_batches(context, mesh->triangle_count), MCOR_INT(mesh->triangle_count),
-    MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity), MCOR_REAL(threshold),
-    MCOR_BUFFER(&context->trim.remaining), MCOR_BUFFER(&box->cells), MCOR_BUFFER(&trimmed));
-  mcor_release(context, &box->cells);
-  box->cells = trimmed;
-  return status;
-}
-
 /* ---- Surface ---- */
 
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface)

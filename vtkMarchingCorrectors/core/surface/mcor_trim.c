@@ -212,6 +212,14 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   return mcor_view_level(context, 0);
 }
 
+/* Takes a buffer over in place of another one. */
+static void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to)
+{
+  mcor_release(context, to);
+  *to = *from;
+  *from = (mcor_buffer){ 0 };
+}
+
 /* iso: relative to A0. */
 mcor_status mcor_trim(mcor_context* context, double iso)
 {
@@ -233,17 +241,18 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &trim->index, sizeof(cl_int)));
   MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
     &trim->distinct, &trim->index, &cut_count));
+  const bool follows = mcor_follows_cells(context);
   MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
+  MCOR_TRY(
+    mcor_reserve(context, &trim->cells, follows ? (size_t)remaining * sizeof(cl_ulong) : 0));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),
-    MCOR_BUFFER(&trim->index), MCOR_BUFFER(&trim->triangles)));
-  MCOR_TRY(
-    mcor_trim_cells(context, mcor_trim_quantity(context), mcor_trim_threshold(context), remaining));
-  mcor_release(context, &mesh->triangles);
-  mesh->triangles = trim->triangles;
-  trim->triangles = (mcor_buffer){ 0 };
+    MCOR_BUFFER(&trim->index), MCOR_INT(follows), MCOR_BUFFER(&context->box.cells),
+    MCOR_BUFFER(&trim->cells), MCOR_BUFFER(&trim->triangles)));
+  mcor_take_buffer(context, &trim->triangles, &mesh->triangles);
+  mcor_take_buffer(context, &trim->cells, &context->box.cells);
   mesh->triangle_count = remaining;
   return cut_count > 0 ? mcor_place_cuts(context, cut_count, iso) : MCOR_OK;
 }
@@ -252,5 +261,5 @@ void mcor_release_trim(mcor_context* context)
 {
   mcor_trim_data* t = &context->trim;
   MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->distinct,
-    &t->index, &t->triangles);
+    &t->index, &t->triangles, &t->cells);
 }

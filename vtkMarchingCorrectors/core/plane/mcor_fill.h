@@ -50,8 +50,9 @@ typedef struct mcor_filling
   int line_count;
   /* The plane, as seen from above; MCOR_CAP_VALID is in face.within. */
   mcor_cap_face face;
-  double* value; /* [face.node_count] */
-  int32_t* band; /* [face.node_count]: how many lines are not above the value there */
+  double* value;   /* [face.node_count] */
+  int32_t* band;   /* [face.node_count]: how many lines are not above the value there */
+  int32_t* number; /* of nodes, and then cuts: where they are in the surface; -1: nowhere */
   mcor_table cut_of;
   mcor_fill_cut* cuts;
   int64_t cut_count, cut_room;

@@ -220,6 +220,7 @@ void mcor_end_fill(mcor_context* context)
     free(fill->lines);
     free(fill->value);
     free(fill->band);
+    free(fill->number);
     free(fill->cuts);
     free(fill->triangles);
   }

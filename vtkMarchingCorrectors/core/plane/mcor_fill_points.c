@@ -82,9 +82,10 @@ static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fil
 
 /* ---- Points ---- */
 
-/* Marks the nodes that triangles use by 0, in numbers that are -1, and returns how many there are. */
-static int64_t mcor_mark_nodes(const mcor_filling* fill, int32_t* number)
+/* Marks the nodes that triangles use by 0, and returns how many there are. */
+static int64_t mcor_mark_nodes(const mcor_filling* fill)
 {
+  int32_t* number = fill->number;
   int64_t count = 0;
   for (int64_t i = 0; i < 3 * fill->triangle_count; ++i)
   {
@@ -99,9 +100,9 @@ static int64_t mcor_mark_nodes(const mcor_filling* fill, int32_t* number)
 }
 
 /* The marked nodes, by 4 x 4 of them, and their numbers. */
-static void mcor_list_nodes(
-  const mcor_filling* fill, int64_t base, int32_t* number, mcor_cap_vertex* vertex)
+static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertex)
 {
+  int32_t* number = fill->number;
   const mcor_cap_face* face = &fill->face;
   const int *first = face->first, *size = face->count;
   for (int v = first[1] >> 2; v <= (first[1] + size[1] - 1) >> 2; ++v)
@@ -128,8 +129,7 @@ static void mcor_list_nodes(
 }
 
 /* The cuts, and their numbers. */
-static void mcor_list_cuts(
-  const mcor_filling* fill, int64_t base, int32_t* number, mcor_cap_vertex* vertices)
+static void mcor_list_cuts(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertices)
 {
   for (int64_t i = 0; i < fill->cut_count; ++i)
   {
@@ -139,7 +139,7 @@ static void mcor_list_cuts(
       .key = { cut->key[0], cut->key[1] },
       .flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2 };
     vertices[i].offset[cut->axis] = cut->at;
-    number[fill->face.node_count + cut->index] = (int32_t)(base + i);
+    fill->number[fill->face.node_count + cut->index] = (int32_t)(base + i);
   }
 }
 
@@ -175,11 +175,15 @@ static void mcor_set_bands(
   }
 }
 
-/* The points that lines have not; number: [nodes and cuts], becomes where they are in the surface. */
-static mcor_status mcor_make_fill_points(mcor_context* context, const mcor_filling* fill,
-  const mcor_input* input, int32_t* number, mcor_surface* surface)
+/* The points that lines have not, and where they are in the surface. */
+static mcor_status mcor_make_fill_points(
+  mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const int64_t base = surface->point_count, nodes = mcor_mark_nodes(fill, number),
+  const size_t refs = (size_t)(fill->face.node_count + fill->cut_count);
+  fill->number = malloc(refs * sizeof *fill->number);
+  MCOR_TRY(mcor_allocated(context, fill->number));
+  memset(fill->number, 0xff, refs * sizeof *fill->number);
+  const int64_t base = surface->point_count, nodes = mcor_mark_nodes(fill),
                 count = nodes + fill->cut_count;
   MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "What is filled has %lld points; the limit is %d. Use a larger cube size.", (long long)count,
@@ -193,8 +197,8 @@ static mcor_status mcor_make_fill_points(mcor_context* context, const mcor_filli
   }
   mcor_cap_vertex* vertices = malloc((size_t)count * sizeof *vertices);
   MCOR_TRY(mcor_allocated(context, vertices));
-  mcor_list_nodes(fill, base, number, vertices);
-  mcor_list_cuts(fill, base + nodes, number, vertices + nodes);
+  mcor_list_nodes(fill, base, vertices);
+  mcor_list_cuts(fill, base + nodes, vertices + nodes);
   const mcor_status status = mcor_append_fill_points(context, input, vertices, count, surface);
   if (status == MCOR_OK)
   {
@@ -207,7 +211,7 @@ static mcor_status mcor_make_fill_points(mcor_context* context, const mcor_filli
 /* ---- Triangles ---- */
 
 static mcor_status mcor_append_fill_triangles(
-  mcor_context* context, const mcor_filling* fill, const int32_t* number, mcor_surface* surface)
+  mcor_context* context, const mcor_filling* fill, mcor_surface* surface)
 {
   const int64_t first = surface->triangle_count, count = fill->triangle_count;
   MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));
@@ -219,7 +223,7 @@ static mcor_status mcor_append_fill_triangles(
     for (int c = 0; c < 3; ++c)
     {
       const int32_t ref = from->corner[c];
-      surface->triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : number[ref];
+      surface->triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : fill->number[ref];
     }
     surface->band_value[t] = fill->lines[from->band - 1].value;
     if (context->box.kept)
@@ -240,13 +244,7 @@ static mcor_status mcor_append_fill_triangles(
 mcor_status mcor_append_fill(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const size_t refs = (size_t)(fill->face.node_count + fill->cut_count);
   MCOR_TRY(mcor_place_fill_cuts(context, fill));
-  int32_t* number = malloc(refs * sizeof *number);
-  MCOR_TRY(mcor_allocated(context, number));
-  memset(number, 0xff, refs * sizeof *number);
-  mcor_status status = mcor_make_fill_points(context, fill, input, number, surface);
-  status = status == MCOR_OK ? mcor_append_fill_triangles(context, fill, number, surface) : status;
-  free(number);
-  return status;
+  MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
+  return mcor_append_fill_triangles(context, fill, surface);
 }

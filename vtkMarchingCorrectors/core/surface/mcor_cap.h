@@ -73,11 +73,12 @@ mcor_status mcor_append_cap_vertices(
 /* Appends to a buffer of `old` bytes. */
 mcor_status mcor_append_bytes(
   mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes);
-/* The last two numbers of the key of a cap's vertex. */
-void mcor_store_cap_key(const mcor_context* context, int64_t v, uint64_t key[2]);
 void mcor_end_caps(mcor_context* context);
 /* Whether vertex v of the mesh is one of a cap alone; then which way the sides it is on face. */
-bool mcor_is_cap(const mcor_context* context, int64_t v);
+static inline bool mcor_is_cap(const mcor_context* context, int64_t v)
+{
+  return v >= context->mesh.cap_first;
+}
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3]);
 
 /* A cut keeps off the ends of its line, as those of the surface do. */

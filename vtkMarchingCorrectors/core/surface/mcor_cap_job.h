@@ -30,7 +30,6 @@ typedef struct mcor_cap_job
 {
   mcor_context* context;
   mcor_cap_points points;
-  int old_count; /* vertices of the mesh */
   /* The surface's vertices, by lower node and axis of their edge; of a pinched one the first. */
   mcor_table edges[3];
   mcor_table nodes, cuts;

@@ -184,7 +184,6 @@ mcor_status mcor_cap(mcor_context* context, double iso)
   }
   mcor_cap_job job = { .context = context,
     .points.iso = iso,
-    .old_count = context->mesh.vertex_count,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
   mcor_status status = mcor_make_caps(&job);
   const mcor_status unmapped = mcor_end_cap_views(&job);

@@ -123,11 +123,6 @@ bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* p, in
 
 /* ---- vertices ---- */
 
-bool mcor_is_cap(const mcor_context* context, int64_t v)
-{
-  return v >= context->mesh.cap_first;
-}
-
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
 {
   double n[3], square = 0;
@@ -142,11 +137,6 @@ void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float no
   {
     normal[a] = square > 0 ? (float)(n[a] / sqrt(square)) : 0; /* at walls: from triangles */
   }
-}
-
-void mcor_store_cap_key(const mcor_context* context, int64_t v, uint64_t key[2])
-{
-  memcpy(key, context->mesh.cap_keys + 2 * (v - context->mesh.cap_first), 2 * sizeof *key);
 }
 
 void mcor_end_caps(mcor_context* context)

@@ -37,7 +37,7 @@ static mcor_status mcor_find_cap_vertex(
   mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], uint8_t flag, int32_t* v)
 {
   mcor_context* context = job->context;
-  const int32_t next = (int32_t)(job->old_count + job->vertex_count);
+  const int32_t next = (int32_t)(job->context->mesh.vertex_count + job->vertex_count);
   ++job->lookups;
   *v = mcor_table_number(map, key, next);
   MCOR_TRY(mcor_allocated(context, *v >= 0));
@@ -130,7 +130,8 @@ static mcor_status mcor_cap_cut(
   const mcor_mesh* mesh = &job->context->mesh;
   const mcor_cap_corner *low = p->vertex < q->vertex ? p : q, *high = low == p ? q : p;
   const int own = high->vertex < mesh->march_count
-    ? mcor_find_cut(job->distinct, job->old_count - mesh->march_count, low->vertex, high->vertex)
+    ? mcor_find_cut(job->distinct, job->context->mesh.vertex_count - mesh->march_count, low->vertex,
+        high->vertex)
     : -1;
   *cut = (mcor_cap_corner){ .margin = 0 };
   if (own >= 0)

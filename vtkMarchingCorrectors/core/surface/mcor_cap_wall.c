@@ -199,7 +199,9 @@ static mcor_status mcor_cut_wall_face(
 
 static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
 {
-  const mcor_cap_vertex* vertex = v < job->old_count ? NULL : &job->vertices[v - job->old_count];
+  const mcor_cap_vertex* vertex = v < job->context->mesh.vertex_count
+    ? NULL
+    : &job->vertices[v - job->context->mesh.vertex_count];
   for (int a = 0; a < 3; ++a)
   {
     at[a] = vertex ? vertex->node[a] + vertex->offset[a]

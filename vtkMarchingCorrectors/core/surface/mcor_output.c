@@ -14,13 +14,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The vertices of one iso value on their way to the surface: views of the mesh's, see mcor_is_output. */
+/* Statistics of some vertices. */
+typedef struct mcor_tally
+{
+  int64_t trim_vertices, linear, above_tolerance;
+  double count, sum, squares, correction_max, residual_max;
+} mcor_tally;
+
+/* The vertices of one iso value on their way to the surface. */
 typedef struct mcor_download
 {
+  mcor_context* context;
+  double iso;
+  mcor_surface* surface; /* the first vertex put out becomes its point point_count */
+  /* Views of the mesh's, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   void *eigenvalue, *nearest; /* where they are asked for */
   uint8_t* owned;             /* see mcor_find_counted */
   uint64_t* cuts;             /* see mcor_keep_cuts */
+  mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 #define MCOR_DOWNLOADS 10
 
@@ -54,9 +66,9 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
 }
 
 /* Returns how many. */
-static int mcor_list_mappings(
-  const mcor_context* context, mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
+static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
 {
+  const mcor_context* context = d->context;
   const mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
@@ -79,23 +91,6 @@ static int mcor_list_mappings(
   return count;
 }
 
-/* Statistics of some vertices. */
-typedef struct mcor_tally
-{
-  int64_t trim_vertices, linear, above_tolerance;
-  double count, sum, squares, correction_max, residual_max;
-} mcor_tally;
-
-/* One iso value's vertices on their way to the surface. */
-typedef struct mcor_delivery
-{
-  const mcor_context* context;
-  const mcor_download* download;
-  double iso;
-  mcor_surface* surface; /* the first of them becomes its point point_count */
-  mcor_tally tallies[MCOR_SLICES];
-} mcor_delivery;
-
 static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
 {
   return (const cl_int*)d->node + 4 * v;
@@ -103,10 +98,10 @@ static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
 
 /* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it
  * lies on the border that the node threshold leaves. */
-static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int64_t v)
+static int mcor_flag_of(const mcor_download* d, int64_t v)
 {
-  return v < context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
-                                       : ((const uint8_t*)d->flag)[v];
+  return v < d->context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
+                                          : ((const uint8_t*)d->flag)[v];
 }
 
 /* Of a length of the virtual grid that of vertex v's level: see mcor_adaptive.h. */
@@ -117,16 +112,17 @@ static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 }
 
 /* How far the correction moved vertex v, unit L. */
-static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int64_t v)
+static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
-  return v < context->mesh.march_count ? fabs(mcor_get_real(context, d->linear, v)) *
-      mcor_length_of(d, v, context->lattice.edge[mcor_node_of(d, v)[3] & 3])
-                                       : 0;
+  return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
+      mcor_length_of(d, v, d->context->lattice.edge[mcor_node_of(d, v)[3] & 3])
+                                          : 0;
 }
 
 /* How far rounded positions may move the value of vertex v. */
-static double mcor_rounding_of(const mcor_context* context, const mcor_download* d, int64_t v)
+static double mcor_rounding_of(const mcor_download* d, int64_t v)
 {
+  const mcor_context* context = d->context;
   double gradient = 0; /* along all axes: each is rounded */
   for (int a = 0; a < 3; ++a)
   {
@@ -135,17 +131,17 @@ static double mcor_rounding_of(const mcor_context* context, const mcor_download*
   return mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient;
 }
 
-static void mcor_count_correction(
-  const mcor_context* context, const mcor_download* d, int64_t v, mcor_tally* tally)
+static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally* tally)
 {
+  const mcor_context* context = d->context;
   const double tolerance =
     context->run.options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
-  const int flag = mcor_flag_of(context, d, v);
+  const int flag = mcor_flag_of(d, v);
   tally->linear += flag == 2;
   if (flag != 2)
   {
     const double residual = fabs(mcor_get_real(context, d->value, v));
-    tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(context, d, v));
+    tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(d, v));
     tally->above_tolerance += residual > tolerance;
   }
   if (flag == 1 || flag == 2)
@@ -153,7 +149,7 @@ static void mcor_count_correction(
     ++tally->trim_vertices;
     return;
   }
-  const double length = mcor_correction_of(context, d, v);
+  const double length = mcor_correction_of(d, v);
   tally->count += 1;
   tally->sum += length;
   tally->squares += length * length;
@@ -193,9 +189,10 @@ static void mcor_store_normal(const double gradient[3], float normal[3])
 }
 
 /* Vertex v becomes point `to` of the surface. */
-static void mcor_store_point(const mcor_context* context, const mcor_download* d, int64_t v,
-  double iso, mcor_surface* s, int64_t to)
+static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
 {
+  const mcor_context* context = d->context;
+  mcor_surface* s = d->surface;
   const double cube = mcor_length_of(d, v, context->lattice.cube);
   const cl_int* at = mcor_node_of(d, v);
   const int level = at[3] >> MCOR_LEVEL_SHIFT;
@@ -235,7 +232,7 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   }
   if (s->correction_length)
   {
-    s->correction_length[to] = (float)mcor_correction_of(context, d, v);
+    s->correction_length[to] = (float)mcor_correction_of(d, v);
   }
   if (s->residual)
   {
@@ -243,11 +240,11 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   }
   if (s->boundary_flag)
   {
-    s->boundary_flag[to] = (uint8_t)mcor_flag_of(context, d, v);
+    s->boundary_flag[to] = (uint8_t)mcor_flag_of(d, v);
   }
   if (s->iso_value)
   {
-    s->iso_value[to] = iso;
+    s->iso_value[to] = d->iso;
   }
   if (s->point_keys)
   {
@@ -257,38 +254,31 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
 
 static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_delivery* delivery = data;
-  const mcor_download* d = delivery->download;
+  mcor_download* d = data;
   const cl_int* scanned = d->scanned;
-  mcor_surface* surface = delivery->surface;
   mcor_tally tally = { 0 };
   for (int64_t v = first; v < last; ++v)
   {
     if (mcor_is_output(scanned, v))
     {
-      mcor_store_point(
-        delivery->context, d, v, delivery->iso, surface, surface->point_count + scanned[v]);
-      if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(delivery->context, v))
+      mcor_store_point(d, v, d->surface->point_count + scanned[v]);
+      if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(d->context, v))
       {
-        mcor_count_correction(delivery->context, d, v, &tally);
+        mcor_count_correction(d, v, &tally);
       }
     }
   }
-  delivery->tallies[slice] = tally;
+  d->tallies[slice] = tally;
 }
 
-static mcor_status mcor_deliver_vertices(
-  mcor_context* context, const mcor_download* download, double iso, mcor_surface* surface)
+static mcor_status mcor_deliver_vertices(mcor_context* context, mcor_download* d)
 {
-  mcor_delivery delivery = {
-    .context = context, .download = download, .iso = iso, .surface = surface
-  };
   int slices;
   MCOR_TRY(mcor_parallel_run(
-    context, context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery, &slices));
+    context, context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, d, &slices));
   for (int s = 0; s < slices; ++s)
   {
-    mcor_add_tally(context, &delivery.tallies[s]);
+    mcor_add_tally(context, &d->tallies[s]);
   }
   return MCOR_OK;
 }
@@ -348,9 +338,10 @@ static mcor_status mcor_evaluate_extras(mcor_context* context)
   return options->nearest_particle ? mcor_find_nearest(context) : MCOR_OK;
 }
 
-static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,
-  bool all, mcor_download* download, mcor_surface* surface)
+static mcor_status mcor_append_mesh(
+  mcor_context* context, const mcor_input* input, bool all, mcor_download* download)
 {
+  mcor_surface* surface = download->surface;
   const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
   int count;
   MCOR_TRY(all ? mcor_count_all(context, &count) : mcor_count_used(context, &count));
@@ -360,7 +351,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   if (count > 0)
   {
     mcor_mapping mappings[MCOR_DOWNLOADS];
-    const int mapped = mcor_list_mappings(context, download, mappings);
+    const int mapped = mcor_list_mappings(download, mappings);
     MCOR_TRY(mcor_evaluate_extras(context));
     MCOR_TRY(mcor_map_all(context, mappings, mapped));
     mcor_number_lines(context, download->scanned, base);
@@ -371,7 +362,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
   {
-    MCOR_TRY(mcor_deliver_vertices(context, download, iso, surface));
+    MCOR_TRY(mcor_deliver_vertices(context, download));
     MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));
   }
   surface->point_count += count;
@@ -408,15 +399,15 @@ static void mcor_release_vertices(mcor_context* context)
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
 {
-  mcor_download download = { 0 };
+  mcor_download download = { .context = context, .iso = iso, .surface = surface };
   mcor_mapping mappings[MCOR_DOWNLOADS];
   mcor_status status = mcor_keep_cuts(context, &download.cuts);
   mcor_release_construction(context);
   if (status == MCOR_OK)
   {
-    status = mcor_append_mesh(context, input, iso, all, &download, surface);
+    status = mcor_append_mesh(context, input, all, &download);
   }
-  const int mapped = mcor_list_mappings(context, &download, mappings);
+  const int mapped = mcor_list_mappings(&download, mappings);
   status = mcor_unmap_all(context, mappings, mapped, status);
   mcor_release_vertices(context);
   free(download.owned);

@@ -72,7 +72,7 @@ void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, cons
   key[0] = 3 * (uint64_t)context->run.iso_number + (of_cap ? 2 : cut >= 0);
   if (of_cap)
   {
-    mcor_store_cap_key(context, v, key + 1);
+    memcpy(key + 1, context->mesh.cap_keys + 2 * (v - context->mesh.cap_first), 2 * sizeof *key);
     return;
   }
   key[1] = mcor_march_key(context, nodes, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));

@@ -288,6 +288,11 @@ mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts);
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
   int64_t v, uint64_t key[MCOR_POINT_KEY]);
+/* mcor_normal.c. Whether the gradient gives no normal; gives such points one. */
+static inline bool mcor_lacks_normal(const float normal[3])
+{
+  return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
+}
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 /* mcor_area.c. Into its statistics. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);

@@ -263,6 +263,7 @@ typedef struct mcor_run
   bool building_told;            /* in this phase */
   double correction_count, correction_sum, correction_squares;
   int64_t evaluations_counted; /* of vertices_corrected */
+  int64_t normals_lacking;     /* points without, so far */
 } mcor_run;
 
 /* The data set of the last call, and which of its results hold; see mcor_reuse.c. */

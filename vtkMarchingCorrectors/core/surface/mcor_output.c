@@ -17,7 +17,7 @@
 /* Statistics of some vertices. */
 typedef struct mcor_tally
 {
-  int64_t trim_vertices, linear, above_tolerance;
+  int64_t trim_vertices, linear, above_tolerance, normals_lacking;
   double count, sum, squares, correction_max, residual_max;
 } mcor_tally;
 
@@ -162,6 +162,7 @@ static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
   s->trim_vertices += tally->trim_vertices;
   s->trim_vertices_linear += tally->linear;
   s->vertices_above_tolerance += tally->above_tolerance;
+  context->run.normals_lacking += tally->normals_lacking;
   context->run.correction_count += tally->count;
   context->run.correction_sum += tally->sum;
   context->run.correction_squares += tally->squares;
@@ -261,7 +262,10 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
   {
     if (mcor_is_output(scanned, v))
     {
-      mcor_store_point(d, v, d->surface->point_count + scanned[v]);
+      const int64_t to = d->surface->point_count + scanned[v];
+      const float* normals = d->surface->normals;
+      mcor_store_point(d, v, to);
+      tally.normals_lacking += normals && mcor_lacks_normal(normals + 3 * to);
       if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(d->context, v))
       {
         mcor_count_correction(d, v, &tally);

@@ -246,22 +246,6 @@ static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
 
 /* ---- Squares ---- */
 
-/* Square (u, v) of the face, whose nodes are valid. */
-static mcor_status mcor_fill_square(mcor_fill_job* job)
-{
-  job->count = 0;
-  for (int s = 0; s < 4; ++s)
-  {
-    MCOR_TRY(mcor_add_border_side(job, s));
-  }
-  for (int i = 0; i < job->count; ++i)
-  {
-    MCOR_TRY(
-      job->border[i].band > 0 && !job->border[i].done ? mcor_add_polygon_from(job, i) : MCOR_OK);
-  }
-  return MCOR_OK;
-}
-
 /* Whether the nodes are valid, and some above the least level. */
 static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
 {
@@ -282,7 +266,18 @@ static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face,
   job->v = v;
   job->square = (uint64_t)(face->first[1] + v) << 21 | (uint64_t)(face->first[0] + u);
   job->lowest = mcor_cap_index(face, u, v);
-  return mcor_is_filled(job->fill, u, v) ? mcor_fill_square(job) : MCOR_OK;
+  job->count = 0;
+  const int sides = mcor_is_filled(job->fill, u, v) ? 4 : 0;
+  for (int s = 0; s < sides; ++s)
+  {
+    MCOR_TRY(mcor_add_border_side(job, s));
+  }
+  for (int i = 0; i < job->count; ++i)
+  {
+    MCOR_TRY(
+      job->border[i].band > 0 && !job->border[i].done ? mcor_add_polygon_from(job, i) : MCOR_OK);
+  }
+  return MCOR_OK;
 }
 
 mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)

@@ -196,8 +196,14 @@ void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t bas
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
   mcor_filling* fill = context->run.fill;
-  MCOR_TRY(fill ? mcor_fill_squares(context, fill) : MCOR_OK);
-  return fill ? mcor_append_fill(context, fill, input, surface) : MCOR_OK;
+  if (!fill)
+  {
+    return MCOR_OK;
+  }
+  free(fill->value); /* bands are known */
+  fill->value = NULL;
+  MCOR_TRY(mcor_fill_squares(context, fill));
+  return mcor_append_fill(context, fill, input, surface);
 }
 
 void mcor_end_fill(mcor_context* context)

@@ -149,6 +149,10 @@ mcor_status mcor_append_bytes(
   mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes)
 {
   mcor_buffer more = { 0 };
+  if (old == 0)
+  {
+    return mcor_write(context, to, data, bytes);
+  }
   MCOR_TRY(mcor_extend(context, to, old, old + bytes));
   mcor_status status = mcor_write(context, &more, data, bytes);
   status = status == MCOR_OK ? mcor_copy(context, &more, to, old, bytes) : status;

@@ -236,8 +236,8 @@ mcor_status mcor_resolve_topology(mcor_context* context, double iso);
 /* Room for the vertices and triangles that are counted; the vertices. */
 mcor_status mcor_emit_vertices(mcor_context* context, double iso);
 mcor_status mcor_correct(mcor_context* context, double iso);
-mcor_status mcor_evaluate_boundary(
-  mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
+/* The boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
+mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
 /* What is trimmed by, at the vertices on lattice edges, and where it ends. */
 bool mcor_is_trimmed(const mcor_context* context);

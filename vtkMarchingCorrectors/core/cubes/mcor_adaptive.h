@@ -25,15 +25,21 @@ static inline int mcor_marched_count(const mcor_context* context)
   MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->adaptive.bucket_shift),                           \
     MCOR_BUFFER(&(c)->adaptive.keys), MCOR_BUFFER(&(c)->adaptive.buckets)
 
-/* What evaluates the field at vertices does so level by level:
- *
- *   for (int l = 0; l <= context->lattice.top; ++l)
- *     mcor_group_level(context, boundary, l, &groups);
- *     ...
- *   mcor_view_level(context, 0); */
-
-/* Views a level, and groups its vertices: on lattice edges, or of the trim boundary. */
-mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups);
+/* Vertices on lattice edges, of the trim boundary, or both. */
+enum
+{
+  MCOR_ON_EDGES = 1,
+  MCOR_ON_BOUNDARY = 2,
+  MCOR_ALL_VERTICES = 3
+};
+/* Launches what evaluates the field at vertices: level by level, each seen in its cells. The kernel takes
+ * MCOR_GRID_PARAMS, groups, nodes, and up to MCOR_VERTEX_ARGS more. */
+#define MCOR_VERTEX_ARGS 32
+#define MCOR_LAUNCH_AT_VERTICES(context, vertices, name, ...)                                      \
+  mcor_launch_at_vertices(context, vertices, name, (const mcor_arg[]){ __VA_ARGS__ },              \
+    sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
+mcor_status mcor_launch_at_vertices(
+  mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
 /* From now on MCOR_GRID_ARGS are in cells of a level. */
 mcor_status mcor_view_level(mcor_context* context, int level);

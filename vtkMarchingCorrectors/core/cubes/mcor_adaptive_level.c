@@ -60,7 +60,8 @@ mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
   return MCOR_OK;
 }
 
-mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups)
+/* Groups the vertices of a level. */
+static mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups)
 {
   const mcor_mesh* mesh = &context->mesh;
   const bool one = context->lattice.top == 0;
@@ -68,6 +69,29 @@ mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, in
   const int end = boundary ? mesh->vertex_count : mesh->march_count;
   const int first = one ? begin : mesh->level_first[boundary][level];
   const int count = (one ? end : mesh->level_first[boundary][level + 1]) - first;
-  MCOR_TRY(mcor_view_level(context, level));
   return mcor_make_groups(context, &mesh->node, first, count, groups);
+}
+
+mcor_status mcor_launch_at_vertices(
+  mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count)
+{
+  for (int i = 0; i < 2 * (context->lattice.top + 1); ++i)
+  {
+    const int level = i / 2, boundary = i % 2;
+    int groups;
+    if (!(vertices >> boundary & 1))
+    {
+      continue;
+    }
+    MCOR_TRY(mcor_view_level(context, level));
+    MCOR_TRY(mcor_group_level(context, boundary, level, &groups));
+    const mcor_arg first[] = { MCOR_GRID_ARGS(context), MCOR_INT(groups),
+      MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&context->mesh.node) };
+    const size_t n = sizeof first / sizeof first[0];
+    mcor_arg args[sizeof first / sizeof first[0] + MCOR_VERTEX_ARGS];
+    memcpy(args, first, sizeof first);
+    memcpy(args + n, more, count * sizeof *more);
+    MCOR_TRY(mcor_launch(context, name, MCOR_HEAVY, (size_t)groups, args, n + count));
+  }
+  return mcor_view_level(context, 0);
 }

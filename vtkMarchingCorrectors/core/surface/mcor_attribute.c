@@ -262,38 +262,15 @@ static void mcor_store_constants(
   }
 }
 
-/* Evaluates the components on the device at vertices. */
-static mcor_status mcor_evaluate_means(mcor_context* context)
-{
-  const mcor_mesh* mesh = &context->mesh;
-  for (int i = 0; i < 2 * (context->lattice.top + 1); ++i)
-  {
-    int groups;
-    MCOR_TRY(mcor_group_level(context, i % 2, i / 2, &groups));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_attribute_means", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-        MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
-  }
-  return mcor_view_level(context, 0);
-}
-
 mcor_status mcor_find_nearest(mcor_context* context)
 {
   const mcor_mesh* mesh = &context->mesh;
   mcor_buffer* nearest = &context->attributes.nearest;
   const bool uniform = context->measure.support_min == context->measure.support_max;
   MCOR_TRY(mcor_reserve(context, nearest, (size_t)mesh->vertex_count * sizeof(cl_int)));
-  for (int i = 0; i < 2 * (context->lattice.top + 1); ++i)
-  {
-    int groups;
-    MCOR_TRY(mcor_group_level(context, i % 2, i / 2, &groups));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_attribute_nearest", MCOR_HEAVY, groups,
-      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-      MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_INT(uniform),
-      MCOR_BUFFER(&context->grid.order), MCOR_BUFFER(nearest)));
-  }
-  return mcor_view_level(context, 0);
+  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_nearest",
+    MCOR_BUFFER(&mesh->offset), MCOR_INT(uniform), MCOR_BUFFER(&context->grid.order),
+    MCOR_BUFFER(nearest));
 }
 
 /* Of the vertices that are put out, see mcor_is_output. */
@@ -309,7 +286,8 @@ mcor_status mcor_add_attributes(
     MCOR_TRY(mcor_load_attributes(context, input, first));
     MCOR_TRY(mcor_reserve(context, &context->mesh.means,
       (size_t)mesh->vertex_count * (size_t)context->attributes.count * context->cl.real_size));
-    MCOR_TRY(mcor_evaluate_means(context));
+    MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_means",
+      MCOR_BUFFER(&mesh->offset), MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
     MCOR_TRY(mcor_store_attributes(context, input, scanned, surface));
   }
   return MCOR_OK;

@@ -48,20 +48,12 @@ mcor_status mcor_correct(mcor_context* context, double iso)
   const mcor_options* options = context->run.options;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_reserve_vertices(context, mesh->march_count));
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    int groups;
-    MCOR_TRY(mcor_group_level(context, false, l, &groups));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-        MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
-        MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
-        MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-        MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
-        MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
-  }
-  MCOR_TRY(mcor_view_level(context, 0));
+  MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_EDGES, "mcor_correct_vertices",
+    MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
+    MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
+    MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   if (options->preview)
   {
     return MCOR_OK;

@@ -4,6 +4,7 @@
 /* Output [III-D.4]: hands the vertices that triangles use, renumbered, and the triangles to the
  * caller's surface, and adds up what the correction did. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_fill.h"
@@ -336,8 +337,7 @@ static mcor_status mcor_evaluate_extras(mcor_context* context)
   {
     MCOR_TRY(mcor_reserve(
       context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
-    MCOR_TRY(mcor_evaluate_boundary(context, false, eigenvalue));
-    MCOR_TRY(mcor_evaluate_boundary(context, true, eigenvalue));
+    MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
   }
   return options->nearest_particle ? mcor_find_nearest(context) : MCOR_OK;
 }

@@ -12,20 +12,10 @@
 
 #define MCOR_TRIM_STEPS 25
 
-/* Evaluates the boundary eigenvalue at vertices: on lattice edges, or of the trim boundary. */
-mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue)
+mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue)
 {
-  const mcor_mesh* mesh = &context->mesh;
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    int groups;
-    MCOR_TRY(mcor_group_level(context, of_boundary, l, &groups));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-        MCOR_BUFFER(&mesh->offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(eigenvalue)));
-  }
-  return mcor_view_level(context, 0);
+  return MCOR_LAUNCH_AT_VERTICES(context, vertices, "mcor_boundary_points",
+    MCOR_BUFFER(&context->mesh.offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(eigenvalue));
 }
 
 /* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
@@ -91,7 +81,7 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
   if (mcor_trims_by_eigenvalue(context))
   {
     MCOR_TRY(mcor_reserve(context, &trim->eigenvalue, (size_t)count * context->cl.real_size));
-    MCOR_TRY(mcor_evaluate_boundary(context, false, &trim->eigenvalue));
+    MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ON_EDGES, &trim->eigenvalue));
   }
   if (mcor_trim_quantity(context) != &trim->margin)
   {
@@ -196,20 +186,12 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   }
   const char* solve =
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    int groups;
-    MCOR_TRY(mcor_group_level(context, true, l, &groups));
-    MCOR_TRY(MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-      MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
-      MCOR_REAL(mcor_vertex_threshold(context)), MCOR_REAL(mcor_fluid_share(context)),
-      MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(mcor_is_plane(context)),
-      MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
-  }
-  return mcor_view_level(context, 0);
+  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve, MCOR_REAL(iso),
+    MCOR_REAL(options->tolerance * range), MCOR_REAL(mcor_vertex_threshold(context)),
+    MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
+    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
 /* Takes a buffer over in place of another one. */

@@ -244,7 +244,7 @@ bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
-/* Among the sorted edges of cut vertices, trim.distinct, that between two vertices; -1: it is not cut. */
+/* Among the sorted edges of cut vertices, mesh.cut_edges, that between two vertices; -1: it is not cut. */
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
@@ -282,7 +282,6 @@ mcor_status mcor_grow_surface(
 /* Moves a triangle, and its keys, to another's place. */
 void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
 /* mcor_point_key.c */
-mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts);
 /* In the order of vertices: by block, brick and node, each by z, y, x. Fits 2^61, as the lattice has no more
  * than 2^15 + 2 blocks along an axis. Of a cell's lowest node it is the cell's key. */
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);

@@ -140,7 +140,7 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   line->vertex_count = (int)n;
   line->cut_count = (int)cuts;
   MCOR_TRY(cuts > 0
-      ? mcor_read(context, &context->trim.distinct, 0, line->cuts, cuts * sizeof *line->cuts)
+      ? mcor_read(context, &context->mesh.cut_edges, 0, line->cuts, cuts * sizeof *line->cuts)
       : MCOR_OK);
   void *node = NULL, *offset = NULL, *quantity = NULL;
   const mcor_mapping mappings[] = { { &mesh->node, n * 4 * sizeof(cl_int), &node },

@@ -44,7 +44,7 @@ typedef struct mcor_cap_job
   cl_ulong square;  /* the one that is being capped */
   uint64_t lookups; /* of vertices, by that one */
   /* The surface's vertices, and the edges its own cuts are on, ascending. */
-  void *node, *offset, *quantity, *distinct;
+  void *node, *offset, *quantity, *cut_edges;
   double threshold;
   mcor_cap_border* border; /* where the cuts of squares are wanted, and not what is left of them */
 } mcor_cap_job;

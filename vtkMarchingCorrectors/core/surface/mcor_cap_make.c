@@ -132,8 +132,7 @@ static mcor_status mcor_make_caps(mcor_cap_job* job)
   }
   if (cuts > 0)
   {
-    MCOR_TRY(
-      mcor_map(context, &context->trim.distinct, cuts * sizeof(cl_ulong), false, &job->distinct));
+    MCOR_TRY(mcor_map(context, &mesh->cut_edges, cuts * sizeof(cl_ulong), false, &job->cut_edges));
   }
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -149,7 +148,7 @@ static mcor_status mcor_end_cap_views(mcor_cap_job* job)
   mcor_context* context = job->context;
   const mcor_mapping mappings[] = { { &context->mesh.node, 0, &job->node },
     { &context->mesh.offset, 0, &job->offset }, { mcor_trim_quantity(context), 0, &job->quantity },
-    { &context->trim.distinct, 0, &job->distinct } };
+    { &context->mesh.cut_edges, 0, &job->cut_edges } };
   return mcor_unmap_all(context, mappings, 4, MCOR_OK);
 }
 

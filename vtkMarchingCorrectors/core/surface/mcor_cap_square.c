@@ -130,8 +130,8 @@ static mcor_status mcor_cap_cut(
   const mcor_mesh* mesh = &job->context->mesh;
   const mcor_cap_corner *low = p->vertex < q->vertex ? p : q, *high = low == p ? q : p;
   const int own = high->vertex < mesh->march_count
-    ? mcor_find_cut(job->distinct, job->context->mesh.vertex_count - mesh->march_count, low->vertex,
-        high->vertex)
+    ? mcor_find_cut(job->cut_edges, job->context->mesh.vertex_count - mesh->march_count,
+        low->vertex, high->vertex)
     : -1;
   *cut = (mcor_cap_corner){ .margin = 0 };
   if (own >= 0)

@@ -30,12 +30,11 @@ typedef struct mcor_download
   mcor_surface* surface; /* the first vertex put out becomes its point point_count */
   /* Views of the mesh's, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
-  void *eigenvalue, *nearest; /* where they are asked for */
-  uint8_t* owned;             /* see mcor_find_counted */
-  uint64_t* cuts;             /* see mcor_keep_cuts */
+  void *eigenvalue, *nearest, *cuts; /* where they are asked for */
+  uint8_t* owned;                    /* see mcor_find_counted */
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
-#define MCOR_DOWNLOADS 10
+#define MCOR_DOWNLOADS 11
 
 /* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
 static mcor_status mcor_count_used(mcor_context* context, int* count)
@@ -88,6 +87,11 @@ static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNL
   {
     mappings[count++] =
       (mcor_mapping){ &context->attributes.nearest, n * sizeof(cl_int), &d->nearest };
+  }
+  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
+  if (options->point_keys && cuts > 0)
+  {
+    mappings[count++] = (mcor_mapping){ &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts };
   }
   return count;
 }
@@ -396,7 +400,7 @@ static void mcor_release_vertices(mcor_context* context)
   mcor_mesh* m = &context->mesh;
   mcor_release_attributes(context);
   MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &context->trim.eigenvalue);
+    &m->vertex_weight, &m->means, &m->flag, &m->cut_edges, &m->scanned, &context->trim.eigenvalue);
 }
 
 /* Appends the mesh of one iso value to the surface. */
@@ -405,16 +409,11 @@ mcor_status mcor_append_output(
 {
   mcor_download download = { .context = context, .iso = iso, .surface = surface };
   mcor_mapping mappings[MCOR_DOWNLOADS];
-  mcor_status status = mcor_keep_cuts(context, &download.cuts);
   mcor_release_construction(context);
-  if (status == MCOR_OK)
-  {
-    status = mcor_append_mesh(context, input, all, &download);
-  }
+  mcor_status status = mcor_append_mesh(context, input, all, &download);
   const int mapped = mcor_list_mappings(&download, mappings);
   status = mcor_unmap_all(context, mappings, mapped, status);
   mcor_release_vertices(context);
   free(download.owned);
-  free(download.cuts);
   return status;
 }

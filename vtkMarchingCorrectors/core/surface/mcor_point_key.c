@@ -8,24 +8,7 @@
 #include "mcor_cap.h"
 #include "mcor_tree.h"
 
-#include <stdlib.h>
 #include <string.h>
-
-/* The two vertices on lattice edges between which each cut vertex lies, as the kernels keep them:
- * lower number << 32 | higher. Taken before trimming gives its memory back. */
-mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
-{
-  const mcor_mesh* mesh = &context->mesh;
-  const int count = mesh->cap_first - mesh->march_count;
-  if (!context->run.options->point_keys || count == 0)
-  {
-    return MCOR_OK;
-  }
-  const size_t bytes = (size_t)count * sizeof **cuts;
-  *cuts = malloc(bytes);
-  MCOR_TRY(mcor_allocated(context, *cuts));
-  return mcor_read(context, &context->trim.distinct, 0, *cuts, bytes);
-}
 
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
 {

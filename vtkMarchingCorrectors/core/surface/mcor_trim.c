@@ -143,7 +143,7 @@ int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
 static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
-  const mcor_buffer* keys = &context->trim.distinct;
+  const mcor_buffer* keys = &context->mesh.cut_edges;
   for (int l = 0; l <= context->lattice.top; ++l)
   {
     int low = 0, high = cut_count;
@@ -166,7 +166,6 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
-  mcor_trim_data* trim = &context->trim;
   const mcor_options* options = context->run.options;
   const int vertices = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
@@ -177,7 +176,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
-    MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
+    MCOR_BUFFER(&mesh->cut_edges), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
   if (mcor_is_adaptive(context))
@@ -222,7 +221,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
       MCOR_REAL(mcor_trim_threshold(context)), MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
   MCOR_TRY(mcor_reserve(context, &trim->index, sizeof(cl_int)));
   MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
-    &trim->distinct, &trim->index, &cut_count));
+    &mesh->cut_edges, &trim->index, &cut_count));
   const bool follows = mcor_follows_cells(context);
   MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &trim->cells, follows ? (size_t)remaining * sizeof(cl_ulong) : 0));
@@ -241,6 +240,6 @@ mcor_status mcor_trim(mcor_context* context, double iso)
 void mcor_release_trim(mcor_context* context)
 {
   mcor_trim_data* t = &context->trim;
-  MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->distinct,
-    &t->index, &t->triangles, &t->cells);
+  MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->index,
+    &t->triangles, &t->cells);
 }

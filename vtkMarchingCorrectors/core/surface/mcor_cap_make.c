@@ -113,27 +113,10 @@ static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
   return status;
 }
 
-/* Views of the surface's vertices while caps are made. */
 static mcor_status mcor_make_caps(mcor_cap_job* job)
 {
-  mcor_context* context = job->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->march_count, real = context->cl.real_size;
-  const size_t all = (size_t)mesh->vertex_count, cuts = all - n;
-  if (n > 0)
-  {
-    MCOR_TRY(mcor_map(context, &mesh->node, all * 4 * sizeof(cl_int), false, &job->node));
-    MCOR_TRY(mcor_map(context, &mesh->offset, all * 4 * real, false, &job->offset));
-    if (mcor_is_trimmed(context))
-    {
-      MCOR_TRY(mcor_map(context, mcor_trim_quantity(context), n * real, false, &job->quantity));
-    }
-    MCOR_TRY(mcor_index_cap_edges(job));
-  }
-  if (cuts > 0)
-  {
-    MCOR_TRY(mcor_map(context, &mesh->cut_edges, cuts * sizeof(cl_ulong), false, &job->cut_edges));
-  }
+  const mcor_context* context = job->context;
+  MCOR_TRY(mcor_index_cap_edges(job));
   for (int axis = 0; axis < 3; ++axis)
   {
     MCOR_TRY(mcor_cap_sides(job, axis));
@@ -143,13 +126,18 @@ static mcor_status mcor_make_caps(mcor_cap_job* job)
   return mcor_caps_walls(context) ? mcor_cap_walls(job) : MCOR_OK;
 }
 
-static mcor_status mcor_end_cap_views(mcor_cap_job* job)
+/* Views of the surface's vertices while caps are made. Returns how many: there are cuts only where it is trimmed. */
+static int mcor_list_cap_views(mcor_cap_job* job, mcor_mapping views[4])
 {
-  mcor_context* context = job->context;
-  const mcor_mapping mappings[] = { { &context->mesh.node, 0, &job->node },
-    { &context->mesh.offset, 0, &job->offset }, { mcor_trim_quantity(context), 0, &job->quantity },
-    { &context->mesh.cut_edges, 0, &job->cut_edges } };
-  return mcor_unmap_all(context, mappings, 4, MCOR_OK);
+  const mcor_context* context = job->context;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->march_count, all = (size_t)mesh->vertex_count,
+               real = context->cl.real_size;
+  views[0] = (mcor_mapping){ &mesh->node, all * 4 * sizeof(cl_int), &job->node };
+  views[1] = (mcor_mapping){ &mesh->offset, all * 4 * real, &job->offset };
+  views[2] = (mcor_mapping){ mcor_trim_quantity(context), n * real, &job->quantity };
+  views[3] = (mcor_mapping){ &mesh->cut_edges, (all - n) * sizeof(cl_ulong), &job->cut_edges };
+  return n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
 }
 
 /* The mesh gets the caps' vertices and triangles. */
@@ -184,10 +172,12 @@ mcor_status mcor_cap(mcor_context* context, double iso)
   mcor_cap_job job = { .context = context,
     .points.iso = iso,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
-  mcor_status status = mcor_make_caps(&job);
-  const mcor_status unmapped = mcor_end_cap_views(&job);
+  mcor_mapping views[4];
+  const int mapped = mcor_list_cap_views(&job, views);
+  mcor_status status = mcor_map_all(context, views, mapped);
+  status = status == MCOR_OK ? mcor_make_caps(&job) : status;
+  status = mcor_unmap_all(context, views, mapped, status);
   mcor_free_cap_points(context, &job.points);
-  status = status == MCOR_OK ? unmapped : status;
   status = status == MCOR_OK ? mcor_append_caps(&job) : status;
   mcor_table* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes, &job.cuts };
   for (int i = 0; i < 5; ++i)

@@ -40,14 +40,14 @@ static mcor_status mcor_extract_iso(
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context, iso));
   MCOR_TRY(mcor_cap(context, iso));
-  MCOR_TRY(mcor_take_lines(context, iso));
+  MCOR_TRY(mcor_take_lines(context));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
   if (last && input->particles_version == 0 && !mcor_output_evaluates(context) && !options->filled)
   {
     mcor_release_grid(context);
   }
-  return mcor_append_output(context, input, value, surface);
+  return mcor_append_output(context, input, value, false, surface);
 }
 
 static mcor_status mcor_extract_all(
@@ -59,7 +59,7 @@ static mcor_status mcor_extract_all(
   MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
     "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
     "first.");
-  MCOR_TRY(mcor_list_attributes(context, input, surface));
+  MCOR_TRY(mcor_begin_surface(context, input, surface));
   if (input->count == 0)
   {
     return mcor_attend_rounds(context, 0);

@@ -229,31 +229,33 @@ mcor_status mcor_march(mcor_context* context, double iso);
 mcor_status mcor_find_side_flags(mcor_context* context, double iso);
 mcor_status mcor_resolve_topology(mcor_context* context, double iso);
 mcor_status mcor_correct(mcor_context* context, double iso);
-mcor_status mcor_evaluate_boundary(
-  mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue);
+/* The boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
+mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
 /* What is trimmed by, at the vertices on lattice edges, and where it ends. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
+/* Among the sorted edges of cut vertices, mesh.cut_edges, that between two vertices; -1: it is not cut. */
+int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
 mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
-mcor_status mcor_list_attributes(
-  mcor_context* context, const mcor_input* input, mcor_surface* surface);
 mcor_status mcor_list_components(
-  mcor_context* context, const mcor_input* input, int64_t* not_finite);
+  mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite);
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
 bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
+mcor_status mcor_find_nearest(mcor_context* context); /* of all vertices */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);
+/* all: vertices that no triangle uses, too. */
 mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface);
-/* All vertices of a mesh without triangles. */
-mcor_status mcor_append_points(
+  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface);
+/* mcor_surface.c. Prepares the surface's attributes: those to leave out, and of the others the components that vary. */
+mcor_status mcor_begin_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 /* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
 #define MCOR_SURFACE_ARRAYS 11
@@ -264,13 +266,25 @@ typedef struct mcor_surface_array
 } mcor_surface_array;
 void mcor_list_surface_arrays(
   mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
+/* Room for so many more elements of `width` bytes behind `old` ones; *array may be NULL. */
+mcor_status mcor_grow(
+  mcor_context* context, void** array, int64_t old, int64_t count, size_t width);
+/* Room for more points in all arrays that are asked for. */
+mcor_status mcor_grow_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
+/* Moves a triangle, and its keys, to another's place. */
+void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
 /* mcor_point_key.c */
-mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts);
 /* In the order of vertices: by block, brick and node, each by z, y, x. Fits 2^61, as the lattice has no more
  * than 2^15 + 2 blocks along an axis. Of a cell's lowest node it is the cell's key. */
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
   int64_t v, uint64_t key[MCOR_POINT_KEY]);
+/* mcor_normal.c. Whether the gradient gives no normal; gives such points one. */
+static inline bool mcor_lacks_normal(const float normal[3])
+{
+  return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
+}
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 /* mcor_area.c. Into its statistics. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);

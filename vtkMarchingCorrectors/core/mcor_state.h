@@ -99,7 +99,8 @@ typedef struct mcor_mesh
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
-  mcor_buffer means; /* real [vertex_count][attributes.count] */
+  mcor_buffer means;     /* real [vertex_count][attributes.count] */
+  mcor_buffer cut_edges; /* ulong, of each vertex of the trim boundary: that it is on, see mcor_trim.cl */
   mcor_buffer triangles;
   mcor_buffer scanned;                           /* of the output, see mcor_is_output */
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
@@ -190,8 +191,8 @@ typedef struct mcor_trim_data
   mcor_buffer eigenvalue;            /* real, at vertices; what the vertex threshold may apply to */
   mcor_buffer margin;                /* real, at vertices; see mcor_trim_margin */
   mcor_buffer remaining, cuts;       /* per batch of triangles */
-  mcor_buffer keys, distinct, index; /* of cut edges */
-  mcor_buffer triangles;
+  mcor_buffer keys, index;      /* of cut edges */
+  mcor_buffer triangles, cells;      /* what remains, until it is the mesh's and the box's */
 } mcor_trim_data;
 
 /* mcor_scan.c. flags and order: of mcor_unique. */
@@ -259,6 +260,7 @@ typedef struct mcor_run
   bool building_told;            /* in this phase */
   double correction_count, correction_sum, correction_squares;
   int64_t evaluations_counted; /* of vertices_corrected */
+  int64_t normals_lacking;     /* points without, so far */
 } mcor_run;
 
 /* The data set of the last call, and which of its results hold; see mcor_reuse.c. */

@@ -416,6 +416,11 @@ static void test_what_is_not_filled(void** state)
   assert_int_equal(surface.triangle_count, 0);
   mcor_free_surface(&surface);
   memset(options.box, 0, sizeof options.box);
+  options.iso_count = 0;
+  surface = core_extract(*state, &input, &options);
+  assert_true(surface.triangle_count == 0 && surface.point_count == 0);
+  mcor_free_surface(&surface);
+  options.iso_count = 1;
   options.filled = 0;
   surface = core_extract(*state, &input, &options);
   assert_true(surface.band_value == NULL && surface.triangles == NULL && surface.iso_value == NULL);

@@ -27,17 +27,21 @@ static inline bool mcor_is_adaptive(const mcor_context* context)
 #define MCOR_PLAIN_ARGS(c)                                                                         \
   MCOR_INT(mcor_is_adaptive(c)), MCOR_BUFFER(&(c)->bricks.plain), MCOR_BUFFER(&(c)->bricks.leaf_of)
 
-/* What evaluates the field at vertices does so level by level:
- *
- *   for (int l = 0; l <= context->lattice.top; ++l)
- *     mcor_level_vertices(context, boundary, l, &first, &count);
- *     mcor_view_level(context, l);
- *     ...
- *   mcor_view_level(context, 0); */
-
-/* Vertices of a level, on lattice edges or of the trim boundary. */
-void mcor_level_vertices(
-  const mcor_context* context, bool boundary, int level, int* first, int* count);
+/* Vertices on lattice edges, of the trim boundary, or both. */
+enum
+{
+  MCOR_ON_EDGES = 1,
+  MCOR_ON_BOUNDARY = 2,
+  MCOR_ALL_VERTICES = 3
+};
+/* Launches what evaluates the field at vertices: level by level, each seen in its cells. The kernel takes
+ * MCOR_GRID_PARAMS, groups, nodes, and up to MCOR_VERTEX_ARGS more. */
+#define MCOR_VERTEX_ARGS 32
+#define MCOR_LAUNCH_AT_VERTICES(context, vertices, name, ...)                                      \
+  mcor_launch_at_vertices(context, vertices, name, (const mcor_arg[]){ __VA_ARGS__ },              \
+    sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
+mcor_status mcor_launch_at_vertices(
+  mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
 /* From now on MCOR_GRID_ARGS are in cells of a level. */
 mcor_status mcor_view_level(mcor_context* context, int level);

@@ -60,12 +60,38 @@ mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
   return MCOR_OK;
 }
 
-void mcor_level_vertices(
-  const mcor_context* context, bool boundary, int level, int* first, int* count)
+/* Groups the vertices of a level. */
+static mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups)
 {
   const mcor_mesh* mesh = &context->mesh;
   const int begin = boundary ? mesh->march_count : 0;
   const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with those of caps */
-  *first = level > 0 ? mesh->level_first[boundary][level] : begin;
-  *count = (level < context->lattice.top ? mesh->level_first[boundary][level + 1] : end) - *first;
+  const int first = level > 0 ? mesh->level_first[boundary][level] : begin;
+  const int count =
+    (level < context->lattice.top ? mesh->level_first[boundary][level + 1] : end) - first;
+  return mcor_make_groups(context, &mesh->node, first, count, groups);
+}
+
+mcor_status mcor_launch_at_vertices(
+  mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count)
+{
+  for (int i = 0; i < 2 * (context->lattice.top + 1); ++i)
+  {
+    const int level = i / 2, boundary = i % 2;
+    int groups;
+    if (!(vertices >> boundary & 1))
+    {
+      continue;
+    }
+    MCOR_TRY(mcor_view_level(context, level));
+    MCOR_TRY(mcor_group_level(context, boundary, level, &groups));
+    const mcor_arg first[] = { MCOR_GRID_ARGS(context), MCOR_INT(groups),
+      MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&context->mesh.node) };
+    const size_t n = sizeof first / sizeof first[0];
+    mcor_arg args[sizeof first / sizeof first[0] + MCOR_VERTEX_ARGS];
+    memcpy(args, first, sizeof first);
+    memcpy(args + n, more, count * sizeof *more);
+    MCOR_TRY(mcor_launch(context, name, MCOR_HEAVY, (size_t)groups, args, n + count));
+  }
+  return mcor_view_level(context, 0);
 }

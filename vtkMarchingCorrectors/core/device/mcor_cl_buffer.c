@@ -267,13 +267,13 @@ mcor_status mcor_copy(
 
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes)
 {
-  if (buffer->size >= bytes)
+  if (buffer->size >= bytes || old == 0)
   {
-    return MCOR_OK;
+    return mcor_reserve(context, buffer, bytes);
   }
   mcor_buffer bigger = { 0 };
   mcor_status status = mcor_reserve(context, &bigger, bytes);
-  status = status == MCOR_OK && old > 0 ? mcor_copy(context, buffer, &bigger, 0, old) : status;
+  status = status == MCOR_OK ? mcor_copy(context, buffer, &bigger, 0, old) : status;
   mcor_release(context, status == MCOR_OK ? buffer : &bigger);
   if (status == MCOR_OK)
   {

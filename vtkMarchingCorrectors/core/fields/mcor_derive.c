@@ -285,7 +285,7 @@ static mcor_status mcor_make_derivatives(
   bool complete = d->gradients && d->corrected && d->attribute_not_finite;
   if (complete)
   {
-    MCOR_TRY(mcor_list_components(context, input, d->attribute_not_finite));
+    MCOR_TRY(mcor_list_components(context, input, false, d->attribute_not_finite));
   }
   for (int a = 0; a < input->attribute_count && complete; ++a)
   {

@@ -159,7 +159,7 @@ static mcor_status mcor_gauge_particles(mcor_context* context, const mcor_input*
   const mcor_options* options, const mcor_gauge_call* call, mcor_gauge_job* job)
 {
   context->attributes.kept = 0;
-  MCOR_TRY(mcor_list_components(context, input, NULL));
+  MCOR_TRY(mcor_list_components(context, input, false, NULL));
   if (input->count == 0 || call->count == 0)
   {
     return MCOR_OK;

@@ -337,7 +337,7 @@ static mcor_status mcor_make_tables(
   }
   return mcor_has_attributes(context, input)
     ? MCOR_OK
-    : mcor_list_components(context, input, s->attribute_not_finite);
+    : mcor_list_components(context, input, false, s->attribute_not_finite);
 }
 
 typedef struct mcor_probe_call

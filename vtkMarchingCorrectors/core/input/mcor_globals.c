@@ -60,11 +60,8 @@ static mcor_status mcor_measure_components(
       found->not_finite = not_finite;
       if (not_finite < 0)
       {
-        double range[2];
         mcor_measure_component(input, a, c, found);
-        mcor_find_range(input, a, c, range);
-        found->low = range[0];
-        found->high = range[1];
+        mcor_find_range(input, a, c, found);
         MCOR_TRY(context->run.options->ranks ? mcor_merge_component(context, input, array, c, found)
                                              : MCOR_OK);
       }

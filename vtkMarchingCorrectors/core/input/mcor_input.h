@@ -67,12 +67,13 @@ bool mcor_is_constant(const mcor_array* array, int64_t count, int component);
 /* Components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
-/* mcor_attribute.c. Of one component, all but whether its attribute is finite. */
+/* mcor_attribute.c. Whether a component varies, and its largest value. */
 void mcor_measure_component(
   const mcor_input* input, int attribute, int component, mcor_global_component* found);
 
 /* Least and greatest value of a component, of fluid particles; of none DBL_MAX, -DBL_MAX. */
-void mcor_find_range(const mcor_input* input, int attribute, int component, double range[2]);
+void mcor_find_range(
+  const mcor_input* input, int attribute, int component, mcor_global_component* found);
 
 /* Whether the scalar is a magnitude or a dot product. */
 static inline bool mcor_scalar_is_derived(const mcor_input* input)

@@ -97,8 +97,6 @@ bool mcor_follows_cells(const mcor_context* context);
 typedef mcor_status (*mcor_emit)(mcor_context* context, const int sides[6], mcor_buffer* cells);
 mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
-mcor_status mcor_trim_cells(
-  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining);
 
 /* Output. Room for the keys and flags of so many triangles behind those of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);

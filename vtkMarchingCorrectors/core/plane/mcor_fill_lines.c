@@ -1,7 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What filling keeps of each iso value's lines. */
+/* Filling. First the field is evaluated at all nodes that particles reach. As soon as an iso value's lines are
+ * trimmed, what is to be known of them is kept: vertices by lattice edges, cuts, and which nodes are above. So, when
+ * all lines are made, each node is in a band, between two iso values that follow each other. The border of each
+ * square, run through node by node and vertex by vertex, falls into parts of one band; parts that lines join are the
+ * border of a polygon of that band. What trimming leaves of it becomes triangles. So triangles share the points of
+ * lines, the nodes, and the points where trimming cuts lattice edges, with all that is beside them. A square is filled
+ * where its nodes are valid, as those of a line are. */
 
 #include "mcor_box.h"
 #include "mcor_fill.h"
@@ -9,61 +15,113 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* ---- before all lines ---- */
+
+/* Lists lines by their iso values; of equal ones the first. */
+static void mcor_list_lines(const mcor_context* context, mcor_filling* fill)
+{
+  const mcor_options* options = context->run.options;
+  for (int i = 0; i < options->iso_count; ++i)
+  {
+    const double iso = mcor_real_of(context, options->iso_values[i] - context->value_shift);
+    int at = fill->line_count;
+    while (at > 0 && fill->lines[at - 1].iso > iso)
+    {
+      --at;
+    }
+    if (at > 0 && fill->lines[at - 1].iso == iso)
+    {
+      continue;
+    }
+    mcor_fill_line* line = &fill->lines[at];
+    memmove(line + 1, line, (size_t)(fill->line_count - at) * sizeof *line);
+    *line = (mcor_fill_line){ .iso = iso, .value = options->iso_values[i], .iso_number = i };
+    ++fill->line_count;
+  }
+}
+
 /* All nodes of the box's squares. */
-static void mcor_set_fill_extent(const mcor_context* context, mcor_cap_face* face)
+static mcor_status mcor_make_fill_nodes(mcor_context* context, mcor_filling* fill)
 {
   const mcor_box* box = &context->box;
-  *face = (mcor_cap_face){ .axis = 2, .across = { 0, 1 } };
+  mcor_cap_face* face = &fill->face;
+  *face = (mcor_cap_face){ .axis = 2, .upper = 1, .across = { 0, 1 } };
   for (int a = 0; a < 2; ++a)
   {
     face->first[a] = box->first[a];
     face->count[a] = box->last[a] - box->first[a] + 1;
-    face->tiles[a] = (face->count[a] - 1) / MCOR_CAP_TILE + 1;
   }
+  MCOR_TRY(mcor_note_cap_tiles(context, 1, face));
+  MCOR_TRY(mcor_make_cap_nodes(context, face));
+  fill->value = calloc((size_t)face->node_count, sizeof *fill->value);
+  fill->band = calloc((size_t)face->node_count, sizeof *fill->band);
+  return mcor_allocated(context, fill->value && fill->band);
+}
+
+static void mcor_take_fill_node(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
+{
+  mcor_filling* fill = data;
+  const int64_t to = points->to[i];
+  fill->value[to] = mcor_get_real(context, points->value, i);
+  fill->face.margin[to] = mcor_cap_margin(context, points, i);
+  fill->face.within[to] = mcor_cap_is_valid(context, points, i) ? MCOR_CAP_VALID : 0;
 }
 
 mcor_status mcor_begin_fill(mcor_context* context)
 {
-  const int count = context->run.options->iso_count;
-  if (!context->run.options->filled || context->box.is_empty)
+  const mcor_options* options = context->run.options;
+  if (!options->filled || options->iso_count == 0 || context->box.is_empty)
   {
     return MCOR_OK;
   }
-  context->run.fill = calloc(1, sizeof *context->run.fill);
-  if (context->run.fill)
-  {
-    context->run.fill->lines = calloc((size_t)count, sizeof *context->run.fill->lines);
-    context->run.fill->levels = malloc((size_t)count * sizeof *context->run.fill->levels);
-    context->run.fill->line_count = context->run.fill->lines ? count : 0;
-  }
-  MCOR_TRY(mcor_allocated(
-    context, context->run.fill && context->run.fill->lines && context->run.fill->levels));
-  mcor_set_fill_extent(context, &context->run.fill->face);
-  return mcor_note_cap_tiles(context, 1, &context->run.fill->face);
+  mcor_filling* fill = context->run.fill = calloc(1, sizeof *fill);
+  MCOR_TRY(mcor_allocated(context, fill));
+  fill->lines = calloc((size_t)options->iso_count, sizeof *fill->lines);
+  MCOR_TRY(mcor_allocated(context, fill->lines));
+  mcor_list_lines(context, fill);
+  const double least = fill->lines[0].value;
+  MCOR_RETURN_IF(options->field == MCOR_SUM && options->node_threshold == 0 && least <= 0, context,
+    MCOR_INVALID_ARGUMENT,
+    "The region above %g has no end: without a node threshold the sum is 0 in all empty space. "
+    "Use a node threshold, or iso values above 0, to fill it.",
+    least);
+  MCOR_TRY(mcor_make_fill_nodes(context, fill));
+  mcor_cap_points points = { .take = mcor_take_fill_node, .data = fill };
+  const mcor_status status = mcor_ask_cap_nodes(context, &fill->face, false, &points);
+  mcor_free_cap_points(context, &points);
+  return status;
 }
 
-/* Views of vertices. */
-enum
-{
-  MCOR_FILL_NODE,
-  MCOR_FILL_OFFSET,
-  MCOR_FILL_QUANTITY
-};
+/* ---- one iso value's lines ---- */
 
-static mcor_status mcor_take_fill_vertices(
-  mcor_context* context, void* const views[], mcor_fill_line* line)
+/* Those of the iso value under way, where they are to be filled; else NULL. */
+static mcor_fill_line* mcor_line_under_way(const mcor_context* context)
+{
+  mcor_filling* fill = context->run.fill;
+  for (int i = 0; fill && i < fill->line_count; ++i)
+  {
+    if (fill->lines[i].iso_number == context->run.iso_number)
+    {
+      return &fill->lines[i];
+    }
+  }
+  return NULL;
+}
+
+/* Reads the vertices. */
+static mcor_status mcor_read_vertices(mcor_context* context, const cl_int* nodes,
+  const void* offsets, const void* quantity, mcor_fill_line* line)
 {
   const double threshold = mcor_real_of(context, mcor_trim_threshold(context));
   for (int v = 0; v < line->vertex_count; ++v)
   {
-    const cl_int* node = (const cl_int*)views[MCOR_FILL_NODE] + 4 * (size_t)v;
+    const cl_int* node = nodes + 4 * (size_t)v;
     const int axis = node[3] & 3;
-    line->offset[v] = mcor_get_real(context, views[MCOR_FILL_OFFSET], 4 * (int64_t)v + axis);
-    line->margin[v] = mcor_is_trimmed(context)
-      ? mcor_get_real(context, views[MCOR_FILL_QUANTITY], v) - threshold
-      : INFINITY;
-    MCOR_TRY(mcor_allocated(
-      context, mcor_table_number(&line->edges, mcor_fill_key(node[0], node[1], axis), v) >= 0));
+    line->offset[v] = mcor_get_real(context, offsets, 4 * (int64_t)v + axis);
+    line->margin[v] = quantity ? mcor_get_real(context, quantity, v) - threshold : INFINITY;
+    const cl_int edge[3] = { node[0], node[1], axis };
+    MCOR_TRY(mcor_allocated(context, mcor_table_number(&line->edges, mcor_cap_key(edge), v) >= 0));
   }
   return MCOR_OK;
 }
@@ -82,74 +140,70 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   line->vertex_count = (int)n;
   line->cut_count = (int)cuts;
   MCOR_TRY(cuts > 0
-      ? mcor_read(context, &context->trim.distinct, 0, line->cuts, cuts * sizeof *line->cuts)
+      ? mcor_read(context, &context->mesh.cut_edges, 0, line->cuts, cuts * sizeof *line->cuts)
       : MCOR_OK);
-  void* views[3] = { NULL };
-  const mcor_mapping mappings[] = { [MCOR_FILL_NODE] = { &mesh->node, n * 4 * sizeof(cl_int),
-                                      &views[MCOR_FILL_NODE] },
-    [MCOR_FILL_OFFSET] = { &mesh->offset, n * 4 * real, &views[MCOR_FILL_OFFSET] },
-    [MCOR_FILL_QUANTITY] = { mcor_trim_quantity(context), n * real, &views[MCOR_FILL_QUANTITY] } };
+  void *node = NULL, *offset = NULL, *quantity = NULL;
+  const mcor_mapping mappings[] = { { &mesh->node, n * 4 * sizeof(cl_int), &node },
+    { &mesh->offset, n * 4 * real, &offset },
+    { mcor_trim_quantity(context), n * real, &quantity } };
   const int count = mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, mappings, count);
-  status = status == MCOR_OK ? mcor_take_fill_vertices(context, views, line) : status;
+  status = status == MCOR_OK ? mcor_read_vertices(context, node, offset, quantity, line) : status;
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Of the lowest layer of bricks. */
-static mcor_status mcor_take_fill_bricks(
-  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+/* Which nodes are above. Where marching has evaluated them its answer is taken, as lines are made of it. */
+static mcor_status mcor_take_level(mcor_context* context, mcor_filling* fill, mcor_fill_line* line)
 {
-  mcor_fill_line* line = data;
-  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
-                 *valid = views[MCOR_VIEW_VALID], *decisions = views[MCOR_VIEW_DECISIONS];
-  line->bricks = malloc((size_t)context->bricks.now.count * sizeof *line->bricks);
-  MCOR_TRY(mcor_allocated(context, line->bricks));
-  for (int slot = 0; slot < context->bricks.now.count; ++slot)
+  mcor_cap_face* face = &fill->face;
+  memset(face->state, 0, (size_t)face->node_count);
+  MCOR_TRY(mcor_take_cap_masks(context, face));
+  for (int64_t n = MCOR_CAP_TILE_NODES; n < face->node_count; ++n)
   {
-    const cl_int* at = (const cl_int*)views[MCOR_VIEW_BRICKS] + 4 * (size_t)slot;
-    const cl_ulong joined =
-      decisions ? decisions[(size_t)slot * MCOR_DECISION_MASKS + 2] & 0xffff : 0;
-    if (at[2] != 0)
-    {
-      continue;
-    }
-    line->bricks[line->brick_count++] = (mcor_fill_brick){ .x = at[0],
-      .y = at[1],
-      .known = (uint16_t)known[slot],
-      .above = (uint16_t)above[slot],
-      .valid = (uint16_t)valid[slot] };
-    for (int n = 0; n < 16; ++n)
-    {
-      const uint64_t key =
-        mcor_fill_key(at[0] * MCOR_BRICK + (n & 3), at[1] * MCOR_BRICK + (n >> 2), 0);
-      MCOR_TRY(mcor_allocated(
-        context, !(joined >> n & 1) || mcor_table_number(&line->joined, key, 0) >= 0));
-    }
+    const int state = face->state[n];
+    const bool known = state & MCOR_CAP_KNOWN;
+    fill->band[n] += known ? (state & MCOR_CAP_ABOVE) != 0 : fill->value[n] >= line->iso;
+    face->within[n] = known ? (uint8_t)(state & MCOR_CAP_VALID) : face->within[n];
+    const bool joined = state & MCOR_CAP_JOINED;
+    MCOR_TRY(
+      mcor_allocated(context, !joined || mcor_table_number(&line->joined, (uint64_t)n, 0) >= 0));
   }
   return MCOR_OK;
 }
 
-mcor_status mcor_take_lines(mcor_context* context, double iso)
+mcor_status mcor_take_lines(mcor_context* context)
 {
-  if (!context->run.fill)
+  mcor_fill_line* line = mcor_line_under_way(context);
+  if (!line)
   {
     return MCOR_OK;
   }
-  mcor_fill_line* line = &context->run.fill->lines[context->run.iso_number];
-  line->iso = mcor_real_of(context, iso);
-  line->value = context->run.options->iso_values[context->run.iso_number];
   MCOR_TRY(context->mesh.march_count > 0 ? mcor_take_vertices(context, line) : MCOR_OK);
-  return mcor_see_bricks(context, mcor_take_fill_bricks, line);
+  return mcor_take_level(context, context->run.fill, line);
 }
 
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base)
 {
-  mcor_fill_line* line =
-    context->run.fill ? &context->run.fill->lines[context->run.iso_number] : NULL;
+  mcor_fill_line* line = mcor_line_under_way(context);
   for (int v = 0; line && v < line->vertex_count + line->cut_count; ++v)
   {
     line->number[v] = mcor_is_output(scanned, v) ? (int32_t)(base + scanned[v]) : -1;
   }
+}
+
+/* ---- after all lines ---- */
+
+mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
+{
+  mcor_filling* fill = context->run.fill;
+  if (!fill)
+  {
+    return MCOR_OK;
+  }
+  free(fill->value); /* bands are known */
+  fill->value = NULL;
+  MCOR_TRY(mcor_fill_squares(context, fill));
+  return mcor_append_fill(context, fill, input, surface);
 }
 
 void mcor_end_fill(mcor_context* context)
@@ -160,7 +214,6 @@ void mcor_end_fill(mcor_context* context)
     mcor_fill_line* line = &fill->lines[i];
     mcor_table_free(&line->edges);
     mcor_table_free(&line->joined);
-    free(line->bricks);
     free(line->offset);
     free(line->margin);
     free(line->cuts);
@@ -171,11 +224,10 @@ void mcor_end_fill(mcor_context* context)
     mcor_free_cap_face(&fill->face);
     mcor_table_free(&fill->cut_of);
     free(fill->lines);
-    free(fill->levels);
+    free(fill->value);
     free(fill->band);
     free(fill->number);
     free(fill->cuts);
-    free(fill->cut_number);
     free(fill->triangles);
   }
   free(fill);

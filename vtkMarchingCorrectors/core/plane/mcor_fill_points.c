@@ -10,42 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Evaluations of a cut; it keeps off the ends of its part of an edge; how near to 0 a margin is a root. */
-#define MCOR_FILL_STEPS 10
-#define MCOR_FILL_CUT_MARGIN 1e-5
-#define MCOR_FILL_ROOT 2e-5
-
-/* Reals of the device for some points, and their nodes. */
-typedef struct mcor_fill_places
-{
-  cl_int* node;    /* [count][4] */
-  uint8_t* offset; /* [count][4] */
-} mcor_fill_places;
-
-static bool mcor_make_places(const mcor_context* context, size_t count, mcor_fill_places* places)
-{
-  places->node = calloc(count + 1, 4 * sizeof *places->node);
-  places->offset = calloc(count + 1, 4 * context->cl.real_size);
-  return places->node && places->offset;
-}
-
-static void mcor_free_places(mcor_fill_places* places)
-{
-  free(places->node);
-  free(places->offset);
-}
-
-/* Point i, `along` of an edge beyond node (u, v). */
-static void mcor_set_place(const mcor_context* context, mcor_fill_places* places, int64_t i,
-  cl_int u, cl_int v, int axis, double along)
-{
-  const float single = (float)along;
-  const size_t real = context->cl.real_size;
-  places->node[4 * i] = u;
-  places->node[4 * i + 1] = v;
-  memcpy(places->offset + (size_t)(4 * i + axis) * real,
-    real == sizeof single ? (const void*)&single : (const void*)&along, real);
-}
+#define MCOR_FILL_STEPS 10 /* evaluations of a cut */
 
 /* ---- Cuts ---- */
 
@@ -55,55 +20,28 @@ static double mcor_next_place(const mcor_fill_cut* cut, bool halve)
   const double s = cut->inside_margin / (cut->inside_margin - cut->outside_margin);
   const double part = halve || !(s >= 0 && s <= 1)
     ? 0.5
-    : fmin(fmax(s, MCOR_FILL_CUT_MARGIN), 1 - MCOR_FILL_CUT_MARGIN);
+    : fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
   return cut->inside + part * (cut->outside - cut->inside);
 }
 
-/* The margin at `at` narrows the part of the edge that a cut is on; of the end that stays twice it is taken
+/* The margin found narrows the part of the edge that a cut is on; of the end that stays twice it is taken
  * for half of what it is, so that it does not stay for ever. */
-static void mcor_narrow_cut(mcor_fill_cut* cut, double at, double margin, int* side)
+static void mcor_narrow_cut(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
+  mcor_fill_cut* cut = &((mcor_filling*)data)->cuts[points->to[i]];
+  const double at = mcor_get_real(context, points->offset, 4 * i + cut->axis);
+  const double margin = mcor_cap_margin(context, points, i);
   const bool inside = margin > 0;
   if (fabs(margin) < fabs(cut->margin))
   {
     cut->at = at;
     cut->margin = margin;
   }
-  if (inside)
-  {
-    cut->inside = at;
-    cut->inside_margin = margin;
-    cut->outside_margin *= *side == 1 ? 0.5 : 1;
-  }
-  else
-  {
-    cut->outside = at;
-    cut->outside_margin = margin;
-    cut->inside_margin *= *side == 0 ? 0.5 : 1;
-  }
-  *side = inside;
-}
-
-static mcor_status mcor_step_cuts(mcor_context* context, mcor_filling* fill, int step,
-  mcor_fill_places* places, mcor_cap_points* points, int* sides)
-{
-  mcor_cap_values v = { NULL };
-  for (int64_t i = 0; i < fill->cut_count; ++i)
-  {
-    const mcor_fill_cut* cut = &fill->cuts[i];
-    mcor_set_place(context, places, i, cut->u, cut->v, cut->axis, mcor_next_place(cut, step == 4));
-  }
-  mcor_status status = mcor_evaluate_cap_points(
-    context, places->node, places->offset, (int)fill->cut_count, 0, points, &v);
-  for (int64_t i = 0; i < fill->cut_count && status == MCOR_OK; ++i)
-  {
-    mcor_fill_cut* cut = &fill->cuts[i];
-    const double at = mcor_get_real(context, places->offset, 4 * i + cut->axis);
-    mcor_narrow_cut(cut, at, mcor_cap_margin(context, &v, i), &sides[i]);
-  }
-  const mcor_status ended = mcor_unmap_cap_values(context, points, &v);
-  status = status == MCOR_OK ? ended : status;
-  return status == MCOR_OK ? mcor_report_launch(context) : status;
+  *(inside ? &cut->inside : &cut->outside) = at;
+  *(inside ? &cut->inside_margin : &cut->outside_margin) = margin;
+  *(inside ? &cut->outside_margin : &cut->inside_margin) *= cut->last == inside ? 0.5 : 1;
+  cut->last = inside;
 }
 
 static int mcor_compare_cuts(const void* x, const void* y)
@@ -113,58 +51,60 @@ static int mcor_compare_cuts(const void* x, const void* y)
   return first ? first : (a->key[1] > b->key[1]) - (a->key[1] < b->key[1]);
 }
 
-/* Moves cuts to where the margin is 0, and puts them in order; of a preview, to where it would be. */
+/* Puts cuts in order, and moves them to where the margin is 0; of a preview, to where it would be. */
 static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fill)
 {
-  const size_t n = (size_t)fill->cut_count;
-  if (n == 0)
+  mcor_cap_points points = { .take = mcor_narrow_cut, .data = fill };
+  mcor_status status = MCOR_OK;
+  if (fill->cut_count > 0)
   {
-    return MCOR_OK;
+    qsort(fill->cuts, (size_t)fill->cut_count, sizeof *fill->cuts, mcor_compare_cuts);
   }
-  qsort(fill->cuts, n, sizeof *fill->cuts, mcor_compare_cuts);
-  for (size_t i = 0; i < n; ++i)
+  for (int64_t i = 0; i < fill->cut_count; ++i)
   {
     fill->cuts[i].at = mcor_next_place(&fill->cuts[i], false);
-    fill->cuts[i].margin = INFINITY;
   }
-  mcor_fill_places places = { NULL };
-  mcor_cap_points points = { .node = { 0 } };
-  int* sides = malloc(n * sizeof *sides);
-  mcor_status status = mcor_allocated(context, mcor_make_places(context, n, &places) && sides);
-  for (size_t i = 0; i < n && sides; ++i)
+  const int steps = context->run.options->preview ? 0 : MCOR_FILL_STEPS;
+  for (int step = 0; step < steps && status == MCOR_OK; ++step)
   {
-    sides[i] = -1;
+    for (int64_t i = 0; i < fill->cut_count && status == MCOR_OK; ++i)
+    {
+      const mcor_fill_cut* cut = &fill->cuts[i];
+      double offset[3] = { 0, 0, 0 };
+      offset[cut->axis] = mcor_next_place(cut, step == 4);
+      status = mcor_add_cap_point(context, &points, cut->node, offset, i);
+    }
+    status = status == MCOR_OK ? mcor_take_cap_points(context, &points) : status;
   }
-  for (int step = 0; step < MCOR_FILL_STEPS && !context->run.options->preview && status == MCOR_OK;
-       ++step)
-  {
-    status = mcor_step_cuts(context, fill, step, &places, &points, sides);
-  }
-  mcor_release_cap_points(context, &points);
-  mcor_free_places(&places);
-  free(sides);
+  mcor_free_cap_points(context, &points);
   return status;
 }
 
-/* ---- Numbers ---- */
+/* ---- Points ---- */
 
-/* Numbers the nodes that triangles use, by 4 x 4 of them, and returns how many there are. */
-static int64_t mcor_number_nodes(mcor_filling* fill)
+/* Marks the nodes that triangles use by 0, and returns how many there are. */
+static int64_t mcor_mark_nodes(const mcor_filling* fill)
 {
-  const mcor_cap_face* face = &fill->face;
-  const int *first = face->first, *size = face->count;
+  int32_t* number = fill->number;
   int64_t count = 0;
-  for (int64_t t = 0; t < fill->triangle_count; ++t)
+  for (int64_t i = 0; i < 3 * fill->triangle_count; ++i)
   {
-    for (int c = 0; c < 3; ++c)
+    const int32_t ref = fill->triangles[i / 3].corner[i % 3];
+    if (ref >= 0 && ref < fill->face.node_count && number[ref] < 0)
     {
-      const int32_t ref = fill->triangles[t].corner[c];
-      if (ref >= 0 && ref < fill->node_count)
-      {
-        fill->number[ref] = 0;
-      }
+      number[ref] = 0;
+      ++count;
     }
   }
+  return count;
+}
+
+/* The marked nodes, by 4 x 4 of them, and their numbers. */
+static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertex)
+{
+  int32_t* number = fill->number;
+  const mcor_cap_face* face = &fill->face;
+  const int *first = face->first, *size = face->count;
   for (int v = first[1] >> 2; v <= (first[1] + size[1] - 1) >> 2; ++v)
   {
     for (int u = first[0] >> 2; u <= (first[0] + size[0] - 1) >> 2; ++u)
@@ -174,204 +114,118 @@ static int64_t mcor_number_nodes(mcor_filling* fill)
         const int x = 4 * u + (n & 3) - first[0], y = 4 * v + (n >> 2) - first[1];
         const bool within = x >= 0 && x < size[0] && y >= 0 && y < size[1];
         const int64_t node = within ? mcor_cap_index(face, x, y) : 0;
-        if (within && fill->number[node] == 0)
+        if (number[node] == 0)
         {
-          fill->number[node] = (int32_t)++count; /* from 1 on, as yet */
+          number[node] = (int32_t)base++;
+          *vertex = (mcor_cap_vertex){ .node = { first[0] + x, first[1] + y, 0 },
+            .band = fill->band[node],
+            .flag = MCOR_CAP_FLAG };
+          vertex->key[0] = mcor_fill_node_key(vertex->node);
+          ++vertex;
         }
       }
     }
   }
-  return count;
 }
 
-static mcor_status mcor_number_fill(mcor_context* context, mcor_filling* fill, int64_t* nodes)
-{
-  fill->number = malloc((size_t)fill->node_count * sizeof *fill->number);
-  fill->cut_number = malloc((size_t)fill->cut_count * sizeof *fill->cut_number + 1);
-  MCOR_TRY(mcor_allocated(context, fill->number && fill->cut_number));
-  memset(fill->number, 0xff, (size_t)fill->node_count * sizeof *fill->number);
-  *nodes = mcor_number_nodes(fill);
-  MCOR_RETURN_IF(*nodes + fill->cut_count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "What is filled has %lld points; the limit is %d. Use a larger cube size.",
-    (long long)(*nodes + fill->cut_count), MCOR_COUNT_LIMIT);
-  for (int64_t i = 0; i < fill->cut_count; ++i)
-  {
-    fill->cut_number[fill->cuts[i].index] = (int32_t)(*nodes + i + 1);
-  }
-  return MCOR_OK;
-}
-
-/* ---- Points ---- */
-
-/* Of the points: places, flags, bands and keys. */
-typedef struct mcor_fill_list
-{
-  mcor_fill_places places;
-  uint8_t* flag;
-  int32_t* band;
-  uint64_t* keys; /* [count][2]; the mesh's, if they are asked for */
-  int64_t count;
-} mcor_fill_list;
-
-static void mcor_set_point(
-  mcor_fill_list* list, int64_t i, uint8_t flag, int band, uint64_t first_key, uint64_t second_key)
-{
-  list->flag[i] = flag;
-  list->band[i] = band;
-  if (list->keys)
-  {
-    list->keys[2 * i] = first_key;
-    list->keys[2 * i + 1] = second_key;
-  }
-}
-
-static void mcor_list_nodes(
-  const mcor_context* context, const mcor_filling* fill, mcor_fill_list* list)
-{
-  const mcor_cap_face* face = &fill->face;
-  for (int32_t t = 1; t <= face->tile_count; ++t)
-  {
-    for (int n = 0; n < MCOR_CAP_TILE * MCOR_CAP_TILE; ++n)
-    {
-      const int64_t node = (int64_t)t * MCOR_CAP_TILE * MCOR_CAP_TILE + n,
-                    i = fill->number[node] - 1;
-      const cl_int u = face->first[0] + face->place[t] % face->tiles[0] * MCOR_CAP_TILE +
-        n % MCOR_CAP_TILE,
-                   v = face->first[1] + face->place[t] / face->tiles[0] * MCOR_CAP_TILE +
-        n / MCOR_CAP_TILE;
-      if (i >= 0)
-      {
-        mcor_set_place(context, &list->places, i, u, v, 0, 0);
-        mcor_set_point(list, i, MCOR_CAP_FLAG, fill->band[node], mcor_fill_node_key(u, v), 0);
-      }
-    }
-  }
-}
-
-static void mcor_list_cuts(
-  const mcor_context* context, const mcor_filling* fill, int64_t nodes, mcor_fill_list* list)
+/* The cuts, and their numbers. */
+static void mcor_list_cuts(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertices)
 {
   for (int64_t i = 0; i < fill->cut_count; ++i)
   {
     const mcor_fill_cut* cut = &fill->cuts[i];
-    mcor_set_place(context, &list->places, nodes + i, cut->u, cut->v, cut->axis, cut->at);
-    mcor_set_point(list, nodes + i, fabs(cut->margin) < MCOR_FILL_ROOT ? 1 : 2, cut->band,
-      cut->key[0] | UINT64_C(1) << 62, cut->key[1]);
+    vertices[i] = (mcor_cap_vertex){ .node = { cut->node[0], cut->node[1], 0 },
+      .band = cut->band,
+      .key = { cut->key[0], cut->key[1] },
+      .flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2 };
+    vertices[i].offset[cut->axis] = cut->at;
+    fill->number[fill->face.node_count + cut->index] = (int32_t)(base + i);
   }
 }
 
-static mcor_status mcor_make_list(
-  mcor_context* context, const mcor_filling* fill, int64_t nodes, mcor_fill_list* list)
-{
-  const size_t n = (size_t)(nodes + fill->cut_count);
-  list->count = (int64_t)n;
-  list->flag = malloc(n + 1);
-  list->band = malloc(n * sizeof *list->band + 1);
-  bool good = mcor_make_places(context, n, &list->places) && list->flag && list->band;
-  if (context->run.options->point_keys)
-  {
-    mcor_end_caps(context);
-    context->mesh.cap_keys = list->keys = malloc(2 * n * sizeof *list->keys + 1);
-    good = good && list->keys;
-  }
-  if (good)
-  {
-    mcor_list_nodes(context, fill, list);
-    mcor_list_cuts(context, fill, nodes, list);
-  }
-  return mcor_allocated(context, good);
-}
-
-/* As a mesh that has these points only, all like those of caps. */
-static mcor_status mcor_make_fill_mesh(
-  mcor_context* context, const mcor_input* input, const mcor_fill_list* list)
+/* Appends vertices to the surface: as a mesh that has these only, all like those of caps. */
+static mcor_status mcor_append_fill_points(mcor_context* context, const mcor_input* input,
+  const mcor_cap_vertex* vertices, int64_t count, mcor_surface* surface)
 {
   mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)list->count, real = context->cl.real_size;
-  int groups;
-  mesh->march_count = mesh->cap_first = mesh->triangle_count = 0;
-  mesh->vertex_count = (int)n;
+  mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
   context->run.iso_number = context->run.options->iso_count;
   MCOR_TRY(mcor_load_attributes(context, input, 0));
-  MCOR_TRY(mcor_write(context, &mesh->node, list->places.node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve_vertices(context, (int)n));
-  MCOR_TRY(mcor_write(context, &mesh->offset, list->places.offset, n * 4 * real));
-  MCOR_TRY(mcor_write(context, &mesh->flag, list->flag, n));
-  MCOR_TRY(mcor_make_groups(context, &mesh->node, 0, (int)n, &groups));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node), MCOR_REAL(0),
-    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+  MCOR_TRY(mcor_reserve_vertices(context, (int)count));
+  MCOR_TRY(mcor_append_cap_vertices(context, vertices, count, 0));
   mcor_release(context, &context->attributes.sorted);
-  return MCOR_OK;
+  return mcor_append_output(context, input, 0, true, surface);
 }
 
 /* What of points is relative to an iso value: that of their band. */
 static void mcor_set_bands(
-  const mcor_filling* fill, const mcor_fill_list* list, int64_t base, mcor_surface* surface)
+  const mcor_filling* fill, const mcor_cap_vertex* vertices, int64_t base, mcor_surface* surface)
 {
-  for (int64_t i = 0; i < list->count; ++i)
+  for (int64_t i = base; i < surface->point_count; ++i)
   {
-    const mcor_fill_line* line = &fill->lines[fill->levels[list->band[i] - 1]];
+    const mcor_fill_line* line = &fill->lines[vertices[i - base].band - 1];
     if (surface->iso_value)
     {
-      surface->iso_value[base + i] = line->value;
+      surface->iso_value[i] = line->value;
     }
     if (surface->residual)
     {
-      surface->residual[base + i] = (float)(surface->residual[base + i] - line->iso);
+      surface->residual[i] = (float)(surface->residual[i] - line->iso);
     }
   }
 }
 
-static mcor_status mcor_append_fill_points(mcor_context* context, const mcor_filling* fill,
-  const mcor_input* input, int64_t nodes, mcor_surface* surface)
+/* The points that lines have not, and where they are in the surface. */
+static mcor_status mcor_make_fill_points(
+  mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const int64_t base = surface->point_count;
-  mcor_fill_list list = { .count = 0 };
-  mcor_status status = mcor_make_list(context, fill, nodes, &list);
-  if (list.count > 0)
+  const size_t refs = (size_t)(fill->face.node_count + fill->cut_count);
+  fill->number = malloc(refs * sizeof *fill->number);
+  MCOR_TRY(mcor_allocated(context, fill->number));
+  memset(fill->number, 0xff, refs * sizeof *fill->number);
+  const int64_t base = surface->point_count, nodes = mcor_mark_nodes(fill),
+                count = nodes + fill->cut_count;
+  MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "What is filled has %lld points; the limit is %d. Use a larger cube size.", (long long)count,
+    MCOR_COUNT_LIMIT);
+  MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
+    "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
+    (long long)(base + count));
+  if (count == 0)
   {
-    status = status == MCOR_OK ? mcor_make_fill_mesh(context, input, &list) : status;
-    status = status == MCOR_OK ? mcor_append_points(context, input, surface) : status;
+    return MCOR_OK;
   }
+  mcor_cap_vertex* vertices = malloc((size_t)count * sizeof *vertices);
+  MCOR_TRY(mcor_allocated(context, vertices));
+  mcor_list_nodes(fill, base, vertices);
+  mcor_list_cuts(fill, base + nodes, vertices + nodes);
+  const mcor_status status = mcor_append_fill_points(context, input, vertices, count, surface);
   if (status == MCOR_OK)
   {
-    mcor_set_bands(fill, &list, base, surface);
+    mcor_set_bands(fill, vertices, base, surface);
   }
-  mcor_free_places(&list.places);
-  free(list.flag);
-  free(list.band);
+  free(vertices);
   return status;
 }
 
 /* ---- Triangles ---- */
 
-static int32_t mcor_point_of(const mcor_filling* fill, int64_t base, int32_t ref)
-{
-  return ref < 0             ? -1 - ref
-    : ref < fill->node_count ? (int32_t)(base + fill->number[ref] - 1)
-                             : (int32_t)(base + fill->cut_number[ref - fill->node_count] - 1);
-}
-
 static mcor_status mcor_append_fill_triangles(
-  mcor_context* context, const mcor_filling* fill, int64_t base, mcor_surface* surface)
+  mcor_context* context, const mcor_filling* fill, mcor_surface* surface)
 {
   const int64_t first = surface->triangle_count, count = fill->triangle_count;
-  const size_t all = (size_t)(first + count);
-  int32_t* triangles = realloc(surface->triangles, all * 3 * sizeof *triangles + 1);
-  surface->triangles = triangles ? triangles : surface->triangles;
-  surface->band_value = malloc((size_t)count * sizeof *surface->band_value + 1);
-  MCOR_TRY(mcor_allocated(context, triangles && surface->band_value));
+  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));
+  MCOR_TRY(mcor_grow(context, (void**)&surface->band_value, 0, count, sizeof(double)));
   MCOR_TRY(mcor_extend_kept(context, count, surface));
   for (int64_t t = 0; t < count; ++t)
   {
     const mcor_fill_triangle* from = &fill->triangles[t];
     for (int c = 0; c < 3; ++c)
     {
-      triangles[3 * (first + t) + c] = mcor_point_of(fill, base, from->corner[c]);
+      const int32_t ref = from->corner[c];
+      surface->triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : fill->number[ref];
     }
-    surface->band_value[t] = fill->lines[fill->levels[from->band - 1]].value;
+    surface->band_value[t] = fill->lines[from->band - 1].value;
     if (context->box.kept)
     {
       context->box.kept[first + t] = 1;
@@ -379,8 +233,8 @@ static mcor_status mcor_append_fill_triangles(
     if (surface->triangle_keys)
     {
       uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (first + t);
-      key[0] = (uint64_t)fill->line_count;
-      key[1] = from->square & ~(UINT64_C(1) << 63);
+      key[0] = (uint64_t)context->run.options->iso_count;
+      key[1] = from->square;
     }
   }
   surface->triangle_count += count;
@@ -390,13 +244,7 @@ static mcor_status mcor_append_fill_triangles(
 mcor_status mcor_append_fill(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const int64_t base = surface->point_count;
-  int64_t nodes = 0;
   MCOR_TRY(mcor_place_fill_cuts(context, fill));
-  MCOR_TRY(mcor_number_fill(context, fill, &nodes));
-  MCOR_RETURN_IF(base + nodes + fill->cut_count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
-    (long long)(base + nodes + fill->cut_count));
-  MCOR_TRY(mcor_append_fill_points(context, fill, input, nodes, surface));
-  return mcor_append_fill_triangles(context, fill, base, surface);
+  MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
+  return mcor_append_fill_triangles(context, fill, surface);
 }

@@ -20,7 +20,8 @@ typedef struct mcor_fill_corner
   int band;   /* of the part */
   bool done;  /* it is in a polygon */
   /* Where the part is: on the edge of this lower node, the part-th from there; where it begins and ends. */
-  cl_int u, v, axis, part;
+  cl_int node[3];
+  int axis, part;
   double from, to;
 } mcor_fill_corner;
 
@@ -39,7 +40,8 @@ typedef struct mcor_fill_job
   mcor_context* context;
   mcor_filling* fill;
   uint64_t square;
-  mcor_fill_corner* border; /* [4 + 4 * level_count] */
+  int64_t lowest;           /* index of its lowest node */
+  mcor_fill_corner* border; /* [4 + 4 * line_count] */
   int count;
   cl_int u, v;
 } mcor_fill_job;
@@ -47,16 +49,23 @@ typedef struct mcor_fill_job
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
 {
   return mcor_fail(context, MCOR_DEVICE_ERROR,
-    "What is filled does not fit the lines at node %d %d. Please report it.", at->u, at->v);
+    "What is filled does not fit the lines at node %d %d. Please report it.", at->node[0],
+    at->node[1]);
 }
 
 /* ---- The border ---- */
 
+/* Of a lattice edge by its lower node, and of a part of it. */
+static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
+{
+  const cl_int edge[3] = { corner->node[0], corner->node[1], corner->axis };
+  return mcor_cap_key(edge) ^ (uint64_t)part << 44;
+}
+
 static mcor_status mcor_add_vertex(mcor_fill_job* job, int level, mcor_fill_corner* corner)
 {
-  const mcor_fill_line* line = &job->fill->lines[job->fill->levels[level]];
-  const int32_t v =
-    mcor_find_number(&line->edges, mcor_fill_key(corner->u, corner->v, corner->axis));
+  const mcor_fill_line* line = &job->fill->lines[level];
+  const int32_t v = mcor_find_number(&line->edges, mcor_edge_part(corner, 0));
   if (v < 0 || (line->margin[v] > 0 && line->number[v] < 0))
   {
     return mcor_does_not_fit(job->context, corner);
@@ -86,8 +95,7 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
       .level = -1,
       .falls = last < first,
       .band = last < first ? first - i : first + i,
-      .u = face->first[0] + job->u + (s == 1),
-      .v = face->first[1] + job->v + (s == 2),
+      .node = { face->first[0] + job->u + (s == 1), face->first[1] + job->v + (s == 2), 0 },
       .axis = s & 1,
       .part = s < 2 ? i : parts - i,
       .from = s < 2 ? 0 : 1 };
@@ -107,8 +115,8 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
 static int mcor_fill_mate(const mcor_fill_job* job, int i)
 {
   const mcor_fill_corner* corners = job->border;
-  const mcor_fill_line* line = &job->fill->lines[job->fill->levels[corners[i].level]];
-  const bool joined = mcor_find_number(&line->joined, job->square) >= 0;
+  const mcor_fill_line* line = &job->fill->lines[corners[i].level];
+  const bool joined = mcor_find_number(&line->joined, (uint64_t)job->lowest) >= 0;
   const int step = corners[i].falls == joined ? 1 : job->count - 1;
   int mate = (i + step) % job->count;
   while (corners[mate].level != corners[i].level)
@@ -134,56 +142,44 @@ static mcor_status mcor_add_fan(mcor_fill_job* job, const int32_t* refs, int cou
   return MCOR_OK;
 }
 
-static int mcor_compare_fill_keys(const void* x, const void* y)
-{
-  const cl_ulong *a = x, *b = y;
-  return (*a > *b) - (*a < *b);
-}
-
 /* Where trimming cuts a line. */
 static mcor_status mcor_find_line_cut(
   mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
 {
-  const mcor_fill_line* line = &job->fill->lines[job->fill->levels[p->level]];
-  const cl_ulong low = (cl_ulong)(p->vertex < q->vertex ? p->vertex : q->vertex),
-                 high = (cl_ulong)(p->vertex < q->vertex ? q->vertex : p->vertex),
-                 key = low << 32 | high;
-  const cl_ulong* cut = line->cut_count > 0
-    ? bsearch(&key, line->cuts, (size_t)line->cut_count, sizeof key, mcor_compare_fill_keys)
-    : NULL;
-  const int32_t number = cut ? line->number[line->vertex_count + (cut - line->cuts)] : -1;
+  const mcor_fill_line* line = &job->fill->lines[p->level];
+  const int cut = mcor_find_cut(line->cuts, line->cut_count, p->vertex, q->vertex);
+  const int32_t number = cut < 0 ? -1 : line->number[line->vertex_count + cut];
   *ref = -1 - number;
   return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
 }
 
 /* Where it cuts the border's part from corner p to q. */
-static mcor_status mcor_find_cut(
+static mcor_status mcor_find_border_cut(
   mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
 {
   mcor_filling* fill = job->fill;
-  const uint64_t edge = mcor_fill_key(p->u, p->v, p->axis);
-  /* Keys of a map are one number: parts are told apart above those of edges. */
-  const uint64_t key = edge ^ (uint64_t)p->part << 44;
-  const int32_t index = mcor_table_number(&fill->cut_of, key, (int32_t)fill->cut_count);
+  const int32_t index =
+    mcor_table_number(&fill->cut_of, mcor_edge_part(p, p->part), (int32_t)fill->cut_count);
   MCOR_TRY(mcor_allocated(job->context, index >= 0));
   MCOR_TRY(mcor_make_room(
     job->context, (void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts));
-  *ref = (int32_t)(fill->node_count + index);
+  *ref = (int32_t)(fill->face.node_count + index);
   if (index == fill->cut_count)
   {
     const bool inside = p->margin > 0;
-    fill->cuts[fill->cut_count++] = (mcor_fill_cut){
-      .key = { mcor_fill_node_key(p->u, p->v), (uint64_t)p->axis << 32 | (uint32_t)p->part },
-      .u = p->u,
-      .v = p->v,
-      .axis = p->axis,
-      .inside = inside ? p->from : p->to,
-      .outside = inside ? p->to : p->from,
-      .inside_margin = inside ? p->margin : q->margin,
-      .outside_margin = inside ? q->margin : p->margin,
-      .band = p->band,
-      .index = index
-    };
+    fill->cuts[fill->cut_count++] =
+      (mcor_fill_cut){ .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
+                         (uint64_t)p->axis << 32 | (uint32_t)p->part },
+        .node = { p->node[0], p->node[1], 0 },
+        .axis = p->axis,
+        .inside = inside ? p->from : p->to,
+        .outside = inside ? p->to : p->from,
+        .inside_margin = inside ? p->margin : q->margin,
+        .outside_margin = inside ? q->margin : p->margin,
+        .margin = INFINITY,
+        .last = -1,
+        .band = p->band,
+        .index = index };
   }
   return MCOR_OK;
 }
@@ -207,7 +203,7 @@ static mcor_status mcor_add_polygon(
     if (inside != (p->margin > 0))
     {
       MCOR_TRY(before->is_line ? mcor_find_line_cut(job, p, q, &run[length])
-                               : mcor_find_cut(job, p, q, &run[length]));
+                               : mcor_find_border_cut(job, p, q, &run[length]));
       ++length;
     }
     if (inside)
@@ -250,11 +246,29 @@ static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
 
 /* ---- Squares ---- */
 
-/* Square (u, v) of the face, whose nodes are valid. */
-static mcor_status mcor_fill_square(mcor_fill_job* job)
+/* Whether the nodes are valid, and some above the least level. */
+static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
 {
+  bool valid = true, above = false;
+  for (int c = 0; c < 4; ++c)
+  {
+    const int64_t node = mcor_cap_index(&fill->face, u + (c & 1), v + (c >> 1));
+    valid = valid && (fill->face.within[node] & MCOR_CAP_VALID);
+    above = above || fill->band[node] > 0;
+  }
+  return valid && above;
+}
+
+static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face, int u, int v)
+{
+  mcor_fill_job* job = data;
+  job->u = u;
+  job->v = v;
+  job->square = (uint64_t)(face->first[1] + v) << 21 | (uint64_t)(face->first[0] + u);
+  job->lowest = mcor_cap_index(face, u, v);
   job->count = 0;
-  for (int s = 0; s < 4; ++s)
+  const int sides = mcor_is_filled(job->fill, u, v) ? 4 : 0;
+  for (int s = 0; s < sides; ++s)
   {
     MCOR_TRY(mcor_add_border_side(job, s));
   }
@@ -266,32 +280,10 @@ static mcor_status mcor_fill_square(mcor_fill_job* job)
   return MCOR_OK;
 }
 
-/* Whether the nodes are valid, and some above the least level. */
-static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
-{
-  bool valid = true, above = false;
-  for (int c = 0; c < 4; ++c)
-  {
-    const int64_t node = mcor_cap_index(&fill->face, u + (c & 1), v + (c >> 1));
-    valid = valid && (fill->face.state[node] & MCOR_CAP_VALID);
-    above = above || fill->band[node] > 0;
-  }
-  return valid && above;
-}
-
-static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face, int u, int v)
-{
-  mcor_fill_job* job = data;
-  job->u = u;
-  job->v = v;
-  job->square = mcor_fill_key(face->first[0] + u, face->first[1] + v, 0);
-  return mcor_is_filled(job->fill, u, v) ? mcor_fill_square(job) : MCOR_OK;
-}
-
 mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
 {
   mcor_fill_job job = { .context = context, .fill = fill };
-  job.border = malloc((4 + 4 * (size_t)fill->level_count) * sizeof *job.border);
+  job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
   MCOR_TRY(mcor_allocated(context, job.border));
   const mcor_status status =
     mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job);

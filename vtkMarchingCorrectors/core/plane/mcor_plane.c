@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: the plane, and how coordinates are turned. */
+/* Two dimensions: the plane, how coordinates are turned, and what is done otherwise in the plane. */
 
 #include "mcor_plane.h"
+#include "mcor_adaptive.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
@@ -350,28 +351,23 @@ mcor_status mcor_flatten(
   return mcor_has_positions(input) && !is_flat ? mcor_flatten_positions(context, flat) : MCOR_OK;
 }
 
+void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)
+{
+  char from[3 * sizeof(double)], *to = numbers;
+  memcpy(from, numbers, 3 * width);
+  for (int a = 0; a < 3; ++a)
+  {
+    memcpy(to + (size_t)mcor_plane_axis(plane, a) * width, from + (size_t)a * width, width);
+  }
+}
+
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant)
 {
   for (int64_t i = 0; i < count && numbers; ++i)
   {
-    double* x = numbers + 3 * i;
-    const double u = x[0], v = x[1];
-    x[mcor_plane_axis(plane, 0)] = u;
-    x[mcor_plane_axis(plane, 1)] = v;
-    x[mcor_plane_axis(plane, 2)] = constant;
-  }
-}
-
-void mcor_unflatten_floats(const mcor_plane* plane, float* numbers, int64_t count)
-{
-  for (int64_t i = 0; i < count && numbers; ++i)
-  {
-    float* x = numbers + 3 * i;
-    const float u = x[0], v = x[1];
-    x[mcor_plane_axis(plane, 0)] = u;
-    x[mcor_plane_axis(plane, 1)] = v;
-    x[mcor_plane_axis(plane, 2)] = 0;
+    numbers[3 * i + 2] = constant;
+    mcor_turn_back(plane, numbers + 3 * i, sizeof *numbers);
   }
 }
 
@@ -393,16 +389,38 @@ void mcor_turn_measure(mcor_measure* measure, bool back)
 
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* s)
 {
-  double extent[3];
-  int64_t origin[3], cells[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const int axis = mcor_plane_axis(plane, a);
-    extent[axis] = s->fluid_extent[a];
-    origin[axis] = s->lattice_origin[a];
-    cells[axis] = s->lattice_cells[a];
-  }
-  memcpy(s->fluid_extent, extent, sizeof extent);
-  memcpy(s->lattice_origin, origin, sizeof origin);
-  memcpy(s->lattice_cells, cells, sizeof cells);
+  mcor_turn_back(plane, s->fluid_extent, sizeof *s->fluid_extent);
+  mcor_turn_back(plane, s->lattice_origin, sizeof *s->lattice_origin);
+  mcor_turn_back(plane, s->lattice_cells, sizeof *s->lattice_cells);
+}
+
+/* ---- Marching squares, see mcor_plane.cl ---- */
+
+mcor_status mcor_spread_signs(mcor_context* context)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  return !mcor_is_plane(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_plane_spread", MCOR_LIGHT, now->count, MCOR_INT(now->count),
+        MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
+}
+
+/* Requests the bricks that are not certain. */
+mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso)
+{
+  const mcor_bricks* bricks = &context->bricks;
+  return MCOR_LAUNCH(context, "mcor_plane_seeds", MCOR_HEAVY,
+    (size_t)bricks->block_count * MCOR_BLOCK_REGIONS, MCOR_GRID_ARGS(context),
+    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
+    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states),
+    MCOR_BUFFER(&bricks->seed_bits));
+}
+
+mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)
+{
+  const int count = context->bricks.now.count;
+  return !mcor_is_plane(context) ? MCOR_OK
+                                 : MCOR_LAUNCH(context, "mcor_plane_squares", MCOR_LIGHT, count,
+                                     MCOR_INT(count), MCOR_BUFFER(cells));
 }

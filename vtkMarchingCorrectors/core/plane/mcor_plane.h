@@ -51,15 +51,16 @@ static inline char mcor_axis_letter(const mcor_context* context, int a)
   return "xyz"[mcor_plane_axis(&context->plane, a)];
 }
 
-/* Turns [count][3] numbers back, in place. constant: what the constant coordinate becomes. */
+/* Turns three numbers of `width` bytes back, in place; the same of [count][3], where the constant coordinate becomes
+ * `constant`. */
+void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
-void mcor_unflatten_floats(const mcor_plane* plane, float* numbers, int64_t count);
 
 /* Normalisation of the SPH kernel in two dimensions over that in three. */
 double mcor_plane_factor(mcor_sph_kernel kernel);
 
-/* mcor_plane_march.c: what nodes in the plane are, those above are too; nothing else is a brick. */
+/* Marching squares: what nodes in the plane are, those above are too; nothing else is a brick. */
 mcor_status mcor_spread_signs(mcor_context* context);
 mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso);
 /* Of all cells those that are squares. */

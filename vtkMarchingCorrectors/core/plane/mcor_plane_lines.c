@@ -176,13 +176,7 @@ static void mcor_keep_filled(mcor_surface* surface)
   {
     if (!mcor_is_line(surface->triangles + 3 * t))
     {
-      memmove(surface->triangles + 3 * count, surface->triangles + 3 * t, 3 * sizeof(int32_t));
-      for (int k = 0; k < MCOR_TRIANGLE_KEY && surface->triangle_keys; ++k)
-      {
-        surface->triangle_keys[MCOR_TRIANGLE_KEY * count + k] =
-          surface->triangle_keys[MCOR_TRIANGLE_KEY * t + k];
-      }
-      ++count;
+      mcor_move_triangle(surface, t, count++);
     }
   }
   if (!filled)
@@ -195,12 +189,16 @@ static void mcor_keep_filled(mcor_surface* surface)
   surface->triangle_count = count;
 }
 
-/* Of triangles in the plane. */
-static void mcor_plane_normals(const mcor_plane* plane, mcor_surface* surface)
+/* Turns normals back; of what is filled they are those of triangles in the plane. */
+static void mcor_turn_normals(const mcor_plane* plane, mcor_surface* surface)
 {
-  for (int64_t i = 0; i < 3 * surface->point_count && surface->normals; ++i)
+  for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
   {
-    surface->normals[i] = i % 3 == mcor_plane_axis(plane, 2) ? 1 : 0;
+    float* n = surface->normals + 3 * i;
+    n[2] = surface->band_value ? 1 : 0;
+    n[0] = surface->band_value ? 0 : n[0];
+    n[1] = surface->band_value ? 0 : n[1];
+    mcor_turn_back(plane, n, sizeof *n);
   }
 }
 
@@ -243,10 +241,6 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   mcor_measure_lines(surface, 0, 1);
   mcor_unflatten_doubles(plane, surface->points, surface->point_count, plane->at);
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
-  mcor_unflatten_floats(plane, surface->normals, surface->point_count);
-  if (surface->band_value)
-  {
-    mcor_plane_normals(plane, surface);
-  }
+  mcor_turn_normals(plane, surface);
   return MCOR_OK;
 }

@@ -4,14 +4,13 @@
 /* Nodes where fluid meets solids: on which side of the iso value they are, and how far from where the solids'
  * share of the weight is too great. Where marching has evaluated them its answer is taken. */
 
-#include "mcor_box.h"
 #include "mcor_cap_job.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define MCOR_WALL_LIMIT (1 << 20) /* bricks */
-#define MCOR_WALL_BATCH (1 << 12) /* those evaluated at a time */
 
 void mcor_free_wall(mcor_wall* wall)
 {
@@ -19,39 +18,18 @@ void mcor_free_wall(mcor_wall* wall)
   free(wall->bricks);
 }
 
-static uint64_t mcor_wall_key(const int at[3])
-{
-  return (uint64_t)at[0] | (uint64_t)at[1] << 21 | (uint64_t)at[2] << 42 | UINT64_C(1) << 63;
-}
-
 const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[3])
 {
-  const int32_t number = mcor_find_number(&wall->index, mcor_wall_key(at));
+  const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(at));
   return number < 0 ? NULL : &wall->bricks[number];
 }
 
 /* ---- which bricks ---- */
 
-/* The nodes of caps: of the box and its ring. */
-static void mcor_set_wall_extent(const mcor_context* context, mcor_wall* wall)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const mcor_box* box = &context->box;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int lower = mcor_cap_plane(context, a, 0), upper = mcor_cap_plane(context, a, 1);
-    const int first = lower >= 0 ? lower : (int)lattice->first[a];
-    const int last = upper >= 0 ? upper : (int)lattice->last[a];
-    const int low = box->first[a] - MCOR_BOX_RING, high = box->last[a] + MCOR_BOX_RING;
-    wall->first[a] = low > first ? low : first;
-    wall->end[a] = (high < last ? high : last) + 1;
-  }
-}
-
 static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
 {
   const int32_t next = (int32_t)wall->count;
-  const int32_t number = mcor_table_number(&wall->index, mcor_wall_key(at), next);
+  const int32_t number = mcor_table_number(&wall->index, mcor_cap_key(at), next);
   if (number != next)
   {
     return mcor_allocated(context, number >= 0);
@@ -70,18 +48,20 @@ static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, c
   return MCOR_OK;
 }
 
-/* Of a particle at x, in nodes: adds the bricks that it reaches if it is solid; else notes it at those that
- * there are. A cell is looked at from its lowest node: one node more; another one for rounding. */
+/* Of a particle at x, in nodes: adds the bricks that it reaches if it is solid; else, once these are there, notes it
+ * at them. A cell is looked at from its lowest node: one node more; another one for rounding. */
 static mcor_status mcor_reach_wall(
-  mcor_context* context, mcor_wall* wall, const double x[3], double reach, bool is_solid)
+  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
 {
+  mcor_wall* wall = data;
   int from[3], to[3], at[3];
   for (int a = 0; a < 3; ++a)
   {
+    const int* range = wall->range[a];
     const double nodes = reach / mcor_edge_of(&context->lattice, a) + 2;
-    from[a] = (int)fmax(floor(x[a] - nodes), wall->first[a]) / MCOR_BRICK;
-    to[a] = (int)fmin(ceil(x[a] + nodes), wall->end[a] - 1);
-    to[a] = to[a] < wall->first[a] ? -1 : to[a] / MCOR_BRICK;
+    from[a] = (int)fmax(floor(x[a] - nodes), range[0]) / MCOR_BRICK;
+    to[a] = (int)fmin(ceil(x[a] + nodes), range[1]);
+    to[a] = to[a] < range[0] || is_solid == wall->has_bricks ? -1 : to[a] / MCOR_BRICK;
   }
   for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
   {
@@ -89,28 +69,13 @@ static mcor_status mcor_reach_wall(
     {
       for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
       {
-        const int32_t found = is_solid ? -1 : mcor_find_number(&wall->index, mcor_wall_key(at));
+        const int32_t found = is_solid ? -1 : mcor_find_number(&wall->index, mcor_cap_key(at));
         MCOR_TRY(is_solid ? mcor_add_wall_brick(context, wall, at) : MCOR_OK);
         if (found >= 0)
         {
           wall->bricks[found].has_fluid = true;
         }
       }
-    }
-  }
-  return MCOR_OK;
-}
-
-static mcor_status mcor_reach_walls(
-  mcor_context* context, mcor_wall* wall, const mcor_cap_particles* particles, bool solids)
-{
-  for (int64_t i = 0; i < context->grid.count; ++i)
-  {
-    if ((mcor_get_real(context, particles->views[4], i) == 0) == solids)
-    {
-      double x[3];
-      const double reach = mcor_place_cap_particle(context, particles, i, x);
-      MCOR_TRY(mcor_reach_wall(context, wall, x, reach, solids));
     }
   }
   return MCOR_OK;
@@ -141,102 +106,75 @@ static mcor_status mcor_sort_wall(mcor_context* context, mcor_wall* wall)
   mcor_table_free(&wall->index);
   for (int64_t i = 0; i < count; ++i)
   {
-    const uint64_t key = mcor_wall_key(wall->bricks[i].at);
+    const uint64_t key = mcor_cap_key(wall->bricks[i].at);
     MCOR_TRY(mcor_allocated(context, mcor_table_number(&wall->index, key, (int32_t)i) >= 0));
   }
   return MCOR_OK;
 }
 
-static mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall)
-{
-  mcor_cap_particles particles = { { NULL } };
-  mcor_status status = mcor_map_cap_particles(context, &particles);
-  status = status == MCOR_OK ? mcor_reach_walls(context, wall, &particles, true) : status;
-  status = status == MCOR_OK ? mcor_reach_walls(context, wall, &particles, false) : status;
-  status = mcor_unmap_cap_particles(context, &particles, status);
-  return status == MCOR_OK ? mcor_sort_wall(context, wall) : status;
-}
-
 /* ---- what marching knows ---- */
 
-static mcor_status mcor_take_wall_masks(
-  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
 {
   const mcor_wall* wall = data;
-  const cl_int* bricks = views[MCOR_VIEW_BRICKS];
-  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
-                 *used = views[MCOR_VIEW_USED], *decisions = views[MCOR_VIEW_DECISIONS];
-  for (int slot = 0; slot < context->bricks.now.count; ++slot)
+  const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(seen->at));
+  if (number >= 0)
   {
-    const int32_t number = mcor_find_number(&wall->index, mcor_wall_key(bricks + 4 * (size_t)slot));
-    if (number >= 0)
-    {
-      mcor_wall_brick* brick = &wall->bricks[number];
-      brick->is_known = known[slot] != 0;
-      brick->above = known[slot] & above[slot];
-      brick->used = used[slot];
-      for (size_t a = 0; a < 3 && decisions; ++a)
-      {
-        brick->joined[a] = decisions[(size_t)slot * MCOR_DECISION_MASKS + a];
-      }
-    }
+    mcor_wall_brick* brick = &wall->bricks[number];
+    brick->is_known = seen->known != 0;
+    brick->above = seen->above;
+    brick->used = seen->used;
+    memcpy(brick->joined, seen->joined, sizeof seen->joined);
   }
-  return MCOR_OK;
 }
 
 /* ---- what it does not know ---- */
 
-/* Evaluates nodes that are needed, of bricks [first, last): those above, and where it is not known which are. */
-static mcor_status mcor_fill_wall_nodes(mcor_context* context, mcor_wall* wall, int64_t first,
-  int64_t last, cl_int* nodes, int64_t* to, double iso, mcor_cap_points* points)
+/* Takes node points->to[i], counted through all bricks. */
+static void mcor_take_wall_node(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
-  int count = 0;
-  for (int64_t i = first * MCOR_BRICK_NODES; i < last * MCOR_BRICK_NODES; ++i)
+  const mcor_wall* wall = data;
+  mcor_wall_brick* brick = &wall->bricks[points->to[i] / MCOR_BRICK_NODES];
+  const int n = (int)(points->to[i] % MCOR_BRICK_NODES);
+  const bool is_above = brick->is_known || mcor_get_real(context, points->value, i) >= 0;
+  brick->above |= (cl_ulong)is_above << n;
+  brick->margin[n] = mcor_cap_margin(context, points, i);
+}
+
+/* Evaluates the nodes above, and those of which it is not known whether they are. */
+static mcor_status mcor_evaluate_wall(
+  mcor_context* context, mcor_wall* wall, mcor_cap_points* points)
+{
+  points->take = mcor_take_wall_node;
+  points->data = wall;
+  for (int64_t i = 0; i < wall->count * MCOR_BRICK_NODES; ++i)
   {
     const mcor_wall_brick* brick = &wall->bricks[i / MCOR_BRICK_NODES];
     const int n = (int)(i % MCOR_BRICK_NODES);
     if (!brick->is_known || (brick->above >> n & 1))
     {
+      cl_int node[3];
       for (int a = 0; a < 3; ++a)
       {
-        nodes[4 * (size_t)count + (size_t)a] = brick->at[a] * MCOR_BRICK + (n >> 2 * a & 3);
+        node[a] = brick->at[a] * MCOR_BRICK + (n >> 2 * a & 3);
       }
-      nodes[4 * (size_t)count + 3] = 0;
-      to[count++] = i;
+      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, i));
     }
   }
-  mcor_cap_values v = { NULL, NULL, NULL, NULL };
-  mcor_status status =
-    count > 0 ? mcor_evaluate_cap_points(context, nodes, NULL, count, iso, points, &v) : MCOR_OK;
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    mcor_wall_brick* brick = &wall->bricks[to[i] / MCOR_BRICK_NODES];
-    const int n = (int)(to[i] % MCOR_BRICK_NODES);
-    const bool is_above = brick->is_known || mcor_get_real(context, v.value, i) >= 0;
-    brick->above |= (cl_ulong)is_above << n;
-    brick->margin[n] = mcor_cap_margin(context, &v, i);
-  }
-  const mcor_status unmapped = mcor_unmap_cap_values(context, points, &v);
-  return status == MCOR_OK ? unmapped : status;
+  return mcor_take_cap_points(context, points);
 }
 
-mcor_status mcor_load_wall(
-  mcor_context* context, double iso, mcor_cap_points* points, mcor_wall* wall)
+mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall)
 {
-  mcor_set_wall_extent(context, wall);
-  MCOR_TRY(mcor_find_wall(context, wall));
-  MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
-  const size_t room = (size_t)MCOR_WALL_BATCH * MCOR_BRICK_NODES;
-  cl_int* nodes = malloc(4 * room * sizeof *nodes);
-  int64_t* to = malloc(room * sizeof *to);
-  mcor_status status = mcor_allocated(context, nodes && to);
-  for (int64_t i = 0; i < wall->count && status == MCOR_OK; i += MCOR_WALL_BATCH)
+  for (int a = 0; a < 3; ++a)
   {
-    const int64_t end = i + MCOR_WALL_BATCH < wall->count ? i + MCOR_WALL_BATCH : wall->count;
-    status = mcor_fill_wall_nodes(context, wall, i, end, nodes, to, iso, points);
-    status = status == MCOR_OK ? mcor_report_launch(context) : status;
+    mcor_cap_range(context, a, wall->range[a]);
   }
-  free(nodes);
-  free(to);
-  return status;
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  wall->has_bricks = true;
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  MCOR_TRY(mcor_sort_wall(context, wall));
+  MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
+  return mcor_evaluate_wall(context, wall, points);
 }

@@ -1,20 +1,263 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes of one side of a period: on which side of the iso value they are, and whether they are valid.
- * Where marching has evaluated them its answer is taken, so that a cap fits the surface; elsewhere
- * no surface is near. */
+/* One side of a period or a box, and what its nodes are: on which side of the iso value, and whether they are valid.
+ * Where marching has evaluated them its answer is taken, so that a cap fits the surface; elsewhere no surface is near.
+ * There are nodes where tiles are, squares of nodes that some particle reaches. Where none does there is nothing to
+ * close, so that a side takes memory and time as far as there is something at it. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
-#include "mcor_plane.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* Points evaluated at a time. */
-#define MCOR_CAP_BATCH (1 << 18)
+/* ---- extent and tiles ---- */
+
+/* Of which a side's directory has places, at most. */
+#define MCOR_CAP_PLACE_LIMIT (1 << 24)
+
+/* Tiles of a side at most: 4 to 64 million nodes. Where few particles reach more, a smoothing length or the cube
+ * size is a mistake. */
+static int mcor_tile_limit(const mcor_context* context)
+{
+  const int particles = context->grid.count / 2;
+  return particles < 1 << 14 ? 1 << 14 : particles < 1 << 18 ? particles : 1 << 18;
+}
+
+int mcor_cap_plane(const mcor_context* context, int axis, int upper)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const mcor_options* options = context->run.options;
+  const bool periodic = lattice->period[axis] > 0;
+  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
+  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
+  const int *lower_side = options->ranks ? box->whole_first : box->first,
+            *upper_side = options->ranks ? box->whole_last : box->last;
+  const int side = upper ? upper_side[axis] : lower_side[axis];
+  const int last = (int)(upper ? end : begin);
+  if (options->capping == MCOR_CAP_BOX && side != last)
+  {
+    return side;
+  }
+  return options->capping && periodic ? last : -1;
+}
+
+bool mcor_has_cap_side(const mcor_context* context, int axis, int upper)
+{
+  const int plane = mcor_cap_plane(context, axis, upper);
+  return plane >= 0 && plane == (upper ? context->box.last : context->box.first)[axis];
+}
+
+bool mcor_makes_caps(const mcor_context* context)
+{
+  bool makes = false;
+  for (int i = 0; i < 6; ++i)
+  {
+    makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
+  }
+  return makes || mcor_caps_walls(context);
+}
+
+void mcor_free_cap_face(mcor_cap_face* face)
+{
+  free(face->tile);
+  free(face->place);
+  free(face->state);
+  free(face->within);
+  free(face->margin);
+}
+
+void mcor_cap_range(const mcor_context* context, int axis, int range[2])
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const int lower = mcor_cap_plane(context, axis, 0), higher = mcor_cap_plane(context, axis, 1);
+  const int first = lower >= 0 ? lower : (int)lattice->first[axis];
+  const int last = higher >= 0 ? higher : (int)lattice->last[axis];
+  const int low = box->first[axis] - MCOR_BOX_RING, high = box->last[axis] + MCOR_BOX_RING;
+  range[0] = low > first ? low : first;
+  range[1] = high < last ? high : last;
+}
+
+static void mcor_set_cap_extent(
+  const mcor_context* context, int axis, int upper, mcor_cap_face* face)
+{
+  *face = (mcor_cap_face){ .axis = axis,
+    .upper = upper,
+    .plane = mcor_cap_plane(context, axis, upper),
+    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
+  for (int i = 0; i < 2; ++i)
+  {
+    const int a = face->across[i];
+    int range[2];
+    mcor_cap_range(context, a, range);
+    face->first[i] = range[0];
+    face->count[i] = range[1] - range[0] + 1;
+    if (a == 2 && mcor_is_plane(context)) /* one row of squares stands for the side's edges */
+    {
+      face->first[i] = 0;
+      face->count[i] = 2;
+    }
+  }
+}
+
+/* Notes the tiles with nodes from low to high, so far as there are any. */
+static mcor_status mcor_note_tiles(
+  mcor_context* context, mcor_cap_face* face, const double low[2], const double high[2])
+{
+  int from[2], to[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    from[i] = (int)(fmin(fmax(low[i], 0), face->count[i]) / MCOR_CAP_TILE);
+    to[i] = (int)(fmin(fmax(high[i], -1), face->count[i] - 1) / MCOR_CAP_TILE);
+    to[i] = high[i] < 0 ? -1 : to[i];
+  }
+  for (int64_t v = from[1]; v <= to[1]; ++v)
+  {
+    for (int64_t u = from[0]; u <= to[0]; ++u)
+    {
+      int32_t* tile = &face->tile[v * face->tiles[0] + u];
+      face->tile_count += *tile == 0;
+      *tile = 1;
+    }
+  }
+  const int limit = mcor_tile_limit(context), nodes = limit * MCOR_CAP_TILE * MCOR_CAP_TILE;
+  const bool is_much = face->tile_count > limit;
+  MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
+    "Use a larger cube size, or do not fill.",
+    nodes, context->lattice.cube);
+  MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes of a side along %c are within reach of particles, with cube size "
+    "%g: too many for a cap. Use a larger cube size, or no caps.",
+    nodes, mcor_axis_letter(context, face->axis), context->lattice.cube);
+  return MCOR_OK;
+}
+
+/* Notes the tiles that a particle reaches, whose support is at most a cube around it, where it is in nodes from
+ * the lattice's origin. A square is looked at from its lowest node: that is one less. */
+static mcor_status mcor_note_particle(
+  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
+{
+  mcor_cap_face* face = data;
+  const mcor_lattice* lattice = &context->lattice;
+  const double away = fabs(x[face->axis] - face->plane) * mcor_edge_of(lattice, face->axis);
+  if (away > reach)
+  {
+    return MCOR_OK;
+  }
+  double low[2], high[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    const double at = x[face->across[i]] - face->first[i];
+    const double nodes = reach / mcor_edge_of(lattice, face->across[i]);
+    low[i] = at - nodes - 2;
+    high[i] = at + nodes + 2;
+  }
+  (void)is_solid;
+  return mcor_note_tiles(context, face, low, high);
+}
+
+mcor_status mcor_visit_particles(mcor_context* context, mcor_visit_particle visit, void* data)
+{
+  const mcor_grid* g = &context->grid;
+  const mcor_lattice* lattice = &context->lattice;
+  const size_t bytes = (size_t)g->count * context->cl.real_size; /* of fixed-point numbers, too */
+  void* views[5] = { NULL };
+  const mcor_mapping mappings[5] = { { &g->px, bytes, &views[0] }, { &g->py, bytes, &views[1] },
+    { &g->pz, bytes, &views[2] }, { &g->inv_h, bytes, &views[3] },
+    { &g->fluid_weight, bytes, &views[4] } };
+  const int count = g->has_solids ? 5 : 4;
+  const bool is_long = context->cl.real_size == sizeof(cl_double);
+  const double support = mcor_support_factor(context->run.options->sph_kernel);
+  mcor_status status = mcor_map_all(context, mappings, count);
+  for (int64_t i = 0; i < g->count && status == MCOR_OK; ++i)
+  {
+    double x[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] =
+        (is_long ? (double)((const cl_long*)views[a])[i] : (double)((const cl_int*)views[a])[i]) /
+        (double)lattice->step[a];
+    }
+    const double reach = support / mcor_get_real(context, views[3], i) * 1.001;
+    const bool is_solid = g->has_solids && mcor_get_real(context, views[4], i) == 0;
+    status = visit(context, x, reach, is_solid, data);
+  }
+  return mcor_unmap_all(context, mappings, count, status);
+}
+
+/* Finds the tiles: those that particles reach, or all where empty space is above the iso value. */
+mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face)
+{
+  const bool empty_is_above = context->run.options->field != MCOR_SHEPARD && iso_value <= 0;
+  const double low[2] = { 0, 0 }, high[2] = { face->count[0], face->count[1] };
+  for (int i = 0; i < 2; ++i)
+  {
+    face->tiles[i] = (face->count[i] - 1) / MCOR_CAP_TILE + 1;
+  }
+  const size_t places = (size_t)face->tiles[0] * (size_t)face->tiles[1];
+  const bool is_much = places > MCOR_CAP_PLACE_LIMIT;
+  MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
+    "The plane has %lld x %lld nodes, too many to be filled. Use a larger cube size, or do not "
+    "fill.",
+    (long long)face->count[0], (long long)face->count[1]);
+  MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
+    "A side has %lld x %lld nodes, too many for a cap. Use a larger cube size, or no "
+    "caps.",
+    (long long)face->count[0], (long long)face->count[1]);
+  face->tile = calloc(places, sizeof *face->tile);
+  MCOR_TRY(mcor_allocated(context, face->tile));
+  return empty_is_above ? mcor_note_tiles(context, face, low, high)
+                        : mcor_visit_particles(context, mcor_note_particle, face);
+}
+
+mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face)
+{
+  /* The first one is for the nodes in none. */
+  const size_t nodes = ((size_t)face->tile_count + 1) * MCOR_CAP_TILE_NODES;
+  face->node_count = (int64_t)nodes;
+  face->place = malloc(((size_t)face->tile_count + 1) * sizeof *face->place);
+  face->state = calloc(nodes, 1);
+  face->within = calloc(nodes, 1);
+  face->margin = calloc(nodes, sizeof(double));
+  MCOR_TRY(mcor_allocated(context, face->place && face->state && face->within && face->margin));
+  int count = 0;
+  for (int32_t p = 0; p < face->tiles[0] * face->tiles[1]; ++p)
+  {
+    if (face->tile[p] != 0)
+    {
+      face->tile[p] = ++count;
+      face->place[count] = p;
+    }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_check_caps(mcor_context* context)
+{
+  const mcor_options* options = context->run.options;
+  double least = INFINITY;
+  for (int i = 0; i < options->iso_count; ++i)
+  {
+    least = fmin(least, options->iso_values[i]);
+  }
+  mcor_status status = MCOR_OK;
+  for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
+  {
+    const bool has_lower = mcor_has_cap_side(context, a, 0);
+    if (!context->box.is_empty && (has_lower || mcor_has_cap_side(context, a, 1)))
+    {
+      mcor_cap_face face;
+      mcor_set_cap_extent(context, a, !has_lower, &face);
+      status = mcor_note_cap_tiles(context, least, &face);
+      mcor_free_cap_face(&face);
+    }
+  }
+  return status;
+}
 
 /* ---- what marching knows ---- */
 
@@ -24,7 +267,7 @@ static void mcor_mark_plane(
   const mcor_cap_face* face, const cl_int* brick, int plane, cl_ulong mask, int flag, uint8_t* to)
 {
   const int at = plane - brick[face->axis] * MCOR_BRICK;
-  if (at < 0 || at >= MCOR_BRICK)
+  if (mask == 0 || at < 0 || at >= MCOR_BRICK)
   {
     return;
   }
@@ -37,175 +280,77 @@ static void mcor_mark_plane(
     if (u >= 0 && u < face->count[0] && v >= 0 && v < face->count[1] && mask >> bit & 1)
     {
       const int64_t index = mcor_cap_index(face, u, v);
-      to[index] |= (uint8_t)(index >= MCOR_CAP_TILE * MCOR_CAP_TILE ? flag : 0);
+      to[index] |= (uint8_t)(index >= MCOR_CAP_TILE_NODES ? flag : 0);
     }
   }
 }
 
-static mcor_status mcor_take_masks(
-  mcor_context* context, void* const views[MCOR_BRICK_VIEWS], void* data)
+static void mcor_take_brick(const mcor_seen_brick* brick, void* data)
 {
   mcor_cap_face* face = data;
-  const cl_ulong *known = views[MCOR_VIEW_KNOWN], *above = views[MCOR_VIEW_ABOVE],
-                 *valid = views[MCOR_VIEW_VALID], *used = views[MCOR_VIEW_USED],
-                 *decisions = views[MCOR_VIEW_DECISIONS];
-  for (int slot = 0; slot < context->bricks.now.count; ++slot)
-  {
-    const cl_int* brick = (const cl_int*)views[MCOR_VIEW_BRICKS] + 4 * (size_t)slot;
-    const cl_ulong k = known[slot];
-    mcor_mark_plane(face, brick, face->plane, k, MCOR_CAP_KNOWN, face->state);
-    mcor_mark_plane(face, brick, face->plane, k & above[slot], MCOR_CAP_ABOVE, face->state);
-    mcor_mark_plane(face, brick, face->plane, k & valid[slot], MCOR_CAP_VALID, face->state);
-    mcor_mark_plane(face, brick, face->inner, k, MCOR_CAP_KNOWN, face->within);
-    mcor_mark_plane(face, brick, face->inner, k & valid[slot], MCOR_CAP_VALID, face->within);
-    mcor_mark_plane(face, brick, face->cell, used[slot], MCOR_CAP_USED, face->state);
-    if (decisions)
-    {
-      mcor_mark_plane(face, brick, face->plane,
-        decisions[(size_t)slot * MCOR_DECISION_MASKS + (size_t)face->axis], MCOR_CAP_JOINED,
-        face->state);
-    }
-  }
-  return MCOR_OK;
+  const int plane = face->plane, inner = plane + (face->upper ? -1 : 1), cell = plane - face->upper;
+  mcor_mark_plane(face, brick->at, plane, brick->known, MCOR_CAP_KNOWN, face->state);
+  mcor_mark_plane(face, brick->at, plane, brick->above, MCOR_CAP_ABOVE, face->state);
+  mcor_mark_plane(face, brick->at, plane, brick->valid, MCOR_CAP_VALID, face->state);
+  mcor_mark_plane(face, brick->at, inner, brick->known, MCOR_CAP_KNOWN, face->within);
+  mcor_mark_plane(face, brick->at, inner, brick->valid, MCOR_CAP_VALID, face->within);
+  mcor_mark_plane(face, brick->at, cell, brick->used, MCOR_CAP_USED, face->state);
+  mcor_mark_plane(face, brick->at, plane, brick->joined[face->axis], MCOR_CAP_JOINED, face->state);
 }
 
-mcor_status mcor_see_bricks(mcor_context* context, mcor_look look, void* data)
+mcor_status mcor_see_bricks(mcor_context* context, mcor_see_brick see, void* data)
 {
   const mcor_brick_data* now = &context->bricks.now;
   const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
-  const int count = n == 0 ? 0 : mcor_is_resolved(context) ? MCOR_BRICK_VIEWS : MCOR_VIEW_DECISIONS;
-  void* views[MCOR_BRICK_VIEWS] = { NULL };
-  const mcor_mapping mappings[MCOR_BRICK_VIEWS] = {
-    [MCOR_VIEW_BRICKS] = { &now->bricks, 4 * n * sizeof(cl_int), &views[MCOR_VIEW_BRICKS] },
-    [MCOR_VIEW_KNOWN] = { &now->known, mask, &views[MCOR_VIEW_KNOWN] },
-    [MCOR_VIEW_ABOVE] = { &now->above, mask, &views[MCOR_VIEW_ABOVE] },
-    [MCOR_VIEW_VALID] = { &now->valid, mask, &views[MCOR_VIEW_VALID] },
-    [MCOR_VIEW_USED] = { &context->mesh.used, mask, &views[MCOR_VIEW_USED] },
-    [MCOR_VIEW_DECISIONS] = { &context->topology.decisions, MCOR_DECISION_MASKS * mask,
-      &views[MCOR_VIEW_DECISIONS] }
-  };
+  const bool resolved = mcor_is_resolved(context);
+  void *bricks = NULL, *known = NULL, *above = NULL, *valid = NULL, *used = NULL, *joined = NULL;
+  const mcor_mapping mappings[] = { { &now->bricks, 4 * n * sizeof(cl_int), &bricks },
+    { &now->known, mask, &known }, { &now->above, mask, &above }, { &now->valid, mask, &valid },
+    { &context->mesh.used, mask, &used },
+    { &context->topology.decisions, MCOR_DECISION_MASKS * mask, &joined } };
+  const int count = n == 0 ? 0 : resolved ? 6 : 5;
   mcor_status status = mcor_map_all(context, mappings, count);
-  status = status == MCOR_OK && count > 0 ? look(context, views, data) : status;
+  for (size_t slot = 0; slot < n && status == MCOR_OK; ++slot)
+  {
+    const cl_ulong k = ((const cl_ulong*)known)[slot];
+    mcor_seen_brick brick = { .at = (const cl_int*)bricks + 4 * slot,
+      .known = k,
+      .above = k & ((const cl_ulong*)above)[slot],
+      .valid = k & ((const cl_ulong*)valid)[slot],
+      .used = ((const cl_ulong*)used)[slot] };
+    for (size_t a = 0; a < 3 && resolved; ++a)
+    {
+      brick.joined[a] = ((const cl_ulong*)joined)[slot * MCOR_DECISION_MASKS + a];
+    }
+    see(&brick, data);
+  }
   return mcor_unmap_all(context, mappings, count, status);
+}
+
+mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_face* face)
+{
+  return mcor_see_bricks(context, mcor_take_brick, face);
 }
 
 /* ---- what it does not know ---- */
 
-void mcor_release_cap_points(mcor_context* context, mcor_cap_points* p)
+/* Takes node number points->to[i]: of the side itself, or of those within. */
+static void mcor_take_cap_node(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
-  MCOR_RELEASE(context, &p->node, &p->offset, &p->value, &p->gradient, &p->weight, &p->eigenvalue);
-}
-
-/* Evaluates at nodes, or off them. */
-static mcor_status mcor_evaluate_cap_nodes(mcor_context* context, const cl_int* nodes,
-  const void* offsets, int count, double iso, mcor_cap_points* p)
-{
-  const size_t n = (size_t)count, real = context->cl.real_size;
-  int groups;
-  MCOR_TRY(mcor_write(context, &p->node, nodes, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(offsets ? mcor_write(context, &p->offset, offsets, n * 4 * real)
-                   : mcor_fill(context, &p->offset, 0, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &p->value, n * real));
-  MCOR_TRY(mcor_reserve(context, &p->gradient, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &p->weight, n * real));
-  MCOR_TRY(mcor_make_groups(context, &p->node, 0, count, &groups));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->node), MCOR_REAL(iso),
-    MCOR_BUFFER(&p->offset), MCOR_BUFFER(&p->value), MCOR_BUFFER(&p->gradient),
-    MCOR_BUFFER(&p->weight), MCOR_INT(0), MCOR_INT(0), MCOR_BUFFER(&p->value),
-    MCOR_BUFFER(&p->weight)));
-  if (!mcor_trims_by_eigenvalue(context))
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_reserve(context, &p->eigenvalue, n * real));
-  return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->node),
-    MCOR_BUFFER(&p->offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&p->eigenvalue));
-}
-
-mcor_status mcor_evaluate_cap_points(mcor_context* context, const cl_int* nodes,
-  const void* offsets, int count, double iso, mcor_cap_points* p, mcor_cap_values* v)
-{
-  const size_t n = (size_t)count * context->cl.real_size;
-  MCOR_TRY(mcor_evaluate_cap_nodes(context, nodes, offsets, count, iso, p));
-  MCOR_TRY(mcor_map(context, &p->value, n, false, &v->value));
-  MCOR_TRY(mcor_map(context, &p->gradient, 4 * n, false, &v->gradient));
-  MCOR_TRY(mcor_map(context, &p->weight, n, false, &v->weight));
-  return mcor_trims_by_eigenvalue(context)
-    ? mcor_map(context, &p->eigenvalue, n, false, &v->eigenvalue)
-    : MCOR_OK;
-}
-
-mcor_status mcor_unmap_cap_values(
-  mcor_context* context, const mcor_cap_points* p, mcor_cap_values* v)
-{
-  const mcor_mapping mappings[] = { { &p->value, 0, &v->value }, { &p->gradient, 0, &v->gradient },
-    { &p->weight, 0, &v->weight }, { &p->eigenvalue, 0, &v->eigenvalue } };
-  return mcor_unmap_all(context, mappings, 4, MCOR_OK);
-}
-
-double mcor_cap_margin(const mcor_context* context, const mcor_cap_values* v, int64_t i)
-{
-  const double weight = mcor_get_real(context, v->weight, i), share = mcor_fluid_share(context);
-  const double fluid =
-    context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
-  const double quantity = v->eigenvalue ? mcor_get_real(context, v->eigenvalue, i) : weight;
-  const double threshold = context->run.options->field == MCOR_WEIGHT_SUM
-    ? DBL_MAX
-    : quantity - mcor_real_of(context, mcor_vertex_threshold(context));
-  const double ends = share > 0 ? fluid - share * weight : DBL_MAX;
-  const double margin = threshold < ends ? threshold : ends;
-  return fluid > mcor_real_of(context, mcor_least_fluid(context)) ||
-      context->run.options->field != MCOR_SHEPARD
-    ? margin
-    : fmin(margin, 0);
-}
-
-bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_values* v, int64_t i)
-{
-  const mcor_options* options = context->run.options;
-  const double weight = mcor_get_real(context, v->weight, i);
-  const double fluid =
-    context->cl.build.solids ? mcor_get_real(context, v->gradient, 4 * i + 3) : weight;
-  return options->field == MCOR_WEIGHT_SUM ||
-    (weight >= mcor_real_of(context, options->node_threshold) &&
-      (options->field == MCOR_SUM || fluid >= mcor_real_of(context, MCOR_LEAST_NODE_WEIGHT)));
-}
-
-/* Takes point i, which is node number `to`: of the side itself, or of those within. */
-static void mcor_take_cap_node(const mcor_context* context, const mcor_cap_values* v, int64_t i,
-  bool within, int64_t to, mcor_cap_face* face)
-{
+  mcor_cap_face* face = data;
+  const int64_t to = points->to[i];
+  const bool within = points->node[4 * i + face->axis] != face->plane;
   uint8_t* state = within ? &face->within[to] : &face->state[to];
   if (!(*state & MCOR_CAP_KNOWN))
   {
-    *state |= mcor_cap_is_valid(context, v, i) ? MCOR_CAP_VALID : 0;
-    *state |= mcor_get_real(context, v->value, i) >= 0 ? MCOR_CAP_ABOVE : 0;
+    *state |= mcor_cap_is_valid(context, points, i) ? MCOR_CAP_VALID : 0;
+    *state |= mcor_get_real(context, points->value, i) >= 0 ? MCOR_CAP_ABOVE : 0;
   }
   if (!within)
   {
-    face->margin[to] = mcor_cap_margin(context, v, i);
+    face->margin[to] = mcor_cap_margin(context, points, i);
   }
-}
-
-/* Evaluates a list of nodes, and takes them. */
-static mcor_status mcor_take_cap_nodes(mcor_context* context, const cl_int* nodes,
-  const int64_t* to, int count, bool within, double iso, mcor_cap_points* p, mcor_cap_face* face)
-{
-  if (count == 0)
-  {
-    return MCOR_OK;
-  }
-  mcor_cap_values v = { NULL, NULL, NULL, NULL };
-  mcor_status status = mcor_evaluate_cap_points(context, nodes, NULL, count, iso, p, &v);
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    mcor_take_cap_node(context, &v, i, within, to[i], face);
-  }
-  const mcor_status unmapped = mcor_unmap_cap_values(context, p, &v);
-  status = status == MCOR_OK ? unmapped : status;
-  return status == MCOR_OK ? mcor_report_launch(context) : status;
 }
 
 /* Whether a node of the side is to be evaluated: below it is of no use, but whether it is must be
@@ -221,56 +366,34 @@ static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, i
     (face->state[at] & MCOR_CAP_VALID);
 }
 
-/* Lists the nodes of tile t that are to be evaluated, by squares of 4 x 4 nodes, which are near each other.
- * Returns the new count. */
-static int mcor_list_cap_nodes(const mcor_context* context, const mcor_cap_face* face, int t,
-  bool within, cl_int* nodes, int64_t* to, int count)
+/* Tile by tile, by squares of 4 x 4 nodes, which are near each other. */
+mcor_status mcor_ask_cap_nodes(
+  mcor_context* context, const mcor_cap_face* face, bool within, mcor_cap_points* points)
 {
-  const int u0 = face->place[t] % face->tiles[0] * MCOR_CAP_TILE,
-            v0 = face->place[t] / face->tiles[0] * MCOR_CAP_TILE;
-  for (int n = 0; n < MCOR_CAP_TILE * MCOR_CAP_TILE; ++n)
+  for (int t = 1; t <= face->tile_count; ++t)
   {
-    const int u = u0 + (n & 3) + (n >> 4 & 3) * 4, v = v0 + (n >> 2 & 3) + (n >> 6) * 4;
-    if (u < face->count[0] && v < face->count[1] && mcor_needs_cap_node(face, within, u, v))
+    const int u0 = face->place[t] % face->tiles[0] * MCOR_CAP_TILE,
+              v0 = face->place[t] / face->tiles[0] * MCOR_CAP_TILE;
+    for (int n = 0; n < MCOR_CAP_TILE_NODES; ++n)
     {
-      cl_int* node = nodes + 4 * (size_t)count;
-      mcor_cap_node(context, face, u, v, node);
-      node[face->axis] = within ? face->inner : face->plane;
-      node[3] = 0;
-      to[count++] = mcor_cap_index(face, u, v);
+      const int u = u0 + (n & 3) + (n >> 4 & 3) * 4, v = v0 + (n >> 2 & 3) + (n >> 6) * 4;
+      if (u < face->count[0] && v < face->count[1] && mcor_needs_cap_node(face, within, u, v))
+      {
+        cl_int node[3];
+        mcor_cap_node(context, face, u, v, node);
+        node[face->axis] += within ? (face->upper ? -1 : 1) : 0;
+        MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, mcor_cap_index(face, u, v)));
+      }
     }
   }
-  return count;
-}
-
-/* Evaluates what is needed. */
-static mcor_status mcor_fill_cap_nodes(
-  mcor_context* context, bool within, double iso, mcor_cap_points* p, mcor_cap_face* face)
-{
-  const size_t room = MCOR_CAP_BATCH + MCOR_CAP_TILE * MCOR_CAP_TILE;
-  cl_int* nodes = malloc(room * 4 * sizeof *nodes);
-  int64_t* to = malloc(room * sizeof *to);
-  mcor_status status = mcor_allocated(context, nodes && to);
-  int count = 0;
-  for (int t = 1; t <= face->tile_count && status == MCOR_OK; ++t)
-  {
-    count = mcor_list_cap_nodes(context, face, t, within, nodes, to, count);
-    if (count >= MCOR_CAP_BATCH || t == face->tile_count)
-    {
-      status = mcor_take_cap_nodes(context, nodes, to, count, within, iso, p, face);
-      count = 0;
-    }
-  }
-  free(nodes);
-  free(to);
-  return status;
+  return mcor_take_cap_points(context, points);
 }
 
 /* A period apart the sums have the same bits: takes from the side opposite what marching does not know of
  * this one's nodes, and how far they are inside. A tile that it has not is one that no particle reaches. */
 static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* face)
 {
-  const int64_t nodes = MCOR_CAP_TILE * MCOR_CAP_TILE;
+  const int64_t nodes = MCOR_CAP_TILE_NODES;
   for (int t = 1; t <= face->tile_count; ++t)
   {
     const int64_t from = opposite->tile[face->place[t]] * nodes, to = t * nodes;
@@ -283,18 +406,42 @@ static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* fac
   }
 }
 
-mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
-  const mcor_cap_face* opposite, double iso, mcor_cap_points* points, mcor_cap_face* face)
+mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_face* face,
+  mcor_status (*visit)(void* data, const mcor_cap_face* face, int u, int v), void* data)
 {
-  MCOR_TRY(mcor_make_cap_face(context, axis, upper, iso + context->value_shift, face));
-  MCOR_TRY(mcor_see_bricks(context, mcor_take_masks, face));
+  for (int v = 0; v + 1 < face->count[1]; ++v)
+  {
+    const int32_t* tile = face->tile + (int64_t)(v / MCOR_CAP_TILE) * face->tiles[0];
+    MCOR_TRY(mcor_report_launch(context));
+    for (int u = 0; u + 1 < face->count[0]; ++u)
+    {
+      if (tile[u / MCOR_CAP_TILE] == 0)
+      {
+        u = u / MCOR_CAP_TILE * MCOR_CAP_TILE + MCOR_CAP_TILE - 1;
+        continue;
+      }
+      MCOR_TRY(visit(data, face, u, v));
+    }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
+  const mcor_cap_face* opposite, mcor_cap_points* points, mcor_cap_face* face)
+{
+  points->take = mcor_take_cap_node;
+  points->data = face;
+  mcor_set_cap_extent(context, axis, upper, face);
+  MCOR_TRY(mcor_note_cap_tiles(context, points->iso + context->value_shift, face));
+  MCOR_TRY(mcor_make_cap_nodes(context, face));
+  MCOR_TRY(mcor_take_cap_masks(context, face));
   if (opposite)
   {
     mcor_take_opposite(opposite, face);
   }
   else
   {
-    MCOR_TRY(mcor_fill_cap_nodes(context, false, iso, points, face));
+    MCOR_TRY(mcor_ask_cap_nodes(context, face, false, points));
   }
-  return mcor_fill_cap_nodes(context, true, iso, points, face);
+  return mcor_ask_cap_nodes(context, face, true, points);
 }

@@ -12,12 +12,9 @@
  * squares of its cells, and of the ring around it: so its own squares' vertices have the keys, and the order,
  * that they have in the whole. */
 
-#include "mcor_box.h"
 #include "mcor_cap_job.h"
 
 #include <stdlib.h>
-
-/* ---- the mesh ---- */
 
 /* The surface's vertices on the sides. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
@@ -45,89 +42,123 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* Numbers of squares ascend, and are above the keys of all cells. */
-static mcor_status mcor_cap_numbered_square(void* data, const mcor_cap_face* face, int u, int v)
+/* Whether the cell beside square (u, v), which the surface does not meet, is valid. */
+static bool mcor_is_valid_beside(const mcor_cap_face* face, int u, int v)
 {
-  mcor_cap_job* job = data;
-  const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
-  const bool owned =
-    u >= face->owned[0] && u < face->end[0] && v >= face->owned[1] && v < face->end[1];
-  job->square = MCOR_CAP_SQUARE | side << 42 | (cl_ulong)(face->first[1] + v) << 21 |
-    (cl_ulong)(face->first[0] + u) | (owned ? 0 : MCOR_RING_CELL);
-  job->lookups = 0;
-  return mcor_cap_square(job, face, u, v);
+  bool valid = true;
+  for (int c = 0; c < 4; ++c)
+  {
+    const int64_t at = mcor_cap_index(face, u + (c & 1), v + (c >> 1));
+    valid = valid && (face->state[at] & MCOR_CAP_VALID) && (face->within[at] & MCOR_CAP_VALID);
+  }
+  return valid;
 }
 
-static mcor_status mcor_cap_squares(mcor_cap_job* job, const mcor_cap_face* face)
+/* Numbers of squares ascend, and are above the keys of all cells. */
+static mcor_status mcor_visit_cap_square(void* data, const mcor_cap_face* face, int u, int v)
 {
-  return mcor_visit_cap_squares(job->context, face, mcor_cap_numbered_square, job);
+  mcor_cap_job* job = data;
+  const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
+  const int state = face->state[mcor_cap_index(face, u, v)];
+  mcor_cap_square square = {
+    .axis = face->axis, .upper = face->upper, .is_joined = state & MCOR_CAP_JOINED
+  };
+  int64_t at[4];
+  int total = 0;
+  for (int k = 0; k < 4; ++k)
+  {
+    at[k] = mcor_cap_index(face, u + corner_u[k], v + corner_v[k]);
+    square.above[k] = face->state[at[k]] & MCOR_CAP_ABOVE;
+    total += square.above[k];
+  }
+  if (total == 0 || (total == 4 ? !mcor_is_valid_beside(face, u, v) : !(state & MCOR_CAP_USED)))
+  {
+    return MCOR_OK;
+  }
+  for (int k = 0; k < 4; ++k)
+  {
+    square.margin[k] = face->margin[at[k]];
+  }
+  mcor_cap_node(job->context, face, u, v, square.node);
+  const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
+  mcor_begin_cap_square(job,
+    side << 42 | (cl_ulong)(face->first[1] + v) << 21 | (cl_ulong)(face->first[0] + u), square.node,
+    face->axis);
+  return mcor_add_cap_square(job, &square);
+}
+
+static mcor_status mcor_cap_side(
+  mcor_cap_job* job, int axis, int upper, const mcor_cap_face* opposite, mcor_cap_face* face)
+{
+  MCOR_TRY(mcor_load_cap_face(job->context, axis, upper, opposite, &job->points, face));
+  return mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job);
 }
 
 /* The lower and the upper side of an axis, where the box has them. */
-static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis, double iso, mcor_cap_points* points)
+static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
 {
-  mcor_context* context = job->context;
-  const int first = mcor_cap_plane(context, axis, 0), last = mcor_cap_plane(context, axis, 1);
-  const bool has_lower = first >= 0 && context->box.first[axis] == first,
-             has_upper = last >= 0 && context->box.last[axis] == last,
-             are_one = has_lower && last - first == context->lattice.period[axis];
+  const mcor_context* context = job->context;
+  const bool has_lower = mcor_has_cap_side(context, axis, 0),
+             has_upper = mcor_has_cap_side(context, axis, 1);
+  const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
+  const bool are_one = has_lower && apart == context->lattice.period[axis];
   mcor_cap_face lower = { 0 }, upper = { 0 };
-  mcor_status status = MCOR_OK;
-  if (has_lower)
-  {
-    status = mcor_load_cap_face(context, axis, 0, NULL, iso, points, &lower);
-    status = status == MCOR_OK ? mcor_cap_squares(job, &lower) : status;
-  }
+  mcor_status status = has_lower ? mcor_cap_side(job, axis, 0, NULL, &lower) : MCOR_OK;
   if (has_upper && status == MCOR_OK)
   {
-    status = mcor_load_cap_face(context, axis, 1, are_one ? &lower : NULL, iso, points, &upper);
-    status = status == MCOR_OK ? mcor_cap_squares(job, &upper) : status;
+    status = mcor_cap_side(job, axis, 1, are_one ? &lower : NULL, &upper);
   }
   mcor_free_cap_face(&lower);
   mcor_free_cap_face(&upper);
   return status;
 }
 
-/* Views of the surface's vertices while caps are made. */
-static mcor_status mcor_make_caps(mcor_cap_job* job, double iso, mcor_cap_points* points)
+static mcor_status mcor_make_caps(mcor_cap_job* job)
 {
-  mcor_context* context = job->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->march_count, real = context->cl.real_size;
-  const size_t all = (size_t)mesh->vertex_count;
-  const size_t cuts = (size_t)(mesh->vertex_count - mesh->march_count);
-  if (n > 0)
-  {
-    MCOR_TRY(mcor_map(context, &mesh->node, all * 4 * sizeof(cl_int), false, &job->node));
-    MCOR_TRY(mcor_map(context, &mesh->offset, all * 4 * real, false, &job->offset));
-    if (mcor_is_trimmed(context))
-    {
-      MCOR_TRY(mcor_map(context, mcor_trim_quantity(context), n * real, false, &job->quantity));
-    }
-    MCOR_TRY(mcor_index_cap_edges(job));
-  }
-  if (cuts > 0)
-  {
-    MCOR_TRY(
-      mcor_map(context, &context->trim.distinct, cuts * sizeof(cl_ulong), false, &job->distinct));
-  }
+  const mcor_context* context = job->context;
+  MCOR_TRY(mcor_index_cap_edges(job));
   for (int axis = 0; axis < 3; ++axis)
   {
-    MCOR_TRY(mcor_cap_sides(job, axis, iso, points));
+    MCOR_TRY(mcor_cap_sides(job, axis));
   }
-  MCOR_TRY(mcor_is_plane(context) && !context->run.options->preview
-      ? mcor_place_cap_cuts(job, iso, points)
-      : MCOR_OK);
-  return mcor_caps_walls(context) ? mcor_cap_walls(job, iso, points) : MCOR_OK;
+  const bool places = mcor_is_plane(context) && !context->run.options->preview;
+  MCOR_TRY(places ? mcor_place_cap_cuts(job) : MCOR_OK);
+  return mcor_caps_walls(context) ? mcor_cap_walls(job) : MCOR_OK;
 }
 
-static mcor_status mcor_end_cap_views(mcor_cap_job* job)
+/* Views of the surface's vertices while caps are made. Returns how many: there are cuts only where it is trimmed. */
+static int mcor_list_cap_views(mcor_cap_job* job, mcor_mapping views[4])
+{
+  const mcor_context* context = job->context;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->march_count, all = (size_t)mesh->vertex_count,
+               real = context->cl.real_size;
+  views[0] = (mcor_mapping){ &mesh->node, all * 4 * sizeof(cl_int), &job->node };
+  views[1] = (mcor_mapping){ &mesh->offset, all * 4 * real, &job->offset };
+  views[2] = (mcor_mapping){ mcor_trim_quantity(context), n * real, &job->quantity };
+  views[3] = (mcor_mapping){ &mesh->cut_edges, (all - n) * sizeof(cl_ulong), &job->cut_edges };
+  return n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
+}
+
+/* The mesh gets the caps' vertices and triangles. */
+static mcor_status mcor_append_caps(mcor_cap_job* job)
 {
   mcor_context* context = job->context;
-  const mcor_mapping mappings[] = { { &context->mesh.node, 0, &job->node },
-    { &context->mesh.offset, 0, &job->offset }, { mcor_trim_quantity(context), 0, &job->quantity },
-    { &context->trim.distinct, 0, &job->distinct } };
-  return mcor_unmap_all(context, mappings, 4, MCOR_OK);
+  mcor_mesh* mesh = &context->mesh;
+  const size_t old = (size_t)mesh->triangle_count, more = (size_t)job->triangle_count;
+  const size_t width = 3 * sizeof(cl_int), cell = sizeof(cl_ulong);
+  if (more == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
+    "With its caps the surface would have %zu triangles; the limit is %d. Use a larger cube size.",
+    old + more, MCOR_COUNT_LIMIT / 3);
+  MCOR_TRY(mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles, more * width));
+  MCOR_TRY(mcor_append_bytes(context, &context->box.cells, old * cell, job->cells, more * cell));
+  mesh->triangle_count += (int)more;
+  context->run.statistics->cap_triangles += job->owned_count;
+  return mcor_append_cap_vertices(context, job->vertices, job->vertex_count, job->points.iso);
 }
 
 mcor_status mcor_cap(mcor_context* context, double iso)
@@ -139,24 +170,22 @@ mcor_status mcor_cap(mcor_context* context, double iso)
     return MCOR_OK;
   }
   mcor_cap_job job = { .context = context,
-    .old_count = context->mesh.vertex_count,
+    .points.iso = iso,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
-  mcor_cap_points points = { .node = { 0 } };
-  mcor_status status = mcor_make_caps(&job, iso, &points);
-  const mcor_status unmapped = mcor_end_cap_views(&job);
-  mcor_release_cap_points(context, &points);
-  status = status == MCOR_OK ? unmapped : status;
-  if (status == MCOR_OK && job.triangle_count > 0)
-  {
-    status = mcor_append_caps(&job, iso);
-    context->run.statistics->cap_triangles += job.owned_count;
-  }
+  mcor_mapping views[4];
+  const int mapped = mcor_list_cap_views(&job, views);
+  mcor_status status = mcor_map_all(context, views, mapped);
+  status = status == MCOR_OK ? mcor_make_caps(&job) : status;
+  status = mcor_unmap_all(context, views, mapped, status);
+  mcor_free_cap_points(context, &job.points);
+  status = status == MCOR_OK ? mcor_append_caps(&job) : status;
   mcor_table* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes, &job.cuts };
   for (int i = 0; i < 5; ++i)
   {
     mcor_table_free(maps[i]);
   }
   free(job.vertices);
+  free(job.lines);
   free(job.triangles);
   free(job.cells);
   return status;

@@ -2,11 +2,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Squares of caps: cut along the lines between the surface's own vertices, and by what trims the surface. See
- * mcor_cap_make.c. */
+ * mcor_cap_make.c. Cuts of lattice edges, by caps at walls and in two dimensions, are linear at first, and then moved
+ * to where the margin by which trimming leaves the fluid is 0. */
 
 #include "mcor_cap_job.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Corner of a polygon: a vertex of the mesh; where it is, in cubes from the lattice's origin; how far
@@ -17,59 +17,76 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
+/* Of a square's corners; side k follows corner k. */
+static const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
+
 /* ---- vertices ---- */
 
-static mcor_status mcor_add_cap_vertex(mcor_cap_job* job, const double at[3], bool is_cut)
+/* Puts a vertex at a place of the virtual grid, in cubes. */
+static void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
 {
-  mcor_context* context = job->context;
-  MCOR_RETURN_IF(job->old_count + job->vertex_count >= MCOR_COUNT_LIMIT, context,
-    MCOR_OUT_OF_CAPACITY, "The caps have too many vertices. Use a larger cube size.");
-  MCOR_TRY(mcor_make_room(
-    context, (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices));
-  mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
-  *vertex = (mcor_cap_vertex){ .is_cut = is_cut, .key = { job->square, job->lookups } };
-  mcor_put_cap_vertex(vertex, at);
-  return MCOR_OK;
+  for (int a = 0; a < 3; ++a)
+  {
+    vertex->node[a] = (cl_int)floor(at[a]);
+    vertex->offset[a] = at[a] - vertex->node[a];
+  }
 }
 
 /* Of a map's key, a vertex that is made where there is none. */
 static mcor_status mcor_find_cap_vertex(
-  mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], bool is_cut, int32_t* v)
+  mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], uint8_t flag, int32_t* v)
 {
-  const int32_t next = (int32_t)(job->old_count + job->vertex_count);
+  mcor_context* context = job->context;
+  const int32_t next = (int32_t)(job->context->mesh.vertex_count + job->vertex_count);
   ++job->lookups;
   *v = mcor_table_number(map, key, next);
-  MCOR_TRY(mcor_allocated(job->context, *v >= 0));
-  return *v == next ? mcor_add_cap_vertex(job, at, is_cut && !job->border) : MCOR_OK;
+  MCOR_TRY(mcor_allocated(context, *v >= 0));
+  if (*v != next)
+  {
+    return MCOR_OK;
+  }
+  MCOR_RETURN_IF(next >= MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "The caps have too many vertices. Use a larger cube size.");
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices));
+  mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
+  *vertex = (mcor_cap_vertex){ .flag = flag, .key = { job->square, job->lookups } };
+  mcor_put_cap_vertex(vertex, at);
+  return MCOR_OK;
 }
 
-/* Node (u, v) of the side. */
+/* The node u, v beyond the lowest one. In two dimensions nodes above each other are one. */
+static void mcor_square_node(
+  const mcor_cap_job* job, const mcor_cap_square* square, int u, int v, cl_int node[3])
+{
+  memcpy(node, square->node, sizeof square->node);
+  node[(square->axis + 1) % 3] += u;
+  node[(square->axis + 2) % 3] += v;
+  node[2] = mcor_is_plane(job->context) ? 0 : node[2];
+}
+
 static mcor_status mcor_cap_node_corner(
-  mcor_cap_job* job, const mcor_cap_face* face, int u, int v, mcor_cap_corner* corner)
+  mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {
   cl_int node[3];
-  mcor_cap_node(job->context, face, u, v, node);
+  mcor_square_node(job, square, corner_u[k], corner_v[k], node);
   for (int a = 0; a < 3; ++a)
   {
     corner->at[a] = node[a];
   }
-  corner->margin = face->margin[mcor_cap_index(face, u, v)];
+  corner->margin = square->margin[k];
   return mcor_find_cap_vertex(
-    job, &job->nodes, mcor_cap_key(node), corner->at, false, &corner->vertex);
+    job, &job->nodes, mcor_cap_key(node), corner->at, MCOR_CAP_FLAG, &corner->vertex);
 }
 
-/* The surface's vertex on the edge from node (u, v) of the side along across[along], for square
- * (u0, v0): see mcor_march_emit for pinched ones. */
-static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, const mcor_cap_face* face, int u, int v,
-  int along, int u0, int v0, mcor_cap_corner* corner)
+/* The surface's vertex on side k: see mcor_march_emit for pinched ones. */
+static mcor_status mcor_cap_edge_corner(
+  mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {
   mcor_context* context = job->context;
-  const int axis = face->across[along], other = axis == 0 ? 1 : 0;
-  cl_int node[3], cell[3];
-  mcor_cap_node(context, face, u, v, node);
-  cell[face->axis] = face->cell;
-  cell[face->across[0]] = face->first[0] + u0;
-  cell[face->across[1]] = face->first[1] + v0;
+  const int axis = (square->axis + 1 + (k & 1)) % 3, other = axis == 0 ? 1 : 0;
+  cl_int node[3];
+  mcor_square_node(job, square, k == 1, k == 2, node);
   int32_t vertex = mcor_find_number(&job->edges[axis], mcor_cap_key(node));
   MCOR_RETURN_IF(vertex < 0, context, MCOR_DEVICE_ERROR,
     "A cap does not fit the surface at node %d %d %d. Please report it.", node[0], node[1],
@@ -77,7 +94,8 @@ static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, const mcor_cap_face* 
   const cl_int* nodes = job->node;
   const bool pinched = vertex + 1 < context->mesh.march_count &&
     memcmp(nodes + 4 * (size_t)vertex, nodes + 4 * ((size_t)vertex + 1), 4 * sizeof *nodes) == 0;
-  vertex += pinched && node[other] > cell[other];
+  const int cell = square->node[other] - (other == square->axis && square->upper);
+  vertex += pinched && node[other] > cell;
   corner->vertex = vertex;
   corner->margin =
     job->quantity ? mcor_get_real(context, job->quantity, vertex) - job->threshold : INFINITY;
@@ -88,10 +106,21 @@ static mcor_status mcor_cap_edge_corner(mcor_cap_job* job, const mcor_cap_face* 
   return MCOR_OK;
 }
 
-static int mcor_compare_cap_keys(const void* x, const void* y)
+/* The line of the cut that was made last. */
+static mcor_status mcor_add_cap_line(
+  mcor_cap_job* job, const mcor_cap_corner* low, const mcor_cap_corner* high, double at)
 {
-  const cl_ulong *a = x, *b = y;
-  return (*a > *b) - (*a < *b);
+  MCOR_TRY(mcor_make_room(
+    job->context, (void**)&job->lines, job->line_count, &job->line_room, sizeof *job->lines));
+  mcor_cap_line* line = &job->lines[job->line_count++];
+  *line = (mcor_cap_line){ .vertex = job->vertex_count - 1,
+    .at = at,
+    .side = { 0, 1 },
+    .margin = { low->margin, high->margin },
+    .last = -1 };
+  memcpy(line->from, low->at, sizeof low->at);
+  memcpy(line->to, high->at, sizeof high->at);
+  return MCOR_OK;
 }
 
 /* Where trimming cuts the line between two corners. */
@@ -100,15 +129,14 @@ static mcor_status mcor_cap_cut(
 {
   const mcor_mesh* mesh = &job->context->mesh;
   const mcor_cap_corner *low = p->vertex < q->vertex ? p : q, *high = low == p ? q : p;
-  const cl_ulong key = (cl_ulong)low->vertex << 32 | (cl_ulong)high->vertex;
-  const size_t cuts = (size_t)(job->old_count - mesh->march_count);
-  const cl_ulong* own = cuts > 0 && high->vertex < mesh->march_count
-    ? bsearch(&key, job->distinct, cuts, sizeof key, mcor_compare_cap_keys)
-    : NULL;
+  const int own = high->vertex < mesh->march_count
+    ? mcor_find_cut(job->cut_edges, job->context->mesh.vertex_count - mesh->march_count,
+        low->vertex, high->vertex)
+    : -1;
   *cut = (mcor_cap_corner){ .margin = 0 };
-  if (own)
+  if (own >= 0)
   {
-    cut->vertex = mesh->march_count + (int32_t)(own - (const cl_ulong*)job->distinct);
+    cut->vertex = mesh->march_count + own;
     return MCOR_OK;
   }
   const double s = fmin(
@@ -118,19 +146,11 @@ static mcor_status mcor_cap_cut(
     cut->at[a] = low->at[a] + s * (high->at[a] - low->at[a]);
   }
   const int64_t before = job->vertex_count;
-  MCOR_TRY(mcor_find_cap_vertex(job, &job->cuts, key, cut->at, true, &cut->vertex));
-  if ((job->border || mcor_is_plane(job->context)) && job->vertex_count > before)
-  {
-    mcor_cap_vertex* vertex = &job->vertices[before];
-    mcor_cap_line* line = &vertex->line;
-    *line = (mcor_cap_line){ .at = s, .side = { 0, 1 }, .left = INFINITY, .last = -1 };
-    vertex->is_placed = true;
-    line->margin[0] = low->margin;
-    line->margin[1] = high->margin;
-    memcpy(line->from, low->at, sizeof low->at);
-    memcpy(line->to, high->at, sizeof high->at);
-  }
-  return MCOR_OK;
+  const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
+  MCOR_TRY(mcor_find_cap_vertex(
+    job, &job->cuts, key, cut->at, job->border ? MCOR_CAP_FLAG : 2, &cut->vertex));
+  const bool is_placed = job->border || mcor_is_plane(job->context);
+  return is_placed && job->vertex_count > before ? mcor_add_cap_line(job, low, high, s) : MCOR_OK;
 }
 
 /* ---- polygons ---- */
@@ -160,16 +180,16 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
 
 /* In two dimensions, where corners above each other are one, what runs along the side: with what is inside on its
  * left, as a triangle whose last two corners are one. */
-static mcor_status mcor_add_cap_line(
-  mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count)
+static mcor_status mcor_add_side_line(
+  mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)
 {
   const mcor_cap_corner* other = corners + 1;
   while (other < corners + count - 1 && other->vertex == corners->vertex)
   {
     ++other;
   }
-  const int along = 1 - face->axis;
-  const bool forward = (other->at[along] > corners->at[along]) == (face->upper == along);
+  const int along = 1 - square->axis;
+  const bool forward = (other->at[along] > corners->at[along]) == (square->upper == along);
   const int32_t from = forward ? corners->vertex : other->vertex,
                 to = forward ? other->vertex : corners->vertex;
   const int32_t line[3] = { from, to, to };
@@ -177,23 +197,24 @@ static mcor_status mcor_add_cap_line(
 }
 
 /* A fan. Corners go round as seen from above the axis. Or its last edge, where that is wanted. */
-static mcor_status mcor_add_cap_fan(
-  mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count, bool cut)
+static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* square,
+  const mcor_cap_corner* corners, int count, bool cut)
 {
   if (job->border)
   {
     const int32_t first = corners[0].vertex, last = corners[count - 1].vertex;
-    return cut ? mcor_add_cap_border(job, face->upper ? first : last, face->upper ? last : first)
-               : MCOR_OK;
+    return cut
+      ? mcor_add_cap_border(job, square->upper ? first : last, square->upper ? last : first)
+      : MCOR_OK;
   }
   if (mcor_is_plane(job->context))
   {
-    return mcor_add_cap_line(job, face, corners, count);
+    return mcor_add_side_line(job, square, corners, count);
   }
   for (int i = 1; i + 1 < count; ++i)
   {
-    const int32_t triangle[3] = { corners[0].vertex, corners[face->upper ? i : i + 1].vertex,
-      corners[face->upper ? i + 1 : i].vertex };
+    const int32_t triangle[3] = { corners[0].vertex, corners[square->upper ? i : i + 1].vertex,
+      corners[square->upper ? i + 1 : i].vertex };
     MCOR_TRY(mcor_add_cap_triangle(job, triangle));
   }
   return MCOR_OK;
@@ -202,7 +223,7 @@ static mcor_status mcor_add_cap_fan(
 /* What trimming leaves of a polygon of up to 6 corners: each run of corners inside, with the cuts
  * before and behind it. */
 static mcor_status mcor_add_cap_polygon(
-  mcor_cap_job* job, const mcor_cap_face* face, const mcor_cap_corner* corners, int count)
+  mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)
 {
   int start = 0;
   while (start < count && corners[start].margin > 0)
@@ -211,7 +232,7 @@ static mcor_status mcor_add_cap_polygon(
   }
   if (start == count)
   {
-    return mcor_add_cap_fan(job, face, corners, count, false);
+    return mcor_add_cap_fan(job, square, corners, count, false);
   }
   mcor_cap_corner run[8];
   int length = 0;
@@ -230,69 +251,100 @@ static mcor_status mcor_add_cap_polygon(
     }
     else if (length > 0)
     {
-      MCOR_TRY(mcor_add_cap_fan(job, face, run, length, true));
+      MCOR_TRY(mcor_add_cap_fan(job, square, run, length, true));
       length = 0;
     }
   }
   return MCOR_OK;
 }
 
-/* Whether the cell beside square (u, v), which the surface does not meet, is valid. */
-static bool mcor_is_capped(const mcor_cap_face* face, int u, int v)
+void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across)
 {
-  bool valid = true;
-  for (int c = 0; c < 4; ++c)
+  const mcor_box* box = &job->context->box;
+  bool owned = true;
+  for (int a = 0; a < (mcor_is_plane(job->context) ? 2 : 3); ++a)
   {
-    const int64_t at = mcor_cap_index(face, u + (c & 1), v + (c >> 1));
-    valid = valid && (face->state[at] & MCOR_CAP_VALID) && (face->within[at] & MCOR_CAP_VALID);
+    owned = owned && (a == across || (node[a] >= box->first[a] && node[a] < box->last[a]));
   }
-  return valid;
+  job->square = MCOR_CAP_SQUARE | number | (owned ? 0 : MCOR_RING_CELL);
+  job->lookups = 0;
 }
 
-/* Square (u, v): corners in the order (0, 0), (1, 0), (1, 1), (0, 1); side k follows corner k. */
-mcor_status mcor_cap_square(mcor_cap_job* job, const mcor_cap_face* face, int u, int v)
+mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square)
 {
-  static const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
-  static const int side_u[4] = { 0, 1, 0, 0 }, side_v[4] = { 0, 0, 1, 0 };
-  const int state = face->state[mcor_cap_index(face, u, v)];
-  int above[4], total = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    above[k] =
-      (face->state[mcor_cap_index(face, u + corner_u[k], v + corner_v[k])] & MCOR_CAP_ABOVE) != 0;
-    total += above[k];
-  }
-  if (total == 0 || (total == 4 ? !mcor_is_capped(face, u, v) : !(state & MCOR_CAP_USED)))
-  {
-    return MCOR_OK;
-  }
-  const bool apart =
-    total == 2 && above[0] == above[2] && !(state & MCOR_CAP_JOINED); /* two corners above */
+  const bool* above = square->above;
+  const int total = above[0] + above[1] + above[2] + above[3];
+  const bool apart = total == 2 && above[0] == above[2] && !square->is_joined;
   mcor_cap_corner corners[6];
   int count = 0;
   for (int k = 0; k < 4; ++k)
   {
-    const int before = (k + 3) % 4, next = (k + 1) % 4;
     if (apart && above[k])
     {
-      MCOR_TRY(mcor_cap_edge_corner(
-        job, face, u + side_u[before], v + side_v[before], before & 1, u, v, &corners[count++]));
+      MCOR_TRY(mcor_cap_edge_corner(job, square, (k + 3) % 4, &corners[count++]));
     }
     if (above[k])
     {
-      MCOR_TRY(
-        mcor_cap_node_corner(job, face, u + corner_u[k], v + corner_v[k], &corners[count++]));
+      MCOR_TRY(mcor_cap_node_corner(job, square, k, &corners[count++]));
     }
-    if (apart ? above[k] : above[k] != above[next])
+    if (apart ? above[k] : above[k] != above[(k + 1) % 4])
     {
-      MCOR_TRY(mcor_cap_edge_corner(
-        job, face, u + side_u[k], v + side_v[k], k & 1, u, v, &corners[count++]));
+      MCOR_TRY(mcor_cap_edge_corner(job, square, k, &corners[count++]));
     }
     if (apart && above[k])
     {
-      MCOR_TRY(mcor_add_cap_polygon(job, face, corners, count));
+      MCOR_TRY(mcor_add_cap_polygon(job, square, corners, count));
       count = 0;
     }
   }
-  return apart ? MCOR_OK : mcor_add_cap_polygon(job, face, corners, count);
+  return apart ? MCOR_OK : mcor_add_cap_polygon(job, square, corners, count);
+}
+
+/* ---- places ---- */
+
+#define MCOR_PLACE_STEPS 6
+
+/* Moves a cut by the margin found there, within what encloses its root (the Illinois method). */
+static void mcor_move_cut(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
+{
+  mcor_cap_job* job = data;
+  mcor_cap_line* line = &job->lines[points->to[i]];
+  mcor_cap_vertex* vertex = &job->vertices[line->vertex];
+  const double margin = mcor_cap_margin(context, points, i);
+  const int moved = (margin > 0) == (line->margin[0] > 0) ? 0 : 1, other = 1 - moved;
+  line->side[moved] = line->at;
+  line->margin[moved] = margin;
+  line->margin[other] *= line->last == moved ? 0.5 : 1;
+  line->last = moved;
+  const double s = line->side[0] +
+    (line->side[1] - line->side[0]) * line->margin[0] / (line->margin[0] - line->margin[1]);
+  line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
+  double at[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    at[a] = line->from[a] + line->at * (line->to[a] - line->from[a]);
+  }
+  mcor_put_cap_vertex(vertex, at);
+  if (vertex->flag != MCOR_CAP_FLAG)
+  {
+    vertex->flag = fabs(margin) < MCOR_CAP_ROOT ? 1 : 2;
+  }
+}
+
+mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
+{
+  mcor_cap_points* points = &job->points;
+  points->take = mcor_move_cut;
+  points->data = job;
+  for (int step = 0; step < MCOR_PLACE_STEPS; ++step)
+  {
+    for (int64_t i = 0; i < job->line_count; ++i)
+    {
+      const mcor_cap_vertex* vertex = &job->vertices[job->lines[i].vertex];
+      MCOR_TRY(mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
+    }
+    MCOR_TRY(mcor_take_cap_points(job->context, points));
+  }
+  return MCOR_OK;
 }

@@ -5,7 +5,7 @@
  * becomes too great. In each cell three things are cut there: the squares of its faces that are above the iso
  * value, as caps at sides are, and the surface's triangles, as trimming has done. The edges that these cuts
  * leave join to loops, and a cap fills each. A face is cut alike as seen from its two cells, so caps
- * fit each other, those at sides and the surface. Their vertices are cuts of lattice edges, see mcor_cap_place.c.
+ * fit each other, those at sides and the surface. Their vertices are cuts of lattice edges.
  *
  * Squares of caps are numbered as cells are, after all squares of sides. */
 
@@ -31,8 +31,8 @@ typedef struct mcor_wall_job
 {
   mcor_cap_job* cap;
   mcor_wall wall;
-  mcor_wall_edge* edges; /* ascending by cell, then triangle */
-  int64_t edge_count;
+  mcor_wall_edge* edges;    /* ascending by cell, then triangle */
+  int64_t edge_count, edge; /* edge: the first one that is not of a cell before */
 } mcor_wall_job;
 
 /* A cell: its lowest node; of its corners x + 2 y + 4 z whether they are above, and their margins; of its
@@ -85,31 +85,16 @@ static mcor_status mcor_load_wall_edges(mcor_wall_job* job)
   mcor_context* context = job->cap->context;
   const size_t n = (size_t)context->mesh.triangle_count;
   void *triangles = NULL, *cells = NULL;
+  const mcor_mapping mappings[] = { { &context->mesh.triangles, 3 * n * sizeof(cl_int),
+                                      &triangles },
+    { &context->box.cells, n * sizeof(cl_ulong), &cells } };
   if (n == 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_map(context, &context->mesh.triangles, 3 * n * sizeof(cl_int), false, &triangles));
-  mcor_status status = mcor_map(context, &context->box.cells, n * sizeof(cl_ulong), false, &cells);
+  mcor_status status = mcor_map_all(context, mappings, 2);
   status = status == MCOR_OK ? mcor_list_wall_edges(job, triangles, cells) : status;
-  const mcor_status unmapped[] = { mcor_unmap(context, &context->mesh.triangles, &triangles),
-    mcor_unmap(context, &context->box.cells, &cells) };
-  status = status == MCOR_OK ? unmapped[0] : status;
-  return status == MCOR_OK ? unmapped[1] : status;
-}
-
-/* The first one of a cell, or of those behind it. */
-static int64_t mcor_find_wall_edge(const mcor_wall_job* job, cl_ulong cell)
-{
-  int64_t low = 0, high = job->edge_count;
-  while (low < high)
-  {
-    const int64_t middle = low + (high - low) / 2;
-    const bool before = job->edges[middle].cell < cell;
-    low = before ? middle + 1 : low;
-    high = before ? high : middle;
-  }
-  return low;
+  return mcor_unmap_all(context, mappings, 2, status);
 }
 
 /* ---- cells ---- */
@@ -125,7 +110,7 @@ static bool mcor_load_wall_cell(
   for (int a = 0; a < 3; ++a)
   {
     cell->node[a] = brick->at[a] * MCOR_BRICK + (inner >> 2 * a & 3);
-    if (cell->node[a] < wall->first[a] || cell->node[a] + 1 >= wall->end[a])
+    if (cell->node[a] < wall->range[a][0] || cell->node[a] + 1 > wall->range[a][1])
     {
       return false;
     }
@@ -187,46 +172,36 @@ static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* ce
   return inside && outside && (!is_crossed || cell->is_used);
 }
 
-/* The edges that cutting one of the cell's faces leaves. The fields are those of a cap's side of one square. */
+/* The edges that cutting one of the cell's faces leaves. */
 static mcor_status mcor_cut_wall_face(
   mcor_cap_job* cap, const mcor_wall_cell* cell, int axis, int upper)
 {
-  int32_t tile = 0;
-  uint8_t state[MCOR_CAP_TILE + 2] = { 0 }, within[MCOR_CAP_TILE + 2];
-  double margin[MCOR_CAP_TILE + 2];
-  memset(within, MCOR_CAP_VALID, sizeof within);
-  mcor_cap_face face = { .axis = axis,
+  const int first = 1 << (axis + 1) % 3, second = 1 << (axis + 2) % 3;
+  const int corner[4] = { 0, first, first | second, second };
+  mcor_cap_square square = { .axis = axis,
     .upper = upper,
-    .plane = cell->node[axis] + upper,
-    .cell = cell->node[axis],
-    .across = { (axis + 1) % 3, (axis + 2) % 3 },
-    .count = { 2, 2 },
-    .tiles = { 1, 1 },
-    .tile = &tile,
-    .state = state,
-    .within = within,
-    .margin = margin };
-  for (int n = 0; n < 4; ++n)
+    .node = { cell->node[0], cell->node[1], cell->node[2] },
+    .is_joined = cell->joined[axis][upper] };
+  square.node[axis] += upper;
+  int total = 0;
+  for (int k = 0; k < 4; ++k)
   {
-    const int corner = upper << axis | (n & 1) << face.across[0] | n >> 1 << face.across[1];
-    const int64_t at = mcor_cap_index(&face, n & 1, n >> 1);
-    state[at] = (uint8_t)(MCOR_CAP_VALID | (cell->above[corner] ? MCOR_CAP_ABOVE : 0));
-    margin[at] = cell->margin[corner];
+    const int c = upper << axis | corner[k];
+    square.above[k] = cell->above[c];
+    square.margin[k] = cell->margin[c];
+    total += cell->above[c];
   }
-  for (int i = 0; i < 2; ++i)
-  {
-    face.first[i] = cell->node[face.across[i]];
-  }
-  state[0] |= (uint8_t)((cell->is_used ? MCOR_CAP_USED : 0) |
-    (cell->joined[axis][upper] ? MCOR_CAP_JOINED : 0));
-  return mcor_cap_square(cap, &face, 0, 0);
+  const bool is_cut = total == 4 || (total > 0 && cell->is_used);
+  return is_cut ? mcor_add_cap_square(cap, &square) : MCOR_OK;
 }
 
 /* ---- loops ---- */
 
 static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
 {
-  const mcor_cap_vertex* vertex = v < job->old_count ? NULL : &job->vertices[v - job->old_count];
+  const mcor_cap_vertex* vertex = v < job->context->mesh.vertex_count
+    ? NULL
+    : &job->vertices[v - job->context->mesh.vertex_count];
   for (int a = 0; a < 3; ++a)
   {
     at[a] = vertex ? vertex->node[a] + vertex->offset[a]
@@ -307,23 +282,16 @@ static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* 
 static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* cell)
 {
   mcor_cap_job* cap = job->cap;
-  const mcor_box* box = &cap->context->box;
-  bool owned = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    owned = owned && cell->node[a] >= box->first[a] && cell->node[a] < box->last[a];
-  }
-  cap->square = MCOR_CAP_SQUARE | MCOR_WALL_CELL | cell->key | (owned ? 0 : MCOR_RING_CELL);
-  cap->lookups = 0;
+  mcor_begin_cap_square(cap, MCOR_WALL_CELL | cell->key, cell->node, -1);
   cap->border->count = 0;
   for (int side = 0; side < 6; ++side)
   {
     MCOR_TRY(mcor_cut_wall_face(cap, cell, side / 2, side % 2));
   }
-  for (int64_t i = mcor_find_wall_edge(job, cell->key);
-       i < job->edge_count && job->edges[i].cell == cell->key; ++i)
+  for (; job->edge < job->edge_count && job->edges[job->edge].cell <= cell->key; ++job->edge)
   {
-    MCOR_TRY(mcor_add_cap_border(cap, job->edges[i].to, job->edges[i].from));
+    const mcor_wall_edge* edge = &job->edges[job->edge];
+    MCOR_TRY(edge->cell == cell->key ? mcor_add_cap_border(cap, edge->to, edge->from) : MCOR_OK);
   }
   return mcor_fill_wall_cell(cap, cell);
 }
@@ -347,15 +315,15 @@ static mcor_status mcor_cap_wall_cells(mcor_wall_job* job)
   return MCOR_OK;
 }
 
-mcor_status mcor_cap_walls(mcor_cap_job* cap, double iso, mcor_cap_points* points)
+mcor_status mcor_cap_walls(mcor_cap_job* cap)
 {
   mcor_wall_job job = { .cap = cap };
   mcor_cap_border border = { .count = 0 };
-  mcor_status status = mcor_load_wall(cap->context, iso, points, &job.wall);
+  mcor_status status = mcor_load_wall(cap->context, &cap->points, &job.wall);
   status = status == MCOR_OK ? mcor_load_wall_edges(&job) : status;
   cap->border = &border;
   status = status == MCOR_OK ? mcor_cap_wall_cells(&job) : status;
-  status = status == MCOR_OK ? mcor_place_cap_cuts(cap, iso, points) : status;
+  status = status == MCOR_OK ? mcor_place_cap_cuts(cap) : status;
   cap->border = NULL;
   mcor_free_wall(&job.wall);
   free(job.edges);

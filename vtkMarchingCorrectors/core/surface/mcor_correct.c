@@ -8,19 +8,12 @@
 
 #include <stdlib.h>
 
-/* Vertices get room for those that trimming adds, so that nothing is copied then. */
 mcor_status mcor_reserve_vertices(mcor_context* context, int count)
 {
   mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)count, real = context->cl.real_size;
-  MCOR_TRY(mcor_reserve(context, &mesh->offset, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->linear, n * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->field_value, n * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->gradient, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->vertex_weight, n * real));
-  MCOR_TRY(mcor_reserve(context, &mesh->flag, n));
-  MCOR_TRY(mcor_reserve(context, &mesh->means, n * (size_t)context->attributes.count * real));
-  return mcor_reserve(context, &mesh->evaluations, n);
+  MCOR_TRY(mcor_extend_vertices(context, 0, count));
+  MCOR_TRY(mcor_reserve(context, &mesh->linear, (size_t)count * context->cl.real_size));
+  return mcor_reserve(context, &mesh->evaluations, (size_t)count);
 }
 
 /* owners: see mcor_find_counted. */
@@ -53,25 +46,14 @@ mcor_status mcor_correct(mcor_context* context, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
-  int count = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
-  MCOR_TRY(mcor_reserve_vertices(context, count));
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    int first, groups;
-    mcor_level_vertices(context, false, l, &first, &count);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_correct_vertices", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-        MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
-        MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
-        MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-        MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
-        MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
-  }
-  MCOR_TRY(mcor_view_level(context, 0));
+  MCOR_TRY(mcor_reserve_vertices(context, mesh->march_count));
+  MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_EDGES, "mcor_correct_vertices",
+    MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
+    MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
+    MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
   if (options->preview)
   {
     return MCOR_OK;

@@ -16,24 +16,7 @@ typedef struct mcor_normals
   double* sums; /* [point_count][3] */
   double scale; /* a power of 2 that brings lengths to about 1 */
   bool all;
-  bool missing[MCOR_SLICES];
 } mcor_normals;
-
-static bool mcor_is_missing(const float n[3])
-{
-  return n[0] == 0 && n[1] == 0 && n[2] == 0;
-}
-
-static void mcor_find_missing(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_normals* job = data;
-  int64_t i = first;
-  while (i < last && !mcor_is_missing(job->surface->normals + 3 * i))
-  {
-    ++i;
-  }
-  job->missing[slice] = i < last;
-}
 
 static void mcor_triangle_normal(
   const mcor_surface* surface, const int32_t* t, double scale, double n[3])
@@ -59,7 +42,7 @@ static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
     float* n = job->surface->normals + 3 * i;
     const double* s = job->sums + 3 * i;
     const double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-    const bool wanted = job->all || mcor_is_missing(n);
+    const bool wanted = job->all || mcor_lacks_normal(n);
     for (int a = 0; a < 3 && wanted; ++a)
     {
       n[a] = length > 0 ? (float)(s[a] / length) : (a == 2 ? 1.0f : 0.0f);
@@ -96,15 +79,7 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
   mcor_normals job = { .surface = surface,
     .scale = ldexp(1, -exponent),
     .all = context->run.options->preview || context->run.options->triangle_normals };
-  int slices;
-  MCOR_TRY(mcor_parallel_run(
-    context, surface->point_count, MCOR_LIGHT_GRAIN, mcor_find_missing, &job, &slices));
-  bool some = job.all;
-  for (int s = 0; s < slices; ++s)
-  {
-    some = some || job.missing[s];
-  }
-  if (!some)
+  if (!job.all && context->run.normals_lacking == 0)
   {
     return MCOR_OK;
   }

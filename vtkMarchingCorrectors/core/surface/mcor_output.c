@@ -4,6 +4,7 @@
 /* Output [III-D.4]: hands the vertices that triangles use, renumbered, and the triangles to the
  * caller's surface, and adds up what the correction did. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
 #include "mcor_fill.h"
@@ -12,31 +13,28 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Views of the mesh's vertices; see mcor_is_output. */
-enum
+/* Statistics of some vertices. */
+typedef struct mcor_tally
 {
-  MCOR_VIEW_SCANNED,
-  MCOR_VIEW_NODE,
-  MCOR_VIEW_OFFSET,
-  MCOR_VIEW_LINEAR,
-  MCOR_VIEW_VALUE,
-  MCOR_VIEW_GRADIENT,
-  MCOR_VIEW_WEIGHT,
-  MCOR_VIEW_FLAG,
-  MCOR_VIEW_COUNT
-};
+  int64_t trim_vertices, linear, above_tolerance, normals_lacking;
+  double count, sum, squares, correction_max, residual_max;
+} mcor_tally;
 
 /* The vertices of one iso value on their way to the surface. */
 typedef struct mcor_download
 {
-  void* views[MCOR_VIEW_COUNT];
-  const cl_int *scanned, *node;
-  const void *offset, *linear, *value, *gradient, *weight;
-  const uint8_t* flag;
-  uint8_t* owned; /* see mcor_find_counted */
-  uint64_t* cuts; /* see mcor_keep_cuts */
+  mcor_context* context;
+  double iso;
+  mcor_surface* surface; /* the first vertex put out becomes its point point_count */
+  /* Views of the mesh's, see mcor_is_output. */
+  void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
+  void *eigenvalue, *nearest, *cuts; /* where they are asked for */
+  uint8_t* owned;                    /* see mcor_find_counted */
+  mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
+#define MCOR_DOWNLOADS 11
 
 /* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
 static mcor_status mcor_count_used(mcor_context* context, int* count)
@@ -67,133 +65,69 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
   return status;
 }
 
-static void mcor_list_mappings(
-  const mcor_context* context, mcor_download* d, mcor_mapping mappings[MCOR_VIEW_COUNT])
+/* Returns how many. */
+static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
 {
+  const mcor_context* context = d->context;
   const mcor_mesh* mesh = &context->mesh;
+  const mcor_options* options = context->run.options;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  mappings[MCOR_VIEW_SCANNED] = (mcor_mapping){ &mesh->scanned, (n + 1) * sizeof(cl_int), NULL };
-  mappings[MCOR_VIEW_NODE] = (mcor_mapping){ &mesh->node, n * 4 * sizeof(cl_int), NULL };
-  mappings[MCOR_VIEW_OFFSET] = (mcor_mapping){ &mesh->offset, n * 4 * real, NULL };
-  mappings[MCOR_VIEW_LINEAR] =
-    (mcor_mapping){ &mesh->linear, (size_t)mesh->march_count * real, NULL };
-  mappings[MCOR_VIEW_VALUE] = (mcor_mapping){ &mesh->field_value, n * real, NULL };
-  mappings[MCOR_VIEW_GRADIENT] = (mcor_mapping){ &mesh->gradient, n * 4 * real, NULL };
-  mappings[MCOR_VIEW_WEIGHT] = (mcor_mapping){ &mesh->vertex_weight, n * real, NULL };
-  mappings[MCOR_VIEW_FLAG] = (mcor_mapping){ &mesh->flag, n, NULL };
-  for (int i = 0; i < MCOR_VIEW_COUNT; ++i)
+  const mcor_mapping all[] = { { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned },
+    { &mesh->node, n * 4 * sizeof(cl_int), &d->node }, { &mesh->offset, n * 4 * real, &d->offset },
+    { &mesh->linear, (size_t)mesh->march_count * real, &d->linear },
+    { &mesh->field_value, n * real, &d->value }, { &mesh->gradient, n * 4 * real, &d->gradient },
+    { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag } };
+  int count = 8;
+  memcpy(mappings, all, sizeof all);
+  if (options->boundary_eigenvalue)
   {
-    mappings[i].data = &d->views[i];
+    mappings[count++] = (mcor_mapping){ &context->trim.eigenvalue, n * real, &d->eigenvalue };
   }
-}
-
-static mcor_status mcor_map_vertices(mcor_context* context, mcor_download* d)
-{
-  mcor_mapping mappings[MCOR_VIEW_COUNT];
-  mcor_list_mappings(context, d, mappings);
-  MCOR_TRY(mcor_map_all(context, mappings, MCOR_VIEW_COUNT));
-  d->scanned = d->views[MCOR_VIEW_SCANNED];
-  d->node = d->views[MCOR_VIEW_NODE];
-  d->offset = d->views[MCOR_VIEW_OFFSET];
-  d->linear = d->views[MCOR_VIEW_LINEAR];
-  d->value = d->views[MCOR_VIEW_VALUE];
-  d->gradient = d->views[MCOR_VIEW_GRADIENT];
-  d->weight = d->views[MCOR_VIEW_WEIGHT];
-  d->flag = d->views[MCOR_VIEW_FLAG];
-  return MCOR_OK;
-}
-
-static mcor_status mcor_unmap_vertices(mcor_context* context, mcor_download* d)
-{
-  mcor_mapping mappings[MCOR_VIEW_COUNT];
-  mcor_list_mappings(context, d, mappings);
-  return mcor_unmap_all(context, mappings, MCOR_VIEW_COUNT, MCOR_OK);
-}
-
-/* Room for `count` more elements of `width` bytes; *array may be NULL. */
-static mcor_status mcor_grow(
-  mcor_context* context, void** array, int64_t old, int64_t count, size_t width)
-{
-  const size_t bytes = (size_t)(old + count) * width + 1;
-  void* grown = realloc(*array, bytes);
-  MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for a surface of %lld points could not be allocated.", (long long)(old + count));
-  mcor_use_large_pages(grown, bytes);
-  *array = grown;
-  return MCOR_OK;
-}
-
-static mcor_status mcor_grow_surface(
-  mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points)
-{
-  const mcor_options* o = context->run.options;
-  const int64_t n = s->point_count;
-  const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
-    o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
-    o->nearest_particle, o->point_keys };
-  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
-  mcor_list_surface_arrays(s, arrays);
-  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
+  if (options->nearest_particle)
   {
-    if (wanted[i])
-    {
-      MCOR_TRY(mcor_grow(context, arrays[i].array, n, points, arrays[i].width));
-    }
+    mappings[count++] =
+      (mcor_mapping){ &context->attributes.nearest, n * sizeof(cl_int), &d->nearest };
   }
-  for (int a = 0; a < input->attribute_count; ++a)
+  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
+  if (options->point_keys && cuts > 0)
   {
-    const size_t components = (size_t)mcor_components(&input->attributes[a]);
-    if (s->attribute_not_finite[a] < 0)
-    {
-      MCOR_TRY(
-        mcor_grow(context, (void**)&s->attributes[a], n, points, components * sizeof(double)));
-    }
+    mappings[count++] = (mcor_mapping){ &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts };
   }
-  return MCOR_OK;
+  return count;
 }
 
-/* Statistics of some vertices. */
-typedef struct mcor_tally
+static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
 {
-  int64_t trim_vertices, linear, above_tolerance;
-  double count, sum, squares, correction_max, residual_max;
-} mcor_tally;
-
-/* One iso value's vertices on their way to the surface. */
-typedef struct mcor_delivery
-{
-  const mcor_context* context;
-  const mcor_download* download;
-  double iso;
-  mcor_surface* surface; /* the first of them becomes its point point_count */
-  mcor_tally tallies[MCOR_SLICES];
-} mcor_delivery;
+  return (const cl_int*)d->node + 4 * v;
+}
 
 /* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it
  * lies on the border that the node threshold leaves. */
-static int mcor_flag_of(const mcor_context* context, const mcor_download* d, int64_t v)
+static int mcor_flag_of(const mcor_download* d, int64_t v)
 {
-  return v < context->mesh.march_count ? (d->node[4 * v + 3] >> 2 & 1) * 4 : d->flag[v];
+  return v < d->context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
+                                          : ((const uint8_t*)d->flag)[v];
 }
 
 /* Of a length of the virtual grid that of vertex v's level: see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
-  const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
+  const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
   return level > 0 ? ldexp(length, level) : length;
 }
 
 /* How far the correction moved vertex v, unit L. */
-static double mcor_correction_of(const mcor_context* context, const mcor_download* d, int64_t v)
+static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
-  return v < context->mesh.march_count ? fabs(mcor_get_real(context, d->linear, v)) *
-      mcor_length_of(d, v, context->lattice.edge[d->node[4 * v + 3] & 3])
-                                       : 0;
+  return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
+      mcor_length_of(d, v, d->context->lattice.edge[mcor_node_of(d, v)[3] & 3])
+                                          : 0;
 }
 
 /* How far rounded positions may move the value of vertex v. */
-static double mcor_rounding_of(const mcor_context* context, const mcor_download* d, int64_t v)
+static double mcor_rounding_of(const mcor_download* d, int64_t v)
 {
+  const mcor_context* context = d->context;
   double gradient = 0; /* along all axes: each is rounded */
   for (int a = 0; a < 3; ++a)
   {
@@ -202,17 +136,17 @@ static double mcor_rounding_of(const mcor_context* context, const mcor_download*
   return mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient;
 }
 
-static void mcor_count_correction(
-  const mcor_context* context, const mcor_download* d, int64_t v, mcor_tally* tally)
+static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally* tally)
 {
+  const mcor_context* context = d->context;
   const double tolerance =
     context->run.options->tolerance * (context->measure.scalar_max - context->measure.scalar_min);
-  const int flag = mcor_flag_of(context, d, v);
+  const int flag = mcor_flag_of(d, v);
   tally->linear += flag == 2;
   if (flag != 2)
   {
     const double residual = fabs(mcor_get_real(context, d->value, v));
-    tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(context, d, v));
+    tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(d, v));
     tally->above_tolerance += residual > tolerance;
   }
   if (flag == 1 || flag == 2)
@@ -220,7 +154,7 @@ static void mcor_count_correction(
     ++tally->trim_vertices;
     return;
   }
-  const double length = mcor_correction_of(context, d, v);
+  const double length = mcor_correction_of(d, v);
   tally->count += 1;
   tally->sum += length;
   tally->squares += length * length;
@@ -233,6 +167,7 @@ static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
   s->trim_vertices += tally->trim_vertices;
   s->trim_vertices_linear += tally->linear;
   s->vertices_above_tolerance += tally->above_tolerance;
+  context->run.normals_lacking += tally->normals_lacking;
   context->run.correction_count += tally->count;
   context->run.correction_sum += tally->sum;
   context->run.correction_squares += tally->squares;
@@ -260,16 +195,18 @@ static void mcor_store_normal(const double gradient[3], float normal[3])
 }
 
 /* Vertex v becomes point `to` of the surface. */
-static void mcor_store_point(const mcor_context* context, const mcor_download* d, int64_t v,
-  double iso, mcor_surface* s, int64_t to)
+static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
 {
+  const mcor_context* context = d->context;
+  mcor_surface* s = d->surface;
   const double cube = mcor_length_of(d, v, context->lattice.cube);
-  const int level = d->node[4 * v + 3] >> MCOR_LEVEL_SHIFT;
+  const cl_int* at = mcor_node_of(d, v);
+  const int level = at[3] >> MCOR_LEVEL_SHIFT;
   double gradient[3];
   for (int a = 0; a < 3; ++a)
   {
     /* The origin is a whole number of cells of all levels. */
-    const double node = (double)((context->lattice.origin[a] >> level) + d->node[4 * v + a]);
+    const double node = (double)((context->lattice.origin[a] >> level) + at[a]);
     s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) *
       mcor_length_of(d, v, context->lattice.edge[a]);
     gradient[a] = mcor_get_real(context, d->gradient, 4 * v + a);
@@ -283,16 +220,25 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
     mcor_store_normal(gradient, s->normals + 3 * to);
     if (mcor_is_cap(context, v))
     {
-      mcor_cap_normal(context, d->node + 4 * v, s->normals + 3 * to);
+      mcor_cap_normal(context, at, s->normals + 3 * to);
     }
   }
   if (s->weight_sum)
   {
     s->weight_sum[to] = (float)mcor_get_real(context, d->weight, v);
   }
+  if (s->boundary_eigenvalue)
+  {
+    s->boundary_eigenvalue[to] = (float)mcor_get_real(context, d->eigenvalue, v);
+  }
+  if (s->nearest_particle)
+  {
+    const cl_int nearest = ((const cl_int*)d->nearest)[v];
+    s->nearest_particle[to] = nearest < 0 ? -1 : mcor_source_of(context, nearest);
+  }
   if (s->correction_length)
   {
-    s->correction_length[to] = (float)mcor_correction_of(context, d, v);
+    s->correction_length[to] = (float)mcor_correction_of(d, v);
   }
   if (s->residual)
   {
@@ -300,11 +246,11 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
   }
   if (s->boundary_flag)
   {
-    s->boundary_flag[to] = (uint8_t)mcor_flag_of(context, d, v);
+    s->boundary_flag[to] = (uint8_t)mcor_flag_of(d, v);
   }
   if (s->iso_value)
   {
-    s->iso_value[to] = iso;
+    s->iso_value[to] = d->iso;
   }
   if (s->point_keys)
   {
@@ -314,37 +260,34 @@ static void mcor_store_point(const mcor_context* context, const mcor_download* d
 
 static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_delivery* delivery = data;
-  const mcor_download* d = delivery->download;
-  mcor_surface* surface = delivery->surface;
+  mcor_download* d = data;
+  const cl_int* scanned = d->scanned;
   mcor_tally tally = { 0 };
   for (int64_t v = first; v < last; ++v)
   {
-    if (mcor_is_output(d->scanned, v))
+    if (mcor_is_output(scanned, v))
     {
-      mcor_store_point(
-        delivery->context, d, v, delivery->iso, surface, surface->point_count + d->scanned[v]);
-      if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(delivery->context, v))
+      const int64_t to = d->surface->point_count + scanned[v];
+      const float* normals = d->surface->normals;
+      mcor_store_point(d, v, to);
+      tally.normals_lacking += normals && mcor_lacks_normal(normals + 3 * to);
+      if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(d->context, v))
       {
-        mcor_count_correction(delivery->context, d, v, &tally);
+        mcor_count_correction(d, v, &tally);
       }
     }
   }
-  delivery->tallies[slice] = tally;
+  d->tallies[slice] = tally;
 }
 
-static mcor_status mcor_deliver_vertices(
-  mcor_context* context, const mcor_download* download, double iso, mcor_surface* surface)
+static mcor_status mcor_deliver_vertices(mcor_context* context, mcor_download* d)
 {
-  mcor_delivery delivery = {
-    .context = context, .download = download, .iso = iso, .surface = surface
-  };
   int slices;
   MCOR_TRY(mcor_parallel_run(
-    context, context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, &delivery, &slices));
+    context, context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, d, &slices));
   for (int s = 0; s < slices; ++s)
   {
-    mcor_add_tally(context, &delivery.tallies[s]);
+    mcor_add_tally(context, &d->tallies[s]);
   }
   return MCOR_OK;
 }
@@ -389,36 +332,24 @@ static mcor_status mcor_deliver_triangles(
   return MCOR_OK;
 }
 
-/* Evaluated for the array alone, as only trimming needs it, and there at other vertices. */
-static mcor_status mcor_add_boundary_eigenvalue(
-  mcor_context* context, const cl_int* scanned, mcor_surface* surface)
+/* What only arrays of the surface need. */
+static mcor_status mcor_evaluate_extras(mcor_context* context)
 {
-  const mcor_mesh* mesh = &context->mesh;
-  const int vertices = mesh->vertex_count;
-  if (vertices == 0 || !context->run.options->boundary_eigenvalue)
+  const mcor_options* options = context->run.options;
+  mcor_buffer* eigenvalue = &context->trim.eigenvalue;
+  if (options->boundary_eigenvalue) /* trimming needs it at other vertices */
   {
-    return MCOR_OK;
+    MCOR_TRY(mcor_reserve(
+      context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
+    MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
   }
-  mcor_buffer* values = &context->trim.eigenvalue;
-  MCOR_TRY(mcor_reserve(context, values, (size_t)vertices * context->cl.real_size));
-  MCOR_TRY(mcor_evaluate_boundary(context, false, values));
-  MCOR_TRY(mcor_evaluate_boundary(context, true, values));
-  void* view;
-  MCOR_TRY(mcor_map(context, values, (size_t)vertices * context->cl.real_size, false, &view));
-  float* to = surface->boundary_eigenvalue + surface->point_count;
-  for (int v = 0; v < vertices; ++v)
-  {
-    if (mcor_is_output(scanned, v))
-    {
-      to[scanned[v]] = (float)mcor_get_real(context, view, v);
-    }
-  }
-  return mcor_unmap(context, values, &view);
+  return options->nearest_particle ? mcor_find_nearest(context) : MCOR_OK;
 }
 
-static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* input, double iso,
-  bool all, mcor_download* download, mcor_surface* surface)
+static mcor_status mcor_append_mesh(
+  mcor_context* context, const mcor_input* input, bool all, mcor_download* download)
 {
+  mcor_surface* surface = download->surface;
   const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
   int count;
   MCOR_TRY(all ? mcor_count_all(context, &count) : mcor_count_used(context, &count));
@@ -427,10 +358,10 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
     (long long)(base + count));
   if (count > 0)
   {
-    MCOR_TRY(mcor_map_vertices(context, download));
-  }
-  if (count > 0 && !all)
-  {
+    mcor_mapping mappings[MCOR_DOWNLOADS];
+    const int mapped = mcor_list_mappings(download, mappings);
+    MCOR_TRY(mcor_evaluate_extras(context));
+    MCOR_TRY(mcor_map_all(context, mappings, mapped));
     mcor_number_lines(context, download->scanned, base);
   }
   MCOR_TRY(mcor_keep_cells(context, surface));
@@ -439,8 +370,7 @@ static mcor_status mcor_append_mesh(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_grow_surface(context, input, surface, count));
   if (count > 0)
   {
-    MCOR_TRY(mcor_deliver_vertices(context, download, iso, surface));
-    MCOR_TRY(mcor_add_boundary_eigenvalue(context, download->scanned, surface));
+    MCOR_TRY(mcor_deliver_vertices(context, download));
     MCOR_TRY(mcor_add_attributes(context, input, download->scanned, surface));
   }
   surface->point_count += count;
@@ -470,35 +400,20 @@ static void mcor_release_vertices(mcor_context* context)
   mcor_mesh* m = &context->mesh;
   mcor_release_attributes(context);
   MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->flag, &m->scanned, &context->trim.eigenvalue);
-}
-
-static mcor_status mcor_append_vertices(
-  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
-{
-  mcor_download download = { 0 };
-  mcor_status status = mcor_keep_cuts(context, &download.cuts);
-  mcor_release_construction(context);
-  if (status == MCOR_OK)
-  {
-    status = mcor_append_mesh(context, input, iso, all, &download, surface);
-  }
-  const mcor_status unmapped = mcor_unmap_vertices(context, &download);
-  mcor_release_vertices(context);
-  free(download.owned);
-  free(download.cuts);
-  return status != MCOR_OK ? status : unmapped;
+    &m->vertex_weight, &m->means, &m->flag, &m->cut_edges, &m->scanned, &context->trim.eigenvalue);
 }
 
 /* Appends the mesh of one iso value to the surface. */
 mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, mcor_surface* surface)
+  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
 {
-  return mcor_append_vertices(context, input, iso, false, surface);
-}
-
-mcor_status mcor_append_points(
-  mcor_context* context, const mcor_input* input, mcor_surface* surface)
-{
-  return mcor_append_vertices(context, input, 0, true, surface);
+  mcor_download download = { .context = context, .iso = iso, .surface = surface };
+  mcor_mapping mappings[MCOR_DOWNLOADS];
+  mcor_release_construction(context);
+  mcor_status status = mcor_append_mesh(context, input, all, &download);
+  const int mapped = mcor_list_mappings(&download, mappings);
+  status = mcor_unmap_all(context, mappings, mapped, status);
+  mcor_release_vertices(context);
+  free(download.owned);
+  return status;
 }

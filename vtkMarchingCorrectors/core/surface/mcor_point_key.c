@@ -8,23 +8,7 @@
 #include "mcor_cap.h"
 #include "mcor_tree.h"
 
-#include <stdlib.h>
-
-/* The two vertices on lattice edges between which each cut vertex lies, as the kernels keep them:
- * lower number << 32 | higher. Taken before trimming gives its memory back. */
-mcor_status mcor_keep_cuts(mcor_context* context, uint64_t** cuts)
-{
-  const mcor_mesh* mesh = &context->mesh;
-  const int count = mesh->cap_first - mesh->march_count;
-  if (!context->run.options->point_keys || count == 0)
-  {
-    return MCOR_OK;
-  }
-  const size_t bytes = (size_t)count * sizeof **cuts;
-  *cuts = malloc(bytes);
-  MCOR_TRY(mcor_allocated(context, *cuts));
-  return mcor_read(context, &context->trim.distinct, 0, *cuts, bytes);
-}
+#include <string.h>
 
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
 {
@@ -43,31 +27,24 @@ uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
   return block << 15 | inner;
 }
 
-/* In the order of vertices: by node, then by axis. */
-static uint64_t mcor_edge_key(const mcor_lattice* lattice, const cl_int node[4], int copy)
-{
-  return mcor_node_key(lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
-}
-
-/* The same of adaptive cubes: by the key of the brick of its level, then by node and axis. Fits, see
- * MCOR_TREE_KEY_BITS. */
-static uint64_t mcor_adaptive_edge_key(const mcor_tree* tree, const cl_int node[4], int copy)
+/* The same of adaptive cubes: by the key of the brick of its level, then by node. Fits, see MCOR_TREE_KEY_BITS. */
+static uint64_t mcor_adaptive_node_key(const mcor_tree* tree, const cl_int node[4])
 {
   const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
   const uint64_t key = mcor_tree_key(&tree->rungs[node[3] >> MCOR_LEVEL_SHIFT], brick);
   const int inner = node[0] % MCOR_BRICK + MCOR_BRICK * (node[1] % MCOR_BRICK) +
     MCOR_BRICK * MCOR_BRICK * (node[2] % MCOR_BRICK);
-  return (key << 6 | (uint64_t)inner) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
+  return key << 6 | (uint64_t)inner;
 }
 
-/* A pinched edge has two vertices, one after the other. */
+/* In the order of vertices: by node, then by axis. A pinched edge has two vertices, one after the other. */
 static uint64_t mcor_march_key(const mcor_context* context, const cl_int* nodes, int64_t v)
 {
-  const cl_int *node = nodes + 4 * v, *before = node - 4;
-  const bool copy = v > 0 && node[0] == before[0] && node[1] == before[1] && node[2] == before[2] &&
-    node[3] == before[3];
-  return mcor_is_adaptive(context) ? mcor_adaptive_edge_key(&context->tree, node, copy)
-                                   : mcor_edge_key(&context->lattice, node, copy);
+  const cl_int* node = nodes + 4 * v;
+  const bool copy = v > 0 && memcmp(node, node - 4, 4 * sizeof *node) == 0;
+  const uint64_t key = mcor_is_adaptive(context) ? mcor_adaptive_node_key(&context->tree, node)
+                                                 : mcor_node_key(&context->lattice, node);
+  return key << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
 }
 
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
@@ -78,7 +55,7 @@ void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, cons
   key[0] = 3 * (uint64_t)context->run.iso_number + (of_cap ? 2 : cut >= 0);
   if (of_cap)
   {
-    mcor_store_cap_key(context, v, key + 1);
+    memcpy(key + 1, context->mesh.cap_keys + 2 * (v - context->mesh.cap_first), 2 * sizeof *key);
     return;
   }
   key[1] = mcor_march_key(context, nodes, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));

@@ -3,7 +3,7 @@
 
 /* A surface's arrays. */
 
-#include "mcor_internal.h"
+#include "mcor_input.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +18,67 @@ void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SU
     { (void**)&s->nearest_particle, sizeof(int64_t) },
     { (void**)&s->point_keys, MCOR_POINT_KEY * sizeof(uint64_t) } };
   memcpy(arrays, all, sizeof all);
+}
+
+mcor_status mcor_begin_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* surface)
+{
+  const size_t count = (size_t)input->attribute_count;
+  surface->attribute_count = input->attribute_count;
+  surface->attributes = calloc(count + 1, sizeof *surface->attributes);
+  surface->attribute_not_finite = calloc(count + 1, sizeof *surface->attribute_not_finite);
+  MCOR_TRY(mcor_allocated(context, surface->attributes && surface->attribute_not_finite));
+  return mcor_list_components(context, input, true, surface->attribute_not_finite);
+}
+
+mcor_status mcor_grow(mcor_context* context, void** array, int64_t old, int64_t count, size_t width)
+{
+  const size_t bytes = (size_t)(old + count) * width + 1;
+  void* grown = realloc(*array, bytes);
+  MCOR_RETURN_IF(!grown, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for a surface of %lld points could not be allocated.", (long long)(old + count));
+  mcor_use_large_pages(grown, bytes);
+  *array = grown;
+  return MCOR_OK;
+}
+
+mcor_status mcor_grow_surface(
+  mcor_context* context, const mcor_input* input, mcor_surface* s, int64_t points)
+{
+  const mcor_options* o = context->run.options;
+  const int64_t n = s->point_count;
+  const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
+    o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
+    o->nearest_particle, o->point_keys };
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
+  mcor_list_surface_arrays(s, arrays);
+  for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
+  {
+    if (wanted[i])
+    {
+      MCOR_TRY(mcor_grow(context, arrays[i].array, n, points, arrays[i].width));
+    }
+  }
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const size_t components = (size_t)mcor_components(&input->attributes[a]);
+    if (s->attribute_not_finite[a] < 0)
+    {
+      MCOR_TRY(
+        mcor_grow(context, (void**)&s->attributes[a], n, points, components * sizeof(double)));
+    }
+  }
+  return MCOR_OK;
+}
+
+void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to)
+{
+  memmove(surface->triangles + 3 * to, surface->triangles + 3 * from, 3 * sizeof(int32_t));
+  if (surface->triangle_keys)
+  {
+    memmove(surface->triangle_keys + MCOR_TRIANGLE_KEY * to,
+      surface->triangle_keys + MCOR_TRIANGLE_KEY * from, MCOR_TRIANGLE_KEY * sizeof(uint64_t));
+  }
 }
 
 void mcor_free_surface(mcor_surface* surface)

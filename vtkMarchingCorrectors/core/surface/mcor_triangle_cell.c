@@ -53,48 +53,16 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
   return mcor_unmap(context, buffer, &view);
 }
 
-/* Trimming is about to leave `remaining` triangles; see mcor_box_trim. */
-mcor_status mcor_trim_cells(
-  mcor_context* context, const mcor_buffer* quantity, double threshold, int remaining)
-{
-  mcor_box* box = &context->box;
-  const mcor_mesh* mesh = &context->mesh;
-  if (!mcor_follows_cells(context))
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer trimmed = { 0 };
-  MCOR_TRY(mcor_reserve(context, &trimmed, (size_t)remaining * sizeof(cl_ulong)));
-  const mcor_status status = MCOR_LAUNCH(context, "mcor_box_trim", MCOR_MEDIUM,
-    mcor_batches(context, mesh->triangle_count), MCOR_INT(mesh->triangle_count),
-    MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(quantity), MCOR_REAL(threshold),
-    MCOR_BUFFER(&context->trim.remaining), MCOR_BUFFER(&box->cells), MCOR_BUFFER(&trimmed));
-  mcor_release(context, &box->cells);
-  box->cells = trimmed;
-  return status;
-}
-
 /* ---- Surface ---- */
 
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface)
 {
-  mcor_box* box = &context->box;
-  const size_t count = (size_t)(surface->triangle_count + more);
-  bool good = true;
-  if (box->is_part)
-  {
-    uint8_t* kept = realloc(box->kept, count + 1);
-    box->kept = kept ? kept : box->kept;
-    good = kept != NULL;
-  }
-  if (context->run.options->triangle_keys)
-  {
-    uint64_t* keys = realloc(surface->triangle_keys, count * MCOR_TRIANGLE_KEY * sizeof *keys + 1);
-    surface->triangle_keys = keys ? keys : surface->triangle_keys;
-    good = good && keys;
-  }
-  MCOR_TRY(mcor_allocated(context, good));
-  return MCOR_OK;
+  const int64_t old = surface->triangle_count;
+  void **kept = (void**)&context->box.kept, **keys = (void**)&surface->triangle_keys;
+  MCOR_TRY(context->box.is_part ? mcor_grow(context, kept, old, more, 1) : MCOR_OK);
+  return context->run.options->triangle_keys
+    ? mcor_grow(context, keys, old, more, MCOR_TRIANGLE_KEY * sizeof(uint64_t))
+    : MCOR_OK;
 }
 
 /* Takes the cells of the mesh's triangles along with the surface. */
@@ -166,16 +134,14 @@ static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, i
   }
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
-    for (int c = 0; c < 3 && kept[i]; ++c)
+    if (kept[i])
     {
-      surface->triangles[3 * triangles + c] = number[surface->triangles[3 * i + c]];
+      mcor_move_triangle(surface, i, triangles++);
     }
-    for (int k = 0; k < MCOR_TRIANGLE_KEY && kept[i] && surface->triangle_keys; ++k)
-    {
-      surface->triangle_keys[MCOR_TRIANGLE_KEY * triangles + k] =
-        surface->triangle_keys[MCOR_TRIANGLE_KEY * i + k];
-    }
-    triangles += kept[i];
+  }
+  for (int64_t i = 0; i < 3 * triangles; ++i)
+  {
+    surface->triangles[i] = number[surface->triangles[i]];
   }
   surface->triangle_count = triangles;
   return points;

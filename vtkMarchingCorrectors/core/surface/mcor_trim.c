@@ -8,25 +8,14 @@
 #include "mcor_plane.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define MCOR_TRIM_STEPS 25
 
-/* Evaluates the boundary eigenvalue at vertices: on lattice edges, or of the trim boundary. */
-mcor_status mcor_evaluate_boundary(mcor_context* context, bool of_boundary, mcor_buffer* eigenvalue)
+mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue)
 {
-  const mcor_mesh* mesh = &context->mesh;
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    int first, count, groups;
-    mcor_level_vertices(context, of_boundary, l, &first, &count);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-        MCOR_BUFFER(&mesh->offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(eigenvalue)));
-  }
-  return mcor_view_level(context, 0);
+  return MCOR_LAUNCH_AT_VERTICES(context, vertices, "mcor_boundary_points",
+    MCOR_BUFFER(&context->mesh.offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(eigenvalue));
 }
 
 /* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
@@ -92,7 +81,7 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
   if (mcor_trims_by_eigenvalue(context))
   {
     MCOR_TRY(mcor_reserve(context, &trim->eigenvalue, (size_t)count * context->cl.real_size));
-    MCOR_TRY(mcor_evaluate_boundary(context, false, &trim->eigenvalue));
+    MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ON_EDGES, &trim->eigenvalue));
   }
   if (mcor_trim_quantity(context) != &trim->margin)
   {
@@ -135,12 +124,26 @@ mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
   return mcor_extend(context, &mesh->flag, o, n);
 }
 
+static int mcor_compare_keys(const void* x, const void* y)
+{
+  const cl_ulong *a = x, *b = y;
+  return (*a > *b) - (*a < *b);
+}
+
+int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
+{
+  const cl_ulong key = p < q ? (cl_ulong)p << 32 | (cl_ulong)q : (cl_ulong)q << 32 | (cl_ulong)p;
+  const cl_ulong* cut =
+    count > 0 ? bsearch(&key, cuts, (size_t)count, sizeof key, mcor_compare_keys) : NULL;
+  return cut ? (int)(cut - cuts) : -1;
+}
+
 /* Finds where the cut vertices of each level begin: a cut vertex has that of the lower one of its edge's
  * vertices, by which they are sorted. */
 static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
-  const mcor_buffer* keys = &context->trim.distinct;
+  const mcor_buffer* keys = &context->mesh.cut_edges;
   for (int l = 0; l < context->lattice.top; ++l)
   {
     int low = 0, high = cut_count;
@@ -162,7 +165,6 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double iso)
 {
   mcor_mesh* mesh = &context->mesh;
-  mcor_trim_data* trim = &context->trim;
   const mcor_options* options = context->run.options;
   const int vertices = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
@@ -173,28 +175,26 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_linear", MCOR_LIGHT, cut_count, MCOR_INT(cut_count),
-    MCOR_BUFFER(&trim->distinct), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
+    MCOR_BUFFER(&mesh->cut_edges), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
   MCOR_TRY(mcor_find_cut_levels(context, cut_count));
   const char* solve =
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    int first, count, groups;
-    mcor_level_vertices(context, true, l, &first, &count);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, count, &groups));
-    MCOR_TRY(MCOR_LAUNCH(context, solve, MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-      MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-      MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
-      MCOR_REAL(mcor_vertex_threshold(context)), MCOR_REAL(mcor_fluid_share(context)),
-      MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(mcor_is_plane(context)),
-      MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-      MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
-      MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
-  }
-  return mcor_view_level(context, 0);
+  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve, MCOR_REAL(iso),
+    MCOR_REAL(options->tolerance * range), MCOR_REAL(mcor_vertex_threshold(context)),
+    MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
+    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+}
+
+/* Takes a buffer over in place of another one. */
+static void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to)
+{
+  mcor_release(context, to);
+  *to = *from;
+  *from = (mcor_buffer){ 0 };
 }
 
 /* iso: relative to A0. */
@@ -217,18 +217,18 @@ mcor_status mcor_trim(mcor_context* context, double iso)
       MCOR_REAL(mcor_trim_threshold(context)), MCOR_BUFFER(&trim->cuts), MCOR_BUFFER(&trim->keys)));
   MCOR_TRY(mcor_reserve(context, &trim->index, sizeof(cl_int)));
   MCOR_TRY(mcor_unique(context, &trim->keys, cuts, (uint64_t)mesh->march_count << 32,
-    &trim->distinct, &trim->index, &cut_count));
+    &mesh->cut_edges, &trim->index, &cut_count));
+  const bool follows = mcor_follows_cells(context);
   MCOR_TRY(mcor_reserve(context, &trim->triangles, (size_t)remaining * 3 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &trim->cells, follows ? (size_t)remaining * sizeof(cl_ulong) : 0));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_fill", MCOR_MEDIUM, batches,
     MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
     MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_INT(mesh->march_count), MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts),
-    MCOR_BUFFER(&trim->index), MCOR_BUFFER(&trim->triangles)));
-  MCOR_TRY(
-    mcor_trim_cells(context, mcor_trim_quantity(context), mcor_trim_threshold(context), remaining));
-  mcor_release(context, &mesh->triangles);
-  mesh->triangles = trim->triangles;
-  trim->triangles = (mcor_buffer){ 0 };
+    MCOR_BUFFER(&trim->index), MCOR_INT(follows), MCOR_BUFFER(&context->box.cells),
+    MCOR_BUFFER(&trim->cells), MCOR_BUFFER(&trim->triangles)));
+  mcor_take_buffer(context, &trim->triangles, &mesh->triangles);
+  mcor_take_buffer(context, &trim->cells, &context->box.cells);
   mesh->triangle_count = remaining;
   return cut_count > 0 ? mcor_place_cuts(context, cut_count, iso) : MCOR_OK;
 }
@@ -236,6 +236,6 @@ mcor_status mcor_trim(mcor_context* context, double iso)
 void mcor_release_trim(mcor_context* context)
 {
   mcor_trim_data* t = &context->trim;
-  MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->distinct,
-    &t->index, &t->triangles);
+  MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->index,
+    &t->triangles, &t->cells);
 }

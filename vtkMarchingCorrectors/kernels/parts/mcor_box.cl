@@ -52,28 +52,4 @@ __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, 
   clipped[i] = cells[i] &
     mcor_cells_within(x0 - by, y0 - by, z0 - by, x1 + end, y1 + end, z1 + end, bricks[i]);
 }
-
-/* One work-item = one batch of triangles. Reads what mcor_trim_count did. Writes to what remains of a
- * triangle the cell it was in. */
-__kernel void mcor_box_trim(const int triangle_count, __global const int* triangles,
-  __global const real* weight, const real threshold, __global const int* remaining,
-  __global const ulong* cells, __global ulong* trimmed)
-{
-  MCOR_ITEM(batch, (long)batch * MCOR_BATCH < triangle_count);
-  const long begin = (long)batch * MCOR_BATCH;
-  int to = remaining[batch];
-  for (long i = begin; to < remaining[batch + 1]; ++i)
-  {
-    int inside = 0;
-    for (int c = 0; c < 3; ++c)
-    {
-      inside += weight[triangles[3 * i + c]] > threshold;
-    }
-    const int left = inside == 0 ? 0 : inside == 2 ? 2 : 1;
-    for (int k = 0; k < left; ++k)
-    {
-      trimmed[to++] = cells[i];
-    }
-  }
-}
 #endif

@@ -6,7 +6,6 @@
  * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
  * there. */
 
-#if MCOR_OF_LATTICE
 /* Bits 0..2: corner above the threshold. One at the threshold is outside, for every triangle around
  * it, so that what remains is a manifold there, too, and one which merely touches the threshold
  * leaves nothing [Fig. 3 b]. */
@@ -93,11 +92,12 @@ __global int* mcor_trim_cut(
   return to;
 }
 
-/* One work-item = one batch of triangles. Writes what remains of them [Fig. 3]. */
+/* One work-item = one batch of triangles. Writes what remains of them [Fig. 3], and, if wanted, to each the cell
+ * that the triangle was in. */
 __kernel void mcor_trim_fill(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, const int vertex_count,
   __global const int* remaining, __global const int* cuts, __global const int* cut_vertex,
-  __global int* out)
+  const int follows, __global const ulong* cells, __global ulong* out_cells, __global int* out)
 {
   MCOR_ITEM(batch, (long)batch * MCOR_BATCH < triangle_count);
   const long begin = (long)batch * MCOR_BATCH;
@@ -105,7 +105,7 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
   int cut = cuts[batch];
   for (long i = begin; to < end; ++i)
   {
-    __global const int* t = triangles + 3 * i;
+    __global const int *t = triangles + 3 * i, *first = to;
     const int inside = mcor_trim_case(t, weight, threshold);
     if (inside == 7)
     {
@@ -119,400 +119,13 @@ __kernel void mcor_trim_fill(const int triangle_count, __global const int* trian
         t, inside, vertex_count + cut_vertex[cut], vertex_count + cut_vertex[cut + 1], to);
       cut += 2;
     }
-  }
-}
-#endif
-
-#if MCOR_OF_FIELD
-/* What a Shepard mean at a vertex needs of the fluid's own weight. */
-#define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
-
-/* The fluid's own weight at vertex v. */
-real mcor_trim_fluid(__global const real* weight, __global const real4* gradient, int v)
-{
-  return MCOR_SOLIDS ? gradient[v].w : weight[v];
-}
-
-/* One work-item = one vertex. Writes what is trimmed by: `quantity`, or where the fluid needs a share of
- * the weight, how far the vertex is inside of that and of the threshold of `quantity`, whichever is
- * nearer, the threshold then being 0. A vertex where there is no mean is outside at any rate: at the
- * threshold, if it was inside. */
-__kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
-  __global const real* weight, __global const real4* gradient, const real fluid_share,
-  __global real* margin)
-{
-  MCOR_ITEM(i, i < count);
-  const real share = gradient[i].w - fluid_share * weight[i];
-  real m = fluid_share <= 0 ? quantity[i]
-    : MCOR_FIELD == 2       ? share
-                            : fmin(quantity[i] - threshold, share);
-  if (MCOR_FIELD == 0 && !(mcor_trim_fluid(weight, gradient, i) > MCOR_LEAST_FLUID))
-  {
-    m = fmin(m, fluid_share > 0 ? (real)0 : threshold);
-  }
-  margin[i] = m;
-}
-
-/* Where what is wa and wb at the ends of an edge, and linear between, is w: off the ends. */
-real mcor_trim_fraction(real wa, real wb, real w)
-{
-  return clamp((w - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
-}
-
-/* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the lower vertex, offset. It
- * keeps off the ends, as cut vertices of several edges would meet there. Writes in place of its gradient how
- * far the end inside is, and whether it is the fluid that ends. */
-__kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
-  const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
-  __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
-{
-  MCOR_ITEM(i, i < cut_count);
-  const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
-  const bool inside = trimmed_by[a] > threshold;
-  real s = mcor_trim_fraction(trimmed_by[a], trimmed_by[b], threshold);
-  bool lacks = false;
-#if MCOR_FIELD == 0
-  const real fa = mcor_trim_fluid(weight, gradient, a), fb = mcor_trim_fluid(weight, gradient, b);
-  if (!(fmin(fa, fb) > MCOR_LEAST_FLUID))
-  {
-    const real t = mcor_trim_fraction(fa, fb, MCOR_LEAST_FLUID);
-    lacks = inside ? t < s : t > s;
-    s = lacks ? t : s;
-  }
-#endif
-  /* In cells of a's level; b's, of adaptive cubes, may be higher. */
-  const int4 n = node[a];
-  const int level = n.w >> MCOR_LEVEL_SHIFT, above = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
-  const int4 d = (node[b] << above) - n;
-  const real4 to = offset[b] * (real)(1 << above) + (real4)(d.x, d.y, d.z, 0);
-  node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
-  offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
-  const real4 along = inside ? -s * (to - offset[a]) : ((real)1 - s) * (to - offset[a]);
-  gradient[vertex_count + i] = (real4)(along.x, along.y, along.z, lacks);
-}
-
-/* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */
-#define MCOR_TRIM_REACH ((real)0.75)
-#define MCOR_TRIM_STEP ((real)0.25)
-
-/* Steps back to where there is a mean, at most, each half of the way that is left to the edge's end, where
- * cuts would meet. */
-#define MCOR_TRIM_RETREATS 12
-
-/* |w - threshold| of a cut vertex, at most. */
-#define MCOR_TRIM_TOLERANCE ((real)1e-5f)
-
-/* What is trimmed by: thresholds of the weight or the boundary eigenvalue and, above 0, of the
- * fluid's share of the weight; where points lie on an edge whose one end lacks fluid, its weight. */
-typedef struct
-{
-  real threshold, fluid_share;
-  bool by_eigenvalue, plane;
-  fixv lacking;
-  realv inside[3]; /* from the linear cut, the edge's end inside */
-} mcor_trim_limits;
-
-/* The fluid's own weight at all points. */
-realv mcor_fluid_of(const mcor_field_at* at)
-{
-#if MCOR_SOLIDS
-  return at->fluid;
-#else
-  return at->weight;
-#endif
-}
-
-/* Where the weight is the threshold, the fluid's own may yet be too low. */
-fixv mcor_lacks_fluid(const mcor_field_at* at)
-{
-  return mcor_fluid_of(at) < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
-}
-
-#if MCOR_FIELD == 0
-void mcor_trim_bound_fluid(const mcor_field_at* at, fixv lacking, mcor_boundary_at* bound)
-{
-  const realv least = mcor_fluid_of(at) - MCOR_LEAST_FLUID;
-  const fixv nearer = lacking && least < bound->value;
-  bound->value = nearer ? least : bound->value;
-#if MCOR_SOLIDS
-  bound->gx = nearer ? at->fx : bound->gx;
-  bound->gy = nearer ? at->fy : bound->gy;
-  bound->gz = nearer ? at->fz : bound->gz;
-#else
-  bound->gx = nearer ? at->wx : bound->gx;
-  bound->gy = nearer ? at->wy : bound->gy;
-  bound->gz = nearer ? at->wz : bound->gz;
-#endif
-}
-#endif
-
-#if MCOR_SOLIDS
-/* Where the fluid's share is the nearer limit, or the only one, it is the one that counts. */
-void mcor_trim_bound_share(const mcor_field_at* at, real fluid_share, mcor_boundary_at* bound)
-{
-  const realv share = at->fluid - fluid_share * at->weight;
-  const fixv nearer = MCOR_FIELD == 2 ? (fixv)MCOR_TRUE : share < bound->value;
-  bound->value = nearer ? share : bound->value;
-  bound->gx = nearer ? at->fx - fluid_share * at->wx : bound->gx;
-  bound->gy = nearer ? at->fy - fluid_share * at->wy : bound->gy;
-  bound->gz = nearer ? at->fz - fluid_share * at->wz : bound->gz;
-}
-#endif
-
-/* How far all points, where the field was evaluated, are inside of the limits. */
-void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
-  const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
-  mcor_boundary_at* bound)
-{
-  if (limits->by_eigenvalue)
-  {
-    mcor_evaluate_boundary(grid, query, &reach->tile, points, limits->plane, true, bound);
-  }
-  else
-  {
-    bound->value = at->weight;
-    bound->gx = at->wx;
-    bound->gy = at->wy;
-    bound->gz = at->wz;
-  }
-  bound->value -= limits->threshold;
-#if MCOR_SOLIDS
-  if (limits->fluid_share > 0)
-  {
-    mcor_trim_bound_share(at, limits->fluid_share, bound);
-  }
-#endif
-#if MCOR_FIELD == 0
-  mcor_trim_bound_fluid(at, limits->lacking, bound);
-#endif
-}
-
-/* Divides a value and its gradient by the gradient's length, whatever the unit. Returns where it has
- * none. */
-fixv mcor_trim_normalize(realv* value, realv gradient[3])
-{
-  const realv most = fmax(fabs(gradient[0]), fmax(fabs(gradient[1]), fabs(gradient[2])));
-  const fixv none = most < (MCOR_DOUBLE ? (real)1e-300 : (real)1e-36f);
-  const realv inv_most = (real)1 / (none ? (realv)1 : most);
-  realv length2 = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    gradient[a] *= inv_most;
-    length2 += gradient[a] * gradient[a];
-  }
-  const realv inv = none ? (realv)0 : mcor_rsqrt(fmax(length2, (realv)1));
-  for (int a = 0; a < 3; ++a)
-  {
-    gradient[a] *= inv;
-  }
-  *value *= inv_most * inv;
-  return none;
-}
-
-/* Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J J^T)^-1
- * (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there is none, the
- * gradients being parallel. */
-fixv mcor_trim_step(
-  const mcor_field_at* at, const mcor_boundary_at* bound, realv* dx, realv* dy, realv* dz)
-{
-  realv f = at->value, w = bound->value;
-  realv gf[3] = { at->gx, at->gy, at->gz }, gw[3] = { bound->gx, bound->gy, bound->gz };
-  const fixv flat = mcor_trim_normalize(&f, gf) || mcor_trim_normalize(&w, gw);
-  const realv fw = gf[0] * gw[0] + gf[1] * gw[1] + gf[2] * gw[2];
-  const realv det = (real)1 - fw * fw;
-  const fixv tangent = flat || det <= (real)1e-6f;
-  const realv inv_det = (real)1 / (tangent ? (realv)1 : det);
-  const realv lf = (fw * w - f) * inv_det, lw = (fw * f - w) * inv_det;
-  const realv x = lf * gf[0] + lw * gw[0];
-  const realv y = lf * gf[1] + lw * gw[1];
-  const realv z = lf * gf[2] + lw * gw[2];
-  const realv damp =
-    fmin(MCOR_TRIM_STEP * mcor_rsqrt(fmax(x * x + y * y + z * z, (realv)1e-30f)), (realv)1);
-  *dx = damp * x;
-  *dy = damp * y;
-  *dz = damp * z;
-  return tangent;
-}
-
-/* Moves points of linear cuts, where there is no mean, towards the edge's end inside until there is one.
- * Returns which ones. */
-fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
-  const mcor_trim_limits* limits, fixv linear, mcor_points* points, mcor_reach* reach,
-  mcor_field_at* at)
-{
-  const realv x0 = points->ox, y0 = points->oy, z0 = points->oz;
-  const realv most =
-    fmax(fabs(limits->inside[0]), fmax(fabs(limits->inside[1]), fabs(limits->inside[2])));
-  const realv scale = MCOR_TRIM_REACH / fmax(most, (realv)MCOR_TRIM_REACH);
-  real share = 1;
-  fixv moved = 0;
-  for (int i = 0; i < MCOR_TRIM_RETREATS; ++i)
-  {
-    const fixv move = linear && mcor_fluid_of(at) <= MCOR_LEAST_FLUID;
-    if (!MCOR_ANY(move))
+    for (; follows && first < to; first += 3)
     {
-      break;
-    }
-    share *= (real)0.5;
-    points->ox = move ? x0 + (1 - share) * scale * limits->inside[0] : points->ox;
-    points->oy = move ? y0 + (1 - share) * scale * limits->inside[1] : points->oy;
-    points->oz = move ? z0 + (1 - share) * scale * limits->inside[2] : points->oz;
-    moved = moved || move;
-    mcor_evaluate(grid, query, reach, points, iso, at);
-  }
-  return moved;
-}
-
-/* Moves those points of a group that are to be sought to where field = iso and weight = threshold. Returns
- * those for which that does not succeed near `start`; they may be anywhere. */
-fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  mcor_trim_limits* limits, int steps, const realv start[3], fixv sought, mcor_points* points,
-  mcor_reach* reach, mcor_field_at* at)
-{
-  mcor_boundary_at bound;
-  fixv done = !sought, failed = 0;
-  for (int i = 0;; ++i)
-  {
-    mcor_evaluate(grid, query, reach, points, iso, at);
-    mcor_trim_bound(grid, query, reach, points, at, limits, &bound);
-    const fixv met = fabs(at->value) <= tolerance && fabs(bound.value) <= MCOR_TRIM_TOLERANCE;
-    const fixv lacks = MCOR_FIELD == 0 && met && mcor_lacks_fluid(at);
-    limits->lacking = limits->lacking || lacks;
-    done = done || (met && !lacks);
-    if (i == steps || !MCOR_ANY(!(done || failed)))
-    {
-      return !done;
-    }
-    realv dx, dy, dz;
-    const fixv tangent = mcor_trim_step(at, &bound, &dx, &dy, &dz);
-    const fixv far = fabs(points->ox + dx - start[0]) > MCOR_TRIM_REACH ||
-      fabs(points->oy + dy - start[1]) > MCOR_TRIM_REACH ||
-      fabs(points->oz + dz - start[2]) > MCOR_TRIM_REACH;
-    failed = failed || (!done && (far || tangent));
-    const fixv move = !(done || failed);
-    points->ox += move ? dx : (realv)0;
-    points->oy += move ? dy : (realv)0;
-    points->oz += move ? dz : (realv)0;
-  }
-}
-
-/* Puts some points of a group where they were. */
-void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const realv start[3],
-  fixv back, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
-{
-  points->ox = back ? start[0] : points->ox;
-  points->oy = back ? start[1] : points->oy;
-  points->oz = back ? start[2] : points->oz;
-  mcor_evaluate(grid, query, reach, points, iso, at);
-}
-
-/* Moves a group of points to where field = iso and weight = threshold; points for which that does
- * not succeed nearby stay where they were, or where there is a mean: from there they are sought once more,
- * as the field has no slope to follow where it has hardly any weight. Returns those that stay. */
-fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
-  mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
-{
-  const realv start[3] = { points->ox, points->oy, points->oz };
-  mcor_tile_init(&reach->tile);
-  fixv linear = mcor_trim_seek(
-    grid, query, iso, tolerance, limits, steps, start, (fixv)MCOR_TRUE, points, reach, at);
-  if (!MCOR_ANY(linear))
-  {
-    return linear;
-  }
-  mcor_trim_return(grid, query, iso, start, linear, points, reach, at);
-  if (MCOR_FIELD != 0 || steps == 0) /* a preview */
-  {
-    return linear;
-  }
-  const fixv moved = mcor_trim_retreat(grid, query, iso, limits, linear, points, reach, at);
-  if (MCOR_ANY(moved))
-  {
-    const realv mean[3] = { points->ox, points->oy, points->oz };
-    const fixv lost =
-      mcor_trim_seek(grid, query, iso, tolerance, limits, steps, start, moved, points, reach, at);
-    mcor_trim_return(grid, query, iso, mean, lost, points, reach, at);
-    linear = lost || (linear && !moved);
-  }
-  return linear;
-}
-
-#define MCOR_TRIM_SOLVE_PARAMS                                                                     \
-  const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
-    const real tolerance, const real threshold, const real fluid_share, const int steps,           \
-    const int plane, __global real4 *offset, __global real *value, __global real4 *gradient,       \
-    __global real *weight, __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
-
-#define MCOR_TRIM_SOLVE_ARGS                                                                       \
-  group_count, groups, node, iso, tolerance, threshold, fluid_share, steps, plane, offset, value,  \
-    gradient, weight, flag, MCOR_ATTRIBUTE_ARGS
-
-/* What the next two kernels do. */
-void mcor_trim_solve_group(
-  const mcor_grid* grid, int group, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
-{
-  if (group >= group_count)
-  {
-    return;
-  }
-  mcor_points points;
-  mcor_query query;
-  mcor_reach reach;
-  mcor_field_at at;
-  realv lacks = 0;
-  mcor_group_load(
-    grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
-  mcor_trim_limits limits;
-  limits.threshold = threshold;
-  limits.fluid_share = fluid_share;
-  limits.by_eigenvalue = by_eigenvalue;
-  limits.plane = plane;
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const int v = points.index[lane];
-    const real4 along = v >= 0 ? gradient[v] : (real4)(0, 0, 0, 0);
-    MCOR_SET(limits.inside[0], lane) = along.x * grid->edge[0];
-    MCOR_SET(limits.inside[1], lane) = along.y * grid->edge[1];
-    MCOR_SET(limits.inside[2], lane) = along.z * grid->edge[2];
-    MCOR_SET(lacks, lane) = along.w;
-  }
-  limits.lacking = lacks != 0;
-  const fixv linear =
-    mcor_trim_group(grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
-  if (attribute_count > 0)
-  {
-    mcor_attribute_group(grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
-  }
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const int v = points.index[lane];
-    if (v >= 0)
-    {
-      mcor_points_store(grid, &points, &at, lane, v, offset, value, gradient, weight);
-      flag[v] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
+      out_cells[(first - out) / 3] = cells[i];
     }
   }
 }
 
-/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
- * equations hold. Writes position, value, gradient, weight and attributes; the flag 2 instead of 1
- * where the linear cut stays, the two surfaces being tangent or too far away. */
-__kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
-{
-  const mcor_grid grid = MCOR_GRID;
-  mcor_trim_solve_group(&grid, get_global_id(0), false, MCOR_TRIM_SOLVE_ARGS);
-}
-
-/* The same for the boundary eigenvalue; the linear cut also stays where it has no gradient. */
-__kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
-{
-  const mcor_grid grid = MCOR_GRID;
-  mcor_trim_solve_group(&grid, get_global_id(0), true, MCOR_TRIM_SOLVE_ARGS);
-}
-#endif
-
-#if MCOR_OF_LATTICE
 /* One work-item = one triangle corner. Writes 1 to its vertex. */
 __kernel void mcor_trim_used(
   const int triangle_count, __global const int* triangles, __global int* used)
@@ -523,4 +136,3 @@ __kernel void mcor_trim_used(
     used[triangles[i]] = 1;
   }
 }
-#endif

@@ -1,0 +1,232 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Points of caps, and of what is filled: the field there, and those that become vertices of the mesh, behind all
+ * others; and what the output asks of these. */
+
+#include "mcor_cap.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the field ---- */
+
+void mcor_free_cap_points(mcor_context* context, mcor_cap_points* p)
+{
+  MCOR_RELEASE(
+    context, &p->nodes, &p->offsets, &p->values, &p->gradients, &p->weights, &p->eigenvalues);
+  free(p->node);
+  free(p->offset);
+  free(p->to);
+}
+
+/* Evaluates at the points. */
+static mcor_status mcor_evaluate_cap_points(mcor_context* context, mcor_cap_points* p)
+{
+  const size_t n = (size_t)p->count, real = context->cl.real_size;
+  int groups;
+  MCOR_TRY(mcor_write(context, &p->nodes, p->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &p->offsets, p->offset, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &p->values, n * real));
+  MCOR_TRY(mcor_reserve(context, &p->gradients, n * 4 * real));
+  MCOR_TRY(mcor_reserve(context, &p->weights, n * real));
+  MCOR_TRY(mcor_make_groups(context, &p->nodes, 0, p->count, &groups));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
+    MCOR_REAL(p->iso), MCOR_BUFFER(&p->offsets), MCOR_BUFFER(&p->values),
+    MCOR_BUFFER(&p->gradients), MCOR_BUFFER(&p->weights), MCOR_INT(0), MCOR_INT(0),
+    MCOR_BUFFER(&p->values), MCOR_BUFFER(&p->weights)));
+  if (!mcor_trims_by_eigenvalue(context))
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_reserve(context, &p->eigenvalues, n * real));
+  return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
+    MCOR_BUFFER(&p->offsets), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&p->eigenvalues));
+}
+
+mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)
+{
+  if (p->count == 0)
+  {
+    return MCOR_OK;
+  }
+  const size_t bytes = (size_t)p->count * context->cl.real_size;
+  const mcor_mapping mappings[] = { { &p->values, bytes, &p->value },
+    { &p->gradients, 4 * bytes, &p->gradient }, { &p->weights, bytes, &p->weight },
+    { &p->eigenvalues, bytes, &p->eigenvalue } };
+  const int mapped = mcor_trims_by_eigenvalue(context) ? 4 : 3;
+  MCOR_TRY(mcor_evaluate_cap_points(context, p));
+  mcor_status status = mcor_map_all(context, mappings, mapped);
+  for (int i = 0; i < p->count && status == MCOR_OK; ++i)
+  {
+    p->take(context, p, i, p->data);
+  }
+  p->count = 0;
+  MCOR_TRY(mcor_unmap_all(context, mappings, mapped, status));
+  return mcor_report_launch(context);
+}
+
+mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* p, const cl_int node[3],
+  const double offset[3], int64_t to)
+{
+  if (!p->node)
+  {
+    p->node = calloc(MCOR_CAP_BATCH, 4 * sizeof *p->node);
+    p->offset = calloc(MCOR_CAP_BATCH, 4 * context->cl.real_size);
+    p->to = malloc(MCOR_CAP_BATCH * sizeof *p->to);
+    MCOR_TRY(mcor_allocated(context, p->node && p->offset && p->to));
+  }
+  memcpy(p->node + 4 * (size_t)p->count, node, 3 * sizeof *node);
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_put_real(context, p->offset, 4 * (int64_t)p->count + a, offset ? offset[a] : 0);
+  }
+  p->to[p->count++] = to;
+  return p->count < MCOR_CAP_BATCH ? MCOR_OK : mcor_take_cap_points(context, p);
+}
+
+/* The fluid's own weight. */
+static double mcor_cap_fluid(const mcor_context* context, const mcor_cap_points* p, int64_t i)
+{
+  return context->cl.build.solids ? mcor_get_real(context, p->gradient, 4 * i + 3)
+                                  : mcor_get_real(context, p->weight, i);
+}
+
+double mcor_cap_margin(const mcor_context* context, const mcor_cap_points* p, int64_t i)
+{
+  const double weight = mcor_get_real(context, p->weight, i), share = mcor_fluid_share(context);
+  const double fluid = mcor_cap_fluid(context, p, i);
+  const double quantity = p->eigenvalue ? mcor_get_real(context, p->eigenvalue, i) : weight;
+  const double threshold = context->run.options->field == MCOR_WEIGHT_SUM
+    ? DBL_MAX
+    : quantity - mcor_real_of(context, mcor_vertex_threshold(context));
+  const double ends = share > 0 ? fluid - share * weight : DBL_MAX;
+  const double margin = threshold < ends ? threshold : ends;
+  return fluid > mcor_real_of(context, mcor_least_fluid(context)) ||
+      context->run.options->field != MCOR_SHEPARD
+    ? margin
+    : fmin(margin, 0);
+}
+
+bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* p, int64_t i)
+{
+  const mcor_options* options = context->run.options;
+  const double weight = mcor_get_real(context, p->weight, i);
+  return options->field == MCOR_WEIGHT_SUM ||
+    (weight >= mcor_real_of(context, options->node_threshold) &&
+      (options->field == MCOR_SUM ||
+        mcor_cap_fluid(context, p, i) >= mcor_real_of(context, MCOR_LEAST_NODE_WEIGHT)));
+}
+
+/* ---- vertices ---- */
+
+void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
+{
+  double n[3], square = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    n[a] = node[a] == mcor_cap_plane(context, a, 0) ? -1
+      : node[a] == mcor_cap_plane(context, a, 1)    ? 1
+                                                    : 0;
+    square += n[a] * n[a];
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    normal[a] = square > 0 ? (float)(n[a] / sqrt(square)) : 0; /* at walls: from triangles */
+  }
+}
+
+void mcor_end_caps(mcor_context* context)
+{
+  free(context->mesh.cap_keys);
+  context->mesh.cap_keys = NULL;
+}
+
+mcor_status mcor_append_bytes(
+  mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes)
+{
+  mcor_buffer more = { 0 };
+  if (old == 0)
+  {
+    return mcor_write(context, to, data, bytes);
+  }
+  MCOR_TRY(mcor_extend(context, to, old, old + bytes));
+  mcor_status status = mcor_write(context, &more, data, bytes);
+  status = status == MCOR_OK ? mcor_copy(context, &more, to, old, bytes) : status;
+  mcor_release(context, &more);
+  return status;
+}
+
+/* Places and flags. */
+static mcor_status mcor_append_places(
+  mcor_context* context, const mcor_cap_vertex* vertices, size_t n)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const size_t old = (size_t)mesh->vertex_count, width = 4 * context->cl.real_size;
+  cl_int* node = calloc(n, 4 * sizeof *node);
+  void* offset = calloc(n, width);
+  uint8_t* flag = malloc(n);
+  mcor_status status = mcor_allocated(context, node && offset && flag);
+  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  {
+    memcpy(node + 4 * i, vertices[i].node, sizeof vertices[i].node);
+    flag[i] = vertices[i].flag;
+    for (size_t a = 0; a < 3; ++a)
+    {
+      mcor_put_real(context, offset, (int64_t)(4 * i + a), vertices[i].offset[a]);
+    }
+  }
+  status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)(old + n)) : status;
+  status =
+    status == MCOR_OK ? mcor_append_bytes(context, &mesh->node, old * 16, node, n * 16) : status;
+  status = status == MCOR_OK
+    ? mcor_append_bytes(context, &mesh->offset, old * width, offset, n * width)
+    : status;
+  status = status == MCOR_OK ? mcor_append_bytes(context, &mesh->flag, old, flag, n) : status;
+  free(node);
+  free(offset);
+  free(flag);
+  return status;
+}
+
+static mcor_status mcor_keep_cap_keys(
+  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
+{
+  if (!context->run.options->point_keys)
+  {
+    return MCOR_OK;
+  }
+  mcor_end_caps(context);
+  uint64_t* keys = malloc((size_t)count * sizeof vertices->key);
+  for (int64_t i = 0; i < count && keys; ++i)
+  {
+    keys[2 * i] = vertices[i].key[0] & ~MCOR_RING_CELL;
+    keys[2 * i + 1] = vertices[i].key[1];
+  }
+  context->mesh.cap_keys = keys;
+  return mcor_allocated(context, keys);
+}
+
+mcor_status mcor_append_cap_vertices(
+  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count, double iso)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const int old = mesh->vertex_count;
+  int groups;
+  if (count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_keep_cap_keys(context, vertices, count));
+  MCOR_TRY(mcor_append_places(context, vertices, (size_t)count));
+  mesh->vertex_count += (int)count;
+  MCOR_TRY(mcor_make_groups(context, &mesh->node, old, (int)count, &groups));
+  return MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
+    MCOR_REAL(iso), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
+    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight),
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+}

@@ -118,15 +118,17 @@ static void test_cancelled(void** state)
   (void)state;
   skip();
 #else
-  mcor_context* context = *state;
-  const double iso = 0, interval = context->report_interval;
+  mcor_context* context;
+  const double iso = 0;
   const int64_t count = MCOR_SLICES * 64;
+  (void)state;
+  const char* before = getenv("MCOR_THREADS");
+  setenv("MCOR_THREADS", "1", 1);
+  CORE_OK(context, mcor_create_context(NULL, &context));
   mcor_options options = core_options(&iso);
   options.progress = ask;
   context->run.options = &options;
   context->run.doing = "a loop";
-  const char* before = getenv("MCOR_THREADS");
-  setenv("MCOR_THREADS", "1", 1);
   context->report_interval = 0;
   for (int most = 0; most < 3; ++most)
   {
@@ -148,8 +150,7 @@ static void test_cancelled(void** state)
     free(v.elements);
   }
   before ? setenv("MCOR_THREADS", before, 1) : unsetenv("MCOR_THREADS");
-  context->run.options = NULL;
-  context->report_interval = interval;
+  mcor_free_context(context);
 #endif
 }
 

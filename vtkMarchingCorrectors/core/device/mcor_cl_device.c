@@ -4,7 +4,6 @@
 /* Which OpenCL device, and what it can do. */
 
 #include "mcor_cl_call.h"
-#include "mcor_parallel.h"
 #include "mcor_program.h"
 
 #include <stdio.h>
@@ -174,8 +173,9 @@ static void mcor_query_device(mcor_cl* cl)
   cl->is_cpu = mcor_has_cpu_form(cl);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-  /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries. */
-  cl->keeps_binaries = !mcor_is_pocl(cl);
+  /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries; the built-in
+   * device has none. */
+  cl->keeps_binaries = !mcor_is_pocl(cl) && !mcor_is_native(cl);
   cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
   cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
@@ -245,8 +245,8 @@ static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const m
 {
   mcor_cl tried = { .platform = platform, .device = device };
   mcor_query_device(&tried);
-  return platform == mcor_native_platform() ? mcor_has_ahead(&tried, build)
-                                            : build->precision == MCOR_FLOAT32 || tried.has_fp64;
+  return mcor_is_native(&tried) ? mcor_has_ahead(&tried, build)
+                                : build->precision == MCOR_FLOAT32 || tried.has_fp64;
 }
 
 /* The best of the devices that can do a build; -1: none. */

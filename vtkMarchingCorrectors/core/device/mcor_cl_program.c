@@ -60,7 +60,7 @@ static mcor_status mcor_fail_build(
   const mcor_cl* cl = &context->cl;
   char missing[MCOR_BUILD_NAME];
   mcor_name_build(&cl->build, missing, sizeof missing);
-  MCOR_RETURN_IF(cl->platform == mcor_native_platform(), context, MCOR_DEVICE_ERROR,
+  MCOR_RETURN_IF(mcor_is_native(cl), context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
     "another device, or build with MCOR_AHEAD=all.",
     missing);

@@ -6,13 +6,10 @@
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
-#include "mcor_pool.h"
 #include "mcor_system.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #define MCOR_ARGUMENT_LIMIT 64
 #define MCOR_BUFFER_ALIGNMENT 128
@@ -41,9 +38,7 @@ struct _cl_device_id
 struct _cl_context
 {
   const cl_icd_dispatch* table;
-  cl_uint units;
-  mcor_pool* pool; /* from the first launch on */
-  long process;    /* whose threads those are */
+  mcor_pool pool;
 };
 
 struct _cl_command_queue
@@ -75,25 +70,20 @@ struct _cl_kernel
   void* arguments[MCOR_ARGUMENT_LIMIT];
 };
 
-struct _cl_event
-{
-  const cl_icd_dispatch* table;
-  cl_ulong start, end; /* ns */
-};
-
 static struct _cl_platform_id mcor_platform = { &mcor_native_table };
 static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
 
 /* ---- Platform and device ---- */
 
-/* Of those for which programs are compiled: a build may leave some out. */
-static mcor_instructions mcor_best_instructions(void)
+/* Of those for which programs are compiled: a build may leave some out. -1: this processor has none. */
+static int mcor_best_instructions(void)
 {
-  const mcor_instructions own = mcor_own_instructions();
-  mcor_instructions best = MCOR_INSTRUCTIONS_BASE;
+  const int own = mcor_own_instructions();
+  int best = -1;
   for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
   {
-    best = p->instructions <= own && p->instructions > best ? p->instructions : best;
+    const int instructions = p->instructions;
+    best = instructions <= own && instructions > best ? instructions : best;
   }
   return best;
 }
@@ -107,15 +97,7 @@ static const char* mcor_device_text(void)
 
 cl_platform_id mcor_native_platform(void)
 {
-  const mcor_instructions own = mcor_own_instructions();
-  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
-  {
-    if (p->instructions <= own)
-    {
-      return &mcor_platform;
-    }
-  }
-  return NULL;
+  return mcor_best_instructions() >= 0 ? &mcor_platform : NULL;
 }
 
 /* Threads that compute, the calling one included. */
@@ -259,7 +241,6 @@ static cl_int mcor_release_device(cl_device_id device)
     return CL_SUCCESS;                                                                             \
   }
 MCOR_RELEASE_ALONE(mcor_release_queue, cl_command_queue)
-MCOR_RELEASE_ALONE(mcor_release_event, cl_event)
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
@@ -283,17 +264,14 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   cl_context context = mcor_make_object(sizeof *context, CL_OUT_OF_HOST_MEMORY, error);
   if (context)
   {
-    context->units = mcor_units(devices[0]->units);
+    context->pool.threads = (int)mcor_units(devices[0]->units);
   }
   return context;
 }
 
 static cl_int mcor_release_context(cl_context context)
 {
-  if (context->process == (long)getpid())
-  {
-    mcor_free_pool(context->pool);
-  }
+  mcor_end_pool(&context->pool);
   free(context);
   return CL_SUCCESS;
 }
@@ -314,20 +292,6 @@ static cl_int mcor_finish_queue(cl_command_queue queue)
 {
   (void)queue;
   return CL_SUCCESS;
-}
-
-static cl_ulong mcor_now(void)
-{
-  struct timespec now;
-  timespec_get(&now, TIME_UTC);
-  return (cl_ulong)now.tv_sec * 1000000000u + (cl_ulong)now.tv_nsec;
-}
-
-static cl_int mcor_event_time(
-  cl_event event, cl_profiling_info what, size_t room, void* to, size_t* needed)
-{
-  return mcor_answer(what == CL_PROFILING_COMMAND_START ? &event->start : &event->end,
-    sizeof event->end, room, to, needed);
 }
 
 /* ---- Buffers ---- */
@@ -417,12 +381,12 @@ static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* map
 /* The program of these options for this processor; NULL: none. */
 static const mcor_native_program* mcor_find_program(const char* options)
 {
-  const mcor_instructions best = mcor_best_instructions();
+  const int best = mcor_best_instructions();
   const char* own = strstr(options, "-DMCOR_PROGRAM");
   const mcor_native_program* found = NULL;
   for (const mcor_native_program* p = mcor_native_programs; own && p->options; ++p)
   {
-    if (p->instructions <= best && strcmp(p->options, own) == 0 &&
+    if ((int)p->instructions <= best && strcmp(p->options, own) == 0 &&
       (!found || p->instructions > found->instructions))
     {
       found = p;
@@ -445,14 +409,6 @@ static cl_program mcor_make_program(
   return program;
 }
 
-static cl_program mcor_load_binary(cl_context context, cl_uint count, const cl_device_id* devices,
-  const size_t* sizes, const unsigned char** binaries, cl_int* loaded, cl_int* error)
-{
-  (void)context, (void)count, (void)devices, (void)sizes, (void)binaries;
-  *loaded = *error = CL_INVALID_BINARY;
-  return NULL;
-}
-
 static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_device_id* devices,
   const char* options, void(CL_CALLBACK* notify)(cl_program, void*), void* user)
 {
@@ -461,21 +417,12 @@ static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_dev
   return program->program ? CL_SUCCESS : CL_BUILD_PROGRAM_FAILURE;
 }
 
-static cl_int mcor_build_info(cl_program program, cl_device_id device, cl_program_build_info what,
-  size_t room, void* to, size_t* needed)
-{
-  (void)program, (void)device, (void)what;
-  return mcor_answer_text("These kernels were not compiled with the library.", room, to, needed);
-}
-
 static cl_int mcor_program_info(
   cl_program program, cl_program_info what, size_t room, void* to, size_t* needed)
 {
-  const size_t none = 0;
   return what == CL_PROGRAM_KERNEL_NAMES
     ? mcor_answer_text(program->program->kernels, room, to, needed)
-    : what == CL_PROGRAM_BINARY_SIZES ? mcor_answer(&none, sizeof none, room, to, needed)
-                                      : CL_INVALID_VALUE;
+    : CL_INVALID_VALUE;
 }
 
 static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* error)
@@ -546,20 +493,14 @@ static void mcor_run_items(void* data, size_t first, size_t last)
   kernel->program->run(kernel->number, kernel->arguments, first, last);
 }
 
-/* A process made by fork has no threads: it gets its own. */
-static mcor_pool* mcor_pool_of(cl_context context)
+mcor_pool* mcor_native_pool(cl_context context)
 {
-  if (!context->pool || context->process != (long)getpid())
-  {
-    context->pool = mcor_make_pool((int)context->units);
-    context->process = (long)getpid();
-  }
-  return context->pool;
+  return &context->pool;
 }
 
-static size_t mcor_launch_step(cl_uint units, size_t items, size_t group)
+static size_t mcor_launch_step(int threads, size_t items, size_t group)
 {
-  const size_t parts = (size_t)units * (group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
+  const size_t parts = (size_t)threads * (group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
   const size_t step = (items + parts - 1) / parts;
   return group > 1 && items < MCOR_FEW_LIGHT_ITEMS ? items
     : step < MCOR_PART_ITEMS                       ? step
@@ -570,27 +511,11 @@ static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_ui
   const size_t* offset, const size_t* items, const size_t* group, cl_uint count,
   const cl_event* wait, cl_event* event)
 {
-  (void)dimensions, (void)count, (void)wait;
-  const cl_ulong start = mcor_now();
+  (void)dimensions, (void)count, (void)wait, (void)event;
   const size_t first = offset ? *offset : 0;
-  mcor_pool* pool = mcor_pool_of(queue->context);
-  if (!pool)
-  {
-    return CL_OUT_OF_HOST_MEMORY;
-  }
-  mcor_pool_run(pool, first, first + *items,
-    mcor_launch_step(queue->context->units, *items, *group), mcor_run_items, kernel);
-  if (event)
-  {
-    cl_int error;
-    *event = mcor_make_object(sizeof **event, CL_OUT_OF_HOST_MEMORY, &error);
-    if (!*event)
-    {
-      return error;
-    }
-    (*event)->start = start;
-    (*event)->end = mcor_now();
-  }
+  mcor_pool* pool = &queue->context->pool;
+  mcor_pool_run(pool, NULL, first, first + *items, mcor_launch_step(pool->threads, *items, *group),
+    mcor_run_items, kernel);
   return CL_SUCCESS;
 }
 
@@ -604,8 +529,6 @@ const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_i
   .clCreateCommandQueue = mcor_make_queue,
   .clReleaseCommandQueue = mcor_release_queue,
   .clFinish = mcor_finish_queue,
-  .clGetEventProfilingInfo = mcor_event_time,
-  .clReleaseEvent = mcor_release_event,
   .clCreateBuffer = mcor_make_buffer,
   .clReleaseMemObject = mcor_release_buffer,
   .clEnqueueReadBuffer = mcor_read_buffer,
@@ -615,10 +538,8 @@ const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_i
   .clEnqueueMapBuffer = mcor_map_buffer,
   .clEnqueueUnmapMemObject = mcor_unmap_buffer,
   .clCreateProgramWithSource = mcor_make_program,
-  .clCreateProgramWithBinary = mcor_load_binary,
   .clBuildProgram = mcor_build_program,
   .clReleaseProgram = mcor_release_program,
-  .clGetProgramBuildInfo = mcor_build_info,
   .clGetProgramInfo = mcor_program_info,
   .clCreateKernel = mcor_make_kernel,
   .clReleaseKernel = mcor_release_kernel,

@@ -10,7 +10,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl_icd.h>
 
-#include <stdbool.h>
+#include "mcor_parallel.h"
 
 /* Instruction sets: x86-64-v3 (AVX2) and -v4 (AVX-512); on other processors there is one. */
 typedef enum mcor_instructions
@@ -42,5 +42,7 @@ mcor_instructions mcor_own_instructions(void);
 cl_platform_id mcor_native_platform(void);
 /* Whether there is a program for these options, as given to clBuildProgram. */
 bool mcor_native_has(const char* options);
+/* The threads of a context. */
+mcor_pool* mcor_native_pool(cl_context context);
 
 #endif

@@ -174,7 +174,4 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
 
-/* Of all that compiled programs depend on beside their sources and options. */
-mcor_cache_key mcor_device_key(const mcor_cl* cl);
-
 #endif

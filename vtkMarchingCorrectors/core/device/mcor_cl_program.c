@@ -79,7 +79,9 @@ static mcor_status mcor_fail_build(
   return status;
 }
 
-mcor_cache_key mcor_device_key(const mcor_cl* cl)
+/* Of all that a compiled program depends on. */
+static mcor_cache_key mcor_program_key(
+  const mcor_cl* cl, const char* const* sources, cl_uint count, const char* options)
 {
   mcor_cache_key key = { { 0 } };
   const cl_device_info infos[] = { CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION };
@@ -91,14 +93,6 @@ mcor_cache_key mcor_device_key(const mcor_cl* cl)
     clGetDeviceInfo(cl->device, infos[i], sizeof text - 1, text, NULL);
     mcor_cache_add(&key, text);
   }
-  return key;
-}
-
-/* Of all that a compiled program depends on. */
-static mcor_cache_key mcor_program_key(
-  const mcor_cl* cl, const char* const* sources, cl_uint count, const char* options)
-{
-  mcor_cache_key key = mcor_device_key(cl);
   mcor_cache_add(&key, options);
   for (cl_uint i = 0; i < count; ++i)
   {

@@ -75,26 +75,6 @@ static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
 
 /* ---- Platform and device ---- */
 
-/* Of those for which programs are compiled: a build may leave some out. -1: this processor has none. */
-static int mcor_best_instructions(void)
-{
-  const int own = mcor_own_instructions();
-  int best = -1;
-  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
-  {
-    const int instructions = p->instructions;
-    best = instructions <= own && instructions > best ? instructions : best;
-  }
-  return best;
-}
-
-static const char* mcor_device_text(void)
-{
-  static const char* const texts[] = { "built in: this CPU", "built in: this CPU, AVX2",
-    "built in: this CPU, AVX-512" };
-  return texts[mcor_best_instructions()];
-}
-
 cl_platform_id mcor_native_platform(void)
 {
   return mcor_best_instructions() >= 0 ? &mcor_platform : NULL;
@@ -104,13 +84,6 @@ cl_platform_id mcor_native_platform(void)
 static cl_uint mcor_units(cl_uint units)
 {
   return (cl_uint)mcor_limit_threads(units > 0 ? (int)units : mcor_processors(1));
-}
-
-/* Of the machine. What other programs use, nobody can know. */
-static cl_ulong mcor_memory(void)
-{
-  const cl_ulong bytes = mcor_system_memory();
-  return bytes > 0 ? bytes : (cl_ulong)1 << 32;
 }
 
 /* Answers a question: `size` bytes at `from`. */
@@ -166,16 +139,19 @@ static cl_int mcor_device_ids(
 static cl_int mcor_device_info(
   cl_device_id device, cl_device_info what, size_t room, void* to, size_t* needed)
 {
+  static const char* const names[] = { "built in: this CPU", "built in: this CPU, AVX2",
+    "built in: this CPU, AVX-512" };
+  const int best = mcor_best_instructions();
   const cl_device_type type = CL_DEVICE_TYPE_CPU;
-  const cl_uint units = mcor_units(device->units);
-  const cl_uint width = mcor_best_instructions() == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
+  const cl_uint units = mcor_units(device->units), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
   const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
     CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-  const cl_ulong memory = mcor_memory();
+  /* Of the machine. What other programs use, nobody can know. */
+  const cl_ulong bytes = mcor_system_memory(), memory = bytes > 0 ? bytes : (cl_ulong)1 << 32;
   switch (what)
   {
     case CL_DEVICE_NAME:
-      return mcor_answer_text(mcor_device_text(), room, to, needed);
+      return mcor_answer_text(names[best], room, to, needed);
     case CL_DEVICE_TYPE:
       return mcor_answer(&type, sizeof type, room, to, needed);
     case CL_DEVICE_MAX_COMPUTE_UNITS:
@@ -377,28 +353,6 @@ static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* map
 }
 
 /* ---- Programs and kernels ---- */
-
-/* The program of these options for this processor; NULL: none. */
-static const mcor_native_program* mcor_find_program(const char* options)
-{
-  const int best = mcor_best_instructions();
-  const char* own = strstr(options, "-DMCOR_PROGRAM");
-  const mcor_native_program* found = NULL;
-  for (const mcor_native_program* p = mcor_native_programs; own && p->options; ++p)
-  {
-    if ((int)p->instructions <= best && strcmp(p->options, own) == 0 &&
-      (!found || p->instructions > found->instructions))
-    {
-      found = p;
-    }
-  }
-  return found;
-}
-
-bool mcor_native_has(const char* options)
-{
-  return mcor_find_program(options) != NULL;
-}
 
 /* The sources are those that were compiled. */
 static cl_program mcor_make_program(

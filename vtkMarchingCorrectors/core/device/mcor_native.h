@@ -36,8 +36,12 @@ typedef struct mcor_native_program
 /* Made by the build. */
 extern const mcor_native_program mcor_native_programs[];
 
-/* The best that this processor and its system have. */
-mcor_instructions mcor_own_instructions(void);
+/* mcor_native_program.c. The best that this processor and its system have, of those for which programs are
+ * compiled: a build may leave some out. -1: none. */
+int mcor_best_instructions(void);
+/* The program of these options for this processor; NULL: none. */
+const mcor_native_program* mcor_find_program(const char* options);
+
 /* NULL where this processor has none of the instruction sets. */
 cl_platform_id mcor_native_platform(void);
 /* Whether there is a program for these options, as given to clBuildProgram. */

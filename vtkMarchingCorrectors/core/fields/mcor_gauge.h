@@ -61,7 +61,6 @@ struct mcor_gauge_job
 };
 
 /* mcor_gauge_line.c */
-double mcor_gauge_length(const mcor_gauge_line* line);
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
 /* How far apart samples are at most, L. */
 double mcor_gauge_step(double h_scale, double smoothing_length_min);

@@ -22,7 +22,7 @@
 /* ---- lines ---- */
 
 /* hypot has not the same bits everywhere. */
-double mcor_gauge_length(const mcor_gauge_line* line)
+static double mcor_gauge_length(const mcor_gauge_line* line)
 {
   double way[3], most = 0, sum = 0;
   int exponent;

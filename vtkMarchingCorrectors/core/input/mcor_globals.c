@@ -30,8 +30,8 @@ static mcor_status mcor_merge_component(mcor_context* context, const mcor_input*
   const bool some = input->count > 0;
   const double first = some ? mcor_array_at(array, 0, component) : 0;
   double least[2] = { some ? first : DBL_MAX, found->low };
-  double most[3] = { some ? first : -DBL_MAX,
-    mcor_largest(array, input->solid, input->count, component), found->high };
+  double most[3] = { some ? first : -DBL_MAX, mcor_largest_of(found->low, found->high),
+    found->high };
   int64_t varies = found->varies;
   MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, least, 2));
@@ -60,11 +60,7 @@ static mcor_status mcor_measure_components(
       found->not_finite = not_finite;
       if (not_finite < 0)
       {
-        double range[2];
         mcor_measure_component(input, a, c, found);
-        mcor_find_range(input, a, c, range);
-        found->low = range[0];
-        found->high = range[1];
         MCOR_TRY(context->run.options->ranks ? mcor_merge_component(context, input, array, c, found)
                                              : MCOR_OK);
       }
@@ -94,8 +90,7 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
-  globals->mass_max =
-    mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
+  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(&input->mass, input->count, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {

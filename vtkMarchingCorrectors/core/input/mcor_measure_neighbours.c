@@ -24,9 +24,9 @@ struct mcor_watch
 {
   int cells; /* along each axis; the outermost are in no reach */
   double low[3], cells_per_length[3];
-  uint32_t* reached; /* [cells], bit s: of watched particle s */
-  uint64_t
-    any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS]; /* bit x: of any of them; small, for a fast look */
+  /* Bit s: of watched particle s; and bit x: of any of them, small, for a fast look. */
+  uint32_t reached[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
+  uint64_t any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
   int count;
   double x[MCOR_WATCHED][3], h[MCOR_WATCHED], volume[MCOR_WATCHED], support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
@@ -282,18 +282,8 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun)
 {
-  const size_t cells = (size_t)MCOR_WATCH_CELLS * MCOR_WATCH_CELLS * MCOR_WATCH_CELLS;
-  mcor_watch* watch = calloc(1, sizeof *watch);
-  uint32_t* reached = calloc(cells, sizeof *reached);
-  if (!watch || !reached)
-  {
-    free(watch);
-    free(reached);
-    return mcor_fail(
-      context, MCOR_OUT_OF_CAPACITY, "Host memory for %d particles ran out.", MCOR_WATCHED);
-  }
-  *begun = watch;
-  watch->reached = reached;
+  mcor_watch* watch = *begun = calloc(1, sizeof *watch);
+  MCOR_TRY(mcor_allocated(context, watch));
   watch->support = mcor_support_factor(context->run.options->sph_kernel);
   MCOR_TRY(mcor_choose_watched(context, input, watch));
   mcor_place_watch(watch, input->count);
@@ -310,13 +300,4 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
     }
   }
   return MCOR_OK;
-}
-
-void mcor_free_watch(mcor_watch* watch)
-{
-  if (watch)
-  {
-    free(watch->reached);
-    free(watch);
-  }
 }

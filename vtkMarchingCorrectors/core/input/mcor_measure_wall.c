@@ -62,12 +62,11 @@ static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double
  * depend on the unit. */
 static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
 {
-  const mcor_input* input = wall->input;
-  const double mass = mcor_is_given(&input->mass) ? mcor_array_at(&input->mass, i, 0) : 1;
-  return mcor_is_given(&input->volume) ? mcor_array_at(&input->volume, i, 0)
-    : mcor_is_given(&input->mass) && mcor_is_given(&input->density)
-    ? mass / mcor_array_at(&input->density, i, 0)
-    : mass / wall->mass_max * h * h * (mcor_is_plane(wall->context) ? 1 : h);
+  double size;
+  mcor_read_size(wall->input, i, 1, &size);
+  return mcor_needs_density(wall->input)
+    ? size / wall->mass_max * h * h * (mcor_is_plane(wall->context) ? 1 : h)
+    : size;
 }
 
 /* The first sample that is not before x along the axis. */
@@ -121,7 +120,7 @@ static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    const int count = mcor_chunk_of(last - begin);
     mcor_read_positions(wall->input, begin, count, x);
     mcor_read_smoothing_length(wall->context, wall->input, begin, count, h);
     for (int i = 0; i < count; ++i)
@@ -196,8 +195,7 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 {
   const mcor_input* input = wall->input;
   MCOR_TRY(mcor_place_samples(context, wall));
-  wall->mass_max =
-    mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 1;
+  wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(&input->mass, input->count, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
   int slices;
   MCOR_TRY(

@@ -10,7 +10,6 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,8 +26,16 @@ void mcor_measure_component(
   const mcor_input* input, int attribute, int component, mcor_global_component* found)
 {
   const mcor_array* array = &input->attributes[attribute];
-  found->varies = !mcor_is_constant(array, input->count, component);
-  found->largest = found->varies ? mcor_largest(array, input->solid, input->count, component) : 0;
+  double range[2];
+  mcor_find_range(array, input->solid, input->count, component, range);
+  found->low = range[0];
+  found->high = range[1];
+  if (input->solid && !(range[0] < range[1]))
+  {
+    mcor_find_range(array, NULL, input->count, component, range);
+  }
+  found->varies = range[0] < range[1];
+  found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
 }
 
 /* Lists the components of an attribute that vary; *next of the globals' components is its first. */
@@ -112,48 +119,6 @@ mcor_status mcor_list_attributes(
   return MCOR_OK;
 }
 
-/* Least and greatest value of a component, of fluid particles. */
-typedef struct mcor_range_job
-{
-  const mcor_array* array;
-  const uint8_t* solid;
-  int component;
-  double low[MCOR_SLICES], high[MCOR_SLICES];
-} mcor_range_job;
-
-static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_range_job* job = data;
-  double low = DBL_MAX, high = -DBL_MAX;
-  for (int64_t i = first; i < last; ++i)
-  {
-    if (job->solid && job->solid[i])
-    {
-      continue;
-    }
-    const double v = mcor_array_at(job->array, i, job->component);
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-  }
-  job->low[slice] = low;
-  job->high[slice] = high;
-}
-
-void mcor_find_range(const mcor_input* input, int attribute, int component, double range[2])
-{
-  mcor_range_job job = {
-    .array = &input->attributes[attribute], .solid = input->solid, .component = component
-  };
-  const int slices = mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_range_slice, &job);
-  range[0] = DBL_MAX;
-  range[1] = -DBL_MAX;
-  for (int s = 0; s < slices; ++s)
-  {
-    range[0] = fmin(range[0], job.low[s]);
-    range[1] = fmax(range[1], job.high[s]);
-  }
-}
-
 static mcor_component mcor_scale_component(int attribute, int component, const double range[2])
 {
   const double low = range[0], high = range[1], half = 0.5 * high - 0.5 * low;
@@ -194,7 +159,7 @@ mcor_status mcor_list_components(
         }
         else
         {
-          mcor_find_range(input, a, c, range);
+          mcor_find_range(array, input->solid, input->count, c, range);
         }
         attributes->varying[attributes->varying_count++] = mcor_scale_component(a, c, range);
       }

@@ -135,6 +135,13 @@ static int mcor_find_device(const mcor_device_list* list, const char* wanted)
   return -1;
 }
 
+static cl_device_type mcor_type_of(cl_device_id device)
+{
+  cl_device_type type = 0;
+  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
+}
+
 /* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
  * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM is for tests: cpu or gpu. */
 static bool mcor_has_cpu_form(const mcor_cl* cl)
@@ -144,18 +151,9 @@ static bool mcor_has_cpu_form(const mcor_cl* cl)
   {
     return strcmp(forced, "gpu") != 0;
   }
-  cl_device_type type = 0;
   cl_uint width = 1;
-  clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  return (type & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
-}
-
-static cl_device_type mcor_type_of(cl_device_id device)
-{
-  cl_device_type type = 0;
-  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
-  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
+  return (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
 }
 
 static void mcor_query_device(mcor_cl* cl)

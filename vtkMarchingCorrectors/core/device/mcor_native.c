@@ -8,6 +8,8 @@
 #include "mcor_parallel.h"
 #include "mcor_system.h"
 
+#include <CL/cl_icd.h>
+
 #include <stdlib.h>
 #include <string.h>
 

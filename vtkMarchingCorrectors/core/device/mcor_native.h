@@ -7,10 +7,10 @@
  * the kernels were compiled with the library (cmake/CompileAhead.cmake). It has the functions of OpenCL
  * that mcor_opencl.h names. All commands are done when their call returns. */
 
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl_icd.h>
-
 #include "mcor_parallel.h"
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
 
 /* Instruction sets: x86-64-v3 (AVX2) and -v4 (AVX-512); on other processors there is one. */
 typedef enum mcor_instructions

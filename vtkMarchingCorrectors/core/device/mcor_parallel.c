@@ -4,7 +4,6 @@
 /* The built-in device's threads wait from one loop to the next, and serve the loops of the host, too. Where
  * there is another device, or none, threads live for one loop. */
 
-#include "mcor_parallel.h"
 #include "mcor_cl_call.h"
 #include "mcor_system.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Crossings of the level along lines, from weight sums that somebody else evaluates. All lines go through
+/* Crossings of the level along lines, from weight sums. All lines go through
  * the same steps together, so that the device has many points at a time.
  *
  * Samples are a quarter of a smoothing length apart, over which the weight sum, as smooth as the kernel,
@@ -163,7 +163,7 @@ static mcor_status mcor_evaluate_inner(
       inner->place[at] = part->low + (part->high - part->low) * i / count;
     }
   }
-  return job->evaluate(job, n, inner->line, inner->place, inner->weight);
+  return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
 }
 
 /* Looks at extrema more finely, until each is beyond the level or cannot be. */
@@ -276,7 +276,7 @@ static mcor_status mcor_evaluate_samples(
       inner->place[n] = (double)i / (double)samples->steps;
     }
   }
-  return job->evaluate(job, n, inner->line, inner->place, inner->weight);
+  return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
 }
 
 static mcor_status mcor_append_record(mcor_gauge_job* job, int64_t line, double place)

@@ -84,10 +84,10 @@ int64_t mcor_find_illegal(
   const mcor_array* array, const uint8_t* solid, int64_t count, bool positive, int* component);
 int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count);
 
-/* Components of all attributes together. */
+/* mcor_attribute.c. Components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
-/* mcor_attribute.c. Of one component, all but whether its attribute is finite. */
+/* Of one component, all but whether its attribute is finite. */
 void mcor_measure_component(
   const mcor_input* input, int attribute, int component, mcor_global_component* found);
 

@@ -22,22 +22,6 @@ static double mcor_component_scale(double largest)
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
 }
 
-void mcor_measure_component(
-  const mcor_input* input, int attribute, int component, mcor_global_component* found)
-{
-  const mcor_array* array = &input->attributes[attribute];
-  double range[2];
-  mcor_find_range(array, input->solid, input->count, component, range);
-  found->low = range[0];
-  found->high = range[1];
-  if (input->solid && !(range[0] < range[1]))
-  {
-    mcor_find_range(array, NULL, input->count, component, range);
-  }
-  found->varies = range[0] < range[1];
-  found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
-}
-
 /* Lists the components of an attribute that vary; *next of the globals' components is its first. */
 static void mcor_list_varying(
   mcor_context* context, const mcor_input* input, int a, int* next, int64_t* not_finite)
@@ -119,9 +103,10 @@ mcor_status mcor_list_attributes(
   return MCOR_OK;
 }
 
-static mcor_component mcor_scale_component(int attribute, int component, const double range[2])
+static mcor_component mcor_scale_component(
+  int attribute, int component, const mcor_global_component* found)
 {
-  const double low = range[0], high = range[1], half = 0.5 * high - 0.5 * low;
+  const double low = found->low, high = found->high, half = 0.5 * high - 0.5 * low;
   int exponent = 0;
   frexp(half, &exponent);
   return (mcor_component){ .attribute = attribute,
@@ -151,17 +136,16 @@ mcor_status mcor_list_components(
     {
       if (not_finite[a] < 0)
       {
-        double range[2];
+        mcor_global_component found;
         if (globals)
         {
-          range[0] = globals->components[next].low;
-          range[1] = globals->components[next].high;
+          found = globals->components[next];
         }
         else
         {
-          mcor_find_range(array, input->solid, input->count, c, range);
+          mcor_measure_component(input, a, c, &found);
         }
-        attributes->varying[attributes->varying_count++] = mcor_scale_component(a, c, range);
+        attributes->varying[attributes->varying_count++] = mcor_scale_component(a, c, &found);
       }
     }
   }

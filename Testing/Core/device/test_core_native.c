@@ -295,6 +295,24 @@ static void test_threads_of_environment(void** state)
   mcor_free_context(context);
 }
 
+/* Processes that share a machine have fewer threads each. */
+static void test_shares(void** state)
+{
+  (void)state;
+  uint64_t hash = 0;
+  for (int count = 1; count < 4; ++count)
+  {
+    const int most = mcor_limit_threads(mcor_processors(1)), share = mcor_processors(count);
+    mcor_context* context = NULL;
+    CORE_OK(context, mcor_create_shared_context("built in", count - 1, count, &context));
+    assert_int_equal(context->cl.units, share < most ? share : most);
+    const uint64_t own = extract(context);
+    assert_true(count == 1 || own == hash);
+    hash = own;
+    mcor_free_context(context);
+  }
+}
+
 /* What was not compiled is done by a driver, if none is named, and refused else. */
 static void test_what_was_not_compiled(void** state)
 {
@@ -319,6 +337,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
     cmocka_unit_test(test_loops), cmocka_unit_test(test_fork), cmocka_unit_test(test_contexts_side_by_side),
-    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_what_was_not_compiled) };
+    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
+    cmocka_unit_test(test_what_was_not_compiled) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -176,7 +176,6 @@ static void mcor_query_device(mcor_cl* cl)
   cl->keeps_binaries = !mcor_is_pocl(cl) && !mcor_is_native(cl);
   cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
-  cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
 }
 
 /* Of `count` processes number `place` takes one of the devices like the chosen one, in turn; both become
@@ -199,15 +198,16 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
 }
 
 /* Of a CPU that `count` processes have in common the share of number `place`. A driver that does not
- * divide it gives all of it to each. */
+ * divide it gives all of it to each; of the built-in device a share is a number of threads. */
 static void mcor_take_share(mcor_cl* cl, int place, int count)
 {
   cl_uint units = 1, parts = 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
   const cl_uint wanted = (cl_uint)mcor_processors(count);
   const cl_device_partition_property equally[] = { CL_DEVICE_PARTITION_EQUALLY, wanted, 0 };
-  if (count < 2 || !(mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) || wanted >= units ||
-    clCreateSubDevices(cl->device, equally, 0, NULL, &parts) != CL_SUCCESS || parts == 0)
+  if (count < 2 || mcor_is_native(cl) || !(mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) ||
+    wanted >= units || clCreateSubDevices(cl->device, equally, 0, NULL, &parts) != CL_SUCCESS ||
+    parts == 0)
   {
     return;
   }
@@ -277,6 +277,11 @@ static mcor_status mcor_start_device(
   cl_int error;
   cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateContext");
+  if (mcor_is_native(cl) && mcor_processors(count) < cl->units)
+  {
+    cl->units = mcor_native_pool(cl->context)->threads = mcor_processors(count);
+  }
+  cl->segments = cl->is_cpu ? cl->units * 8 : 4096;
   cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
   cl->timed_queue =

@@ -34,7 +34,6 @@ struct _cl_platform_id
 struct _cl_device_id
 {
   const cl_icd_dispatch* table;
-  cl_uint units; /* of a part of the CPU; 0: all of it */
 };
 
 struct _cl_context
@@ -73,7 +72,7 @@ struct _cl_kernel
 };
 
 static struct _cl_platform_id mcor_platform = { &mcor_native_table };
-static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
+static struct _cl_device_id mcor_device = { &mcor_native_table };
 
 /* ---- Platform and device ---- */
 
@@ -83,9 +82,9 @@ cl_platform_id mcor_native_platform(void)
 }
 
 /* Threads that compute, the calling one included. */
-static cl_uint mcor_units(cl_uint units)
+static int mcor_units(void)
 {
-  return (cl_uint)mcor_limit_threads(units > 0 ? (int)units : mcor_processors(1));
+  return mcor_limit_threads(mcor_processors(1));
 }
 
 /* Answers a question: `size` bytes at `from`. */
@@ -141,11 +140,12 @@ static cl_int mcor_device_ids(
 static cl_int mcor_device_info(
   cl_device_id device, cl_device_info what, size_t room, void* to, size_t* needed)
 {
+  (void)device;
   static const char* const names[] = { "built in: this CPU", "built in: this CPU, AVX2",
     "built in: this CPU, AVX-512" };
   const int best = mcor_best_instructions();
   const cl_device_type type = CL_DEVICE_TYPE_CPU;
-  const cl_uint units = mcor_units(device->units), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
+  const cl_uint units = (cl_uint)mcor_units(), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
   const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
     CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
   /* Of the machine. What other programs use, nobody can know. */
@@ -169,44 +169,6 @@ static cl_int mcor_device_info(
     default:
       return CL_INVALID_VALUE;
   }
-}
-
-/* Parts of the CPU are counts of threads: the system's scheduler sees to the rest. */
-static cl_int mcor_sub_devices(cl_device_id device, const cl_device_partition_property* how,
-  cl_uint room, cl_device_id* made, cl_uint* count)
-{
-  const cl_uint each = (cl_uint)how[1], parts = each > 0 ? mcor_units(device->units) / each : 0;
-  if (how[0] != CL_DEVICE_PARTITION_EQUALLY || parts == 0)
-  {
-    return CL_DEVICE_PARTITION_FAILED;
-  }
-  if (count)
-  {
-    *count = parts;
-  }
-  for (cl_uint i = 0; made && i < parts && i < room; ++i)
-  {
-    made[i] = malloc(sizeof *made[i]);
-    if (!made[i])
-    {
-      while (i > 0)
-      {
-        free(made[--i]);
-      }
-      return CL_OUT_OF_HOST_MEMORY;
-    }
-    *made[i] = (struct _cl_device_id){ &mcor_native_table, each };
-  }
-  return CL_SUCCESS;
-}
-
-static cl_int mcor_release_device(cl_device_id device)
-{
-  if (device != &mcor_device)
-  {
-    free(device);
-  }
-  return CL_SUCCESS;
 }
 
 /* ---- Objects ---- */
@@ -238,11 +200,11 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
   void* user, cl_int* error)
 {
-  (void)properties, (void)count, (void)notify, (void)user;
+  (void)properties, (void)count, (void)devices, (void)notify, (void)user;
   cl_context context = mcor_make_object(sizeof *context, CL_OUT_OF_HOST_MEMORY, error);
   if (context)
   {
-    context->pool.threads = (int)mcor_units(devices[0]->units);
+    context->pool.threads = mcor_units();
   }
   return context;
 }
@@ -478,8 +440,6 @@ static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_ui
 const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_info,
   .clGetDeviceIDs = mcor_device_ids,
   .clGetDeviceInfo = mcor_device_info,
-  .clCreateSubDevices = mcor_sub_devices,
-  .clReleaseDevice = mcor_release_device,
   .clCreateContext = mcor_make_context,
   .clReleaseContext = mcor_release_context,
   .clCreateCommandQueue = mcor_make_queue,

@@ -46,7 +46,7 @@ const mcor_native_program* mcor_find_program(const char* options);
 cl_platform_id mcor_native_platform(void);
 /* Whether there is a program for these options, as given to clBuildProgram. */
 bool mcor_native_has(const char* options);
-/* The threads of a context. */
+/* The threads of a context, of which there may be fewer than the device has units. */
 mcor_pool* mcor_native_pool(cl_context context);
 
 #endif

@@ -144,11 +144,12 @@ typedef mcor_status (*mcor_body)(
 
 /* Runs the body, and once more where memory ran out but some could be given back. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result);
+  const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
+  void* result);
 /* Before a call: where no device was named and this one cannot do the build, another one is opened. */
 mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
 mcor_status mcor_prepare(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
+  mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* Gives back buffers; those that are empty stay so. */
 #define MCOR_RELEASE(context, ...)                                                                 \
@@ -169,8 +170,7 @@ double mcor_rounding(
 
 /* mcor_reuse.c. What of the last call still holds; whether the caller's version stands for the same
  * particles as then. */
-void mcor_check_reuse(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
+void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
 

@@ -236,11 +236,6 @@ static mcor_status mcor_enqueue_cut(
   return MCOR_OK;
 }
 
-static size_t mcor_group_size(const mcor_cl* cl, mcor_load load)
-{
-  return cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
-}
-
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count)
 {
@@ -264,7 +259,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     MCOR_CL_TRY(context, mcor_set_arg(cl, kernel->kernel, (cl_uint)i, args + i), name);
   }
-  const size_t group = mcor_group_size(cl, load);
+  const size_t group = cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
   const size_t global = (items + group - 1) / group * group;
   return mcor_is_cut(context, load) ? mcor_enqueue_cut(context, kernel, load, global, group)
                                     : mcor_enqueue_part(context, kernel, 0, global, group);

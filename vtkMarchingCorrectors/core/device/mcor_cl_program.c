@@ -240,35 +240,21 @@ static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
     a->solids == b->solids;
 }
 
-static void mcor_set_precision(mcor_cl* cl, mcor_type precision)
-{
-  if (cl->build.precision != precision)
-  {
-    mcor_drop_programs(cl, true);
-  }
-  cl->build.precision = precision;
-  cl->real_size = precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
-  cl->fix_size = precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
-}
-
-static void mcor_set_build(mcor_cl* cl, const mcor_build* build, int lanes)
-{
-  mcor_set_precision(cl, build->precision);
-  mcor_drop_programs(cl, cl->lanes != lanes);
-  cl->lanes = lanes;
-  cl->build = *build;
-}
-
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
-  MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
+  const bool is_double = build->precision == MCOR_FLOAT64;
+  MCOR_RETURN_IF(is_double && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
     "OpenCL device %s has no double precision; choose another device or single precision.",
     cl->device_name);
   const int lanes = mcor_choose_lanes(cl, build->precision);
   if (cl->lanes != lanes || !mcor_same_build(&cl->build, build))
   {
-    mcor_set_build(cl, build, lanes);
+    mcor_drop_programs(cl, cl->lanes != lanes || cl->build.precision != build->precision);
+    cl->lanes = lanes;
+    cl->build = *build;
+    cl->real_size = is_double ? sizeof(cl_double) : sizeof(cl_float);
+    cl->fix_size = is_double ? sizeof(cl_long) : sizeof(cl_int);
   }
   return MCOR_OK;
 }

@@ -141,7 +141,7 @@ static mcor_status mcor_gauge_particles(
     return MCOR_OK;
   }
   MCOR_TRY(mcor_bound_gauges(context, input, options, job));
-  MCOR_TRY(mcor_prepare(context, input, options, job->uses_solids));
+  MCOR_TRY(mcor_prepare(context, input, options));
   return context->grid.count > 0 ? mcor_gauge_on_grid(context, input, job) : MCOR_OK;
 }
 
@@ -250,12 +250,11 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
     .lines = lines,
     .line_count = count,
     .level = level,
-    .uses_solids = uses_solids,
     .box = mcor_has_box(&own) ? options->box : NULL,
     .gauges = gauges };
   memset(own.box, 0, sizeof own.box);
   const mcor_status status =
-    mcor_run_call(context, &without, &own, &gauges->statistics, mcor_run_gauge, &job);
+    mcor_run_call(context, &without, &own, uses_solids, &gauges->statistics, mcor_run_gauge, &job);
   if (status != MCOR_OK)
   {
     mcor_free_gauges(gauges);

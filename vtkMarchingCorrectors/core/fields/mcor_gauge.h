@@ -45,7 +45,6 @@ typedef struct mcor_gauge_job
   const mcor_gauge_line* lines; /* [line_count] */
   int64_t line_count;
   double level;
-  bool uses_solids;
   const double* box; /* [6], of the samples that this call owns; NULL: all */
   mcor_gauges* gauges;
   mcor_probe_run* run;         /* which evaluates */

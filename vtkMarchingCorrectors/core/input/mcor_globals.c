@@ -69,20 +69,13 @@ static mcor_status mcor_measure_components(
   return MCOR_OK;
 }
 
-typedef struct mcor_globals_call
-{
-  bool uses_solids;
-  mcor_globals* globals;
-} mcor_globals_call;
-
 static mcor_status mcor_measure_all(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  const mcor_globals_call* call = data;
-  mcor_globals* globals = call->globals;
+  mcor_globals* globals = data;
   mcor_free_globals(globals); /* of an attempt before */
   context->kept.grid = context->kept.value = context->kept.nodes = false;
-  context->kept.uses_solids = call->uses_solids;
+  context->kept.uses_solids = context->run.uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
   int64_t particles = input->count;
   MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));
@@ -117,13 +110,12 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
   mcor_options own = *options;
   own.globals = NULL;
-  mcor_globals_call call = { .globals = globals };
-  call.uses_solids =
+  const bool uses_solids =
     surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
   own.ranks = options->ranks;
   mcor_statistics statistics = { 0 };
   const mcor_status status =
-    mcor_run_call(context, input, &own, &statistics, mcor_measure_all, &call);
+    mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);
   if (status != MCOR_OK)
   {
     mcor_free_globals(globals);

@@ -160,8 +160,11 @@ void mcor_find_range(
   const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
   range[0] = DBL_MAX;
   range[1] = -DBL_MAX;
-  mcor_widen_range(job.low, slices, &range[0], &range[1]);
-  mcor_widen_range(job.high, slices, &range[0], &range[1]);
+  for (int s = 0; s < slices; ++s)
+  {
+    range[0] = mcor_least(range[0], job.low[s]);
+    range[1] = mcor_most(range[1], job.high[s]);
+  }
 }
 
 double mcor_largest(const mcor_array* array, int64_t count, int component)

@@ -157,12 +157,12 @@ mcor_status mcor_prepare(
     sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count);
 
-/* mcor_progress.c. Reports that something runs from one fraction of the call to another; may cancel. */
+/* mcor_statistics.c. Reports that something runs from one fraction of the call to another; may cancel. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
 /* The same between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
  * nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
-/* mcor_statistics.c. Ends the phase under way, reports progress and may cancel. */
+/* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 double mcor_rounding(

@@ -51,7 +51,7 @@ struct _cl_command_queue
 struct _cl_mem
 {
   const cl_icd_dispatch* table;
-  char* data;
+  char* data; /* behind this */
 };
 
 struct _cl_program
@@ -185,14 +185,14 @@ MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
 /* A new object, all zero but its table; NULL and the error where there is no memory. */
-static void* mcor_make_object(size_t size, cl_int no_memory, cl_int* error)
+static void* mcor_make_object(size_t size, cl_int* error)
 {
   struct _cl_platform_id* object = calloc(1, size);
   if (object)
   {
     object->table = &mcor_native_table;
   }
-  *error = object ? CL_SUCCESS : no_memory;
+  *error = object ? CL_SUCCESS : CL_OUT_OF_HOST_MEMORY;
   return object;
 }
 
@@ -201,7 +201,7 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   void* user, cl_int* error)
 {
   (void)properties, (void)count, (void)devices, (void)notify, (void)user;
-  cl_context context = mcor_make_object(sizeof *context, CL_OUT_OF_HOST_MEMORY, error);
+  cl_context context = mcor_make_object(sizeof *context, error);
   if (context)
   {
     context->pool.threads = mcor_units();
@@ -220,7 +220,7 @@ static cl_command_queue mcor_make_queue(
   cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* error)
 {
   (void)device, (void)properties;
-  cl_command_queue queue = mcor_make_object(sizeof *queue, CL_OUT_OF_HOST_MEMORY, error);
+  cl_command_queue queue = mcor_make_object(sizeof *queue, error);
   if (queue)
   {
     queue->context = context;
@@ -240,24 +240,18 @@ static cl_mem mcor_make_buffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
   (void)context, (void)flags, (void)host;
-  cl_mem buffer = mcor_make_object(sizeof *buffer, CL_MEM_OBJECT_ALLOCATION_FAILURE, error);
+  cl_mem buffer = mcor_system_allocate(MCOR_BUFFER_ALIGNMENT, MCOR_BUFFER_ALIGNMENT + size);
   if (buffer)
   {
-    buffer->data = mcor_system_allocate(MCOR_BUFFER_ALIGNMENT, size);
-    if (!buffer->data)
-    {
-      free(buffer);
-      *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
-      return NULL;
-    }
+    *buffer = (struct _cl_mem){ &mcor_native_table, (char*)buffer + MCOR_BUFFER_ALIGNMENT };
   }
+  *error = buffer ? CL_SUCCESS : CL_MEM_OBJECT_ALLOCATION_FAILURE;
   return buffer;
 }
 
 static cl_int mcor_release_buffer(cl_mem buffer)
 {
-  mcor_system_release(buffer->data);
-  free(buffer);
+  mcor_system_release(buffer);
   return CL_SUCCESS;
 }
 
@@ -323,8 +317,7 @@ static cl_program mcor_make_program(
   cl_context context, cl_uint count, const char** texts, const size_t* lengths, cl_int* error)
 {
   (void)context, (void)count, (void)texts, (void)lengths;
-  cl_program program = mcor_make_object(sizeof *program, CL_OUT_OF_HOST_MEMORY, error);
-  return program;
+  return mcor_make_object(sizeof(struct _cl_program), error);
 }
 
 static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_device_id* devices,
@@ -358,7 +351,7 @@ static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* 
     *error = CL_INVALID_KERNEL_NAME;
     return NULL;
   }
-  cl_kernel kernel = mcor_make_object(sizeof *kernel, CL_OUT_OF_HOST_MEMORY, error);
+  cl_kernel kernel = mcor_make_object(sizeof *kernel, error);
   if (!kernel)
   {
     return NULL;

@@ -38,7 +38,7 @@ typedef struct mcor_wall
   double reach;     /* the largest support radius */
   double mass_max;
   mcor_wall_sample sample[MCOR_SAMPLES];
-  int64_t (*weights)[MCOR_SAMPLES][2]; /* [MCOR_SLICES], of fluid, of solids */
+  int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
 } mcor_wall;
 
 /* W / norm h^3 at an offset. */
@@ -232,16 +232,12 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
     return MCOR_OK;
   }
   mcor_wall* wall = calloc(1, sizeof *wall);
-  int64_t(*weights)[MCOR_SAMPLES][2] = calloc(MCOR_SLICES, sizeof *weights);
-  mcor_status status = mcor_allocated(context, wall && weights);
-  if (status == MCOR_OK)
-  {
-    *wall = (mcor_wall){ .context = context, .input = input, .reach = m->support_max };
-    wall->weights = weights;
-    status = mcor_weigh_samples(context, wall);
-    m->wall_share = status == MCOR_OK ? mcor_median_share(wall) : 0;
-  }
-  free(weights);
+  MCOR_TRY(mcor_allocated(context, wall));
+  wall->context = context;
+  wall->input = input;
+  wall->reach = m->support_max;
+  const mcor_status status = mcor_weigh_samples(context, wall);
+  m->wall_share = status == MCOR_OK ? mcor_median_share(wall) : 0;
   free(wall);
   return status;
 }

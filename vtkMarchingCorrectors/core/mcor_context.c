@@ -103,19 +103,6 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
-{
-  bool other;
-  MCOR_TRY(mcor_need_other_device(context, build, &other));
-  if (!other)
-  {
-    return MCOR_OK;
-  }
-  mcor_release_memory(context);
-  context->kept.grid = context->kept.value = context->kept.nodes = false;
-  return mcor_change_device(context, build);
-}
-
 /* Search grid and scalar for these options, from the last call where they still hold. */
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options)

@@ -146,8 +146,6 @@ typedef mcor_status (*mcor_body)(
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
-/* Before a call: where no device was named and this one cannot do the build, another one is opened. */
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 

@@ -127,10 +127,8 @@ typedef enum mcor_load
 
 /* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Whether another device must be opened for a build: no device was named, and this one cannot do it. */
-mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* build, bool* other);
-/* Closes this device, whose buffers have been released, and opens the best one for a build. */
-mcor_status mcor_change_device(mcor_context* context, const mcor_build* build);
+/* Before a call: where no device was named and this one cannot do the build, the best one that can is opened. */
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);

@@ -385,11 +385,11 @@ void mcor_close_device(mcor_context* context)
   }
 }
 
-mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* build, bool* other)
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
 {
-  const mcor_cl* cl = &context->cl;
+  mcor_cl* cl = &context->cl;
+  const mcor_cl before = *cl;
   const bool is_open = cl->timed_queue != NULL; /* not where the last change of devices failed */
-  *other = false;
   if (!cl->is_default ||
     (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
   {
@@ -398,16 +398,16 @@ mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* buil
   mcor_device_list list;
   mcor_find_devices(&list);
   const int chosen = mcor_choose_device(&list, build);
-  *other = chosen >= 0 && !(is_open && list.platforms[chosen] == cl->platform);
-  return chosen < 0 ? mcor_fail_without_device(context, &list, build) : MCOR_OK;
-}
-
-mcor_status mcor_change_device(mcor_context* context, const mcor_build* build)
-{
-  mcor_cl* cl = &context->cl;
-  const mcor_cl before = *cl;
-  mcor_device_list list;
-  mcor_find_devices(&list);
+  if (chosen < 0)
+  {
+    return mcor_fail_without_device(context, &list, build);
+  }
+  if (is_open && list.platforms[chosen] == cl->platform)
+  {
+    return MCOR_OK;
+  }
+  mcor_release_memory(context);
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
   mcor_close_device(context);
   *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
   const mcor_status status = mcor_start_default(context, &list, build);

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device's objects, memory, programs and kernels. A buffer is memory of the host, and a
- * command queue has nothing in it. */
+/* The built-in device's objects, memory, programs and kernels, as far as mcor_cl_*.c ask for them. A buffer is
+ * memory of the host, and a command queue has nothing in it. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
@@ -121,19 +121,9 @@ static cl_int mcor_platform_info(
 static cl_int mcor_device_ids(
   cl_platform_id platform, cl_device_type type, cl_uint room, cl_device_id* devices, cl_uint* count)
 {
-  (void)platform;
-  if (!(type & (CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_DEFAULT)))
-  {
-    return CL_DEVICE_NOT_FOUND;
-  }
-  if (devices && room > 0)
-  {
-    devices[0] = &mcor_device;
-  }
-  if (count)
-  {
-    *count = 1;
-  }
+  (void)platform, (void)type, (void)room;
+  devices[0] = &mcor_device;
+  *count = 1;
   return CL_SUCCESS;
 }
 
@@ -285,11 +275,7 @@ static cl_int mcor_fill_buffer(cl_command_queue queue, cl_mem buffer, const void
   size_t pattern_size, size_t offset, size_t size, cl_uint count, const cl_event* wait,
   cl_event* event)
 {
-  (void)queue, (void)count, (void)wait, (void)event;
-  if (pattern_size != 1)
-  {
-    return CL_INVALID_VALUE;
-  }
+  (void)queue, (void)pattern_size, (void)count, (void)wait, (void)event;
   memset(buffer->data + offset, *(const unsigned char*)pattern, size);
   return CL_SUCCESS;
 }

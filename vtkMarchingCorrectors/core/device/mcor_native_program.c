@@ -59,11 +59,11 @@ static mcor_instructions mcor_own_instructions(void)
 
 int mcor_best_instructions(void)
 {
-  const int own = mcor_own_instructions();
+  const int own = (int)mcor_own_instructions();
   int best = -1;
   for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
   {
-    const int instructions = p->instructions;
+    const int instructions = (int)p->instructions;
     best = instructions <= own && instructions > best ? instructions : best;
   }
   return best;

@@ -92,16 +92,18 @@ static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[
   for (int s = mcor_wall_first(wall, along - wall->reach); s < wall->count; ++s)
   {
     double d[3];
+    bool near = true;
     for (int a = 0; a < 3; ++a)
     {
       d[a] = wall->sample[s].x[a] - x[a];
       d[a] -= wall->period[a] > 0 ? wall->period[a] * floor(d[a] / wall->period[a] + 0.5) : 0;
+      near = near && fabs(d[a]) <= wall->reach;
     }
     if (wall->axis >= 0 && d[wall->axis] > wall->reach)
     {
       break;
     }
-    const double w = mcor_wall_kernel(options->sph_kernel, d, 1 / scaled);
+    const double w = near ? mcor_wall_kernel(options->sph_kernel, d, 1 / scaled) : 0;
     if (w != 0)
     {
       /* Shares do not depend on the norm, nor on that of two dimensions. */

@@ -205,20 +205,16 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   return status;
 }
 
-/* MCOR_LANES of the environment, for tests. */
-static int mcor_forced_lanes(const char* text)
-{
-  const int number = atoi(text);
-  return number == 8 || number == 16 ? number : 1;
-}
-
-/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs. */
+/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs, and of the environment for
+ * tests. */
 static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
   const char* forced = getenv("MCOR_LANES");
+  const int number = forced ? atoi(forced) : 0;
   cl_uint width = 1;
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  return forced && *forced                    ? mcor_forced_lanes(forced)
+  return number == 8 || number == 16          ? number
+    : forced && *forced                       ? 1
     : !cl->is_cpu                             ? 1
     : precision == MCOR_FLOAT64 || width < 16 ? 8
                                               : 16;

@@ -8,6 +8,7 @@
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,6 +73,11 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const mcor_gauge_job* job)
 {
+  double* sides = context->box.points;
+  if (!job->box && input->particles_version != 0)
+  {
+    return MCOR_OK; /* another call may take the search grid */
+  }
   if (job->box)
   {
     const double h = options->globals->measured.h_min;
@@ -80,28 +86,23 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
       MCOR_INVALID_ARGUMENT,
       "With cubes of %g a box does not have the particles that gauges need. Leave the cube size.",
       options->globals->measured.cube);
-    mcor_options wider = *options;
     for (int side = 0; side < 6; ++side)
     {
-      wider.box[side] = job->box[side] + (side % 2 ? margin : -margin);
+      sides[side] = job->box[side] + (side % 2 ? margin : -margin);
     }
-    mcor_bound_by_box(context, &wider);
-    return MCOR_OK;
   }
-  if (input->particles_version != 0)
+  for (int a = 0; a < 3 && !job->box; ++a)
   {
-    return MCOR_OK; /* another call may take the search grid */
+    sides[2 * a] = DBL_MAX;
+    sides[2 * a + 1] = -DBL_MAX;
+    for (int64_t i = 0; i < job->line_count; ++i)
+    {
+      const double from = job->lines[i].from[a], to = job->lines[i].to[a];
+      sides[2 * a] = fmin(sides[2 * a], fmin(from, to));
+      sides[2 * a + 1] = fmax(sides[2 * a + 1], fmax(from, to));
+    }
   }
-  double* ends = malloc(6 * (size_t)job->line_count * sizeof *ends);
-  MCOR_TRY(mcor_allocated(context, ends));
-  for (int64_t i = 0; i < job->line_count; ++i)
-  {
-    memcpy(ends + 6 * i, job->lines[i].from, sizeof job->lines[i].from);
-    memcpy(ends + 6 * i + 3, job->lines[i].to, sizeof job->lines[i].to);
-  }
-  const mcor_array points = { .data = ends, .type = MCOR_FLOAT64, .components = 3 };
-  mcor_bound_probe(context, &points, 2 * job->line_count);
-  free(ends);
+  context->box.of_points = true;
   return MCOR_OK;
 }
 

@@ -162,10 +162,10 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
                              : status;
   run->first = first;
   run->count = (int)n;
-  if (status == MCOR_OK)
-  {
-    const int slices = mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job);
-    mcor_bound_points(run, &job, slices);
-  }
+  int slices = 0;
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices)
+    : status;
+  mcor_bound_points(run, &job, slices);
   return mcor_unmap_all(context, views, 2, status);
 }

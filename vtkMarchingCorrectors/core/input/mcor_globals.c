@@ -11,18 +11,6 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Of an attribute, the first particle that is not finite, of the rank where it has the least number;
- * -1: there is none. */
-static mcor_status mcor_measure_not_finite(
-  mcor_context* context, const mcor_input* input, const mcor_array* array, int64_t* particle)
-{
-  *particle = mcor_find_not_finite(array, input->solid, input->count);
-  *particle = *particle < 0 ? INT64_MAX : *particle;
-  MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, particle));
-  *particle = *particle == INT64_MAX ? -1 : *particle;
-  return MCOR_OK;
-}
-
 /* A component varies where it does on a rank, or ranks have unlike values. */
 static mcor_status mcor_merge_component(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, mcor_global_component* found)
@@ -52,8 +40,11 @@ static mcor_status mcor_measure_components(
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    int64_t not_finite;
-    MCOR_TRY(mcor_measure_not_finite(context, input, array, &not_finite));
+    /* The first particle that is not, of the rank where it has the least number. */
+    int64_t not_finite = mcor_find_not_finite(array, input->solid, input->count);
+    not_finite = not_finite < 0 ? INT64_MAX : not_finite;
+    MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &not_finite));
+    not_finite = not_finite == INT64_MAX ? -1 : not_finite;
     for (int c = 0; c < mcor_components(array); ++c)
     {
       mcor_global_component* found = &globals->components[globals->component_count++];

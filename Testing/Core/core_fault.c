@@ -35,12 +35,15 @@ static int fails(const char* name, int kind)
   return 1;
 }
 
+#define WRAP(type, name, parameters)                                                               \
+  type __real_##name parameters;                                                                   \
+  type __wrap_##name parameters;                                                                   \
+  type __wrap_##name parameters
+
 #define FAULT_CALL(name, parameters, arguments)                                                    \
-  cl_int __real_##name parameters;                                                                 \
-  cl_int __wrap_##name parameters;                                                                 \
-  cl_int __wrap_##name parameters                                                                  \
+  WRAP(cl_int, name, parameters)                                                                   \
   {                                                                                                \
-    const int kind = strcmp(#name, "mcor_clSetKernelArg") == 0 ? ARGUMENT : COMMAND;                    \
+    const int kind = strcmp(#name, "mcor_clSetKernelArg") == 0 ? ARGUMENT : COMMAND;               \
     return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
   }
 
@@ -74,12 +77,9 @@ FAULT_CALL(mcor_clEnqueueCopyBuffer,
 FAULT_CALL(mcor_clFinish, (cl_command_queue queue), (queue))
 
 /* Reports a failure but unmaps, as else the buffer would stay mapped by this test's fault. */
-cl_int __real_mcor_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
-  cl_uint waits, const cl_event* wait, cl_event* event);
-cl_int __wrap_mcor_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
-  cl_uint waits, const cl_event* wait, cl_event* event);
-cl_int __wrap_mcor_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem mem, void* mapped,
-  cl_uint waits, const cl_event* wait, cl_event* event)
+WRAP(cl_int, mcor_clEnqueueUnmapMemObject,
+  (cl_command_queue queue, cl_mem mem, void* mapped, cl_uint waits, const cl_event* wait,
+    cl_event* event))
 {
   const cl_int error = __real_mcor_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
   return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
@@ -92,10 +92,9 @@ void core_set_build_log(const char* log)
   build_log = log;
 }
 
-cl_int __wrap_mcor_clGetProgramBuildInfo(cl_program program, cl_device_id device,
-  cl_program_build_info info, size_t size, void* value, size_t* needed);
-cl_int __wrap_mcor_clGetProgramBuildInfo(cl_program program, cl_device_id device,
-  cl_program_build_info info, size_t size, void* value, size_t* needed)
+WRAP(cl_int, mcor_clGetProgramBuildInfo,
+  (cl_program program, cl_device_id device, cl_program_build_info info, size_t size, void* value,
+    size_t* needed))
 {
   (void)program;
   (void)device;
@@ -115,66 +114,51 @@ cl_int __wrap_mcor_clGetProgramBuildInfo(cl_program program, cl_device_id device
   return CL_SUCCESS;
 }
 
-cl_int __real_mcor_clReleaseMemObject(cl_mem mem);
-cl_int __wrap_mcor_clReleaseMemObject(cl_mem mem);
-cl_int __wrap_mcor_clReleaseMemObject(cl_mem mem)
+WRAP(cl_int, mcor_clReleaseMemObject, (cl_mem mem))
 {
   atomic_fetch_sub(&live_buffers, 1);
   return __real_mcor_clReleaseMemObject(mem);
 }
 
-cl_mem __real_mcor_clCreateBuffer(
-  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
-cl_mem __wrap_mcor_clCreateBuffer(
-  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error);
-cl_mem __wrap_mcor_clCreateBuffer(
-  cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
+/* Of calls that return what they make. */
+static int fails_to_make(const char* name, cl_int* error)
 {
-  if (fails("clCreateBuffer", COMMAND))
+  const int failed = fails(name, COMMAND);
+  if (failed)
   {
     *error = fail_with;
-    return NULL;
   }
-  cl_mem mem = __real_mcor_clCreateBuffer(context, flags, size, host, error);
+  return failed;
+}
+
+WRAP(cl_mem, mcor_clCreateBuffer,
+  (cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error))
+{
+  cl_mem mem = fails_to_make("clCreateBuffer", error)
+    ? NULL
+    : __real_mcor_clCreateBuffer(context, flags, size, host, error);
   atomic_fetch_add(&live_buffers, mem != NULL);
   return mem;
 }
 
-void* __real_mcor_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
-  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
-  cl_event* event, cl_int* error);
-void* __wrap_mcor_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
-  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
-  cl_event* event, cl_int* error);
-void* __wrap_mcor_clEnqueueMapBuffer(cl_command_queue queue, cl_mem mem, cl_bool blocking,
-  cl_map_flags flags, size_t offset, size_t size, cl_uint waits, const cl_event* wait,
-  cl_event* event, cl_int* error)
+WRAP(void*, mcor_clEnqueueMapBuffer,
+  (cl_command_queue queue, cl_mem mem, cl_bool blocking, cl_map_flags flags, size_t offset,
+    size_t size, cl_uint waits, const cl_event* wait, cl_event* event, cl_int* error))
 {
-  if (fails("clEnqueueMapBuffer", COMMAND))
-  {
-    *error = fail_with;
-    return NULL;
-  }
-  return __real_mcor_clEnqueueMapBuffer(
-    queue, mem, blocking, flags, offset, size, waits, wait, event, error);
+  return fails_to_make("clEnqueueMapBuffer", error)
+    ? NULL
+    : __real_mcor_clEnqueueMapBuffer(
+        queue, mem, blocking, flags, offset, size, waits, wait, event, error);
 }
 
-cl_kernel __real_mcor_clCreateKernel(cl_program program, const char* name, cl_int* error);
-cl_kernel __wrap_mcor_clCreateKernel(cl_program program, const char* name, cl_int* error);
-cl_kernel __wrap_mcor_clCreateKernel(cl_program program, const char* name, cl_int* error)
+WRAP(cl_kernel, mcor_clCreateKernel, (cl_program program, const char* name, cl_int* error))
 {
-  if (fails("clCreateKernel", COMMAND))
-  {
-    *error = fail_with;
-    return NULL;
-  }
-  return __real_mcor_clCreateKernel(program, name, error);
+  return fails_to_make("clCreateKernel", error) ? NULL
+                                                : __real_mcor_clCreateKernel(program, name, error);
 }
 
 #define FAULT_ALLOCATION(name, parameters, arguments)                                              \
-  void* __real_##name parameters;                                                                  \
-  void* __wrap_##name parameters;                                                                  \
-  void* __wrap_##name parameters                                                                   \
+  WRAP(void*, name, parameters)                                                                    \
   {                                                                                                \
     return fails(#name, ALLOCATION) ? NULL : __real_##name arguments;                              \
   }

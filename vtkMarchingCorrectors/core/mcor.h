@@ -20,8 +20,9 @@
  *
  * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs are empty
  * and safe to free. The library never prints, never exits and keeps no global state. A context may be
- * used by one thread at a time; several contexts by several threads at once. mcor_extract starts up to
- * 15 helper threads, on the processors that its calling thread may use; they end before it returns.
+ * used by one thread at a time; several contexts by several threads at once. A call starts helper threads
+ * on the processors that its thread may use: on the built-in device they wait for the context's next call,
+ * and end with the context; else they are up to 15, and end before the call returns.
  *
  * Lengths are in the unit of the particle positions ("length unit L").
  */

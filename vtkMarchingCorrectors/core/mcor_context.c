@@ -104,32 +104,19 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
-{
-  bool other;
-  MCOR_TRY(mcor_need_other_device(context, build, &other));
-  if (!other)
-  {
-    return MCOR_OK;
-  }
-  mcor_release_memory(context);
-  context->kept.grid = context->kept.value = context->kept.nodes = false;
-  return mcor_change_device(context, build);
-}
-
 /* Search grid and scalar for these options, from the last call where they still hold. */
 mcor_status mcor_prepare(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  mcor_check_reuse(context, input, options, uses_solids);
-  context->kept.uses_solids = uses_solids;
+  mcor_check_reuse(context, input, options);
+  context->kept.uses_solids = context->run.uses_solids;
   if (!context->kept.value)
   {
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
   MCOR_TRY(mcor_measure_wall(context, input));
   mcor_place_box(context, options);
-  context->grid.has_solids = context->measure.solid_count > 0 && uses_solids;
+  context->grid.has_solids = context->measure.solid_count > 0 && context->run.uses_solids;
   const mcor_build build = { .sph_kernel = options->sph_kernel,
     .field = options->field,
     .precision = options->precision,
@@ -157,10 +144,12 @@ mcor_status mcor_prepare(
 
 /* One attempt; on failure nothing is kept as valid. */
 static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
+  const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
+  void* result)
 {
   context->error[0] = '\0';
   context->run = (mcor_run){ .options = options,
+    .uses_solids = uses_solids,
     .statistics = statistics,
     .phase = MCOR_PHASE_INPUT,
     .phase_begin = mcor_seconds(),
@@ -194,7 +183,8 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
 }
 
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result)
+  const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
+  void* result)
 {
   if (!context->created)
   {
@@ -205,13 +195,14 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   cl->memory_limit = limit < cl->device_memory ? limit : cl->device_memory;
   const int64_t held = cl->bytes;
   context->run.fraction = 0;
-  mcor_status status = mcor_try_call(context, input, options, statistics, body, result);
+  mcor_status status =
+    mcor_try_call(context, input, options, uses_solids, statistics, body, result);
   if (status == MCOR_OUT_OF_CAPACITY)
   {
     mcor_release_memory(context);
     if (held > cl->bytes && !options->ranks) /* which all must call alike */
     {
-      status = mcor_try_call(context, input, options, statistics, body, result);
+      status = mcor_try_call(context, input, options, uses_solids, statistics, body, result);
     }
   }
   if (status == MCOR_OUT_OF_CAPACITY)

@@ -64,7 +64,7 @@ static mcor_status mcor_extract_all(
   {
     return mcor_attend_rounds(context, 0);
   }
-  MCOR_TRY(mcor_prepare(context, input, options, mcor_uses_solids(input, options)));
+  MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
   MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
     "Filling is for two dimensions, but these particles do not lie in a plane: they have a "
@@ -98,8 +98,8 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   }
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
-  const mcor_status status =
-    mcor_run_call(context, input, options, &surface->statistics, mcor_extract_all, surface);
+  const mcor_status status = mcor_run_call(context, input, options,
+    mcor_uses_solids(input, options), &surface->statistics, mcor_extract_all, surface);
   if (status != MCOR_OK)
   {
     mcor_free_surface(surface);

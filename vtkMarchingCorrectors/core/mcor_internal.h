@@ -144,11 +144,10 @@ typedef mcor_status (*mcor_body)(
 
 /* Runs the body, and once more where memory ran out but some could be given back. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_statistics* statistics, mcor_body body, void* result);
-/* Before a call: where no device was named and this one cannot do the build, another one is opened. */
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
+  const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
+  void* result);
 mcor_status mcor_prepare(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
+  mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* Gives back buffers; those that are empty stay so. */
 #define MCOR_RELEASE(context, ...)                                                                 \
@@ -156,12 +155,12 @@ mcor_status mcor_prepare(
     sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count);
 
-/* mcor_progress.c. Reports that something runs from one fraction of the call to another; may cancel. */
+/* mcor_statistics.c. Reports that something runs from one fraction of the call to another; may cancel. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
 /* The same between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
  * nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
-/* mcor_statistics.c. Ends the phase under way, reports progress and may cancel. */
+/* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 double mcor_rounding(
@@ -169,8 +168,7 @@ double mcor_rounding(
 
 /* mcor_reuse.c. What of the last call still holds; whether the caller's version stands for the same
  * particles as then. */
-void mcor_check_reuse(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids);
+void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
 

@@ -72,8 +72,7 @@ static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
 
 /* What of the last call still holds. The caller's version numbers stand for the arrays' content;
  * all else that the search grid, the scalar and the node values depend on is compared. */
-void mcor_check_reuse(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, bool uses_solids)
+void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   const mcor_input* last = &context->kept.input;
   const mcor_options* o = &context->kept.options;
@@ -84,8 +83,8 @@ void mcor_check_reuse(
     options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
     options->level_limit == o->level_limit && options->capping == o->capping &&
     mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
-  context->kept.grid =
-    context->kept.grid && particles && parameters && uses_solids == context->kept.uses_solids;
+  context->kept.grid = context->kept.grid && particles && parameters &&
+    context->run.uses_solids == context->kept.uses_solids;
   context->kept.value = context->kept.value && context->kept.grid && input->scalar_version != 0 &&
     input->scalar_version == last->scalar_version &&
     input->scalar_component == last->scalar_component &&

@@ -249,6 +249,7 @@ typedef struct mcor_box
 typedef struct mcor_run
 {
   const mcor_options* options;
+  bool uses_solids;          /* solid particles are to be on the device */
   struct mcor_filling* fill; /* of iso values that are done, see mcor_fill.h; NULL */
   mcor_statistics* statistics;
   int iso_number; /* of the iso value under way */

@@ -4,7 +4,7 @@
 /* The built-in device: its functions against PoCL's, its threads, its objects. */
 
 #include "core_fixture.h"
-#include "mcor_pool.h"
+#include "mcor_parallel.h"
 
 #include <fenv.h>
 #include <pthread.h>
@@ -189,7 +189,7 @@ static void check_loops(mcor_pool* pool)
   {
     const size_t first = (size_t)i, last = sizeof m->seen - (size_t)i * 7;
     memset(m->seen, 0, sizeof m->seen);
-    mcor_pool_run(pool, first, last, (size_t)(1 + i * i), mark, m);
+    mcor_pool_run(pool, NULL, first, last, (size_t)(1 + i * i), mark, m);
     for (size_t k = 0; k < sizeof m->seen; ++k)
     {
       assert_int_equal(m->seen[k], k >= first && k < last);
@@ -204,37 +204,14 @@ static void test_loops(void** state)
   (void)state;
   for (int threads = 1; threads < 9; ++threads)
   {
-    mcor_pool* pool = mcor_make_pool(threads);
-    assert_non_null(pool);
+    mcor_pool pool = { .threads = threads };
     fesetround(FE_UPWARD); /* the caller's own affair */
-    check_loops(pool);
+    check_loops(&pool);
     assert_int_equal(fegetround(), FE_UPWARD);
     fesetround(FE_TONEAREST);
-    mcor_free_pool(pool);
+    assert_int_equal(pool.count, threads - 1);
+    mcor_end_pool(&pool);
   }
-  mcor_free_pool(NULL);
-}
-
-static void* loops(void* pool)
-{
-  check_loops(pool);
-  return NULL;
-}
-
-static void test_callers_take_turns(void** state)
-{
-  (void)state;
-  mcor_pool* pool = mcor_make_pool(3);
-  pthread_t threads[4];
-  for (int t = 0; t < 4; ++t)
-  {
-    assert_int_equal(pthread_create(&threads[t], NULL, loops, pool), 0);
-  }
-  for (int t = 0; t < 4; ++t)
-  {
-    pthread_join(threads[t], NULL);
-  }
-  mcor_free_pool(pool);
 }
 
 /* ---- The device ---- */
@@ -318,6 +295,24 @@ static void test_threads_of_environment(void** state)
   mcor_free_context(context);
 }
 
+/* Processes that share a machine have fewer threads each. */
+static void test_shares(void** state)
+{
+  (void)state;
+  uint64_t hash = 0;
+  for (int count = 1; count < 4; ++count)
+  {
+    const int most = mcor_limit_threads(mcor_processors(1)), share = mcor_processors(count);
+    mcor_context* context = NULL;
+    CORE_OK(context, mcor_create_shared_context("built in", count - 1, count, &context));
+    assert_int_equal(context->cl.units, share < most ? share : most);
+    const uint64_t own = extract(context);
+    assert_true(count == 1 || own == hash);
+    hash = own;
+    mcor_free_context(context);
+  }
+}
+
 /* What was not compiled is done by a driver, if none is named, and refused else. */
 static void test_what_was_not_compiled(void** state)
 {
@@ -341,8 +336,8 @@ static void test_what_was_not_compiled(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
-    cmocka_unit_test(test_loops), cmocka_unit_test(test_callers_take_turns),
-    cmocka_unit_test(test_fork), cmocka_unit_test(test_contexts_side_by_side),
-    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_what_was_not_compiled) };
+    cmocka_unit_test(test_loops), cmocka_unit_test(test_fork), cmocka_unit_test(test_contexts_side_by_side),
+    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
+    cmocka_unit_test(test_what_was_not_compiled) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #endif
 
 #include "core_fixture.h"
+#include "mcor_input.h"
 #include "mcor_parallel.h"
 
 #include <math.h>
@@ -118,15 +119,17 @@ static void test_cancelled(void** state)
   (void)state;
   skip();
 #else
-  mcor_context* context = *state;
-  const double iso = 0, interval = context->report_interval;
+  mcor_context* context;
+  const double iso = 0;
   const int64_t count = MCOR_SLICES * 64;
+  (void)state;
+  const char* before = getenv("MCOR_THREADS");
+  setenv("MCOR_THREADS", "1", 1);
+  CORE_OK(context, mcor_create_context(NULL, &context));
   mcor_options options = core_options(&iso);
   options.progress = ask;
   context->run.options = &options;
   context->run.doing = "a loop";
-  const char* before = getenv("MCOR_THREADS");
-  setenv("MCOR_THREADS", "1", 1);
   context->report_interval = 0;
   for (int most = 0; most < 3; ++most)
   {
@@ -148,8 +151,7 @@ static void test_cancelled(void** state)
     free(v.elements);
   }
   before ? setenv("MCOR_THREADS", before, 1) : unsetenv("MCOR_THREADS");
-  context->run.options = NULL;
-  context->report_interval = interval;
+  mcor_free_context(context);
 #endif
 }
 
@@ -307,11 +309,38 @@ static void test_first_bad_particle(void** state)
   core_free_set(&set);
 }
 
+/* Of fluid alone, and of none where all are solids; slices may have no fluid. */
+static void test_ranges(void** state)
+{
+  (void)state;
+  const int64_t count = 4 * MCOR_MEMORY_GRAIN;
+  float* values = malloc((size_t)count * sizeof *values);
+  uint8_t* solid = malloc((size_t)count);
+  assert_true(values && solid);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    values[i] = (float)i;
+    solid[i] = i < count / 2 || i % 7 == 0;
+  }
+  const mcor_array array = { .data = values, .type = MCOR_FLOAT32 };
+  double range[2];
+  mcor_find_range(&array, solid, count, 0, range);
+  assert_true(range[0] == (double)(count / 2) && range[1] == (double)(count - 1));
+  assert_true(mcor_largest(&array, count, 0) == (double)(count - 1));
+  values[3] = -1e9f;
+  assert_true(mcor_largest(&array, count, 0) == 1e9);
+  memset(solid, 1, (size_t)count);
+  mcor_find_range(&array, solid, count, 0, range);
+  assert_true(range[0] > range[1] && mcor_largest_of(range[0], range[1]) == 0);
+  free(values);
+  free(solid);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_element_once),
     cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_cancelled),
     cmocka_unit_test(test_one_processor), cmocka_unit_test(test_solids_left_out),
-    cmocka_unit_test(test_first_bad_particle) };
+    cmocka_unit_test(test_first_bad_particle), cmocka_unit_test(test_ranges) };
   return cmocka_run_group_tests_name("parallel", tests, core_set_up, core_tear_down);
 }

@@ -127,10 +127,8 @@ typedef enum mcor_load
 
 /* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Whether another device must be opened for a build: no device was named, and this one cannot do it. */
-mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* build, bool* other);
-/* Closes this device, whose buffers have been released, and opens the best one for a build. */
-mcor_status mcor_change_device(mcor_context* context, const mcor_build* build);
+/* Before a call: where no device was named and this one cannot do the build, the best one that can is opened. */
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
@@ -173,8 +171,5 @@ mcor_status mcor_copy(
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count);
 mcor_status mcor_finish(mcor_context* context);
-
-/* Of all that compiled programs depend on beside their sources and options. */
-mcor_cache_key mcor_device_key(const mcor_cl* cl);
 
 #endif

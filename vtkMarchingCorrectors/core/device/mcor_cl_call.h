@@ -3,9 +3,10 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* What the files mcor_cl_*.c, the only ones that call OpenCL, share. */
+/* What the files mcor_cl_*.c, the only ones that call OpenCL, share, and what is known of some drivers. */
 
 #include "mcor_internal.h"
+#include "mcor_native.h"
 
 #include <string.h>
 
@@ -31,9 +32,10 @@ void mcor_blame_files(mcor_context* context);
 /* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
-/* mcor_native.c; its header has OpenCL's own names. */
-cl_platform_id mcor_native_platform(void);
-bool mcor_native_has(const char* options);
+static inline bool mcor_is_native(const mcor_cl* cl)
+{
+  return cl->platform == mcor_native_platform();
+}
 
 static inline bool mcor_is_pocl(const mcor_cl* cl)
 {

@@ -4,7 +4,6 @@
 /* Which OpenCL device, and what it can do. */
 
 #include "mcor_cl_call.h"
-#include "mcor_parallel.h"
 #include "mcor_program.h"
 
 #include <stdio.h>
@@ -136,6 +135,13 @@ static int mcor_find_device(const mcor_device_list* list, const char* wanted)
   return -1;
 }
 
+static cl_device_type mcor_type_of(cl_device_id device)
+{
+  cl_device_type type = 0;
+  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
+}
+
 /* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
  * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM is for tests: cpu or gpu. */
 static bool mcor_has_cpu_form(const mcor_cl* cl)
@@ -145,18 +151,9 @@ static bool mcor_has_cpu_form(const mcor_cl* cl)
   {
     return strcmp(forced, "gpu") != 0;
   }
-  cl_device_type type = 0;
   cl_uint width = 1;
-  clGetDeviceInfo(cl->device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  return (type & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
-}
-
-static cl_device_type mcor_type_of(cl_device_id device)
-{
-  cl_device_type type = 0;
-  clGetDeviceInfo(device, CL_DEVICE_TYPE, sizeof type, &type, NULL);
-  return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
+  return (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
 }
 
 static void mcor_query_device(mcor_cl* cl)
@@ -174,11 +171,11 @@ static void mcor_query_device(mcor_cl* cl)
   cl->is_cpu = mcor_has_cpu_form(cl);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-  /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries. */
-  cl->keeps_binaries = !mcor_is_pocl(cl);
+  /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries; the built-in
+   * device has none. */
+  cl->keeps_binaries = !mcor_is_pocl(cl) && !mcor_is_native(cl);
   cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
-  cl->segments = cl->is_cpu ? (int)units * 8 : 4096;
 }
 
 /* Of `count` processes number `place` takes one of the devices like the chosen one, in turn; both become
@@ -201,15 +198,16 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
 }
 
 /* Of a CPU that `count` processes have in common the share of number `place`. A driver that does not
- * divide it gives all of it to each. */
+ * divide it gives all of it to each; of the built-in device a share is a number of threads. */
 static void mcor_take_share(mcor_cl* cl, int place, int count)
 {
   cl_uint units = 1, parts = 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
   const cl_uint wanted = (cl_uint)mcor_processors(count);
   const cl_device_partition_property equally[] = { CL_DEVICE_PARTITION_EQUALLY, wanted, 0 };
-  if (count < 2 || !(mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) || wanted >= units ||
-    clCreateSubDevices(cl->device, equally, 0, NULL, &parts) != CL_SUCCESS || parts == 0)
+  if (count < 2 || mcor_is_native(cl) || !(mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) ||
+    wanted >= units || clCreateSubDevices(cl->device, equally, 0, NULL, &parts) != CL_SUCCESS ||
+    parts == 0)
   {
     return;
   }
@@ -245,8 +243,8 @@ static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const m
 {
   mcor_cl tried = { .platform = platform, .device = device };
   mcor_query_device(&tried);
-  return platform == mcor_native_platform() ? mcor_has_ahead(&tried, build)
-                                            : build->precision == MCOR_FLOAT32 || tried.has_fp64;
+  return mcor_is_native(&tried) ? mcor_has_ahead(&tried, build)
+                                : build->precision == MCOR_FLOAT32 || tried.has_fp64;
 }
 
 /* The best of the devices that can do a build; -1: none. */
@@ -279,6 +277,11 @@ static mcor_status mcor_start_device(
   cl_int error;
   cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateContext");
+  if (mcor_is_native(cl) && mcor_processors(count) < cl->units)
+  {
+    cl->units = mcor_native_pool(cl->context)->threads = mcor_processors(count);
+  }
+  cl->segments = cl->is_cpu ? cl->units * 8 : 4096;
   cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
   cl->timed_queue =
@@ -382,11 +385,11 @@ void mcor_close_device(mcor_context* context)
   }
 }
 
-mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* build, bool* other)
+mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
 {
-  const mcor_cl* cl = &context->cl;
+  mcor_cl* cl = &context->cl;
+  const mcor_cl before = *cl;
   const bool is_open = cl->timed_queue != NULL; /* not where the last change of devices failed */
-  *other = false;
   if (!cl->is_default ||
     (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
   {
@@ -395,16 +398,16 @@ mcor_status mcor_need_other_device(mcor_context* context, const mcor_build* buil
   mcor_device_list list;
   mcor_find_devices(&list);
   const int chosen = mcor_choose_device(&list, build);
-  *other = chosen >= 0 && !(is_open && list.platforms[chosen] == cl->platform);
-  return chosen < 0 ? mcor_fail_without_device(context, &list, build) : MCOR_OK;
-}
-
-mcor_status mcor_change_device(mcor_context* context, const mcor_build* build)
-{
-  mcor_cl* cl = &context->cl;
-  const mcor_cl before = *cl;
-  mcor_device_list list;
-  mcor_find_devices(&list);
+  if (chosen < 0)
+  {
+    return mcor_fail_without_device(context, &list, build);
+  }
+  if (is_open && list.platforms[chosen] == cl->platform)
+  {
+    return MCOR_OK;
+  }
+  mcor_release_memory(context);
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
   mcor_close_device(context);
   *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
   const mcor_status status = mcor_start_default(context, &list, build);

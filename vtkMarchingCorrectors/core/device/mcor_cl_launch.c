@@ -147,16 +147,12 @@ typedef struct mcor_parts
   double first, limit;
 } mcor_parts;
 
-static bool mcor_is_native(const mcor_context* context)
-{
-  return context->cl.platform == mcor_native_platform();
-}
-
 static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 {
   const mcor_options* options = context->run.options;
   const bool watched = options && options->progress;
-  return load == MCOR_HEAVY ? !context->cl.is_cpu || watched : watched && mcor_is_native(context);
+  return load == MCOR_HEAVY ? !context->cl.is_cpu || watched
+                            : watched && mcor_is_native(&context->cl);
 }
 
 /* Work-items of a part at most. What one does goes with the particles that reach a point. */
@@ -177,7 +173,7 @@ static mcor_parts mcor_parts_of(
   const mcor_context* context, const mcor_kernel* kernel, mcor_load load)
 {
   const double limit = mcor_part_limit(context);
-  if (mcor_is_native(context))
+  if (mcor_is_native(&context->cl))
   {
     const double units = context->cl.units;
     return load == MCOR_HEAVY ? (mcor_parts){ 32 * units, fmin(2048 * units, limit) }
@@ -189,13 +185,14 @@ static mcor_parts mcor_parts_of(
 }
 
 /* Launches `count` work-items from `offset` on. Drivers compile a kernel for few and for many, from 0 on
- * and from elsewhere, when it is first launched so. */
+ * and from elsewhere, when it is first launched so; the built-in device has nothing to compile. */
 static mcor_status mcor_enqueue_part(
   mcor_context* context, mcor_kernel* kernel, size_t offset, size_t count, size_t group)
 {
   mcor_cl* cl = &context->cl;
   const size_t* from = offset > 0 ? &offset : NULL;
   bool* launched = &kernel->launched[offset > 0][count >= MCOR_LARGE_LAUNCH];
+  *launched = *launched || mcor_is_native(cl);
   if (!*launched && cl->compiles)
   {
     MCOR_TRY(mcor_report_building(context));
@@ -239,11 +236,6 @@ static mcor_status mcor_enqueue_cut(
   return MCOR_OK;
 }
 
-static size_t mcor_group_size(const mcor_cl* cl, mcor_load load)
-{
-  return cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
-}
-
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,
   const mcor_arg* args, size_t arg_count)
 {
@@ -267,7 +259,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     MCOR_CL_TRY(context, mcor_set_arg(cl, kernel->kernel, (cl_uint)i, args + i), name);
   }
-  const size_t group = mcor_group_size(cl, load);
+  const size_t group = cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
   const size_t global = (items + group - 1) / group * group;
   return mcor_is_cut(context, load) ? mcor_enqueue_cut(context, kernel, load, global, group)
                                     : mcor_enqueue_part(context, kernel, 0, global, group);

@@ -60,7 +60,7 @@ static mcor_status mcor_fail_build(
   const mcor_cl* cl = &context->cl;
   char missing[MCOR_BUILD_NAME];
   mcor_name_build(&cl->build, missing, sizeof missing);
-  MCOR_RETURN_IF(cl->platform == mcor_native_platform(), context, MCOR_DEVICE_ERROR,
+  MCOR_RETURN_IF(mcor_is_native(cl), context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
     "another device, or build with MCOR_AHEAD=all.",
     missing);
@@ -79,7 +79,9 @@ static mcor_status mcor_fail_build(
   return status;
 }
 
-mcor_cache_key mcor_device_key(const mcor_cl* cl)
+/* Of all that a compiled program depends on. */
+static mcor_cache_key mcor_program_key(
+  const mcor_cl* cl, const char* const* sources, cl_uint count, const char* options)
 {
   mcor_cache_key key = { { 0 } };
   const cl_device_info infos[] = { CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION };
@@ -91,14 +93,6 @@ mcor_cache_key mcor_device_key(const mcor_cl* cl)
     clGetDeviceInfo(cl->device, infos[i], sizeof text - 1, text, NULL);
     mcor_cache_add(&key, text);
   }
-  return key;
-}
-
-/* Of all that a compiled program depends on. */
-static mcor_cache_key mcor_program_key(
-  const mcor_cl* cl, const char* const* sources, cl_uint count, const char* options)
-{
-  mcor_cache_key key = mcor_device_key(cl);
   mcor_cache_add(&key, options);
   for (cl_uint i = 0; i < count; ++i)
   {
@@ -211,20 +205,16 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   return status;
 }
 
-/* MCOR_LANES of the environment, for tests. */
-static int mcor_forced_lanes(const char* text)
-{
-  const int number = atoi(text);
-  return number == 8 || number == 16 ? number : 1;
-}
-
-/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs. */
+/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs, and of the environment for
+ * tests. */
 static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
   const char* forced = getenv("MCOR_LANES");
+  const int number = forced ? atoi(forced) : 0;
   cl_uint width = 1;
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  return forced && *forced                    ? mcor_forced_lanes(forced)
+  return number == 8 || number == 16          ? number
+    : forced && *forced                       ? 1
     : !cl->is_cpu                             ? 1
     : precision == MCOR_FLOAT64 || width < 16 ? 8
                                               : 16;
@@ -246,35 +236,21 @@ static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
     a->solids == b->solids;
 }
 
-static void mcor_set_precision(mcor_cl* cl, mcor_type precision)
-{
-  if (cl->build.precision != precision)
-  {
-    mcor_drop_programs(cl, true);
-  }
-  cl->build.precision = precision;
-  cl->real_size = precision == MCOR_FLOAT64 ? sizeof(cl_double) : sizeof(cl_float);
-  cl->fix_size = precision == MCOR_FLOAT64 ? sizeof(cl_long) : sizeof(cl_int);
-}
-
-static void mcor_set_build(mcor_cl* cl, const mcor_build* build, int lanes)
-{
-  mcor_set_precision(cl, build->precision);
-  mcor_drop_programs(cl, cl->lanes != lanes);
-  cl->lanes = lanes;
-  cl->build = *build;
-}
-
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
-  MCOR_RETURN_IF(build->precision == MCOR_FLOAT64 && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
+  const bool is_double = build->precision == MCOR_FLOAT64;
+  MCOR_RETURN_IF(is_double && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
     "OpenCL device %s has no double precision; choose another device or single precision.",
     cl->device_name);
   const int lanes = mcor_choose_lanes(cl, build->precision);
   if (cl->lanes != lanes || !mcor_same_build(&cl->build, build))
   {
-    mcor_set_build(cl, build, lanes);
+    mcor_drop_programs(cl, cl->lanes != lanes || cl->build.precision != build->precision);
+    cl->lanes = lanes;
+    cl->build = *build;
+    cl->real_size = is_double ? sizeof(cl_double) : sizeof(cl_float);
+    cl->fix_size = is_double ? sizeof(cl_long) : sizeof(cl_int);
   }
   return MCOR_OK;
 }

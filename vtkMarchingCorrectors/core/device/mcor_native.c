@@ -1,18 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device's objects, memory, programs and kernels. A buffer is memory of the host, and a
- * command queue has nothing in it. */
+/* The built-in device's objects, memory, programs and kernels, as far as mcor_cl_*.c ask for them. A buffer is
+ * memory of the host, and a command queue has nothing in it. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
-#include "mcor_pool.h"
 #include "mcor_system.h"
+
+#include <CL/cl_icd.h>
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #define MCOR_ARGUMENT_LIMIT 64
 #define MCOR_BUFFER_ALIGNMENT 128
@@ -35,15 +34,12 @@ struct _cl_platform_id
 struct _cl_device_id
 {
   const cl_icd_dispatch* table;
-  cl_uint units; /* of a part of the CPU; 0: all of it */
 };
 
 struct _cl_context
 {
   const cl_icd_dispatch* table;
-  cl_uint units;
-  mcor_pool* pool; /* from the first launch on */
-  long process;    /* whose threads those are */
+  mcor_pool pool;
 };
 
 struct _cl_command_queue
@@ -55,7 +51,7 @@ struct _cl_command_queue
 struct _cl_mem
 {
   const cl_icd_dispatch* table;
-  char* data;
+  char* data; /* behind this */
 };
 
 struct _cl_program
@@ -75,60 +71,20 @@ struct _cl_kernel
   void* arguments[MCOR_ARGUMENT_LIMIT];
 };
 
-struct _cl_event
-{
-  const cl_icd_dispatch* table;
-  cl_ulong start, end; /* ns */
-};
-
 static struct _cl_platform_id mcor_platform = { &mcor_native_table };
-static struct _cl_device_id mcor_device = { &mcor_native_table, 0 };
+static struct _cl_device_id mcor_device = { &mcor_native_table };
 
 /* ---- Platform and device ---- */
 
-/* Of those for which programs are compiled: a build may leave some out. */
-static mcor_instructions mcor_best_instructions(void)
-{
-  const mcor_instructions own = mcor_own_instructions();
-  mcor_instructions best = MCOR_INSTRUCTIONS_BASE;
-  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
-  {
-    best = p->instructions <= own && p->instructions > best ? p->instructions : best;
-  }
-  return best;
-}
-
-static const char* mcor_device_text(void)
-{
-  static const char* const texts[] = { "built in: this CPU", "built in: this CPU, AVX2",
-    "built in: this CPU, AVX-512" };
-  return texts[mcor_best_instructions()];
-}
-
 cl_platform_id mcor_native_platform(void)
 {
-  const mcor_instructions own = mcor_own_instructions();
-  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
-  {
-    if (p->instructions <= own)
-    {
-      return &mcor_platform;
-    }
-  }
-  return NULL;
+  return mcor_best_instructions() >= 0 ? &mcor_platform : NULL;
 }
 
 /* Threads that compute, the calling one included. */
-static cl_uint mcor_units(cl_uint units)
+static int mcor_units(void)
 {
-  return (cl_uint)mcor_limit_threads(units > 0 ? (int)units : mcor_processors(1));
-}
-
-/* Of the machine. What other programs use, nobody can know. */
-static cl_ulong mcor_memory(void)
-{
-  const cl_ulong bytes = mcor_system_memory();
-  return bytes > 0 ? bytes : (cl_ulong)1 << 32;
+  return mcor_limit_threads(mcor_processors(1));
 }
 
 /* Answers a question: `size` bytes at `from`. */
@@ -165,35 +121,29 @@ static cl_int mcor_platform_info(
 static cl_int mcor_device_ids(
   cl_platform_id platform, cl_device_type type, cl_uint room, cl_device_id* devices, cl_uint* count)
 {
-  (void)platform;
-  if (!(type & (CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_DEFAULT)))
-  {
-    return CL_DEVICE_NOT_FOUND;
-  }
-  if (devices && room > 0)
-  {
-    devices[0] = &mcor_device;
-  }
-  if (count)
-  {
-    *count = 1;
-  }
+  (void)platform, (void)type, (void)room;
+  devices[0] = &mcor_device;
+  *count = 1;
   return CL_SUCCESS;
 }
 
 static cl_int mcor_device_info(
   cl_device_id device, cl_device_info what, size_t room, void* to, size_t* needed)
 {
+  (void)device;
+  static const char* const names[] = { "built in: this CPU", "built in: this CPU, AVX2",
+    "built in: this CPU, AVX-512" };
+  const int best = mcor_best_instructions();
   const cl_device_type type = CL_DEVICE_TYPE_CPU;
-  const cl_uint units = mcor_units(device->units);
-  const cl_uint width = mcor_best_instructions() == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
+  const cl_uint units = (cl_uint)mcor_units(), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
   const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
     CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-  const cl_ulong memory = mcor_memory();
+  /* Of the machine. What other programs use, nobody can know. */
+  const cl_ulong bytes = mcor_system_memory(), memory = bytes > 0 ? bytes : (cl_ulong)1 << 32;
   switch (what)
   {
     case CL_DEVICE_NAME:
-      return mcor_answer_text(mcor_device_text(), room, to, needed);
+      return mcor_answer_text(names[best], room, to, needed);
     case CL_DEVICE_TYPE:
       return mcor_answer(&type, sizeof type, room, to, needed);
     case CL_DEVICE_MAX_COMPUTE_UNITS:
@@ -211,44 +161,6 @@ static cl_int mcor_device_info(
   }
 }
 
-/* Parts of the CPU are counts of threads: the system's scheduler sees to the rest. */
-static cl_int mcor_sub_devices(cl_device_id device, const cl_device_partition_property* how,
-  cl_uint room, cl_device_id* made, cl_uint* count)
-{
-  const cl_uint each = (cl_uint)how[1], parts = each > 0 ? mcor_units(device->units) / each : 0;
-  if (how[0] != CL_DEVICE_PARTITION_EQUALLY || parts == 0)
-  {
-    return CL_DEVICE_PARTITION_FAILED;
-  }
-  if (count)
-  {
-    *count = parts;
-  }
-  for (cl_uint i = 0; made && i < parts && i < room; ++i)
-  {
-    made[i] = malloc(sizeof *made[i]);
-    if (!made[i])
-    {
-      while (i > 0)
-      {
-        free(made[--i]);
-      }
-      return CL_OUT_OF_HOST_MEMORY;
-    }
-    *made[i] = (struct _cl_device_id){ &mcor_native_table, each };
-  }
-  return CL_SUCCESS;
-}
-
-static cl_int mcor_release_device(cl_device_id device)
-{
-  if (device != &mcor_device)
-  {
-    free(device);
-  }
-  return CL_SUCCESS;
-}
-
 /* ---- Objects ---- */
 
 /* Of objects that own nothing else. */
@@ -259,19 +171,18 @@ static cl_int mcor_release_device(cl_device_id device)
     return CL_SUCCESS;                                                                             \
   }
 MCOR_RELEASE_ALONE(mcor_release_queue, cl_command_queue)
-MCOR_RELEASE_ALONE(mcor_release_event, cl_event)
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
 /* A new object, all zero but its table; NULL and the error where there is no memory. */
-static void* mcor_make_object(size_t size, cl_int no_memory, cl_int* error)
+static void* mcor_make_object(size_t size, cl_int* error)
 {
   struct _cl_platform_id* object = calloc(1, size);
   if (object)
   {
     object->table = &mcor_native_table;
   }
-  *error = object ? CL_SUCCESS : no_memory;
+  *error = object ? CL_SUCCESS : CL_OUT_OF_HOST_MEMORY;
   return object;
 }
 
@@ -279,21 +190,18 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
   void* user, cl_int* error)
 {
-  (void)properties, (void)count, (void)notify, (void)user;
-  cl_context context = mcor_make_object(sizeof *context, CL_OUT_OF_HOST_MEMORY, error);
+  (void)properties, (void)count, (void)devices, (void)notify, (void)user;
+  cl_context context = mcor_make_object(sizeof *context, error);
   if (context)
   {
-    context->units = mcor_units(devices[0]->units);
+    context->pool.threads = mcor_units();
   }
   return context;
 }
 
 static cl_int mcor_release_context(cl_context context)
 {
-  if (context->process == (long)getpid())
-  {
-    mcor_free_pool(context->pool);
-  }
+  mcor_end_pool(&context->pool);
   free(context);
   return CL_SUCCESS;
 }
@@ -302,7 +210,7 @@ static cl_command_queue mcor_make_queue(
   cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* error)
 {
   (void)device, (void)properties;
-  cl_command_queue queue = mcor_make_object(sizeof *queue, CL_OUT_OF_HOST_MEMORY, error);
+  cl_command_queue queue = mcor_make_object(sizeof *queue, error);
   if (queue)
   {
     queue->context = context;
@@ -316,44 +224,24 @@ static cl_int mcor_finish_queue(cl_command_queue queue)
   return CL_SUCCESS;
 }
 
-static cl_ulong mcor_now(void)
-{
-  struct timespec now;
-  timespec_get(&now, TIME_UTC);
-  return (cl_ulong)now.tv_sec * 1000000000u + (cl_ulong)now.tv_nsec;
-}
-
-static cl_int mcor_event_time(
-  cl_event event, cl_profiling_info what, size_t room, void* to, size_t* needed)
-{
-  return mcor_answer(what == CL_PROFILING_COMMAND_START ? &event->start : &event->end,
-    sizeof event->end, room, to, needed);
-}
-
 /* ---- Buffers ---- */
 
 static cl_mem mcor_make_buffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
   (void)context, (void)flags, (void)host;
-  cl_mem buffer = mcor_make_object(sizeof *buffer, CL_MEM_OBJECT_ALLOCATION_FAILURE, error);
+  cl_mem buffer = mcor_system_allocate(MCOR_BUFFER_ALIGNMENT, MCOR_BUFFER_ALIGNMENT + size);
   if (buffer)
   {
-    buffer->data = mcor_system_allocate(MCOR_BUFFER_ALIGNMENT, size);
-    if (!buffer->data)
-    {
-      free(buffer);
-      *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
-      return NULL;
-    }
+    *buffer = (struct _cl_mem){ &mcor_native_table, (char*)buffer + MCOR_BUFFER_ALIGNMENT };
   }
+  *error = buffer ? CL_SUCCESS : CL_MEM_OBJECT_ALLOCATION_FAILURE;
   return buffer;
 }
 
 static cl_int mcor_release_buffer(cl_mem buffer)
 {
-  mcor_system_release(buffer->data);
-  free(buffer);
+  mcor_system_release(buffer);
   return CL_SUCCESS;
 }
 
@@ -387,11 +275,7 @@ static cl_int mcor_fill_buffer(cl_command_queue queue, cl_mem buffer, const void
   size_t pattern_size, size_t offset, size_t size, cl_uint count, const cl_event* wait,
   cl_event* event)
 {
-  (void)queue, (void)count, (void)wait, (void)event;
-  if (pattern_size != 1)
-  {
-    return CL_INVALID_VALUE;
-  }
+  (void)queue, (void)pattern_size, (void)count, (void)wait, (void)event;
   memset(buffer->data + offset, *(const unsigned char*)pattern, size);
   return CL_SUCCESS;
 }
@@ -414,43 +298,12 @@ static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* map
 
 /* ---- Programs and kernels ---- */
 
-/* The program of these options for this processor; NULL: none. */
-static const mcor_native_program* mcor_find_program(const char* options)
-{
-  const mcor_instructions best = mcor_best_instructions();
-  const char* own = strstr(options, "-DMCOR_PROGRAM");
-  const mcor_native_program* found = NULL;
-  for (const mcor_native_program* p = mcor_native_programs; own && p->options; ++p)
-  {
-    if (p->instructions <= best && strcmp(p->options, own) == 0 &&
-      (!found || p->instructions > found->instructions))
-    {
-      found = p;
-    }
-  }
-  return found;
-}
-
-bool mcor_native_has(const char* options)
-{
-  return mcor_find_program(options) != NULL;
-}
-
 /* The sources are those that were compiled. */
 static cl_program mcor_make_program(
   cl_context context, cl_uint count, const char** texts, const size_t* lengths, cl_int* error)
 {
   (void)context, (void)count, (void)texts, (void)lengths;
-  cl_program program = mcor_make_object(sizeof *program, CL_OUT_OF_HOST_MEMORY, error);
-  return program;
-}
-
-static cl_program mcor_load_binary(cl_context context, cl_uint count, const cl_device_id* devices,
-  const size_t* sizes, const unsigned char** binaries, cl_int* loaded, cl_int* error)
-{
-  (void)context, (void)count, (void)devices, (void)sizes, (void)binaries;
-  *loaded = *error = CL_INVALID_BINARY;
-  return NULL;
+  return mcor_make_object(sizeof(struct _cl_program), error);
 }
 
 static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_device_id* devices,
@@ -461,21 +314,12 @@ static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_dev
   return program->program ? CL_SUCCESS : CL_BUILD_PROGRAM_FAILURE;
 }
 
-static cl_int mcor_build_info(cl_program program, cl_device_id device, cl_program_build_info what,
-  size_t room, void* to, size_t* needed)
-{
-  (void)program, (void)device, (void)what;
-  return mcor_answer_text("These kernels were not compiled with the library.", room, to, needed);
-}
-
 static cl_int mcor_program_info(
   cl_program program, cl_program_info what, size_t room, void* to, size_t* needed)
 {
-  const size_t none = 0;
   return what == CL_PROGRAM_KERNEL_NAMES
     ? mcor_answer_text(program->program->kernels, room, to, needed)
-    : what == CL_PROGRAM_BINARY_SIZES ? mcor_answer(&none, sizeof none, room, to, needed)
-                                      : CL_INVALID_VALUE;
+    : CL_INVALID_VALUE;
 }
 
 static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* error)
@@ -493,7 +337,7 @@ static cl_kernel mcor_make_kernel(cl_program program, const char* name, cl_int* 
     *error = CL_INVALID_KERNEL_NAME;
     return NULL;
   }
-  cl_kernel kernel = mcor_make_object(sizeof *kernel, CL_OUT_OF_HOST_MEMORY, error);
+  cl_kernel kernel = mcor_make_object(sizeof *kernel, error);
   if (!kernel)
   {
     return NULL;
@@ -546,20 +390,14 @@ static void mcor_run_items(void* data, size_t first, size_t last)
   kernel->program->run(kernel->number, kernel->arguments, first, last);
 }
 
-/* A process made by fork has no threads: it gets its own. */
-static mcor_pool* mcor_pool_of(cl_context context)
+mcor_pool* mcor_native_pool(cl_context context)
 {
-  if (!context->pool || context->process != (long)getpid())
-  {
-    context->pool = mcor_make_pool((int)context->units);
-    context->process = (long)getpid();
-  }
-  return context->pool;
+  return &context->pool;
 }
 
-static size_t mcor_launch_step(cl_uint units, size_t items, size_t group)
+static size_t mcor_launch_step(int threads, size_t items, size_t group)
 {
-  const size_t parts = (size_t)units * (group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
+  const size_t parts = (size_t)threads * (group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
   const size_t step = (items + parts - 1) / parts;
   return group > 1 && items < MCOR_FEW_LIGHT_ITEMS ? items
     : step < MCOR_PART_ITEMS                       ? step
@@ -570,42 +408,22 @@ static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_ui
   const size_t* offset, const size_t* items, const size_t* group, cl_uint count,
   const cl_event* wait, cl_event* event)
 {
-  (void)dimensions, (void)count, (void)wait;
-  const cl_ulong start = mcor_now();
+  (void)dimensions, (void)count, (void)wait, (void)event;
   const size_t first = offset ? *offset : 0;
-  mcor_pool* pool = mcor_pool_of(queue->context);
-  if (!pool)
-  {
-    return CL_OUT_OF_HOST_MEMORY;
-  }
-  mcor_pool_run(pool, first, first + *items,
-    mcor_launch_step(queue->context->units, *items, *group), mcor_run_items, kernel);
-  if (event)
-  {
-    cl_int error;
-    *event = mcor_make_object(sizeof **event, CL_OUT_OF_HOST_MEMORY, &error);
-    if (!*event)
-    {
-      return error;
-    }
-    (*event)->start = start;
-    (*event)->end = mcor_now();
-  }
+  mcor_pool* pool = &queue->context->pool;
+  mcor_pool_run(pool, NULL, first, first + *items, mcor_launch_step(pool->threads, *items, *group),
+    mcor_run_items, kernel);
   return CL_SUCCESS;
 }
 
 const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_info,
   .clGetDeviceIDs = mcor_device_ids,
   .clGetDeviceInfo = mcor_device_info,
-  .clCreateSubDevices = mcor_sub_devices,
-  .clReleaseDevice = mcor_release_device,
   .clCreateContext = mcor_make_context,
   .clReleaseContext = mcor_release_context,
   .clCreateCommandQueue = mcor_make_queue,
   .clReleaseCommandQueue = mcor_release_queue,
   .clFinish = mcor_finish_queue,
-  .clGetEventProfilingInfo = mcor_event_time,
-  .clReleaseEvent = mcor_release_event,
   .clCreateBuffer = mcor_make_buffer,
   .clReleaseMemObject = mcor_release_buffer,
   .clEnqueueReadBuffer = mcor_read_buffer,
@@ -615,10 +433,8 @@ const cl_icd_dispatch mcor_native_table = { .clGetPlatformInfo = mcor_platform_i
   .clEnqueueMapBuffer = mcor_map_buffer,
   .clEnqueueUnmapMemObject = mcor_unmap_buffer,
   .clCreateProgramWithSource = mcor_make_program,
-  .clCreateProgramWithBinary = mcor_load_binary,
   .clBuildProgram = mcor_build_program,
   .clReleaseProgram = mcor_release_program,
-  .clGetProgramBuildInfo = mcor_build_info,
   .clGetProgramInfo = mcor_program_info,
   .clCreateKernel = mcor_make_kernel,
   .clReleaseKernel = mcor_release_kernel,

@@ -7,10 +7,10 @@
  * the kernels were compiled with the library (cmake/CompileAhead.cmake). It has the functions of OpenCL
  * that mcor_opencl.h names. All commands are done when their call returns. */
 
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl_icd.h>
+#include "mcor_parallel.h"
 
-#include <stdbool.h>
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
 
 /* Instruction sets: x86-64-v3 (AVX2) and -v4 (AVX-512); on other processors there is one. */
 typedef enum mcor_instructions
@@ -36,11 +36,17 @@ typedef struct mcor_native_program
 /* Made by the build. */
 extern const mcor_native_program mcor_native_programs[];
 
-/* The best that this processor and its system have. */
-mcor_instructions mcor_own_instructions(void);
+/* mcor_native_program.c. The best that this processor and its system have, of those for which programs are
+ * compiled: a build may leave some out. -1: none. */
+int mcor_best_instructions(void);
+/* The program of these options for this processor; NULL: none. */
+const mcor_native_program* mcor_find_program(const char* options);
+
 /* NULL where this processor has none of the instruction sets. */
 cl_platform_id mcor_native_platform(void);
 /* Whether there is a program for these options, as given to clBuildProgram. */
 bool mcor_native_has(const char* options);
+/* The threads of a context, of which there may be fewer than the device has units. */
+mcor_pool* mcor_native_pool(cl_context context);
 
 #endif

@@ -10,6 +10,8 @@
 #include "mcor_native.h"
 #include "mcor_system.h"
 
+#include <CL/cl_icd.h>
+
 /* clGetPlatformIDs; headers differ in the name of its type. */
 typedef cl_int(CL_API_CALL* mcor_list_platforms)(cl_uint, cl_platform_id*, cl_uint*);
 

@@ -1,72 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Threads live for one loop: there is no pool to be shared, ended, or lost in a fork. */
+/* The built-in device's threads wait from one loop to the next, and serve the loops of the host, too. Where
+ * there is another device, or none, threads live for one loop. */
 
-#include "mcor_parallel.h"
-#include "mcor_internal.h"
+#include "mcor_cl_call.h"
 #include "mcor_system.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
+#include <fenv.h>
 #include <stdlib.h>
+#include <unistd.h>
 
-#define MCOR_LOOP_THREADS 16 /* at most, the calling one included */
+#define MCOR_LOOP_THREADS 16 /* of the host's alone, at most */
 
 int mcor_limit_threads(int usable)
 {
   const char* text = getenv("MCOR_THREADS");
   const int limit = text ? atoi(text) : 0;
   return limit > 0 && limit < usable ? limit : usable;
-}
-
-static int mcor_slice_count(int64_t count, int64_t grain)
-{
-  const int64_t slices = count / grain;
-  return slices > MCOR_SLICES ? MCOR_SLICES : slices > 0 ? (int)slices : count > 0;
-}
-
-typedef struct mcor_loop
-{
-  int64_t count;
-  int slices;
-  mcor_slice_body body;
-  void* data;
-  atomic_int next; /* slice */
-} mcor_loop;
-
-/* False: none is left. */
-static bool mcor_run_slice(mcor_loop* loop)
-{
-  const int slices = loop->slices, s = atomic_fetch_add(&loop->next, 1);
-  if (s < slices)
-  {
-    loop->body(loop->data, s, loop->count * s / slices, loop->count * (s + 1) / slices);
-  }
-  return s < slices;
-}
-
-static void* mcor_run_slices(void* data)
-{
-  while (mcor_run_slice(data))
-  {
-  }
-  return NULL;
-}
-
-/* Progress is told by the calling thread alone. */
-static mcor_status mcor_run_own_slices(mcor_context* context, mcor_loop* loop)
-{
-  mcor_status status = MCOR_OK;
-  while (status == MCOR_OK && mcor_run_slice(loop))
-  {
-    status = context ? mcor_report_launch(context) : MCOR_OK;
-  }
-  if (status != MCOR_OK)
-  {
-    atomic_store(&loop->next, loop->slices);
-  }
-  return status;
 }
 
 int mcor_processors(int count)
@@ -77,33 +28,181 @@ int mcor_processors(int count)
   return share < 1 ? 1 : share;
 }
 
-static int mcor_thread_limit(void)
+/* ---- Threads ---- */
+
+/* Progress is told by the calling thread alone: the context of the others is NULL. */
+static mcor_status mcor_pool_work(mcor_pool* pool, mcor_context* context)
 {
-  const int threads = mcor_limit_threads(mcor_processors(1));
-  return threads < MCOR_LOOP_THREADS ? threads : MCOR_LOOP_THREADS;
+  const size_t last = pool->last, step = pool->step;
+  mcor_status status = MCOR_OK;
+  for (size_t i = atomic_fetch_add(&pool->next, step); i < last && status == MCOR_OK;
+       i = atomic_fetch_add(&pool->next, step))
+  {
+    pool->body(pool->data, i, last - i < step ? last : i + step);
+    status = context ? mcor_report_launch(context) : MCOR_OK;
+    if (status != MCOR_OK)
+    {
+      atomic_store(&pool->next, last);
+    }
+  }
+  return status;
+}
+
+static void* mcor_pool_thread(void* data)
+{
+  mcor_pool* pool = data;
+  unsigned seen = 0;
+  fesetenv(FE_DFL_ENV);
+  pthread_mutex_lock(&pool->lock);
+  while (!pool->ends)
+  {
+    if (!pool->open || pool->round == seen)
+    {
+      pthread_cond_wait(&pool->wake, &pool->lock);
+      continue;
+    }
+    seen = pool->round;
+    ++pool->active;
+    pthread_mutex_unlock(&pool->lock);
+    mcor_pool_work(pool, NULL);
+    pthread_mutex_lock(&pool->lock);
+    if (--pool->active == 0)
+    {
+      pthread_cond_signal(&pool->done);
+    }
+  }
+  pthread_mutex_unlock(&pool->lock);
+  return NULL;
+}
+
+/* Without memory for them there are no threads. */
+static void mcor_begin_pool(mcor_pool* pool)
+{
+  free(pool->all);
+  pool->all = malloc((size_t)pool->threads * sizeof *pool->all);
+  pool->threads = pool->all ? pool->threads : 1;
+  pool->process = (long)getpid();
+  pool->count = pool->active = 0;
+  pool->round = 0;
+  pthread_mutex_init(&pool->lock, NULL);
+  pthread_cond_init(&pool->wake, NULL);
+  pthread_cond_init(&pool->done, NULL);
+}
+
+void mcor_end_pool(mcor_pool* pool)
+{
+  if (pool->process == (long)getpid())
+  {
+    pthread_mutex_lock(&pool->lock);
+    pool->ends = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (int t = 0; t < pool->count; ++t)
+    {
+      pthread_join(pool->all[t], NULL);
+    }
+    pthread_cond_destroy(&pool->done);
+    pthread_cond_destroy(&pool->wake);
+    pthread_mutex_destroy(&pool->lock);
+  }
+  free(pool->all);
+}
+
+/* Further threads are made while those there have not done everything, and as far as the system gives some. */
+static void mcor_open_loop(mcor_pool* pool)
+{
+  pthread_mutex_lock(&pool->lock);
+  pool->open = true;
+  ++pool->round;
+  pthread_cond_broadcast(&pool->wake);
+  pthread_mutex_unlock(&pool->lock);
+  while (pool->count + 1 < pool->threads && atomic_load(&pool->next) + pool->step < pool->last)
+  {
+    if (pthread_create(&pool->all[pool->count], NULL, mcor_pool_thread, pool) != 0)
+    {
+      pool->threads = pool->count + 1;
+      return;
+    }
+    ++pool->count;
+  }
+}
+
+/* The loop is done when the caller's thread finds no more to do and those that joined it are back: one
+ * that wakes later finds it closed. */
+static void mcor_close_loop(mcor_pool* pool)
+{
+  pthread_mutex_lock(&pool->lock);
+  pool->open = false;
+  while (pool->active > 0)
+  {
+    pthread_cond_wait(&pool->done, &pool->lock);
+  }
+  pthread_mutex_unlock(&pool->lock);
+}
+
+mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, size_t last,
+  size_t step, mcor_pool_body* body, void* data)
+{
+  const bool shared = pool->threads > 1 && last - first > step;
+  fenv_t environment;
+  fegetenv(&environment);
+  fesetenv(FE_DFL_ENV);
+  if (shared && pool->process != (long)getpid())
+  {
+    mcor_begin_pool(pool);
+  }
+  pool->body = body;
+  pool->data = data;
+  atomic_store(&pool->next, first);
+  pool->last = last;
+  pool->step = step;
+  if (shared)
+  {
+    mcor_open_loop(pool);
+  }
+  const mcor_status status = mcor_pool_work(pool, context);
+  if (shared)
+  {
+    mcor_close_loop(pool);
+  }
+  fesetenv(&environment);
+  return status;
+}
+
+/* ---- Loops of the host ---- */
+
+typedef struct mcor_loop
+{
+  int64_t count;
+  int slices;
+  mcor_slice_body body;
+  void* data;
+} mcor_loop;
+
+static void mcor_run_slices(void* data, size_t first, size_t last)
+{
+  const mcor_loop* loop = data;
+  for (int s = (int)first; s < (int)last; ++s)
+  {
+    loop->body(loop->data, s, loop->count * s / loop->slices, loop->count * (s + 1) / loop->slices);
+  }
 }
 
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
   mcor_slice_body body, void* data, int* slices)
 {
-  mcor_loop loop = {
-    .count = count, .slices = mcor_slice_count(count, grain), .body = body, .data = data
-  };
-  atomic_init(&loop.next, 0);
-  const int limit = loop.slices > 1 ? mcor_thread_limit() : 1;
-  pthread_t threads[MCOR_LOOP_THREADS];
-  int made = 0;
-  /* Without a further thread, or when the first have done everything, these go on alone. */
-  while (made + 1 < limit && atomic_load(&loop.next) + 1 < loop.slices &&
-    pthread_create(&threads[made], NULL, mcor_run_slices, &loop) == 0)
-  {
-    ++made;
-  }
-  const mcor_status status = mcor_run_own_slices(context, &loop);
-  for (int t = 0; t < made; ++t)
-  {
-    pthread_join(threads[t], NULL);
-  }
+  const int64_t most = count / grain;
+  mcor_loop loop = { count,
+    most > MCOR_SLICES ? MCOR_SLICES
+      : most > 0       ? (int)most
+                       : count > 0,
+    body, data };
+  const bool native = context && context->cl.context && mcor_is_native(&context->cl);
+  const int usable = native || loop.slices < 2 ? 1 : mcor_limit_threads(mcor_processors(1));
+  mcor_pool own = { .threads = usable < MCOR_LOOP_THREADS ? usable : MCOR_LOOP_THREADS };
+  const mcor_status status = mcor_pool_run(native ? mcor_native_pool(context->cl.context) : &own,
+    context, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
+  mcor_end_pool(&own);
   if (slices)
   {
     *slices = loop.slices;

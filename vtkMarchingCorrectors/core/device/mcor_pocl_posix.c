@@ -37,22 +37,21 @@ void mcor_own_pocl_folder(void)
   {
     return;
   }
-  if (getpwuid_r(geteuid(), &user, names, sizeof names, &found) == 0 && found &&
+  bool made = getpwuid_r(geteuid(), &user, names, sizeof names, &found) == 0 && found &&
     mcor_is_private(found->pw_dir) &&
     snprintf(path, sizeof path, "%s/.cache/pocl/kcache", found->pw_dir) < (int)sizeof path &&
-    mcor_make_folders(path) && access(path, W_OK | X_OK) == 0)
+    mcor_make_folders(path) && access(path, W_OK | X_OK) == 0;
+  if (!made)
   {
-    setenv("POCL_CACHE_DIR", path, 1);
-    return;
+    snprintf(path, sizeof path, "/tmp/marching-correctors-%ld", (long)geteuid());
+    made = mcor_system_make_folder(path) && mcor_is_private(path);
   }
-  snprintf(path, sizeof path, "/tmp/marching-correctors-%ld", (long)geteuid());
-  if (mcor_system_make_folder(path) && mcor_is_private(path))
+  if (!made)
   {
-    setenv("POCL_CACHE_DIR", path, 1);
-    return;
+    snprintf(path, sizeof path, "/tmp/marching-correctors-XXXXXX");
+    made = mkdtemp(path) != NULL;
   }
-  snprintf(path, sizeof path, "/tmp/marching-correctors-XXXXXX");
-  if (mkdtemp(path))
+  if (made)
   {
     setenv("POCL_CACHE_DIR", path, 1);
   }

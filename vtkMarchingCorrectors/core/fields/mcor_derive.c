@@ -300,20 +300,16 @@ static mcor_status mcor_make_derivatives(
   return MCOR_OK;
 }
 
-typedef struct mcor_derive_call
-{
-  bool standard, uses_solids;
-  mcor_derivatives* derivatives;
-} mcor_derive_call;
-
 static mcor_status mcor_run_derive(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  const mcor_derive_call* call = data;
-  mcor_free_derivatives(call->derivatives); /* of an attempt before */
-  call->derivatives->statistics.dimension = options->dimension;
+  mcor_derive_run run = *(const mcor_derive_run*)data;
+  mcor_derivatives* derivatives = run.derivatives;
+  run.input = input;
+  mcor_free_derivatives(derivatives); /* of an attempt before */
+  derivatives->statistics.dimension = options->dimension;
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_TRY(mcor_make_derivatives(context, input, call->derivatives));
+  MCOR_TRY(mcor_make_derivatives(context, input, derivatives));
   if (context->attributes.varying_count == 0 || input->count == 0)
   {
     return MCOR_OK;
@@ -322,17 +318,14 @@ static mcor_status mcor_run_derive(
   {
     mcor_bound_by_box(context, options);
   }
-  MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
+  MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
-  mcor_derive_run run = {
-    .context = context, .input = input, .standard = call->standard, .derivatives = call->derivatives
-  };
   const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
   mcor_release_derive(&run);
   MCOR_TRY(status);
   for (int a = 0; a < input->attribute_count && mcor_is_plane(context); ++a)
   {
-    mcor_unflatten_doubles(&context->plane, call->derivatives->gradients[a],
+    mcor_unflatten_doubles(&context->plane, derivatives->gradients[a],
       input->count * mcor_components(&input->attributes[a]), 0);
   }
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
@@ -351,10 +344,12 @@ mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mc
   MCOR_RETURN_IF((unsigned)form > MCOR_GRADIENT_STANDARD, context, MCOR_INVALID_ARGUMENT,
     "form is %d; there is no such form of the gradient.", (int)form);
   mcor_options own = *options;
-  mcor_derive_call call = { form == MCOR_GRADIENT_STANDARD,
-    mcor_evaluate_without_scalar(input, &own), derivatives };
-  const mcor_status status =
-    mcor_run_call(context, input, &own, &derivatives->statistics, mcor_run_derive, &call);
+  const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
+  mcor_derive_run run = {
+    .context = context, .standard = form == MCOR_GRADIENT_STANDARD, .derivatives = derivatives
+  };
+  const mcor_status status = mcor_run_call(
+    context, input, &own, uses_solids, &derivatives->statistics, mcor_run_derive, &run);
   if (status != MCOR_OK)
   {
     mcor_free_derivatives(derivatives);

@@ -6,9 +6,9 @@
 #include "mcor_gauge.h"
 #include "mcor_input.h"
 #include "mcor_plane.h"
-#include "mcor_probe.h"
 #include "mcor_ranks.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,37 +26,25 @@ const char* mcor_gauge_state_name(mcor_gauge_state state)
   return (unsigned)state < MCOR_GAUGE_STATE_COUNT ? names[state] : NULL;
 }
 
-static mcor_status mcor_gauge_batch(
-  mcor_probe_run* run, const mcor_gauge_job* job, int count, const int64_t* line, const double* at)
-{
-  double* points = (double*)run->points->data;
-  for (int i = 0; i < count; ++i)
-  {
-    const mcor_gauge_line* l = &job->lines[line[i]];
-    for (int a = 0; a < 3; ++a)
-    {
-      points[3 * i + a] = l->from[a] + at[i] * (l->to[a] - l->from[a]);
-    }
-    run->samples->weight_sum[i] = 0;
-  }
-  return mcor_probe_batch(run, 0, count);
-}
-
-/* On the device. */
-static mcor_status mcor_gauge_weights(
+mcor_status mcor_gauge_weights(
   mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight)
 {
-  mcor_probe_run* run = job->data;
+  mcor_probe_run* run = job->run;
+  double* points = (double*)run->points->data;
+  memset(weight, 0, (size_t)count * sizeof *weight);
   for (int64_t first = 0; first < count; first += MCOR_GAUGE_BATCH)
   {
     const int64_t rest = count - first;
     const int n = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
-    MCOR_TRY(mcor_report_launch(job->context));
-    MCOR_TRY(mcor_gauge_batch(run, job, n, line + first, place + first));
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < 3 * n; ++i)
     {
-      weight[first + i] = run->samples->weight_sum[i];
+      const mcor_gauge_line* l = &job->lines[line[first + i / 3]];
+      const int a = i % 3;
+      points[i] = l->from[a] + place[first + i / 3] * (l->to[a] - l->from[a]);
     }
+    run->samples->weight_sum = weight + first;
+    MCOR_TRY(mcor_report_launch(job->context));
+    MCOR_TRY(mcor_probe_batch(run, 0, n));
   }
   return MCOR_OK;
 }
@@ -81,21 +69,16 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 
 /* ---- the call ---- */
 
-typedef struct mcor_gauge_call
-{
-  const mcor_gauge_line* lines;
-  int64_t count;
-  double level;
-  bool uses_solids;
-  const double* box; /* NULL: none */
-  mcor_gauges* gauges;
-} mcor_gauge_call;
-
 /* Where the field is evaluated: around the lines, or around the box; that is not one of cells. */
 static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const mcor_gauge_call* call)
+  const mcor_options* options, const mcor_gauge_job* job)
 {
-  if (call->box)
+  double* sides = context->box.points;
+  if (!job->box && input->particles_version != 0)
+  {
+    return MCOR_OK; /* another call may take the search grid */
+  }
+  if (job->box)
   {
     const double h = options->globals->measured.h_min;
     const double margin = MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, h);
@@ -103,28 +86,23 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
       MCOR_INVALID_ARGUMENT,
       "With cubes of %g a box does not have the particles that gauges need. Leave the cube size.",
       options->globals->measured.cube);
-    mcor_options wider = *options;
     for (int side = 0; side < 6; ++side)
     {
-      wider.box[side] = call->box[side] + (side % 2 ? margin : -margin);
+      sides[side] = job->box[side] + (side % 2 ? margin : -margin);
     }
-    mcor_bound_by_box(context, &wider);
-    return MCOR_OK;
   }
-  if (input->particles_version != 0)
+  for (int a = 0; a < 3 && !job->box; ++a)
   {
-    return MCOR_OK; /* another call may take the search grid */
+    sides[2 * a] = DBL_MAX;
+    sides[2 * a + 1] = -DBL_MAX;
+    for (int64_t i = 0; i < job->line_count; ++i)
+    {
+      const double from = job->lines[i].from[a], to = job->lines[i].to[a];
+      sides[2 * a] = fmin(sides[2 * a], fmin(from, to));
+      sides[2 * a + 1] = fmax(sides[2 * a + 1], fmax(from, to));
+    }
   }
-  double* ends = malloc(6 * (size_t)call->count * sizeof *ends);
-  MCOR_TRY(mcor_allocated(context, ends));
-  for (int64_t i = 0; i < call->count; ++i)
-  {
-    memcpy(ends + 6 * i, call->lines[i].from, sizeof call->lines[i].from);
-    memcpy(ends + 6 * i + 3, call->lines[i].to, sizeof call->lines[i].to);
-  }
-  const mcor_array points = { .data = ends, .type = MCOR_FLOAT64, .components = 3 };
-  mcor_bound_probe(context, &points, 2 * call->count);
-  free(ends);
+  context->box.of_points = true;
   return MCOR_OK;
 }
 
@@ -136,64 +114,56 @@ static mcor_status mcor_gauge_on_grid(
   {
     MCOR_TRY(mcor_plan_line(job, i));
   }
-  double* room = malloc(4 * (size_t)MCOR_GAUGE_BATCH * sizeof *room); /* points, weights */
+  double* places = malloc(3 * (size_t)MCOR_GAUGE_BATCH * sizeof *places);
   uint8_t* valid = malloc(MCOR_GAUGE_BATCH);
-  mcor_samples samples = { .weight_sum = room ? room + 3 * (size_t)MCOR_GAUGE_BATCH : NULL,
-    .valid = valid };
-  const mcor_array points = { .data = room, .type = MCOR_FLOAT64, .components = 3 };
+  mcor_samples samples = { .valid = valid };
+  const mcor_array points = { .data = places, .type = MCOR_FLOAT64, .components = 3 };
   mcor_probe_run run = {
     .context = context, .input = input, .points = &points, .samples = &samples
   };
-  job->data = &run;
-  mcor_status status = mcor_allocated(context, room && valid);
+  job->run = &run;
+  mcor_status status = mcor_allocated(context, places && valid);
   status = status == MCOR_OK ? mcor_load_attributes(context, input, 0) : status;
   status = status == MCOR_OK ? mcor_gauge_all(job) : status;
   mcor_release_probe(&run);
-  free(room);
+  free(places);
   free(valid);
   return status;
 }
 
 /* The records of the particles at hand. */
-static mcor_status mcor_gauge_particles(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const mcor_gauge_call* call, mcor_gauge_job* job)
+static mcor_status mcor_gauge_particles(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
 {
   context->attributes.kept = 0;
   MCOR_TRY(mcor_list_components(context, input, false, NULL));
-  if (input->count == 0 || call->count == 0)
+  if (input->count == 0 || job->line_count == 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_bound_gauges(context, input, options, call));
-  MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
+  MCOR_TRY(mcor_bound_gauges(context, input, options, job));
+  MCOR_TRY(mcor_prepare(context, input, options));
   return context->grid.count > 0 ? mcor_gauge_on_grid(context, input, job) : MCOR_OK;
 }
 
 static mcor_status mcor_gauge_input(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
 {
-  const mcor_gauge_call* call = data;
-  mcor_free_gauges(call->gauges); /* of an attempt before */
+  mcor_free_gauges(job->gauges); /* of an attempt before */
   MCOR_TRY(mcor_check_input(context, input, options));
-  for (int64_t i = 0; i < call->count; ++i)
+  for (int64_t i = 0; i < job->line_count; ++i)
   {
-    MCOR_TRY(mcor_check_line(context, &call->lines[i], i));
+    MCOR_TRY(mcor_check_line(context, &job->lines[i], i));
   }
-  mcor_gauge_job job = { .context = context,
-    .evaluate = mcor_gauge_weights,
-    .level = call->level,
-    .lines = call->lines,
-    .line_count = call->count,
-    .box = call->box };
-  mcor_status status = mcor_gauge_particles(context, input, options, call, &job);
+  mcor_status status = mcor_gauge_particles(context, input, options, job);
   const void* all = NULL;
   int64_t count = 0;
   status = status == MCOR_OK
-    ? mcor_gather(context, job.records, job.record_count, sizeof *job.records, &all, &count)
+    ? mcor_gather(context, job->records, job->record_count, sizeof *job->records, &all, &count)
     : status;
-  status = status == MCOR_OK ? mcor_read_lines(&job, all, count, call->gauges) : status;
-  mcor_free_gauge_parts(&job);
-  if (status != MCOR_OK || input->count == 0 || call->count == 0)
+  status = status == MCOR_OK ? mcor_read_lines(job, all, count) : status;
+  mcor_free_gauge_parts(job);
+  if (status != MCOR_OK || input->count == 0 || job->line_count == 0)
   {
     return status;
   }
@@ -205,18 +175,18 @@ static mcor_status mcor_gauge_input(
 static mcor_status mcor_run_gauge(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  mcor_gauge_call call = *(const mcor_gauge_call*)data;
+  mcor_gauge_job job = *(const mcor_gauge_job*)data;
   const mcor_plane* plane = &context->plane;
-  if (!mcor_is_plane(context) || call.count == 0)
+  if (!mcor_is_plane(context) || job.line_count == 0)
   {
-    return mcor_gauge_input(context, input, options, &call);
+    return mcor_gauge_input(context, input, options, &job);
   }
-  mcor_gauge_line* lines = malloc((size_t)call.count * sizeof *lines);
+  mcor_gauge_line* lines = malloc((size_t)job.line_count * sizeof *lines);
   MCOR_TRY(mcor_allocated(context, lines));
   mcor_status status = MCOR_OK;
-  for (int64_t i = 0; i < call.count && status == MCOR_OK; ++i)
+  for (int64_t i = 0; i < job.line_count && status == MCOR_OK; ++i)
   {
-    const mcor_gauge_line* line = &call.lines[i];
+    const mcor_gauge_line* line = &job.lines[i];
     const int w = mcor_plane_axis(plane, 2);
     const bool off = isfinite(line->from[w]) && isfinite(line->to[w]) &&
       (line->from[w] != plane->at || line->to[w] != plane->at);
@@ -235,16 +205,16 @@ static mcor_status mcor_run_gauge(
     }
   }
   double box[6];
-  if (call.box)
+  if (job.box)
   {
-    mcor_flatten_sides(plane, call.box, box);
-    call.box = box;
+    mcor_flatten_sides(plane, job.box, box);
+    job.box = box;
   }
-  call.lines = lines;
-  status = status == MCOR_OK ? mcor_gauge_input(context, input, options, &call) : status;
-  for (int64_t i = 0; i < call.gauges->count && status == MCOR_OK; ++i)
+  job.lines = lines;
+  status = status == MCOR_OK ? mcor_gauge_input(context, input, options, &job) : status;
+  for (int64_t i = 0; i < job.gauges->count && status == MCOR_OK; ++i)
   {
-    mcor_unflatten_doubles(plane, call.gauges->readings[i].place, 1, plane->at);
+    mcor_unflatten_doubles(plane, job.gauges->readings[i].place, 1, plane->at);
   }
   free(lines);
   return status;
@@ -277,11 +247,15 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   without.attribute_count = 0;
   without.particles_version =
     mcor_has_box(&own) ? 0 : input->particles_version; /* of no other box */
-  mcor_gauge_call call = { lines, count, level, uses_solids,
-    mcor_has_box(&own) ? options->box : NULL, gauges };
+  mcor_gauge_job job = { .context = context,
+    .lines = lines,
+    .line_count = count,
+    .level = level,
+    .box = mcor_has_box(&own) ? options->box : NULL,
+    .gauges = gauges };
   memset(own.box, 0, sizeof own.box);
   const mcor_status status =
-    mcor_run_call(context, &without, &own, &gauges->statistics, mcor_run_gauge, &call);
+    mcor_run_call(context, &without, &own, uses_solids, &gauges->statistics, mcor_run_gauge, &job);
   if (status != MCOR_OK)
   {
     mcor_free_gauges(gauges);

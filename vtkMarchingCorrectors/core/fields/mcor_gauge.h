@@ -5,12 +5,7 @@
 
 /* Lines on which the level's crossings are sought. Places on a line are numbers from 0 to 1. */
 
-#include "mcor_internal.h"
-
-/* Weight sums at places of lines; `places` and `line` have `count` elements. */
-typedef struct mcor_gauge_job mcor_gauge_job;
-typedef mcor_status (*mcor_gauge_evaluate)(
-  mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight);
+#include "mcor_probe.h"
 
 /* A part of a line between two places where the weight sum is known. */
 typedef struct mcor_gauge_part
@@ -43,33 +38,37 @@ typedef struct mcor_gauge_record
   double place;
 } mcor_gauge_record;
 
-struct mcor_gauge_job
+/* A call under way: what is asked for, then what is found. */
+typedef struct mcor_gauge_job
 {
   mcor_context* context;
-  mcor_gauge_evaluate evaluate;
-  void* data; /* of evaluate */
-  double level;
-  const mcor_gauge_line* lines;
+  const mcor_gauge_line* lines; /* [line_count] */
   int64_t line_count;
-  const double* box;           /* [6], of the samples that this call owns; NULL: all */
+  double level;
+  const double* box; /* [6], of the samples that this call owns; NULL: all */
+  mcor_gauges* gauges;
+  mcor_probe_run* run;         /* which evaluates */
   mcor_gauge_samples* samples; /* [sample_room], sample_count of them in use */
   int64_t sample_count, sample_room;
   mcor_gauge_record* records; /* [record_room] */
   int64_t record_count, record_room;
   mcor_gauge_parts changed;  /* on unlike sides of the level at their ends */
   mcor_gauge_parts suspects; /* with an extremum inside that may be beyond the level */
-};
+} mcor_gauge_job;
+
+/* mcor_gauge.c. Weight sums at `count` places of lines, on the device. */
+mcor_status mcor_gauge_weights(
+  mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight);
 
 /* mcor_gauge_line.c */
-double mcor_gauge_length(const mcor_gauge_line* line);
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
 /* How far apart samples are at most, L. */
 double mcor_gauge_step(double h_scale, double smoothing_length_min);
 /* Appends the samples of a line, those in the box, if there is one; the lattice is known. */
 mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
-/* What all lines read, from the records of all. */
+/* What all lines read, from the records of all: into the gauges. */
 mcor_status mcor_read_lines(
-  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count, mcor_gauges* gauges);
+  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count);
 
 /* mcor_gauge_solve.c. Evaluates samples [first, last) of the job's, and appends what is found to its records. */
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);

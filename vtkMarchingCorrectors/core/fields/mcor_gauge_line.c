@@ -22,7 +22,7 @@
 /* ---- lines ---- */
 
 /* hypot has not the same bits everywhere. */
-double mcor_gauge_length(const mcor_gauge_line* line)
+static double mcor_gauge_length(const mcor_gauge_line* line)
 {
   double way[3], most = 0, sum = 0;
   int exponent;
@@ -237,8 +237,9 @@ static int mcor_compare_records(const void* a, const void* b)
 }
 
 mcor_status mcor_read_lines(
-  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count, mcor_gauges* gauges)
+  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count)
 {
+  mcor_gauges* gauges = job->gauges;
   mcor_gauge_record* sorted = malloc((size_t)(count + 1) * sizeof *sorted);
   gauges->readings = calloc((size_t)job->line_count + 1, sizeof *gauges->readings);
   gauges->crossings = calloc((size_t)count + 1, sizeof *gauges->crossings);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Crossings of the level along lines, from weight sums that somebody else evaluates. All lines go through
+/* Crossings of the level along lines, from weight sums. All lines go through
  * the same steps together, so that the device has many points at a time.
  *
  * Samples are a quarter of a smoothing length apart, over which the weight sum, as smooth as the kernel,
@@ -32,28 +32,20 @@ void mcor_free_gauge_parts(mcor_gauge_job* job)
   job->changed = job->suspects = (mcor_gauge_parts){ 0 };
 }
 
-static mcor_status mcor_append_part(
-  const mcor_gauge_job* job, mcor_gauge_parts* parts, const mcor_gauge_part* part)
-{
-  MCOR_TRY(mcor_make_room(
-    job->context, (void**)&parts->parts, parts->count, &parts->capacity, sizeof *parts->parts));
-  parts->parts[parts->count++] = *part;
-  return MCOR_OK;
-}
-
 /* Weight sums at successive places of a line, evenly apart. */
 typedef struct mcor_gauge_row
 {
   int64_t line, count;
   int64_t own_first, own_last; /* see mcor_gauge_samples; of this row */
   int64_t before;              /* places of the line before this row */
-  double first, step;          /* of the line */
-  const double* weight;        /* [count] */
+  double first, step,
+    last;               /* places: of the line's first, from one to the next, of this row's last */
+  const double* weight; /* [count] */
 } mcor_gauge_row;
 
 static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
 {
-  return row->first + (double)(row->before + i) * row->step;
+  return i + 1 == row->count ? row->last : row->first + (double)(row->before + i) * row->step;
 }
 
 /* How far sample i is from the level. */
@@ -67,15 +59,17 @@ static bool mcor_row_above(const mcor_gauge_job* job, const mcor_gauge_row* row,
   return row->weight[i] >= job->level;
 }
 
-static mcor_status mcor_append_row_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
+static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
   const mcor_gauge_row* row, int64_t low, int64_t high)
 {
-  const mcor_gauge_part part = { .line = row->line,
+  MCOR_TRY(mcor_make_room(
+    job->context, (void**)&parts->parts, parts->count, &parts->capacity, sizeof *parts->parts));
+  parts->parts[parts->count++] = (mcor_gauge_part){ .line = row->line,
     .low = mcor_row_place(row, low),
     .high = mcor_row_place(row, high),
     .low_weight = row->weight[low],
     .high_weight = row->weight[high] };
-  return mcor_append_part(job, parts, &part);
+  return MCOR_OK;
 }
 
 /* Whether the weight sum may pass the level and come back next to sample i: it is the nearest to the
@@ -112,7 +106,7 @@ static mcor_status mcor_scan_row(
     if (mcor_row_above(job, row, i) != mcor_row_above(job, row, i + 1))
     {
       *found = true;
-      MCOR_TRY(mcor_append_row_part(job, &job->changed, row, i, i + 1));
+      MCOR_TRY(mcor_append_part(job, &job->changed, row, i, i + 1));
     }
   }
   for (int64_t i = row->own_first; i <= row->own_last && suspects; ++i)
@@ -120,7 +114,7 @@ static mcor_status mcor_scan_row(
     if (mcor_row_suspect(job, row, i))
     {
       const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
-      MCOR_TRY(mcor_append_row_part(job, suspects, row, low, high));
+      MCOR_TRY(mcor_append_part(job, suspects, row, low, high));
     }
   }
   return MCOR_OK;
@@ -163,97 +157,39 @@ static mcor_status mcor_evaluate_inner(
       inner->place[at] = part->low + (part->high - part->low) * i / count;
     }
   }
-  return job->evaluate(job, n, inner->line, inner->place, inner->weight);
+  return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
 }
 
-/* Looks at extrema more finely, until each is beyond the level or cannot be. */
-static mcor_status mcor_refine_suspects(mcor_gauge_job* job)
+/* Looks at parts, the job's suspects or those with a crossing, in sections: these take their place. Of suspects
+ * that have a crossing that alone is kept. one: of each part the first with a crossing alone. */
+static mcor_status mcor_look_closer(
+  mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {
-  mcor_status status = MCOR_OK;
-  for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
+  const bool suspects = parts == &job->suspects;
+  const mcor_gauge_parts whole = *parts;
+  mcor_gauge_inner inner = { 0 };
+  *parts = (mcor_gauge_parts){ 0 };
+  mcor_status status = mcor_evaluate_inner(job, &whole, sections, &inner);
+  for (int64_t p = 0; p < whole.count && status == MCOR_OK; ++p)
   {
-    mcor_gauge_parts finer = { 0 };
-    mcor_gauge_inner inner = { 0 };
-    status = mcor_evaluate_inner(job, &job->suspects, MCOR_GAUGE_FINER, &inner);
-    for (int64_t p = 0; p < job->suspects.count && status == MCOR_OK; ++p)
+    const mcor_gauge_part* part = &whole.parts[p];
+    double weight[MCOR_GAUGE_FINER + 1];
+    weight[0] = part->low_weight;
+    memcpy(weight + 1, inner.weight + p * (sections - 1), (size_t)(sections - 1) * sizeof *weight);
+    weight[sections] = part->high_weight;
+    const mcor_gauge_row row = { part->line, sections + 1, 0, sections, 0, part->low,
+      (part->high - part->low) / sections, part->high, weight };
+    const int64_t before = parts->count;
+    bool found = false;
+    status = mcor_scan_row(job, &row, suspects ? parts : NULL, &found);
+    if (found && (suspects || one))
     {
-      const mcor_gauge_part* part = &job->suspects.parts[p];
-      double weight[MCOR_GAUGE_FINER + 1];
-      weight[0] = part->low_weight;
-      memcpy(weight + 1, inner.weight + p * (MCOR_GAUGE_FINER - 1),
-        (MCOR_GAUGE_FINER - 1) * sizeof *weight);
-      weight[MCOR_GAUGE_FINER] = part->high_weight;
-      const mcor_gauge_row row = { part->line, MCOR_GAUGE_FINER + 1, 0, MCOR_GAUGE_FINER, 0,
-        part->low, (part->high - part->low) / MCOR_GAUGE_FINER, weight };
-      const int64_t before = finer.count;
-      bool found = false;
-      status = mcor_scan_row(job, &row, &finer, &found);
-      finer.count = found ? before : finer.count;
-    }
-    mcor_free_inner(&inner);
-    free(job->suspects.parts);
-    job->suspects = finer;
-    MCOR_TRY(status);
-  }
-  job->suspects.count = 0;
-  return MCOR_OK;
-}
-
-/* The first of a part's sections with a crossing takes its place; *more has the others. */
-static mcor_status mcor_narrow_part(
-  mcor_gauge_job* job, mcor_gauge_part* part, const double* inner, mcor_gauge_parts* more)
-{
-  double weight[MCOR_GAUGE_SECTIONS + 1];
-  weight[0] = part->low_weight;
-  memcpy(weight + 1, inner, (MCOR_GAUGE_SECTIONS - 1) * sizeof *weight);
-  weight[MCOR_GAUGE_SECTIONS] = part->high_weight;
-  const mcor_gauge_part whole = *part;
-  const double step = (whole.high - whole.low) / MCOR_GAUGE_SECTIONS;
-  bool found = false;
-  for (int i = 0; i < MCOR_GAUGE_SECTIONS && !(found && !more); ++i)
-  {
-    if ((weight[i] >= job->level) == (weight[i + 1] >= job->level))
-    {
-      continue;
-    }
-    const mcor_gauge_part section = { whole.line, whole.low + i * step,
-      i + 1 == MCOR_GAUGE_SECTIONS ? whole.high : whole.low + (i + 1) * step, weight[i],
-      weight[i + 1] };
-    if (found)
-    {
-      MCOR_TRY(mcor_append_part(job, more, &section));
-    }
-    else
-    {
-      *part = section;
-      found = true;
+      parts->count = suspects ? before : before + 1;
     }
   }
-  return MCOR_OK;
-}
-
-/* Parts may have several crossings in the first round; later, that would be rounding. */
-static mcor_status mcor_narrow_parts(mcor_gauge_job* job)
-{
-  for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
-  {
-    mcor_gauge_parts more = { 0 };
-    mcor_gauge_inner inner = { 0 };
-    mcor_status status = mcor_evaluate_inner(job, &job->changed, MCOR_GAUGE_SECTIONS, &inner);
-    for (int64_t p = 0; p < job->changed.count && status == MCOR_OK; ++p)
-    {
-      status = mcor_narrow_part(job, &job->changed.parts[p],
-        inner.weight + p * (MCOR_GAUGE_SECTIONS - 1), round == 0 ? &more : NULL);
-    }
-    for (int64_t p = 0; p < more.count && status == MCOR_OK; ++p)
-    {
-      status = mcor_append_part(job, &job->changed, &more.parts[p]);
-    }
-    mcor_free_inner(&inner);
-    free(more.parts);
-    MCOR_TRY(status);
-  }
-  return MCOR_OK;
+  mcor_free_inner(&inner);
+  free(whole.parts);
+  return status;
 }
 
 /* Weight sums at samples of lines, those of one after the other. */
@@ -276,7 +212,7 @@ static mcor_status mcor_evaluate_samples(
       inner->place[n] = (double)i / (double)samples->steps;
     }
   }
-  return job->evaluate(job, n, inner->line, inner->place, inner->weight);
+  return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
 }
 
 static mcor_status mcor_append_record(mcor_gauge_job* job, int64_t line, double place)
@@ -294,9 +230,10 @@ static mcor_status mcor_scan_samples(
   for (int64_t l = first; l < last; ++l)
   {
     const mcor_gauge_samples* s = &job->samples[l];
+    const double begin = (double)s->begin / (double)s->steps, step = 1 / (double)s->steps;
     const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
-      s->own_last - s->first, s->first - s->begin, (double)s->begin / (double)s->steps,
-      1 / (double)s->steps, inner->weight + at };
+      s->own_last - s->first, s->first - s->begin, begin, step,
+      begin + (double)(s->last - s->begin) * step, inner->weight + at };
     bool found, reached = false;
     MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
     for (int64_t i = row.own_first; i <= row.own_last; ++i)
@@ -327,8 +264,15 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
   status = status == MCOR_OK ? mcor_scan_samples(job, first, last, &inner) : status;
   mcor_free_inner(&inner);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_refine_suspects(job));
-  MCOR_TRY(mcor_narrow_parts(job));
+  for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
+  {
+    MCOR_TRY(mcor_look_closer(job, &job->suspects, MCOR_GAUGE_FINER, false));
+  }
+  /* Parts may have several crossings in the first round; later, that would be rounding. */
+  for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
+  {
+    MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, round > 0));
+  }
   for (int64_t p = 0; p < job->changed.count; ++p)
   {
     const mcor_gauge_part* part = &job->changed.parts[p];

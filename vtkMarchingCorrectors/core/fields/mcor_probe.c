@@ -340,26 +340,18 @@ static mcor_status mcor_make_tables(
     : mcor_list_components(context, input, false, s->attribute_not_finite);
 }
 
-typedef struct mcor_probe_call
+static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* options)
 {
-  const mcor_array* points;
-  int64_t count;
-  bool is_sum, uses_solids;
-  mcor_samples* samples;
-} mcor_probe_call;
-
-static mcor_status mcor_probe_points(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
-{
-  const mcor_probe_call* call = data;
-  mcor_samples* samples = call->samples;
+  mcor_context* context = run->context;
+  const mcor_input* input = run->input;
+  mcor_samples* samples = run->samples;
   const bool gradients = options->gradients;
   mcor_free_samples(samples); /* of an attempt before */
-  samples->count = call->count;
+  samples->count = run->point_count;
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_TRY(mcor_make_tables(context, input, gradients, samples));
   MCOR_TRY(mcor_make_samples(context, input, gradients, samples));
-  if (input->count == 0 || call->count == 0)
+  if (input->count == 0 || samples->count == 0)
   {
     return MCOR_OK;
   }
@@ -369,17 +361,13 @@ static mcor_status mcor_probe_points(
   }
   else if (input->particles_version == 0)
   {
-    mcor_bound_probe(context, call->points, call->count); /* no other call takes the search grid */
+    mcor_bound_probe(
+      context, run->points, samples->count); /* no other call takes the search grid */
   }
-  MCOR_TRY(mcor_prepare(context, input, options, call->uses_solids));
+  MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
-  mcor_probe_run run = { .context = context,
-    .input = input,
-    .points = call->points,
-    .samples = samples,
-    .is_sum = call->is_sum };
-  const mcor_status status = context->grid.count > 0 ? mcor_probe_all(&run) : MCOR_OK;
-  mcor_release_probe(&run);
+  const mcor_status status = context->grid.count > 0 ? mcor_probe_all(run) : MCOR_OK;
+  mcor_release_probe(run);
   mcor_keep_attributes(context, input, samples);
   MCOR_TRY(status);
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
@@ -390,18 +378,19 @@ static mcor_status mcor_probe_points(
 static mcor_status mcor_run_probe(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  mcor_probe_call call = *(const mcor_probe_call*)data;
+  mcor_probe_run run = *(const mcor_probe_run*)data;
   const mcor_plane* plane = &context->plane;
-  if (!mcor_is_plane(context) || call.count == 0)
+  run.input = input;
+  if (!mcor_is_plane(context) || run.point_count == 0)
   {
-    return mcor_probe_points(context, input, options, &call);
+    return mcor_probe_points(&run, options);
   }
-  mcor_samples* s = call.samples;
+  mcor_samples* s = run.samples;
   mcor_array points = { 0 };
   double* flat = NULL;
-  MCOR_TRY(mcor_flatten_points(context, call.points, call.count, &points, &flat));
-  call.points = &points;
-  const mcor_status status = mcor_probe_points(context, input, options, &call);
+  MCOR_TRY(mcor_flatten_points(context, run.points, run.point_count, &points, &flat));
+  run.points = &points;
+  const mcor_status status = mcor_probe_points(&run, options);
   free(flat);
   MCOR_TRY(status);
   mcor_unflatten_doubles(plane, s->weight_gradient, s->count, 0);
@@ -442,10 +431,14 @@ mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mco
   MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
     context, MCOR_INVALID_ARGUMENT, "Input, options or points are NULL.");
   mcor_options own = *options;
-  mcor_probe_call call = { points, count, options->field == MCOR_SUM,
-    mcor_evaluate_without_scalar(input, &own), samples };
+  const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
+  mcor_probe_run run = { .context = context,
+    .points = points,
+    .point_count = count,
+    .samples = samples,
+    .is_sum = options->field == MCOR_SUM };
   const mcor_status status =
-    mcor_run_call(context, input, &own, &samples->statistics, mcor_run_probe, &call);
+    mcor_run_call(context, input, &own, uses_solids, &samples->statistics, mcor_run_probe, &run);
   if (status != MCOR_OK)
   {
     mcor_free_samples(samples);

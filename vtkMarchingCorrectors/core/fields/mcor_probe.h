@@ -12,6 +12,7 @@ typedef struct mcor_probe_run
   mcor_context* context;
   const mcor_input* input;
   const mcor_array* points;
+  int64_t point_count;
   mcor_samples* samples;
   bool is_sum;
   mcor_point_batch batch;

@@ -7,54 +7,18 @@
 #include "mcor_parallel.h"
 #include "mcor_probe.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
-typedef struct mcor_bound_job
-{
-  mcor_array points;
-  double low[MCOR_SLICES][3], high[MCOR_SLICES][3];
-} mcor_bound_job;
-
-static void mcor_bound_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_bound_job* job = data;
-  for (int a = 0; a < 3; ++a)
-  {
-    double x[MCOR_CHUNK], low = DBL_MAX, high = -DBL_MAX;
-    for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
-    {
-      const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-      mcor_read_array(&job->points, begin, count, a, x);
-      for (int i = 0; i < count; ++i)
-      {
-        low = x[i] < low ? x[i] : low; /* not where it is no number */
-        high = x[i] > high ? x[i] : high;
-      }
-    }
-    job->low[slice][a] = low;
-    job->high[slice][a] = high;
-  }
-}
-
 void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count)
 {
-  mcor_bound_job job = { .points = *points };
-  mcor_box* box = &context->box;
-  job.points.components = 3;
-  const int slices = mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_bound_slice, &job);
+  mcor_array all = *points;
+  all.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    box->points[2 * a] = DBL_MAX;
-    box->points[2 * a + 1] = -DBL_MAX;
-    for (int s = 0; s < slices; ++s)
-    {
-      box->points[2 * a] = fmin(box->points[2 * a], job.low[s][a]);
-      box->points[2 * a + 1] = fmax(box->points[2 * a + 1], job.high[s][a]);
-    }
+    mcor_find_range(&all, NULL, count, a, context->box.points + 2 * a);
   }
-  box->of_points = true;
+  context->box.of_points = true;
 }
 
 void mcor_bound_by_box(mcor_context* context, const mcor_options* options)
@@ -67,7 +31,6 @@ void mcor_bound_by_box(mcor_context* context, const mcor_options* options)
 typedef struct mcor_point_job
 {
   const mcor_probe_run* run;
-  bool single;         /* precision */
   void *node, *offset; /* views */
   int inside[MCOR_SLICES];
   cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
@@ -132,14 +95,7 @@ static bool mcor_put_point(
     const double x = located ? at[a][in_chunk] : -1;
     const cl_int node = (cl_int)x;
     ((cl_int*)job->node)[4 * i + a] = node;
-    if (job->single)
-    {
-      ((float*)job->offset)[4 * i + a] = (float)(x - node);
-    }
-    else
-    {
-      ((double*)job->offset)[4 * i + a] = x - node;
-    }
+    mcor_put_real(job->run->context, job->offset, 4 * i + a, x - node);
   }
   return located;
 }
@@ -152,7 +108,7 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
   int inside = 0;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    const int count = mcor_chunk_of(last - begin);
     mcor_read_points(job->run, begin, count, at);
     for (int i = 0; i < count; ++i)
     {
@@ -196,26 +152,20 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
 {
   mcor_context* context = run->context;
   const size_t n = (size_t)(last - first), real = context->cl.real_size;
-  mcor_point_job job = { .run = run, .single = real == sizeof(float) };
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
-  mcor_status status =
-    mcor_map(context, &run->batch.in_node, n * 4 * sizeof(cl_int), true, &job.node);
-  status = status == MCOR_OK
-    ? mcor_map(context, &run->batch.in_offset, n * 4 * real, true, &job.offset)
-    : status;
+  mcor_point_job job = { .run = run };
+  const mcor_mapping views[] = { { &run->batch.in_node, n * 4 * sizeof(cl_int), &job.node },
+    { &run->batch.in_offset, n * 4 * real, &job.offset } };
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, views[0].bytes));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, views[1].bytes));
+  mcor_status status = mcor_map(context, views[0].buffer, views[0].bytes, true, &job.node);
+  status = status == MCOR_OK ? mcor_map(context, views[1].buffer, views[1].bytes, true, &job.offset)
+                             : status;
   run->first = first;
   run->count = (int)n;
-  if (status == MCOR_OK)
-  {
-    const int slices = mcor_parallel_for(run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job);
-    mcor_bound_points(run, &job, slices);
-  }
-  const mcor_status unmapped[] = { mcor_unmap(context, &run->batch.in_node, &job.node),
-    mcor_unmap(context, &run->batch.in_offset, &job.offset) };
-  for (int i = 0; i < 2; ++i)
-  {
-    status = status == MCOR_OK ? unmapped[i] : status;
-  }
-  return status;
+  int slices = 0;
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices)
+    : status;
+  mcor_bound_points(run, &job, slices);
+  return mcor_unmap_all(context, views, 2, status);
 }

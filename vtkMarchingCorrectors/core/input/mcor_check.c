@@ -37,14 +37,6 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   return MCOR_OK;
 }
 
-/* The cells of pairs may miss what a cap would need. */
-static mcor_status mcor_check_capping(mcor_context* context, const mcor_options* options)
-{
-  MCOR_RETURN_IF(options->capping && mcor_wants_pairs(options), context, MCOR_INVALID_ARGUMENT,
-    "Capping cannot be combined with pair seeds. Turn one of them off.");
-  return MCOR_OK;
-}
-
 /* What no measure gives; of nothing, ranges are empty. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
@@ -120,6 +112,9 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       "The iso value of the free surface is %g; it must be above 0 (usually 0.5).",
       options->iso_values[i]);
   }
+  /* The cells of pairs may miss what a cap would need. */
+  MCOR_NEED(!options->capping || !mcor_wants_pairs(options),
+    "Capping cannot be combined with pair seeds. Turn one of them off.");
 #undef MCOR_NEED
   MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
   return mcor_check_box(context, options);
@@ -146,26 +141,19 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_array* arr
   const char* name = mcor_array_name(array, role);
   const bool same = strcmp(name, role) == 0;
   MCOR_TRY(mcor_check_form(context, array, role, components));
-  if (array->data && mcor_is_legal(array, count * components, positive))
+  int c = 0;
+  const int64_t i = mcor_find_illegal(array, solid, count, positive, &c);
+  if (i < 0)
   {
     return MCOR_OK;
   }
-  for (int c = 0; c < components; ++c)
-  {
-    const int64_t i = mcor_find_illegal(array, solid, array->data ? count : 1, c, positive);
-    if (i < 0)
-    {
-      continue;
-    }
-    const double v = mcor_array_at(array, i, c);
-    const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
-    return array->data
-      ? mcor_fail(context, MCOR_INVALID_DATA,
-          "The %s%s%s of particle %lld is %s. Remove such particles or choose another array.", role,
-          same ? "" : " array ", same ? "" : name, (long long)i, problem)
-      : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
-  }
-  return MCOR_OK;
+  const double v = mcor_array_at(array, i, c);
+  const char* problem = isnan(v) ? "not a number (NaN)" : isinf(v) ? "infinite" : "not above 0";
+  return array->data
+    ? mcor_fail(context, MCOR_INVALID_DATA,
+        "The %s%s%s of particle %lld is %s. Remove such particles or choose another array.", role,
+        same ? "" : " array ", same ? "" : name, (long long)i, problem)
+    : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
 }
 
 static mcor_status mcor_check_scalar(
@@ -232,7 +220,6 @@ mcor_status mcor_check_input(
 {
   MCOR_TRY(mcor_check_options(context, options));
   MCOR_TRY(mcor_check_period(context, options));
-  MCOR_TRY(mcor_check_capping(context, options));
   MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
     context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
     input->attributes ? "" : ", but their list is NULL");

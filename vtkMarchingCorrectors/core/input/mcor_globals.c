@@ -11,18 +11,6 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Of an attribute, the first particle that is not finite, of the rank where it has the least number;
- * -1: there is none. */
-static mcor_status mcor_measure_not_finite(
-  mcor_context* context, const mcor_input* input, const mcor_array* array, int64_t* particle)
-{
-  *particle = mcor_find_not_finite(array, input->solid, input->count);
-  *particle = *particle < 0 ? INT64_MAX : *particle;
-  MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, particle));
-  *particle = *particle == INT64_MAX ? -1 : *particle;
-  return MCOR_OK;
-}
-
 /* A component varies where it does on a rank, or ranks have unlike values. */
 static mcor_status mcor_merge_component(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, mcor_global_component* found)
@@ -30,8 +18,8 @@ static mcor_status mcor_merge_component(mcor_context* context, const mcor_input*
   const bool some = input->count > 0;
   const double first = some ? mcor_array_at(array, 0, component) : 0;
   double least[2] = { some ? first : DBL_MAX, found->low };
-  double most[3] = { some ? first : -DBL_MAX,
-    mcor_largest(array, input->solid, input->count, component), found->high };
+  double most[3] = { some ? first : -DBL_MAX, mcor_largest_of(found->low, found->high),
+    found->high };
   int64_t varies = found->varies;
   MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, least, 2));
@@ -52,8 +40,11 @@ static mcor_status mcor_measure_components(
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    int64_t not_finite;
-    MCOR_TRY(mcor_measure_not_finite(context, input, array, &not_finite));
+    /* The first particle that is not, of the rank where it has the least number. */
+    int64_t not_finite = mcor_find_not_finite(array, input->solid, input->count);
+    not_finite = not_finite < 0 ? INT64_MAX : not_finite;
+    MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &not_finite));
+    not_finite = not_finite == INT64_MAX ? -1 : not_finite;
     for (int c = 0; c < mcor_components(array); ++c)
     {
       mcor_global_component* found = &globals->components[globals->component_count++];
@@ -61,7 +52,6 @@ static mcor_status mcor_measure_components(
       if (not_finite < 0)
       {
         mcor_measure_component(input, a, c, found);
-        mcor_find_range(input, a, c, found);
         MCOR_TRY(context->run.options->ranks ? mcor_merge_component(context, input, array, c, found)
                                              : MCOR_OK);
       }
@@ -70,20 +60,13 @@ static mcor_status mcor_measure_components(
   return MCOR_OK;
 }
 
-typedef struct mcor_globals_call
-{
-  bool uses_solids;
-  mcor_globals* globals;
-} mcor_globals_call;
-
 static mcor_status mcor_measure_all(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  const mcor_globals_call* call = data;
-  mcor_globals* globals = call->globals;
+  mcor_globals* globals = data;
   mcor_free_globals(globals); /* of an attempt before */
   context->kept.grid = context->kept.value = context->kept.nodes = false;
-  context->kept.uses_solids = call->uses_solids;
+  context->kept.uses_solids = context->run.uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
   int64_t particles = input->count;
   MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));
@@ -91,8 +74,7 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
-  globals->mass_max =
-    mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 0;
+  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(&input->mass, input->count, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {
@@ -119,13 +101,12 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
   MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
   mcor_options own = *options;
   own.globals = NULL;
-  mcor_globals_call call = { .globals = globals };
-  call.uses_solids =
+  const bool uses_solids =
     surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
   own.ranks = options->ranks;
   mcor_statistics statistics = { 0 };
   const mcor_status status =
-    mcor_run_call(context, input, &own, &statistics, mcor_measure_all, &call);
+    mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);
   if (status != MCOR_OK)
   {
     mcor_free_globals(globals);

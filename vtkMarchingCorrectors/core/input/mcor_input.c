@@ -1,11 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Reading the arrays that a caller hands in. */
+/* Reading the arrays that a caller hands in, and what is asked of all their elements. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -85,116 +86,181 @@ void mcor_read_positions(const mcor_input* input, int64_t first, int count, doub
   }
 }
 
-/* The bits of absolute values are in the order of the values; compilers vectorise their maximum
- * where they know the stride. */
-static inline double mcor_largest_float(
-  const float* data, const uint8_t* solid, int64_t count, int64_t stride)
+/* Moves to the front what is of fluid, of a chunk that begins with particle `first`; returns how many. All
+ * where `solid` is NULL. */
+static int mcor_keep_fluid(const uint8_t* solid, int64_t first, int count, double* x)
 {
-  int32_t most = 0;
-  for (int64_t i = 0; i < count; ++i)
+  int kept = 0;
+  for (int i = 0; i < count && solid; ++i)
   {
-    int32_t bits;
-    memcpy(&bits, data + i * stride, sizeof bits);
-    bits = solid && solid[i] ? 0 : bits & INT32_MAX;
-    most = bits > most ? bits : most;
+    x[kept] = x[i];
+    kept += !solid[first + i];
   }
-  float value;
-  memcpy(&value, &most, sizeof value);
-  return (double)value;
+  return solid ? kept : count;
 }
 
-static inline double mcor_largest_double(
-  const double* data, const uint8_t* solid, int64_t count, int64_t stride)
+/* Elements that are looked at together: each alone would wait for the one before. */
+#define MCOR_ELEMENTS 4
+
+void mcor_widen_range(const double* x, int count, double* low, double* high)
 {
-  int64_t most = 0;
-  for (int64_t i = 0; i < count; ++i)
+  double least[MCOR_ELEMENTS], most[MCOR_ELEMENTS];
+  int i = 0;
+  for (int l = 0; l < MCOR_ELEMENTS; ++l)
   {
-    int64_t bits;
-    memcpy(&bits, data + i * stride, sizeof bits);
-    bits = solid && solid[i] ? 0 : bits & INT64_MAX;
-    most = bits > most ? bits : most;
+    least[l] = *low;
+    most[l] = *high;
   }
-  double value;
-  memcpy(&value, &most, sizeof value);
-  return value;
+  for (; i + MCOR_ELEMENTS <= count; i += MCOR_ELEMENTS)
+  {
+    for (int l = 0; l < MCOR_ELEMENTS; ++l)
+    {
+      least[l] = mcor_least(least[l], x[i + l]);
+      most[l] = mcor_most(most[l], x[i + l]);
+    }
+  }
+  for (; i < count; ++i)
+  {
+    least[0] = mcor_least(least[0], x[i]);
+    most[0] = mcor_most(most[0], x[i]);
+  }
+  for (int l = 0; l < MCOR_ELEMENTS; ++l)
+  {
+    *low = mcor_least(*low, least[l]);
+    *high = mcor_most(*high, most[l]);
+  }
 }
 
-typedef struct mcor_survey
+typedef struct mcor_range_job
 {
   const mcor_array* array;
   const uint8_t* solid;
   int component;
-  double largest[MCOR_SLICES];
-  bool varies[MCOR_SLICES];
-} mcor_survey;
+  double low[MCOR_SLICES], high[MCOR_SLICES];
+} mcor_range_job;
 
-static void mcor_find_largest(void* data, int slice, int64_t first, int64_t last)
+static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_survey* survey = data;
-  const mcor_array* array = survey->array;
-  const int64_t stride = mcor_components(array), at = first * stride + survey->component;
-  const int64_t count = last - first;
-  const uint8_t* solid = survey->solid ? survey->solid + first : NULL;
-  const float* floats = array->data;
-  const double* doubles = array->data;
-  survey->largest[slice] = array->type == MCOR_FLOAT64
-    ? mcor_largest_double(doubles + at, solid, count, stride)
-    : stride == 1 && !solid ? mcor_largest_float(floats + at, NULL, count, 1)
-                            : mcor_largest_float(floats + at, solid, count, stride);
+  mcor_range_job* job = data;
+  double x[MCOR_CHUNK], low = DBL_MAX, high = -DBL_MAX;
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    const int count = mcor_chunk_of(last - begin);
+    mcor_read_array(job->array, begin, count, job->component, x);
+    mcor_widen_range(x, mcor_keep_fluid(job->solid, begin, count, x), &low, &high);
+  }
+  job->low[slice] = low;
+  job->high[slice] = high;
 }
 
-double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count, int component)
+void mcor_find_range(
+  const mcor_array* array, const uint8_t* solid, int64_t count, int component, double range[2])
 {
-  mcor_survey survey = { .array = array, .solid = solid, .component = component };
-  if (!array->data)
-  {
-    return fabs(array->constant);
-  }
-  const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_find_largest, &survey);
-  double largest = 0;
+  mcor_range_job job = { .array = array, .solid = solid, .component = component };
+  const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
+  range[0] = DBL_MAX;
+  range[1] = -DBL_MAX;
   for (int s = 0; s < slices; ++s)
   {
-    largest = survey.largest[s] > largest ? survey.largest[s] : largest;
+    range[0] = mcor_least(range[0], job.low[s]);
+    range[1] = mcor_most(range[1], job.high[s]);
   }
-  return largest;
 }
 
-static void mcor_find_other(void* data, int slice, int64_t first, int64_t last)
+double mcor_largest(const mcor_array* array, int64_t count, int component)
 {
-  mcor_survey* survey = data;
-  const int64_t stride = mcor_components(survey->array);
-  int64_t i = first;
-  if (survey->array->type == MCOR_FLOAT64)
+  double range[2];
+  mcor_find_range(array, NULL, count, component, range);
+  return mcor_largest_of(range[0], range[1]);
+}
+
+void mcor_measure_component(
+  const mcor_input* input, int attribute, int component, mcor_global_component* found)
+{
+  const mcor_array* array = &input->attributes[attribute];
+  double range[2];
+  mcor_find_range(array, input->solid, input->count, component, range);
+  found->low = range[0];
+  found->high = range[1];
+  if (input->solid && !(range[0] < range[1]))
   {
-    const double* x = (const double*)survey->array->data + survey->component;
-    for (; i < last && x[i * stride] == x[0]; ++i)
+    mcor_find_range(array, NULL, input->count, component, range);
+  }
+  found->varies = range[0] < range[1];
+  found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
+}
+
+typedef struct mcor_legal_job
+{
+  const mcor_array* array;
+  bool positive;
+  bool illegal[MCOR_SLICES];
+} mcor_legal_job;
+
+/* Written to be vectorised. */
+static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_legal_job* job = data;
+  const bool positive = job->positive;
+  int illegal = 0;
+  if (job->array->type == MCOR_FLOAT64)
+  {
+    const double *x = job->array->data, least = positive ? 0 : -DBL_MAX;
+    for (int64_t i = first; i < last; ++i)
     {
+      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > least : x[i] >= least));
     }
   }
   else
   {
-    const float* x = (const float*)survey->array->data + survey->component;
-    for (; i < last && x[i * stride] == x[0]; ++i)
+    const float *x = job->array->data, least = positive ? 0 : -FLT_MAX;
+    for (int64_t i = first; i < last; ++i)
     {
+      illegal |= !((x[i] <= FLT_MAX) & (positive ? x[i] > least : x[i] >= least));
     }
   }
-  survey->varies[slice] = i < last;
+  job->illegal[slice] = illegal;
 }
 
-bool mcor_is_constant(const mcor_array* array, int64_t count, int component)
+static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
 {
-  mcor_survey survey = { .array = array, .component = component };
-  if (!array->data)
-  {
-    return true;
-  }
-  const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_find_other, &survey);
-  bool varies = false;
+  mcor_legal_job job = { .array = array, .positive = positive };
+  const int slices = mcor_parallel_for(elements, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
+  bool illegal = false;
   for (int s = 0; s < slices; ++s)
   {
-    varies = varies || survey.varies[s];
+    illegal = illegal || job.illegal[s];
   }
-  return !varies;
+  return !illegal;
+}
+
+int64_t mcor_find_illegal(
+  const mcor_array* array, const uint8_t* solid, int64_t count, bool positive, int* component)
+{
+  const int components = mcor_components(array);
+  if (array->data && mcor_is_legal(array, count * components, positive))
+  {
+    return -1;
+  }
+  for (int64_t i = 0; i < (array->data ? count : 1); ++i)
+  {
+    for (int c = 0; c < components && !(array->data && solid && solid[i]); ++c)
+    {
+      const double x = mcor_array_at(array, i, c);
+      if (!isfinite(x) || (positive && !(x > 0)))
+      {
+        *component = c;
+        return i;
+      }
+    }
+  }
+  return -1;
+}
+
+int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count)
+{
+  int component;
+  return mcor_find_illegal(array, solid, count, false, &component);
 }
 
 /* The power of 2 just above all components of particle i; 0 if they are 0 or not finite. */
@@ -322,17 +388,36 @@ static void mcor_read_dot(
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
 {
   const mcor_array *a = &input->scalar, *b = &input->scalar_dot;
-  if (!mcor_scalar_is_derived(input))
-  {
-    mcor_read_array(a, first, count, mcor_components(a) > 1 ? input->scalar_component : 0, out);
-  }
-  else if (b->data)
+  const int component = mcor_components(a) > 1 ? input->scalar_component : 0;
+  if (b->data)
   {
     mcor_read_dot(a, b, first, count, out);
   }
-  else
+  else if (mcor_components(a) > 1 && component == MCOR_MAGNITUDE)
   {
     mcor_read_magnitude(a, first, count, out);
+  }
+  else
+  {
+    mcor_read_array(a, first, count, component, out);
+  }
+}
+
+void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
+{
+  static const mcor_array one = { .constant = 1 };
+  mcor_read_array(mcor_is_given(&input->volume) ? &input->volume
+      : mcor_is_given(&input->mass)             ? &input->mass
+                                                : &one,
+    first, count, 0, out);
+  if (!mcor_is_given(&input->volume) && !mcor_needs_density(input))
+  {
+    double density[MCOR_CHUNK];
+    mcor_read_array(&input->density, first, count, 0, density);
+    for (int i = 0; i < count; ++i)
+    {
+      out[i] /= density[i];
+    }
   }
 }
 

@@ -29,6 +29,23 @@ static inline bool mcor_is_used(const mcor_context* context, const mcor_input* i
 
 #define MCOR_CHUNK 1024
 
+/* Particles of the next chunk where so many are left. */
+static inline int mcor_chunk_of(int64_t rest)
+{
+  return rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
+}
+
+/* b where it is less, or more; not where it is no number. */
+static inline double mcor_least(double a, double b)
+{
+  return b < a ? b : a;
+}
+
+static inline double mcor_most(double a, double b)
+{
+  return b > a ? b : a;
+}
+
 /* Kernels count in int, also a little beyond the last particle. */
 #define MCOR_PARTICLE_LIMIT 2000000000
 
@@ -44,43 +61,35 @@ void mcor_read_positions(
 /* At most MCOR_CHUNK of them. Not finite where a derived scalar does not exist as a number. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
-/* The largest absolute value of one component, solids left out where `solid` is not NULL; all are
- * finite. */
-double mcor_largest(const mcor_array* array, const uint8_t* solid, int64_t count, int component);
+/* Widens [*low, *high] to hold x. */
+void mcor_widen_range(const double* x, int count, double* low, double* high);
+/* Least and greatest value of one component, solids left out where `solid` is not NULL; of none DBL_MAX,
+ * -DBL_MAX. */
+void mcor_find_range(
+  const mcor_array* array, const uint8_t* solid, int64_t count, int component, double range[2]);
+/* The largest absolute value in a range, and of one component; of none 0. */
+static inline double mcor_largest_of(double low, double high)
+{
+  return low > high ? 0 : fmax(-low, high);
+}
+double mcor_largest(const mcor_array* array, int64_t count, int component);
 
 /* Where what failed is for a lattice that is too large, and one smoothing length is far from the others: adds
  * which one to the sentence. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
-/* mcor_finite.c. Whether all elements are finite, and above 0 where they must be. */
-bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive);
-/* Index of the first particle, solids left out where `solid` is not NULL, of which a component is
- * not finite, or not above 0 where it must be; -1 if there is none. */
+/* The first particle, solids left out where `solid` is not NULL, of which any component is not finite, or
+ * not above 0 where it must be; -1 if there is none. */
 int64_t mcor_find_illegal(
-  const mcor_array* array, const uint8_t* solid, int64_t count, int component, bool positive);
-/* The first particle, solids left out, of which any component is not finite; -1 if there is none. */
+  const mcor_array* array, const uint8_t* solid, int64_t count, bool positive, int* component);
 int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count);
 
-/* Whether all values of one component are equal. */
-bool mcor_is_constant(const mcor_array* array, int64_t count, int component);
-
-/* Components of all attributes together. */
+/* mcor_attribute.c. Components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
-/* mcor_attribute.c. Whether a component varies, and its largest value. */
+/* Of one component, all but whether its attribute is finite. */
 void mcor_measure_component(
   const mcor_input* input, int attribute, int component, mcor_global_component* found);
-
-/* Least and greatest value of a component, of fluid particles; of none DBL_MAX, -DBL_MAX. */
-void mcor_find_range(
-  const mcor_input* input, int attribute, int component, mcor_global_component* found);
-
-/* Whether the scalar is a magnitude or a dot product. */
-static inline bool mcor_scalar_is_derived(const mcor_input* input)
-{
-  return input->scalar_dot.data ||
-    (mcor_components(&input->scalar) > 1 && input->scalar_component == MCOR_MAGNITUDE);
-}
 
 /* About the median of the scalar of fluid particles; measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
@@ -119,12 +128,11 @@ double mcor_cube_root(double value);
 double mcor_median_of(double* values, int count);
 
 /* mcor_measure_neighbours.c. Told of all positions, it ends by filling in the measure's neighbours,
- * spacing, filled and h_median. An estimated smoothing length is to be known before. */
+ * spacing, filled and h_median. An estimated smoothing length is to be known before. Free with free(). */
 typedef struct mcor_watch mcor_watch;
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun);
 void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK]);
 mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices);
-void mcor_free_watch(mcor_watch* watch);
 /* Smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
@@ -135,5 +143,8 @@ static inline bool mcor_needs_density(const mcor_input* input)
   return !mcor_is_given(&input->volume) &&
     !(mcor_is_given(&input->mass) && mcor_is_given(&input->density));
 }
+
+/* What the input has of volumes: these, or where they are computed masses, or 1; of at most MCOR_CHUNK. */
+void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out);
 
 #endif

@@ -13,6 +13,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Support radius in cubes at least: below, no node is likely to see a particle. */
@@ -40,159 +41,105 @@ static void mcor_read_chunk(
   }
 }
 
-static double mcor_least(double a, double b)
+/* What is measured of all particles, alike for slices and for ranks. */
+enum
 {
-  return b < a ? b : a;
+  MCOR_REACHES = 0, /* positions -+ support radii; x, y, z */
+  MCOR_PLACES = 3,  /* positions of fluid particles; x, y, z */
+  MCOR_LENGTHS = 6, /* smoothing lengths of fluid particles */
+  MCOR_SUPPORTS = 7,
+  MCOR_SCALARS = 8,
+  MCOR_RANGES = 9
+};
+
+typedef struct mcor_ranges
+{
+  double least[MCOR_RANGES], most[MCOR_RANGES];
+  int64_t counts[2]; /* of fluid particles, of solids */
+  int64_t not_finite;
+} mcor_ranges;
+
+static mcor_ranges mcor_empty_ranges(void)
+{
+  mcor_ranges r = { .not_finite = INT64_MAX };
+  for (int k = 0; k < MCOR_RANGES; ++k)
+  {
+    r.least[k] = DBL_MAX;
+    r.most[k] = -DBL_MAX;
+  }
+  return r;
 }
 
-static double mcor_most(double a, double b)
+static void mcor_add_range(mcor_ranges* r, int k, double low, double high)
 {
-  return b > a ? b : a;
+  r->least[k] = mcor_least(r->least[k], low);
+  r->most[k] = mcor_most(r->most[k], high);
 }
 
-static void mcor_measure_particle(
-  mcor_measure* m, const mcor_chunk* chunk, int i, bool solid, double reach)
+static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
 {
-  const double h = chunk->h[i], support = h * reach;
-  m->support_min = mcor_least(m->support_min, support);
-  m->support_max = mcor_most(m->support_max, support);
-  for (int a = 0; a < 3; ++a)
+  for (int k = 0; k < MCOR_RANGES; ++k)
   {
-    m->low[a] = mcor_least(m->low[a], chunk->x[a][i] - support);
-    m->high[a] = mcor_most(m->high[a], chunk->x[a][i] + support);
+    mcor_add_range(r, k, other->least[k], other->most[k]);
   }
-  for (int a = 0; a < 3 && !solid; ++a)
-  {
-    m->x_low[a] = mcor_least(m->x_low[a], chunk->x[a][i]);
-    m->x_high[a] = mcor_most(m->x_high[a], chunk->x[a][i]);
-  }
-  if (!solid)
-  {
-    m->h_min = mcor_least(m->h_min, h);
-    m->h_max = mcor_most(m->h_max, h);
-  }
+  r->counts[0] += other->counts[0];
+  r->counts[1] += other->counts[1];
+  r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
 }
 
-static const mcor_measure mcor_nothing = { .low = { DBL_MAX, DBL_MAX, DBL_MAX },
-  .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
-  .x_low = { DBL_MAX, DBL_MAX, DBL_MAX },
-  .x_high = { -DBL_MAX, -DBL_MAX, -DBL_MAX },
-  .h_min = DBL_MAX,
-  .support_min = DBL_MAX,
-  .scalar_min = DBL_MAX,
-  .scalar_max = -DBL_MAX,
-  .not_finite = INT64_MAX };
-
-static void mcor_merge_measure(mcor_measure* m, const mcor_measure* other)
+/* Of a chunk's fluid, or of its solids, all but the scalar. Rounding keeps the order of numbers: what is least
+ * before a product or a difference with the same number is so after it. */
+static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reach, mcor_ranges* r)
 {
-  m->fluid_count += other->fluid_count;
-  m->solid_count += other->solid_count;
-  for (int a = 0; a < 3; ++a)
+  double h_min = DBL_MAX, h_max = -DBL_MAX;
+  mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
+  for (int a = 0; a < 3 && chunk->count > 0; ++a)
   {
-    m->low[a] = mcor_least(m->low[a], other->low[a]);
-    m->high[a] = mcor_most(m->high[a], other->high[a]);
-    m->x_low[a] = mcor_least(m->x_low[a], other->x_low[a]);
-    m->x_high[a] = mcor_most(m->x_high[a], other->x_high[a]);
-  }
-  m->h_min = mcor_least(m->h_min, other->h_min);
-  m->h_max = mcor_most(m->h_max, other->h_max);
-  m->support_min = mcor_least(m->support_min, other->support_min);
-  m->support_max = mcor_most(m->support_max, other->support_max);
-  m->scalar_min = mcor_least(m->scalar_min, other->scalar_min);
-  m->scalar_max = mcor_most(m->scalar_max, other->scalar_max);
-  m->not_finite = other->not_finite < m->not_finite ? other->not_finite : m->not_finite;
-}
-
-/* Elements that are measured at a time: each alone would wait for the one before. */
-#define MCOR_MEASURED 4
-
-/* Widens [*low, *high] to hold x. */
-static void mcor_measure_extent(const double* x, int count, double* low, double* high)
-{
-  double least[MCOR_MEASURED], most[MCOR_MEASURED];
-  int i = 0;
-  for (int l = 0; l < MCOR_MEASURED; ++l)
-  {
-    least[l] = *low;
-    most[l] = *high;
-  }
-  for (; i + MCOR_MEASURED <= count; i += MCOR_MEASURED)
-  {
-    for (int l = 0; l < MCOR_MEASURED; ++l)
-    {
-      least[l] = mcor_least(least[l], x[i + l]);
-      most[l] = mcor_most(most[l], x[i + l]);
-    }
-  }
-  for (; i < count; ++i)
-  {
-    least[0] = mcor_least(least[0], x[i]);
-    most[0] = mcor_most(most[0], x[i]);
-  }
-  for (int l = 0; l < MCOR_MEASURED; ++l)
-  {
-    *low = mcor_least(*low, least[l]);
-    *high = mcor_most(*high, most[l]);
-  }
-}
-
-/* The same of the supports along axis a. */
-static void mcor_measure_reach(const mcor_chunk* chunk, int a, double reach, mcor_measure* m)
-{
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    const double support = chunk->h[i] * reach;
-    m->low[a] = mcor_least(m->low[a], chunk->x[a][i] - support);
-    m->high[a] = mcor_most(m->high[a], chunk->x[a][i] + support);
-  }
-}
-
-/* Of a chunk without solids, all but the scalar. Rounding keeps the order of numbers: what is least before
- * a product or a difference with the same number is so after it. */
-static void mcor_measure_fluid(mcor_measure* m, const mcor_chunk* chunk, double reach)
-{
-  double h_min = DBL_MAX, h_max = 0;
-  mcor_measure_extent(chunk->h, chunk->count, &h_min, &h_max);
-  for (int a = 0; a < 3; ++a)
-  {
+    const double* x = chunk->x[a];
     double low = DBL_MAX, high = -DBL_MAX;
-    mcor_measure_extent(chunk->x[a], chunk->count, &low, &high);
-    m->x_low[a] = mcor_least(m->x_low[a], low);
-    m->x_high[a] = mcor_most(m->x_high[a], high);
-    if (h_min < h_max)
+    mcor_widen_range(x, chunk->count, &low, &high);
+    if (!solids)
     {
-      mcor_measure_reach(chunk, a, reach, m);
+      mcor_add_range(r, MCOR_PLACES + a, low, high);
+    }
+    if (h_min == h_max)
+    {
+      mcor_add_range(r, MCOR_REACHES + a, low - h_min * reach, high + h_min * reach);
       continue;
     }
-    m->low[a] = mcor_least(m->low[a], low - h_min * reach);
-    m->high[a] = mcor_most(m->high[a], high + h_min * reach);
+    for (int i = 0; i < chunk->count; ++i)
+    {
+      const double support = chunk->h[i] * reach;
+      mcor_add_range(r, MCOR_REACHES + a, x[i] - support, x[i] + support);
+    }
   }
-  m->h_min = mcor_least(m->h_min, h_min);
-  m->h_max = mcor_most(m->h_max, h_max);
-  m->support_min = mcor_least(m->support_min, h_min * reach);
-  m->support_max = mcor_most(m->support_max, h_max * reach);
-  m->fluid_count += chunk->count;
+  if (chunk->count > 0)
+  {
+    mcor_add_range(r, MCOR_SUPPORTS, h_min * reach, h_max * reach);
+    mcor_add_range(r, MCOR_LENGTHS, solids ? DBL_MAX : h_min, solids ? -DBL_MAX : h_max);
+  }
 }
 
-/* Of a chunk with solids, the same. */
-static void mcor_measure_mixed(const mcor_context* context, const mcor_input* input, int64_t first,
-  const mcor_chunk* chunk, double reach, mcor_measure* m)
+/* Takes the solids out of a chunk; `solid` is of its particles, or NULL. */
+static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk* solids)
 {
-  for (int i = 0; i < chunk->count; ++i)
+  const int count = chunk->count;
+  solids->count = 0;
+  chunk->count = solid ? 0 : count;
+  for (int i = 0; i < count && solid; ++i)
   {
-    const bool solid = input->solid[first + i];
-    m->solid_count += solid;
-    m->fluid_count += !solid;
-    if (mcor_is_used(context, input, first + i))
+    mcor_chunk* to = solid[i] ? solids : chunk;
+    for (int a = 0; a < 3; ++a)
     {
-      mcor_measure_particle(m, chunk, i, solid, reach);
+      to->x[a][to->count] = chunk->x[a][i];
     }
+    to->h[to->count++] = chunk->h[i];
   }
 }
 
 /* The scalar of a chunk's fluid particles. */
 static void mcor_measure_scalar(
-  const mcor_input* input, int64_t first, const mcor_chunk* chunk, mcor_measure* m)
+  const mcor_input* input, int64_t first, const mcor_chunk* chunk, mcor_ranges* r)
 {
   for (int i = 0; i < chunk->count; ++i)
   {
@@ -201,11 +148,10 @@ static void mcor_measure_scalar(
     {
       continue;
     }
-    m->scalar_min = mcor_least(m->scalar_min, value);
-    m->scalar_max = mcor_most(m->scalar_max, value);
-    if (!isfinite(value) && first + i < m->not_finite)
+    mcor_add_range(r, MCOR_SCALARS, value, value);
+    if (!isfinite(value) && first + i < r->not_finite)
     {
-      m->not_finite = first + i;
+      r->not_finite = first + i;
     }
   }
 }
@@ -216,39 +162,38 @@ typedef struct mcor_measuring
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
   mcor_watch* watch;
-  mcor_measure measures[MCOR_SLICES];
+  mcor_ranges ranges[MCOR_SLICES];
 } mcor_measuring;
 
 static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measuring* job = data;
   const mcor_input* input = job->input;
-  const bool has_scalar = job->context->run.options->field != MCOR_WEIGHT_SUM;
-  mcor_measure m = mcor_nothing;
-  mcor_chunk chunk;
+  mcor_ranges r = mcor_empty_ranges();
+  mcor_chunk chunk, solids;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    chunk.count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    chunk.count = mcor_chunk_of(last - begin);
     mcor_read_chunk(job->context, input, begin, &chunk);
     mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
-    if (input->solid)
+    if (job->context->run.options->field != MCOR_WEIGHT_SUM)
     {
-      mcor_measure_mixed(job->context, input, begin, &chunk, job->reach, &m);
+      mcor_measure_scalar(input, begin, &chunk, &r);
     }
-    else
+    mcor_part_chunk(input->solid ? input->solid + begin : NULL, &chunk, &solids);
+    r.counts[0] += chunk.count;
+    r.counts[1] += solids.count;
+    mcor_measure_chunk(&chunk, false, job->reach, &r);
+    if (job->context->kept.uses_solids)
     {
-      mcor_measure_fluid(&m, &chunk, job->reach);
-    }
-    if (has_scalar)
-    {
-      mcor_measure_scalar(input, begin, &chunk, &m);
+      mcor_measure_chunk(&solids, true, job->reach, &r);
     }
   }
-  job->measures[slice] = m;
+  job->ranges[slice] = r;
 }
 
 static mcor_status mcor_measure_particles(
-  mcor_context* context, const mcor_input* input, double reach)
+  mcor_context* context, const mcor_input* input, double reach, mcor_ranges* ranges)
 {
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
   mcor_status status = mcor_begin_watch(context, input, &job.watch);
@@ -260,43 +205,37 @@ static mcor_status mcor_measure_particles(
   {
     for (int s = 0; s < slices; ++s)
     {
-      mcor_merge_measure(&context->measure, &job.measures[s]);
+      mcor_add_ranges(ranges, &job.ranges[s]);
     }
     status = mcor_end_watch(context, job.watch, slices);
   }
-  mcor_free_watch(job.watch);
+  free(job.watch);
   return status;
 }
 
 /* What all ranks have measured. Which particle is not finite is for its rank to say. */
-static mcor_status mcor_merge_ranks(mcor_context* context)
+static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
 {
   mcor_measure* m = &context->measure;
-  double* least[] = { m->low, m->low + 1, m->low + 2, m->x_low, m->x_low + 1, m->x_low + 2,
-    &m->h_min, &m->support_min, &m->scalar_min };
-  double* most[] = { m->high, m->high + 1, m->high + 2, m->x_high, m->x_high + 1, m->x_high + 2,
-    &m->h_max, &m->support_max, &m->scalar_max };
-  enum
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, r->counts, 2));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, r->least, MCOR_RANGES));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, r->most, MCOR_RANGES));
+  m->fluid_count = r->counts[0];
+  m->solid_count = r->counts[1];
+  for (int a = 0; a < 3; ++a)
   {
-    count = sizeof least / sizeof least[0]
-  };
-  int64_t particles[2] = { m->fluid_count, m->solid_count };
-  double low[count], high[count];
-  for (int i = 0; i < count; ++i)
-  {
-    low[i] = *least[i];
-    high[i] = *most[i];
+    m->low[a] = r->least[MCOR_REACHES + a];
+    m->high[a] = r->most[MCOR_REACHES + a];
+    m->x_low[a] = r->least[MCOR_PLACES + a];
+    m->x_high[a] = r->most[MCOR_PLACES + a];
   }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, particles, 2));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, count));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, count));
-  for (int i = 0; i < count; ++i)
-  {
-    *least[i] = low[i];
-    *most[i] = high[i];
-  }
-  m->fluid_count = particles[0];
-  m->solid_count = particles[1];
+  m->h_min = r->least[MCOR_LENGTHS];
+  m->h_max = r->most[MCOR_LENGTHS];
+  m->support_min = r->least[MCOR_SUPPORTS];
+  m->support_max = r->most[MCOR_SUPPORTS];
+  m->scalar_min = r->least[MCOR_SCALARS];
+  m->scalar_max = r->most[MCOR_SCALARS];
+  m->not_finite = r->not_finite;
   return MCOR_OK;
 }
 
@@ -382,8 +321,8 @@ mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   mcor_measure* m = &context->measure;
-  *m = mcor_nothing;
-  m->plane = context->plane;
+  mcor_ranges ranges = mcor_empty_ranges();
+  *m = (mcor_measure){ .plane = context->plane, .not_finite = INT64_MAX };
   if (options->globals)
   {
     *m = options->globals->measured;
@@ -394,8 +333,8 @@ mcor_status mcor_measure_input(
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));
   }
   MCOR_TRY(mcor_measure_particles(
-    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale));
-  MCOR_TRY(mcor_merge_ranks(context));
+    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale, &ranges));
+  MCOR_TRY(mcor_keep_ranges(context, &ranges));
   MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
     "None of the %lld particles is marked as fluid.", (long long)m->solid_count);
   if (options->field == MCOR_WEIGHT_SUM)
@@ -423,7 +362,7 @@ void mcor_blame_outlier(mcor_context* context, const mcor_input* input)
   }
   for (int64_t i = 0; i < input->count && particle < 0; i += MCOR_CHUNK)
   {
-    const int n = (int)(input->count - i < MCOR_CHUNK ? input->count - i : MCOR_CHUNK);
+    const int n = mcor_chunk_of(input->count - i);
     mcor_read_smoothing_length(context, input, i, n, h);
     for (int k = 0; k < n && particle < 0; ++k)
     {

@@ -86,38 +86,32 @@ static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks
   return context ? mcor_heard(context, failed) : failed ? MCOR_CANCELLED : MCOR_OK;
 }
 
-/* ---- the median ---- */
-
-/* Of the bin that holds the median, while many are in that bin. A bin ends where its values do, so
- * that a huge outlier does not move the median away from them. */
-static mcor_status mcor_narrow_median(
-  mcor_context* context, mcor_bin_job* job, int64_t fluid_count, double* median)
+/* Narrows the bins to the one that has the value of this number in their order, while many are in that. A bin
+ * ends where its values do, so that a huge outlier does not move the median away from them. */
+static mcor_status mcor_narrow_bins(mcor_context* context, const mcor_ranks* ranks,
+  mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {
-  int64_t below = 0;
-  for (int pass = 0; pass < MCOR_MEDIAN_PASSES; ++pass)
+  int64_t count = many;
+  for (int pass = 0; pass < passes && count >= many; ++pass)
   {
     if (!(job->high / MCOR_BINS - job->low / MCOR_BINS > 0))
     {
       break;
     }
-    MCOR_TRY(mcor_make_bins(context, context->run.options->ranks, job));
+    MCOR_TRY(mcor_make_bins(context, ranks, job));
     int b = 0;
-    for (; b < MCOR_BINS - 1 && 2 * (below + job->count[0][b]) < fluid_count; ++b)
+    for (; b < MCOR_BINS - 1 && number >= job->count[0][b]; ++b)
     {
-      below += job->count[0][b];
+      number -= job->count[0][b];
     }
-    if (job->count[0][b] == 0)
+    count = job->count[0][b];
+    if (count == 0)
     {
       break;
     }
     job->low = job->least[0][b];
     job->high = -job->minus[0][b];
-    if (job->count[0][b] < fluid_count / 16)
-    {
-      break;
-    }
   }
-  *median = 0.5 * job->low + 0.5 * job->high;
   return MCOR_OK;
 }
 
@@ -129,7 +123,9 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
   job->input = input;
   job->low = m->scalar_min;
   job->high = m->scalar_max;
-  const mcor_status status = mcor_narrow_median(context, job, m->fluid_count, median);
+  const mcor_status status = mcor_narrow_bins(context, context->run.options->ranks, job,
+    MCOR_MEDIAN_PASSES, (m->fluid_count - 1) / 2, m->fluid_count / 16);
+  *median = 0.5 * job->low + 0.5 * job->high;
   free(job);
   return status;
 }
@@ -142,22 +138,9 @@ static bool mcor_select_iso(
 {
   job->low = range[0];
   job->high = range[1];
-  for (int pass = 0; pass < MCOR_ISO_PASSES && job->low < job->high; ++pass)
-  {
-    if (mcor_make_bins(NULL, ranks, job) != MCOR_OK)
-    {
-      return false;
-    }
-    int b = 0;
-    for (; b < MCOR_BINS - 1 && number >= job->count[0][b]; ++b)
-    {
-      number -= job->count[0][b];
-    }
-    job->low = job->least[0][b];
-    job->high = -job->minus[0][b];
-  }
+  const mcor_status status = mcor_narrow_bins(NULL, ranks, job, MCOR_ISO_PASSES, number, 1);
   *value = job->low;
-  return true;
+  return status == MCOR_OK;
 }
 
 static bool mcor_choose_iso(

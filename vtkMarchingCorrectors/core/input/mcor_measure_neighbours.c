@@ -24,11 +24,12 @@ struct mcor_watch
 {
   int cells; /* along each axis; the outermost are in no reach */
   double low[3], cells_per_length[3];
-  uint32_t* reached; /* [cells], bit s: of watched particle s */
-  uint64_t
-    any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS]; /* bit x: of any of them; small, for a fast look */
+  /* Bit s: of watched particle s; and bit x: of any of them, small, for a fast look. */
+  uint32_t reached[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
+  uint64_t any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
   int count;
-  double x[MCOR_WATCHED][3], h[MCOR_WATCHED], volume[MCOR_WATCHED], support;
+  mcor_sample sample[MCOR_WATCHED];
+  double support;
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
   double normal[3];                          /* 0: they do not lie in a plane */
@@ -42,22 +43,6 @@ static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
   const double cell = (x - watch->low[axis]) * watch->cells_per_length[axis];
   const double above = cell > 0 ? cell : 0;
   return (int)(above < watch->cells - 1 ? above : watch->cells - 1);
-}
-
-static mcor_status mcor_choose_watched(
-  mcor_context* context, const mcor_input* input, mcor_watch* watch)
-{
-  mcor_samples_found chosen = { .most = MCOR_WATCHED };
-  MCOR_TRY(mcor_choose_samples(context, input, MCOR_FLUID_PARTICLES, &chosen));
-  for (int s = 0; s < chosen.count; ++s)
-  {
-    const mcor_sample* sample = &chosen.sample[s];
-    memcpy(watch->x[s], sample->x, sizeof watch->x[s]);
-    watch->h[s] = sample->h;
-    watch->volume[s] = sample->volume;
-  }
-  watch->count = chosen.count;
-  return MCOR_OK;
 }
 
 /* Lays the grid over what is in reach of the watched: no more cells than particles look them up. */
@@ -74,9 +59,9 @@ static void mcor_place_watch(mcor_watch* watch, int64_t particles)
     double low = DBL_MAX, high = -DBL_MAX;
     for (int s = 0; s < watch->count; ++s)
     {
-      const double reach = watch->support * watch->h[s];
-      low = fmin(low, watch->x[s][a] - reach);
-      high = fmax(high, watch->x[s][a] + reach);
+      const double reach = watch->support * watch->sample[s].h;
+      low = fmin(low, watch->sample[s].x[a] - reach);
+      high = fmax(high, watch->sample[s].x[a] + reach);
     }
     const double cell = (high - low) / (watch->cells - 3);
     watch->low[a] = low - cell;
@@ -86,12 +71,12 @@ static void mcor_place_watch(mcor_watch* watch, int64_t particles)
 
 static void mcor_mark_reached(mcor_watch* watch, int s)
 {
-  const double reach = watch->support * watch->h[s];
+  const double reach = watch->support * watch->sample[s].h;
   int low[3], high[3];
   for (int a = 0; a < 3; ++a)
   {
-    low[a] = mcor_watch_cell(watch, a, watch->x[s][a] - reach);
-    high[a] = mcor_watch_cell(watch, a, watch->x[s][a] + reach);
+    low[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] - reach);
+    high[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] + reach);
   }
   for (int z = low[2]; z <= high[2]; ++z)
   {
@@ -112,11 +97,11 @@ static void mcor_watch_particle(mcor_watch* watch, int slice, uint32_t reached, 
   {
     if (reached & 1)
     {
-      const double reach = watch->support * watch->h[s];
+      const double reach = watch->support * watch->sample[s].h;
       double square = 0;
       for (int a = 0; a < 3; ++a)
       {
-        square += (x[a] - watch->x[s][a]) * (x[a] - watch->x[s][a]);
+        square += (x[a] - watch->sample[s].x[a]) * (x[a] - watch->sample[s].x[a]);
       }
       watch->neighbours[slice][s] += square < reach * reach;
       watch->nearest[slice][s] =
@@ -153,9 +138,9 @@ static void mcor_find_normal(mcor_watch* watch)
   {
     for (int a = 0; a < 3; ++a)
     {
-      from[s][a] = watch->x[s][a] - watch->x[0][a];
+      from[s][a] = watch->sample[s].x[a] - watch->sample[0].x[a];
     }
-    h = fmin(h, watch->h[s]);
+    h = fmin(h, watch->sample[s].h);
     if (mcor_dot(from[s], from[s]) > mcor_dot(along, along))
     {
       memcpy(along, from[s], sizeof along);
@@ -190,7 +175,7 @@ static bool mcor_has_normal(const mcor_watch* watch)
 
 static void mcor_watch_plane(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
 {
-  const double *n = watch->normal, at = mcor_dot(n, watch->x[0]);
+  const double *n = watch->normal, at = mcor_dot(n, watch->sample[0].x);
   for (int i = 0; i < count; ++i)
   {
     const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - at;
@@ -248,12 +233,13 @@ static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[
   double count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED], h[MCOR_WATCHED];
   for (int s = 0; s < watch->count; ++s)
   {
-    const double reach = watch->support * watch->h[s], distance = sqrt(nearest[s]);
+    const double reach = watch->support * watch->sample[s].h, distance = sqrt(nearest[s]);
     count[s] = (double)neighbours[s];
-    filled[s] = count[s] * watch->volume[s] / (m->plane.axis > 0 ? MCOR_PI : 4.0 / 3 * MCOR_PI) /
+    filled[s] = count[s] * watch->sample[s].volume /
+      (m->plane.axis > 0 ? MCOR_PI : 4.0 / 3 * MCOR_PI) /
       (reach * reach * (m->plane.axis > 0 ? 1 : reach));
     spacing[s] = distance < reach ? distance : 0;
-    h[s] = watch->h[s];
+    h[s] = watch->sample[s].h;
   }
   m->neighbours = mcor_median_of(count, watch->count);
   m->spacing = mcor_median_of(spacing, watch->count);
@@ -282,20 +268,13 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun)
 {
-  const size_t cells = (size_t)MCOR_WATCH_CELLS * MCOR_WATCH_CELLS * MCOR_WATCH_CELLS;
-  mcor_watch* watch = calloc(1, sizeof *watch);
-  uint32_t* reached = calloc(cells, sizeof *reached);
-  if (!watch || !reached)
-  {
-    free(watch);
-    free(reached);
-    return mcor_fail(
-      context, MCOR_OUT_OF_CAPACITY, "Host memory for %d particles ran out.", MCOR_WATCHED);
-  }
-  *begun = watch;
-  watch->reached = reached;
+  mcor_samples_found chosen = { .most = MCOR_WATCHED };
+  mcor_watch* watch = *begun = calloc(1, sizeof *watch);
+  MCOR_TRY(mcor_allocated(context, watch));
   watch->support = mcor_support_factor(context->run.options->sph_kernel);
-  MCOR_TRY(mcor_choose_watched(context, input, watch));
+  MCOR_TRY(mcor_choose_samples(context, input, MCOR_FLUID_PARTICLES, &chosen));
+  memcpy(watch->sample, chosen.sample, sizeof watch->sample);
+  watch->count = chosen.count;
   mcor_place_watch(watch, input->count);
   if (!mcor_is_plane(context))
   {
@@ -310,13 +289,4 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
     }
   }
   return MCOR_OK;
-}
-
-void mcor_free_watch(mcor_watch* watch)
-{
-  if (watch)
-  {
-    free(watch->reached);
-    free(watch);
-  }
 }

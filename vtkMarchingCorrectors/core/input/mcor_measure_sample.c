@@ -58,15 +58,6 @@ typedef struct mcor_sampling
   mcor_samples_found* found; /* [MCOR_SLICES] */
 } mcor_sampling;
 
-/* The volume of particle i where the input has it, else 0. */
-static double mcor_given_volume(const mcor_input* input, int64_t i)
-{
-  return mcor_is_given(&input->volume) ? mcor_array_at(&input->volume, i, 0)
-    : mcor_is_given(&input->mass) && mcor_is_given(&input->density)
-    ? mcor_array_at(&input->mass, i, 0) / mcor_array_at(&input->density, i, 0)
-    : 0;
-}
-
 static void mcor_sample_particle(
   const mcor_sampling* job, mcor_samples_found* found, int64_t i, const double x[3])
 {
@@ -79,7 +70,7 @@ static void mcor_sample_particle(
   if (job->which == MCOR_FLUID_PARTICLES)
   {
     mcor_read_smoothing_length(job->context, job->input, i, 1, &sample.h);
-    sample.volume = mcor_given_volume(job->input, i);
+    mcor_read_size(job->input, i, mcor_needs_density(job->input) ? 0 : 1, &sample.volume);
   }
   mcor_add_sample(found, &sample);
 }
@@ -92,7 +83,7 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   double x[3][MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    const int count = mcor_chunk_of(last - begin);
     mcor_read_positions(job->input, begin, count, x);
     for (int i = 0; i < count; ++i)
     {

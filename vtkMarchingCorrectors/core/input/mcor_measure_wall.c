@@ -38,7 +38,7 @@ typedef struct mcor_wall
   double reach;     /* the largest support radius */
   double mass_max;
   mcor_wall_sample sample[MCOR_SAMPLES];
-  int64_t (*weights)[MCOR_SAMPLES][2]; /* [MCOR_SLICES], of fluid, of solids */
+  int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
 } mcor_wall;
 
 /* W / norm h^3 at an offset. */
@@ -62,12 +62,11 @@ static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double
  * depend on the unit. */
 static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
 {
-  const mcor_input* input = wall->input;
-  const double mass = mcor_is_given(&input->mass) ? mcor_array_at(&input->mass, i, 0) : 1;
-  return mcor_is_given(&input->volume) ? mcor_array_at(&input->volume, i, 0)
-    : mcor_is_given(&input->mass) && mcor_is_given(&input->density)
-    ? mass / mcor_array_at(&input->density, i, 0)
-    : mass / wall->mass_max * h * h * (mcor_is_plane(wall->context) ? 1 : h);
+  double size;
+  mcor_read_size(wall->input, i, 1, &size);
+  return mcor_needs_density(wall->input)
+    ? size / wall->mass_max * h * h * (mcor_is_plane(wall->context) ? 1 : h)
+    : size;
 }
 
 /* The first sample that is not before x along the axis. */
@@ -93,16 +92,18 @@ static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[
   for (int s = mcor_wall_first(wall, along - wall->reach); s < wall->count; ++s)
   {
     double d[3];
+    bool near = true;
     for (int a = 0; a < 3; ++a)
     {
       d[a] = wall->sample[s].x[a] - x[a];
       d[a] -= wall->period[a] > 0 ? wall->period[a] * floor(d[a] / wall->period[a] + 0.5) : 0;
+      near = near && fabs(d[a]) <= wall->reach;
     }
     if (wall->axis >= 0 && d[wall->axis] > wall->reach)
     {
       break;
     }
-    const double w = mcor_wall_kernel(options->sph_kernel, d, 1 / scaled);
+    const double w = near ? mcor_wall_kernel(options->sph_kernel, d, 1 / scaled) : 0;
     if (w != 0)
     {
       /* Shares do not depend on the norm, nor on that of two dimensions. */
@@ -121,7 +122,7 @@ static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    const int count = mcor_chunk_of(last - begin);
     mcor_read_positions(wall->input, begin, count, x);
     mcor_read_smoothing_length(wall->context, wall->input, begin, count, h);
     for (int i = 0; i < count; ++i)
@@ -196,8 +197,7 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 {
   const mcor_input* input = wall->input;
   MCOR_TRY(mcor_place_samples(context, wall));
-  wall->mass_max =
-    mcor_is_given(&input->mass) ? mcor_largest(&input->mass, NULL, input->count, 0) : 1;
+  wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(&input->mass, input->count, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
   int slices;
   MCOR_TRY(
@@ -234,16 +234,12 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
     return MCOR_OK;
   }
   mcor_wall* wall = calloc(1, sizeof *wall);
-  int64_t(*weights)[MCOR_SAMPLES][2] = calloc(MCOR_SLICES, sizeof *weights);
-  mcor_status status = mcor_allocated(context, wall && weights);
-  if (status == MCOR_OK)
-  {
-    *wall = (mcor_wall){ .context = context, .input = input, .reach = m->support_max };
-    wall->weights = weights;
-    status = mcor_weigh_samples(context, wall);
-    m->wall_share = status == MCOR_OK ? mcor_median_share(wall) : 0;
-  }
-  free(weights);
+  MCOR_TRY(mcor_allocated(context, wall));
+  wall->context = context;
+  wall->input = input;
+  wall->reach = m->support_max;
+  const mcor_status status = mcor_weigh_samples(context, wall);
+  m->wall_share = status == MCOR_OK ? mcor_median_share(wall) : 0;
   free(wall);
   return status;
 }

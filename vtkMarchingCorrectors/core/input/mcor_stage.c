@@ -80,7 +80,7 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input)
     return 1;
   }
   const mcor_globals* globals = options->globals;
-  return 1 / (globals ? globals->mass_max : mcor_largest(&input->mass, NULL, input->count, 0));
+  return 1 / (globals ? globals->mass_max : mcor_largest(&input->mass, input->count, 0));
 }
 
 typedef struct mcor_stage_job

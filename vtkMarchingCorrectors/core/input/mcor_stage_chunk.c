@@ -39,25 +39,6 @@ void mcor_read_stage_places(const mcor_context* context, const mcor_input* input
   }
 }
 
-static void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out)
-{
-  static const mcor_array one = { .constant = 1 };
-  mcor_read_array(mcor_is_given(&input->volume) ? &input->volume
-      : mcor_is_given(&input->mass)             ? &input->mass
-                                                : &one,
-    first, count, 0, out);
-  if (!mcor_is_given(&input->volume) && mcor_is_given(&input->mass) &&
-    mcor_is_given(&input->density))
-  {
-    double density[MCOR_CHUNK];
-    mcor_read_array(&input->density, first, count, 0, density);
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] /= density[i];
-    }
-  }
-}
-
 void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input, int64_t first,
   const mcor_staging* staging, const mcor_reach_box* reach, mcor_stage_chunk* chunk)
 {

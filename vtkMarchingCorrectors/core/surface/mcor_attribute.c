@@ -10,7 +10,6 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,14 +20,6 @@ static double mcor_component_scale(double largest)
   int exponent = 0;
   frexp(largest, &exponent);
   return ldexp(1, exponent > -1000 ? -exponent : 1000);
-}
-
-void mcor_measure_component(
-  const mcor_input* input, int attribute, int component, mcor_global_component* found)
-{
-  const mcor_array* array = &input->attributes[attribute];
-  found->varies = !mcor_is_constant(array, input->count, component);
-  found->largest = found->varies ? mcor_largest(array, input->solid, input->count, component) : 0;
 }
 
 size_t mcor_count_components(const mcor_input* input)
@@ -56,49 +47,6 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
     "options.globals was measured for %d components of attributes, but the input has %d.",
     globals->component_count, (int)count);
   return MCOR_OK;
-}
-
-/* Least and greatest value of a component, of fluid particles. */
-typedef struct mcor_range_job
-{
-  const mcor_array* array;
-  const uint8_t* solid;
-  int component;
-  double low[MCOR_SLICES], high[MCOR_SLICES];
-} mcor_range_job;
-
-static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_range_job* job = data;
-  double low = DBL_MAX, high = -DBL_MAX;
-  for (int64_t i = first; i < last; ++i)
-  {
-    if (job->solid && job->solid[i])
-    {
-      continue;
-    }
-    const double v = mcor_array_at(job->array, i, job->component);
-    low = v < low ? v : low;
-    high = v > high ? v : high;
-  }
-  job->low[slice] = low;
-  job->high[slice] = high;
-}
-
-void mcor_find_range(
-  const mcor_input* input, int attribute, int component, mcor_global_component* found)
-{
-  mcor_range_job job = {
-    .array = &input->attributes[attribute], .solid = input->solid, .component = component
-  };
-  const int slices = mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_range_slice, &job);
-  found->low = DBL_MAX;
-  found->high = -DBL_MAX;
-  for (int s = 0; s < slices; ++s)
-  {
-    found->low = fmin(found->low, job.low[s]);
-    found->high = fmax(found->high, job.high[s]);
-  }
 }
 
 /* Of samples, a component's shift and scale bring it to [-1, 1]. */
@@ -145,7 +93,7 @@ mcor_status mcor_list_components(
       }
       else
       {
-        (of_surface ? mcor_measure_component : mcor_find_range)(input, a, c, &found);
+        mcor_measure_component(input, a, c, &found);
       }
       if (found.varies || !of_surface)
       {

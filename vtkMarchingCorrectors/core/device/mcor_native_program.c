@@ -1,10 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Asked of the processor itself: the compiler's own question, __builtin_cpu_supports, has an answer in
- * some of its libraries alone. */
+/* Which of the programs compiled ahead are for this processor. It is asked itself: the compiler's own
+ * question, __builtin_cpu_supports, has an answer in some of its libraries alone. */
 
 #include "mcor_native.h"
+
+#include <string.h>
 
 #if defined(__x86_64__)
 #include <cpuid.h>
@@ -34,7 +36,7 @@ static mcor_instructions mcor_ask_processor(void)
 }
 
 /* Asked once, as each launch wants to know: in virtual machines the question takes long. */
-mcor_instructions mcor_own_instructions(void)
+static mcor_instructions mcor_own_instructions(void)
 {
   static atomic_int known; /* and 1 */
   int found = atomic_load_explicit(&known, memory_order_relaxed);
@@ -48,9 +50,42 @@ mcor_instructions mcor_own_instructions(void)
 
 #else
 
-mcor_instructions mcor_own_instructions(void)
+static mcor_instructions mcor_own_instructions(void)
 {
   return MCOR_INSTRUCTIONS_BASE;
 }
 
 #endif
+
+int mcor_best_instructions(void)
+{
+  const int own = (int)mcor_own_instructions();
+  int best = -1;
+  for (const mcor_native_program* p = mcor_native_programs; p->options; ++p)
+  {
+    const int instructions = (int)p->instructions;
+    best = instructions <= own && instructions > best ? instructions : best;
+  }
+  return best;
+}
+
+const mcor_native_program* mcor_find_program(const char* options)
+{
+  const int best = mcor_best_instructions();
+  const char* own = strstr(options, "-DMCOR_PROGRAM");
+  const mcor_native_program* found = NULL;
+  for (const mcor_native_program* p = mcor_native_programs; own && p->options; ++p)
+  {
+    if ((int)p->instructions <= best && strcmp(p->options, own) == 0 &&
+      (!found || p->instructions > found->instructions))
+    {
+      found = p;
+    }
+  }
+  return found;
+}
+
+bool mcor_native_has(const char* options)
+{
+  return mcor_find_program(options) != NULL;
+}

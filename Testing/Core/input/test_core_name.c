@@ -1,0 +1,198 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What arrays are, by their names; and what their values suggest: a period, who is fluid, an iso value. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void test_names(void** state)
+{
+  (void)state;
+  assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "Smoothing_Length"), 0);
+  assert_int_equal(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "smoothing length"), 0);
+  assert_true(mcor_name_priority(MCOR_SMOOTHING_LENGTH, "h") >
+    mcor_name_priority(MCOR_SMOOTHING_LENGTH, "hsml"));
+  assert_int_equal(mcor_name_priority(MCOR_MASS, "m"), 3);
+  assert_true(mcor_name_priority(MCOR_DENSITY, "Particle-Density") > 0);
+  assert_int_equal(mcor_name_priority(MCOR_VOLUME, "Vol"), 3);
+  assert_int_equal(mcor_name_priority(MCOR_VELOCITY, "Vel"), 2);
+  assert_int_equal(mcor_name_priority(MCOR_PARTICLE_ID, "Idp"), 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "ParticleIDs") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "iorig") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_ID, "UnsortedParticle_ID") > 0);
+  assert_int_equal(mcor_name_priority(MCOR_PARTICLE_ID, "SortedParticle_ID"), -1);
+  assert_true(mcor_name_priority(MCOR_VOLUME, "VolumetricMeasure") > 0);
+  const char* const others[] = { "", "mas", "masss", "volume of it", NULL };
+  for (int i = 0; i < 5; ++i)
+  {
+    for (int quantity = 0; quantity < MCOR_QUANTITY_COUNT; ++quantity)
+    {
+      assert_int_equal(mcor_name_priority((mcor_quantity)quantity, others[i]), -1);
+    }
+  }
+  assert_true(mcor_name_priority(MCOR_DENSITY, "Rhop") > 0);
+  assert_true(mcor_name_priority(MCOR_PARTICLE_TYPE, "Type") > 0);
+  assert_string_equal(mcor_find_layout("Idp\nVel\nRhop\nType"), "DualSPHysics");
+  assert_string_equal(mcor_find_layout("gid\nh\nm\nrho\ntag\nu\nv\nw"), "PySPH");
+  assert_string_equal(mcor_find_layout("Masses\nDensities\nSmoothingLengths"), "SWIFT");
+  assert_string_equal(mcor_find_layout("Masses\nParticleIDs\nSmoothingLength"), "GADGET");
+  assert_string_equal(mcor_find_layout("vx\nvy\nvz\nMass\nSmoothing Length"), "SPH-EXA");
+  assert_string_equal(mcor_find_layout("Density\nMass\nh\nvx\nvy\nvz"), "SPH-EXA");
+  assert_string_equal(mcor_find_layout("h\nm\nrho\nvx\nvy\nvz"), "SPH-EXA");
+  assert_string_equal(mcor_find_layout("h\nvx\nvy\nvz\nitype"), "Phantom");
+  assert_string_equal(mcor_find_layout("SmoothingLength\nMass\nDensity\nvx\nvy"), "");
+  assert_string_equal(mcor_find_layout(""), "");
+  assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
+}
+
+/* What lies where: of several the first in the order of the core, and none that is no period. */
+static void test_period_of_field_data(void** state)
+{
+  (void)state;
+  const double bounds[6] = { -1, 1, 0, 0, 0, 0 }, cube = 2, edges[3] = { 2, 0, 4 };
+  const double box[6] = { -1, 3, -2, 2, 5, 6 }, kinds[3] = { 1, 0, 2 }, empty[6] = { 0 };
+  const double wrong[6] = { 1, -1, 0, 0, 0, 0 }, extent[6] = { -1, 0.5, 0, 1, 7, 8 };
+  mcor_field_data all[] = { { "boundaryType", kinds, 3 }, { "box", box, 6 },
+    { "BoxSize", &cube, 1 }, { "BOX_SIZE", edges, 3 }, { "PeriodicBounds", bounds, 6 },
+    { NULL, bounds, 6 } };
+  double period[6];
+  int which;
+  assert_int_equal(mcor_find_period(all, 6, period, &which), 6);
+  assert_int_equal(which, 4);
+  assert_memory_equal(period, bounds, sizeof bounds);
+  assert_int_equal(mcor_find_period(all, 4, period, &which), 3);
+  assert_int_equal(which, 3);
+  assert_memory_equal(period, edges, sizeof edges);
+  assert_int_equal(mcor_find_period(all, 3, period, NULL), 3);
+  assert_true(period[0] == 2 && period[1] == 2 && period[2] == 2);
+  assert_int_equal(mcor_find_period(all, 2, period, &which), 6);
+  assert_true(which == 1 && period[0] == -1 && period[1] == 3 && period[2] == 0 && period[5] == 0);
+  assert_int_equal(mcor_find_period(all, 1, period, &which), 0);
+  assert_int_equal(which, -1);
+  all[4].values = wrong;
+  assert_int_equal(mcor_find_period(all + 4, 1, period, NULL), 0);
+  all[4].values = empty;
+  assert_int_equal(mcor_find_period(all + 4, 1, period, NULL), 0);
+  mcor_place_period((const double[3]){ 2, 2, 2 }, extent, period);
+  assert_true(period[0] == -1 && period[1] == 1); /* around 0 */
+  assert_true(period[2] == 0 && period[3] == 2);  /* from 0 on */
+  assert_true(period[4] == 7 && period[5] == 9);  /* from the first particle on */
+  mcor_place_period((const double[3]){ 0, 2, 2 }, extent, period);
+  assert_true(period[0] == 0 && period[1] == 0);
+  assert_true(mcor_tells_of_period("boundarytype") && mcor_tells_of_period("Box"));
+  assert_false(mcor_tells_of_period("Boxes") || mcor_tells_of_period(NULL));
+}
+
+static void test_fluid_values(void** state)
+{
+  (void)state;
+  const struct
+  {
+    const char* name;
+    double low, high;
+    int clear;
+    double fluid;
+  } cases[] = { { "ParticleType", 0, 1, 1, 0 }, { "particle_type", 0, 1, 1, 0 },
+    { "isFluid", 0, 1, 1, 1 }, { "isBoundary", 0, 1, 1, 0 }, { "Type", 0, 3, 1, 3 },
+    { "Type", 1, 3, 1, 3 }, { "Type", 0, 1, 1, 0 }, { "Type", 3, 3, 0, 0 }, { "Type", 0, 2, 0, 0 },
+    { "ParticleType", 0, 3, 0, 0 }, { "ParticleType", 0, 0, 0, 0 }, { "Type", -1, 3, 0, 0 },
+    { "ParticleType", 0, 5, 0, 0 }, { "Temperature", 0, 1, 0, 0 }, { NULL, 0, 1, 0, 0 } };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    double fluid = -7;
+    const int clear = mcor_find_fluid_value(cases[i].name, cases[i].low, cases[i].high, &fluid);
+    CORE_CHECK(clear == cases[i].clear && fluid == (clear ? cases[i].fluid : -7),
+      "%s from %g to %g: %d, %g", cases[i].name ? cases[i].name : "none", cases[i].low,
+      cases[i].high, clear, fluid);
+  }
+}
+
+static void test_view_ranks(void** state)
+{
+  (void)state;
+  const int velocity = mcor_view_priority("vel", 3, 1, 1),
+            vector = mcor_view_priority("Force", 3, 1, 1),
+            scalar = mcor_view_priority("Pressure", 1, 1, 1),
+            mass = mcor_view_priority("Mass", 1, 1, 1),
+            tensor = mcor_view_priority("Stress", 9, 1, 1),
+            whole = mcor_view_priority("Count", 1, 0, 1);
+  assert_true(velocity >= 0 && velocity < vector && vector < scalar && scalar < mass);
+  assert_true(mass < tensor && tensor < whole);
+  assert_int_equal(mcor_view_priority("Pressure", 1, 1, 0), -1);
+  assert_int_equal(mcor_view_priority("Velocity", 3, 1, 0), -1);
+  assert_int_equal(mcor_view_priority("Idp", 1, 0, 1), -1);
+  assert_int_equal(mcor_view_priority("ParticleType", 1, 1, 1), -1);
+  assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
+}
+
+static int compare_values(const void* a, const void* b)
+{
+  const double x = *(const double*)a, y = *(const double*)b;
+  return (x > y) - (x < y);
+}
+
+/* Of many values the one in the middle of their order, whatever their distribution; solids and values that are
+ * not finite left out. */
+static void test_iso_values(void** state)
+{
+  (void)state;
+  enum
+  {
+    count = 200001
+  };
+  double* value = malloc(count * sizeof *value);
+  double* sorted = malloc(count * sizeof *sorted);
+  uint8_t* solid = calloc(count, 1);
+  assert_true(value && sorted && solid);
+  for (int kind = 0; kind < 6; ++kind)
+  {
+    int64_t fluid = 0;
+    uint32_t seed = 7;
+    for (int64_t i = 0; i < count; ++i)
+    {
+      seed = seed * 1664525u + 1013904223u;
+      const double r = seed / 4294967296.0;
+      const double values[] = { r, floor(10 * r), r < 0.6 ? 3 : r, pow(10, 6 * r - 3),
+        i == 17 ? -1e300 : 1e-300 * r, i == 5 ? -1 : pow(10, 6 * r - 3) };
+      value[i] = i % 1000 == 3 ? NAN : i % 1000 == 4 ? INFINITY : values[kind];
+      solid[i] = i % 7 == 0;
+      if (isfinite(value[i]) && !solid[i])
+      {
+        sorted[fluid++] = value[i];
+      }
+    }
+    qsort(sorted, (size_t)fluid, sizeof *sorted, compare_values);
+    const mcor_input input = {
+      .count = count, .scalar = { value, MCOR_FLOAT64, 1, 0, "A" }, .solid = solid
+    };
+    double range[2], iso;
+    assert_true(mcor_find_iso_value(&input, NULL, range, &iso));
+    assert_true(range[0] == sorted[0] && range[1] == sorted[fluid - 1]);
+    const double logs = sqrt(sorted[fluid / 50] * sorted[fluid - 1 - fluid / 50]);
+    const double expected = kind == 3 ? logs : sorted[(fluid - 1) / 2];
+    CORE_CHECK(fabs(iso - expected) <= (kind == 3 ? 1e-12 : 0), "kind %d: %.17g, not %.17g", kind,
+      iso, expected);
+  }
+  memset(solid, 1, count);
+  const mcor_input none = {
+    .count = count, .scalar = { value, MCOR_FLOAT64, 1, 0, "A" }, .solid = solid
+  };
+  double range[2] = { 1, 2 }, iso = 3;
+  assert_false(mcor_find_iso_value(&none, NULL, range, &iso));
+  assert_true(range[0] == 1 && range[1] == 2 && iso == 3);
+  free(value);
+  free(sorted);
+  free(solid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_names),
+    cmocka_unit_test(test_period_of_field_data), cmocka_unit_test(test_fluid_values),
+    cmocka_unit_test(test_view_ranks), cmocka_unit_test(test_iso_values) };
+  return cmocka_run_group_tests_name("name", tests, NULL, NULL);
+}

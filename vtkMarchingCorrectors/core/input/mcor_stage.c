@@ -14,51 +14,40 @@
 
 #define MCOR_VIEWS 6
 
-/* A buffer of the stage, and the host's view of it. */
-typedef struct mcor_view
-{
-  mcor_buffer* buffer;
-  void** data;
-  size_t element; /* bytes per particle */
-} mcor_view;
-
+/* The host's views of the stage's buffers. */
 static void mcor_list_views(
-  mcor_context* context, mcor_staging* staging, mcor_view views[MCOR_VIEWS])
+  mcor_context* context, mcor_staging* staging, mcor_mapping views[MCOR_VIEWS])
 {
   mcor_stage_data* s = &context->stage;
-  const size_t fix = context->cl.fix_size, real = context->cl.real_size;
-  views[0] = (mcor_view){ &s->x, &staging->x[0], fix };
-  views[1] = (mcor_view){ &s->y, &staging->x[1], fix };
-  views[2] = (mcor_view){ &s->z, &staging->x[2], fix };
-  views[3] = (mcor_view){ &s->inv_h, &staging->inv_h, real };
-  views[4] = (mcor_view){ &s->size, &staging->size, real };
-  views[5] = (mcor_view){ &s->level, &staging->level, 1 };
+  const size_t count = (size_t)staging->count, fix = count * context->cl.fix_size,
+               real = count * context->cl.real_size;
+  views[0] = (mcor_mapping){ &s->x, fix, &staging->x[0] };
+  views[1] = (mcor_mapping){ &s->y, fix, &staging->x[1] };
+  views[2] = (mcor_mapping){ &s->z, fix, &staging->x[2] };
+  views[3] = (mcor_mapping){ &s->inv_h, real, &staging->inv_h };
+  views[4] = (mcor_mapping){ &s->size, real, &staging->size };
+  views[5] = (mcor_mapping){ &s->level, count, &staging->level };
 }
 
-static mcor_status mcor_map_staging(mcor_context* context, int64_t count, mcor_staging* staging)
+static mcor_status mcor_map_staging(mcor_context* context, mcor_staging* staging)
 {
-  mcor_view views[MCOR_VIEWS];
+  mcor_stage_data* s = &context->stage;
+  mcor_buffer* const buffers[MCOR_VIEWS] = { &s->x, &s->y, &s->z, &s->inv_h, &s->size, &s->level };
+  mcor_mapping views[MCOR_VIEWS];
   mcor_list_views(context, staging, views);
   for (int i = 0; i < MCOR_VIEWS; ++i)
   {
-    const size_t bytes = (size_t)count * views[i].element;
-    MCOR_TRY(mcor_reserve(context, views[i].buffer, bytes));
-    MCOR_TRY(mcor_map(context, views[i].buffer, bytes, true, views[i].data));
+    MCOR_TRY(mcor_reserve(context, buffers[i], views[i].bytes));
+    MCOR_TRY(mcor_map(context, buffers[i], views[i].bytes, true, views[i].data));
   }
   return MCOR_OK;
 }
 
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
 {
-  mcor_view views[MCOR_VIEWS];
-  mcor_status status = MCOR_OK;
+  mcor_mapping views[MCOR_VIEWS];
   mcor_list_views(context, staging, views);
-  for (int i = 0; i < MCOR_VIEWS; ++i)
-  {
-    const mcor_status unmapped = mcor_unmap(context, views[i].buffer, views[i].data);
-    status = status == MCOR_OK ? unmapped : status;
-  }
-  return status;
+  return mcor_unmap_all(context, views, MCOR_VIEWS, MCOR_OK);
 }
 
 /* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume (in two
@@ -67,8 +56,7 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
   const mcor_options* options = context->run.options;
-  if (mcor_is_given(&input->volume) ||
-    (mcor_is_given(&input->mass) && mcor_is_given(&input->density)))
+  if (!mcor_needs_density(input))
   {
     /* Of an area, times the smoothing length: see mcor_plane.h. */
     const double plane =
@@ -361,7 +349,7 @@ static mcor_status mcor_make_stage_room(
     MCOR_TRY(mcor_allocated(context, context->source));
     mcor_use_large_pages(context->source, bytes);
   }
-  return staging->count > 0 ? mcor_map_staging(context, staging->count, staging) : MCOR_OK;
+  return staging->count > 0 ? mcor_map_staging(context, staging) : MCOR_OK;
 }
 
 static mcor_status mcor_stage_particles(

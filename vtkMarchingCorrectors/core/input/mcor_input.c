@@ -64,25 +64,11 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
 
 void mcor_read_positions(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
 {
-  if (input->positions.type == MCOR_FLOAT64)
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
   {
-    const double* from = (const double*)input->positions.data + 3 * first;
-    for (int i = 0; i < count; ++i)
-    {
-      x[0][i] = from[3 * i];
-      x[1][i] = from[3 * i + 1];
-      x[2][i] = from[3 * i + 2];
-    }
-  }
-  else
-  {
-    const float* from = (const float*)input->positions.data + 3 * first;
-    for (int i = 0; i < count; ++i)
-    {
-      x[0][i] = (double)from[3 * i];
-      x[1][i] = (double)from[3 * i + 1];
-      x[2][i] = (double)from[3 * i + 2];
-    }
+    mcor_read_array(&positions, first, count, a, x[a]);
   }
 }
 

@@ -29,7 +29,6 @@ vtkStandardNewMacro(vtkMarchingCorrectors);
 
 vtkMarchingCorrectors::vtkMarchingCorrectors()
 {
-  this->SharesRuns = true;
   this->ContourValues->SetNumberOfContours(0);
   this->FreeSurfaceValues->SetValue(0, 0.5);
   this->SetInputArrayToProcess(
@@ -142,7 +141,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 
 void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
 {
-  this->Superclass::FillChoice(choice);
+  static_cast<vtkSPHParticlesChoice&>(choice) = *this;
   this->FillRequests(choice, particles);
   choice.ScalarComponent = this->ScalarComponent;
   choice.FreeSurface = this->FreeSurface != 0;
@@ -186,23 +185,9 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   this->FindFluid(choice, particles);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput input(choice, particles);
-  const bool usable = input.Collect();
-  this->SetUsedNames(&input);
-  if (!usable)
+  if (this->Accept(input, input.Collect(), "no surface") && input.FluidCount > 0 &&
+    this->SetPeriod(particles, options))
   {
-    this->Fail(input.Error);
-  }
-  else if (input.FluidCount == 0)
-  {
-    this->WarnOfNoFluid(choice, "no surface");
-  }
-  else
-  {
-    this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
-    if (!this->SetPeriod(particles, options))
-    {
-      return;
-    }
     this->Extract(input, options, vtkPolyData::SafeDownCast(output));
   }
 }
@@ -273,34 +258,25 @@ void vtkMarchingCorrectors::WarnOfHugeRun()
   }
 }
 
-vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
+vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
 {
   if (this->IsShared())
   {
-    std::copy_n(this->FluidScalarRange, 2, this->NextScalarRange);
-    this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
-    this->NextFluid = this->UsedFluid;
-    this->NextComponents = 0;
-    this->NextArray.clear();
-    this->NextCells = this->EstimatedCells;
-    return *this;
+    this->Next = {};
+    std::copy_n(this->FluidScalarRange, 2, this->Next.ScalarRange);
+    this->Next.Fluid = this->UsedFluid;
+    this->Next.Cells = this->EstimatedCells;
+    return this->Next;
   }
   vtkDataObject* data =
     this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
   if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
   {
-    return *this;
+    return this->Next;
   }
-  const double none = std::numeric_limits<double>::infinity();
   mcor_options options;
   this->FillOptions(options);
-  this->NextScalarRange[0] = none;
-  this->NextScalarRange[1] = -none;
-  this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
-  this->NextCells = 0.0;
-  this->NextComponents = 0;
-  this->NextFluid.clear();
-  this->NextArray.clear();
+  this->Next = {};
   const bool together = this->TakesTogether();
   const vtkSmartPointer<vtkPointSet> all = together ? this->TakeParticles(data) : nullptr;
   for (vtkPointSet* particles :
@@ -308,40 +284,37 @@ vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
   {
     this->LookAhead(particles, options);
   }
-  if (this->NextScalarRange[0] > this->NextScalarRange[1])
-  {
-    std::fill_n(this->NextScalarRange, 2, 0.0);
-  }
   this->LookTime.Modified();
-  return *this;
+  return this->Next;
 }
 
 // What is known does not wait for the rest: the range needs no smoothing length, the number of cells
 // no scalar. Of several blocks the first one's iso value.
 void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
 {
+  vtkAhead& next = this->Next;
   vtkMarchingCorrectorsChoice choice;
   this->FillChoice(choice, particles);
   this->FindFluid(choice, particles);
   choice.InterpolateAttributes = false;
-  this->NextArray =
-    this->NextArray.empty() ? vtkSPHChooseArray(particles->GetPointData()) : this->NextArray;
+  next.Array = next.Array.empty() ? vtkSPHChooseArray(particles->GetPointData()) : next.Array;
   vtkMarchingCorrectorsInput contoured(choice, particles);
   double range[2], value;
   if (!choice.FreeSurface && contoured.CollectContoured() &&
     mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
   {
-    this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
-    this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
-    this->NextIsoValue = std::isnan(this->NextIsoValue) ? value : this->NextIsoValue;
-    this->NextComponents = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
+    const bool isFirst = std::isnan(next.IsoValue);
+    next.ScalarRange[0] = isFirst ? range[0] : std::min(next.ScalarRange[0], range[0]);
+    next.ScalarRange[1] = isFirst ? range[1] : std::max(next.ScalarRange[1], range[1]);
+    next.IsoValue = isFirst ? value : next.IsoValue;
+    next.Components = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
   }
   choice.FreeSurface = true;
   vtkMarchingCorrectorsInput input(choice, particles);
   if (input.Collect())
   {
-    this->NextFluid = input.DescribeFluid();
-    this->NextCells += vtkMarchingCorrectorsEstimateCells(
+    next.Fluid = input.DescribeFluid();
+    next.Cells += vtkMarchingCorrectorsEstimateCells(
       input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
   }
 }

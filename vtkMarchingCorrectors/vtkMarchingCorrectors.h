@@ -91,8 +91,8 @@
 #include "vtkTimeStamp.h" // For members
 
 #include <cstdint> // For members
-#include <limits> // For members
-#include <vector> // For members
+#include <limits>  // For members
+#include <vector>  // For members
 
 class vtkMarchingCorrectorsInput;
 class vtkPointSet;
@@ -199,25 +199,17 @@ public:
     this->SetScalarComponent(component >= 3 ? static_cast<int>(MAGNITUDE) : component);
   }
 
-  ///@{
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
    * the plain sum of the paper.
    */
-  vtkSetMacro(ShepardNormalization, vtkTypeBool);
-  vtkGetMacro(ShepardNormalization, vtkTypeBool);
-  vtkBooleanMacro(ShepardNormalization, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ShepardNormalization);
 
-  ///@{
   /**
    * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. Off by
    * default. When on, the scalar, the contour values and the thresholds are not used.
    */
-  vtkSetMacro(FreeSurface, vtkTypeBool);
-  vtkGetMacro(FreeSurface, vtkTypeBool);
-  vtkBooleanMacro(FreeSurface, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(FreeSurface);
 
   ///@{
   /**
@@ -293,35 +285,25 @@ public:
    * make up the whole. Only the particles that reach the box are evaluated (with pairs as seeds: all,
    * except in the correction). The lattice is that of all particles.
    */
-  vtkSetMacro(UseBox, vtkTypeBool);
-  vtkGetMacro(UseBox, vtkTypeBool);
-  vtkBooleanMacro(UseBox, vtkTypeBool);
+  vtkSPHFlagMacro(UseBox);
   vtkSetVector6Macro(Box, double);
   vtkGetVector6Macro(Box, double);
   ///@}
 
-  ///@{
   /**
    * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines: by lines) where
    * values are above the iso value; they share the points of its border. With SOLIDS_WALL the free surface is
    * closed at walls, too; lines are not. Trimming may leave it open. Off by default. An error with PAIRS or Filled.
    */
-  vtkSetMacro(Capping, vtkTypeBool);
-  vtkGetMacro(Capping, vtkTypeBool);
-  vtkBooleanMacro(Capping, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Capping);
 
-  ///@{
   /**
    * Of particles in a plane, fill the region above the least iso value, off by default: by triangles beside the lines,
    * whose points they share, inside of what trimming leaves. The other values divide it into bands. The cell array
    * "BandValue" has the iso value with which a triangle's band begins, and that of a line. In three dimensions it is
    * an error.
    */
-  vtkSetMacro(Filled, vtkTypeBool);
-  vtkGetMacro(Filled, vtkTypeBool);
-  vtkBooleanMacro(Filled, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Filled);
 
   ///@{
   /**
@@ -356,26 +338,18 @@ public:
   void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
   ///@}
 
-  ///@{
   /**
    * Quick look: vertices by linear interpolation, no correction, normals of the triangles. Off by
    * default.
    */
-  vtkSetMacro(Preview, vtkTypeBool);
-  vtkGetMacro(Preview, vtkTypeBool);
-  vtkBooleanMacro(Preview, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Preview);
 
-  ///@{
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by default.
    * Off keeps the triangles beyond, except for those that NodeThreshold discards. The free surface is not
    * trimmed.
    */
-  vtkSetMacro(Trim, vtkTypeBool);
-  vtkGetMacro(Trim, vtkTypeBool);
-  vtkBooleanMacro(Trim, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Trim);
 
   ///@{
   /**
@@ -449,43 +423,23 @@ public:
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
    *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone.
    */
-  vtkSetMacro(ComputeNormals, vtkTypeBool);
-  vtkGetMacro(ComputeNormals, vtkTypeBool);
-  vtkBooleanMacro(ComputeNormals, vtkTypeBool);
-  vtkSetMacro(ComputeScalars, vtkTypeBool);
-  vtkGetMacro(ComputeScalars, vtkTypeBool);
-  vtkBooleanMacro(ComputeScalars, vtkTypeBool);
-  vtkSetMacro(ComputeGradients, vtkTypeBool);
-  vtkGetMacro(ComputeGradients, vtkTypeBool);
-  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
-  vtkSetMacro(ComputeWeightSum, vtkTypeBool);
-  vtkGetMacro(ComputeWeightSum, vtkTypeBool);
-  vtkBooleanMacro(ComputeWeightSum, vtkTypeBool);
-  vtkSetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  vtkGetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  vtkBooleanMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  vtkSetMacro(ComputeCorrectionLength, vtkTypeBool);
-  vtkGetMacro(ComputeCorrectionLength, vtkTypeBool);
-  vtkBooleanMacro(ComputeCorrectionLength, vtkTypeBool);
-  vtkSetMacro(ComputeResidual, vtkTypeBool);
-  vtkGetMacro(ComputeResidual, vtkTypeBool);
-  vtkBooleanMacro(ComputeResidual, vtkTypeBool);
-  vtkSetMacro(ComputeBoundaryFlag, vtkTypeBool);
-  vtkGetMacro(ComputeBoundaryFlag, vtkTypeBool);
-  vtkBooleanMacro(ComputeBoundaryFlag, vtkTypeBool);
+  vtkSPHFlagMacro(ComputeNormals);
+  vtkSPHFlagMacro(ComputeScalars);
+  vtkSPHFlagMacro(ComputeGradients);
+  vtkSPHFlagMacro(ComputeWeightSum);
+  vtkSPHFlagMacro(ComputeBoundaryEigenvalue);
+  vtkSPHFlagMacro(ComputeCorrectionLength);
+  vtkSPHFlagMacro(ComputeResidual);
+  vtkSPHFlagMacro(ComputeBoundaryFlag);
   ///@}
 
-  ///@{
   /**
    * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method with the
    * kernel; integers, identifiers and strings from the nearest particle. An array that is NaN or infinite
    * at a fluid particle is left out, with a warning, and so is one with the name of a computed array or of
    * the iso value. On by default.
    */
-  vtkSetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkGetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkBooleanMacro(InterpolateAttributes, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(InterpolateAttributes);
 
   ///@{
   /**
@@ -535,12 +489,12 @@ public:
    * 0, 0, or empty: not known, without particles or a scalar. If processes share a run, these are those of
    * the last update, because one process cannot ask the others without waiting for them.
    */
-  double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().NextScalarRange; }
-  double GetNextIsoValue() { return this->LookAhead().NextIsoValue; }
-  int GetNextComponents() { return this->LookAhead().NextComponents; }
-  double GetNextCells() { return this->LookAhead().NextCells; }
-  const char* GetNextFluid() { return this->LookAhead().NextFluid.c_str(); }
-  const char* GetNextArray() { return this->LookAhead().NextArray.c_str(); }
+  double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
+  double GetNextIsoValue() { return this->LookAhead().IsoValue; }
+  int GetNextComponents() { return this->LookAhead().Components; }
+  double GetNextCells() { return this->LookAhead().Cells; }
+  const char* GetNextFluid() { return this->LookAhead().Fluid.c_str(); }
+  const char* GetNextArray() { return this->LookAhead().Array.c_str(); }
   ///@}
 
 protected:
@@ -596,11 +550,6 @@ protected:
   double UsedCubeSize = 0.0;
   std::string SurfaceMeasures;
   double EstimatedCells = 0.0;
-  double NextScalarRange[2] = { 0.0, 0.0 };
-  double NextIsoValue = std::numeric_limits<double>::quiet_NaN();
-  int NextComponents = 0;
-  double NextCells = 0.0;
-  std::string NextFluid, NextArray;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
@@ -621,14 +570,24 @@ private:
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);
   void ClearSummary();
-  vtkMarchingCorrectors& LookAhead();
+  /** What the next update would find. */
+  struct vtkAhead
+  {
+    double ScalarRange[2] = { 0.0, 0.0 };
+    double IsoValue = std::numeric_limits<double>::quiet_NaN();
+    int Components = 0;
+    double Cells = 0.0;
+    std::string Fluid, Array;
+  };
+  vtkAhead& LookAhead();
   void LookAhead(vtkPointSet* particles, const mcor_options& options);
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
   std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
 
-  vtkTimeStamp LookTime; // of the last look ahead
+  vtkAhead Next;
+  vtkTimeStamp LookTime; // when that was found
 };
 
 #endif

@@ -5,7 +5,6 @@
 #include "mcor.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTypes.h"
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -15,6 +14,7 @@
 #include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
@@ -129,7 +129,7 @@ int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
   {
     return this->RequestDataObject(inputVector, outputVector);
   }
@@ -158,6 +158,20 @@ int vtkSPHAlgorithm::RequestDataObject(
     outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
   }
   return 1;
+}
+
+void vtkSPHAlgorithm::AskForAll(vtkInformation* input)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  if (input->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    int extent[6];
+    input->Get(Pipeline::WHOLE_EXTENT(), extent);
+    input->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
+  }
 }
 
 bool vtkSPHAlgorithm::IsAborted()
@@ -220,11 +234,32 @@ void vtkSPHAlgorithm::Warn(const std::string& message)
   vtkWarningMacro(<< this->BlockName << message);
 }
 
-void vtkSPHAlgorithm::WarnOfNoFluid(
-  const vtkSPHParticlesChoice& choice, const std::string& consequence)
+void vtkSPHAlgorithm::WarnOfFluid(
+  vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence)
 {
+  const vtkSPHParticlesChoice& choice = particles.Description;
+  if (fluidCount > 0)
+  {
+    this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+    return;
+  }
   vtkWarningMacro(<< this->BlockName << "No particle has " << choice.FluidArrayName << " = "
                   << choice.FluidValue << ", so there is no fluid and " << consequence << ".");
+}
+
+bool vtkSPHAlgorithm::Accept(
+  vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
+{
+  this->SetUsedNames(&particles);
+  if (isUsable)
+  {
+    this->WarnOfFluid(particles, particles.FluidCount, consequence);
+  }
+  else
+  {
+    this->Fail(particles.Error);
+  }
+  return isUsable;
 }
 
 void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
@@ -244,25 +279,6 @@ void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
   std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
   options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
-}
-
-void vtkSPHAlgorithm::FillChoice(vtkSPHParticlesChoice& choice) const
-{
-  choice.SmoothingLengthArrayName = this->SmoothingLengthArrayName;
-  choice.SmoothingLength = this->SmoothingLength;
-  choice.EstimateSmoothingLength = this->EstimateSmoothingLength != 0;
-  choice.SmoothingLengthIsSupportRadius = this->SmoothingLengthIsSupportRadius != 0;
-  choice.VolumeArrayName = this->VolumeArrayName;
-  choice.MassArrayName = this->MassArrayName;
-  choice.DensityArrayName = this->DensityArrayName;
-  choice.Mass = this->Mass;
-  choice.Density = this->Density;
-  choice.DetectArrays = this->DetectArrays != 0;
-  choice.FluidArrayName = this->FluidArrayName;
-  choice.FluidValue = this->FluidValue;
-  choice.IgnoreSolids = this->IgnoreSolids != 0;
-  choice.Kernel = this->Kernel;
-  choice.ExcludedArrays = this->ExcludedArrays;
 }
 
 // An update that fails has an empty output, and succeeds for the pipeline: ParaView never again updates
@@ -352,7 +368,7 @@ bool vtkSPHAlgorithm::CallCore(
 bool vtkSPHAlgorithm::IsShared() const
 {
 #if MCOR_HAS_RANKS
-  return this->SharesRuns && this->Controller && this->Controller->IsA("vtkMPIController") &&
+  return this->Controller && this->Controller->IsA("vtkMPIController") &&
     this->Controller->GetNumberOfProcesses() > 1;
 #else
   return false;

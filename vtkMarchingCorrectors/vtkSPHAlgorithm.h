@@ -53,11 +53,45 @@ struct mcor_context;
 struct mcor_globals;
 struct mcor_input;
 struct mcor_options;
-struct vtkSPHParticlesChoice;
 struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm : public vtkPolyDataAlgorithm
+/**
+ * A setting that is on or off: SetX(), GetX(), XOn() and XOff().
+ */
+#define vtkSPHFlagMacro(name)                                                                      \
+  vtkSetMacro(name, vtkTypeBool);                                                                  \
+  vtkGetMacro(name, vtkTypeBool);                                                                  \
+  vtkBooleanMacro(name, vtkTypeBool)
+
+#ifndef __VTK_WRAP__
+/**
+ * How particles are described, see the setters of vtkSPHAlgorithm. A run has a copy: an observer may change
+ * the filter meanwhile.
+ */
+struct vtkSPHParticlesChoice
+{
+  std::string SmoothingLengthArrayName;
+  double SmoothingLength = 0.0;
+  vtkTypeBool EstimateSmoothingLength = 0;
+  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
+  std::string VolumeArrayName;
+  std::string MassArrayName;
+  std::string DensityArrayName;
+  double Mass = 0.0;
+  double Density = 0.0;
+  vtkTypeBool DetectArrays = 1;
+  std::string FluidArrayName;
+  double FluidValue = 0.0;
+  vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
+  int Kernel = 0;
+  std::vector<std::string> ExcludedArrays;
+};
+#endif
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm
+  : public vtkPolyDataAlgorithm
+  , protected vtkSPHParticlesChoice
 {
 public:
   vtkAbstractTypeMacro(vtkSPHAlgorithm, vtkPolyDataAlgorithm);
@@ -99,26 +133,18 @@ public:
   vtkGetMacro(SmoothingLength, double);
   ///@}
 
-  ///@{
   /**
    * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
    * without further data. It takes precedence over array and constant. Off by default. The statistics
    * report it as "SmoothingLengthRange".
    */
-  vtkSetMacro(EstimateSmoothingLength, vtkTypeBool);
-  vtkGetMacro(EstimateSmoothingLength, vtkTypeBool);
-  vtkBooleanMacro(EstimateSmoothingLength, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(EstimateSmoothingLength);
 
-  ///@{
   /**
    * The array or constant is the support radius of the kernel (where it becomes 0) instead of the
    * smoothing length. Off by default.
    */
-  vtkSetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  vtkGetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  vtkBooleanMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(SmoothingLengthIsSupportRadius);
 
   ///@{
   /**
@@ -150,7 +176,6 @@ public:
   vtkGetVector6Macro(PeriodicBounds, double);
   ///@}
 
-  ///@{
   /**
    * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds" of six
    * bounds; from "BoxSize" of one or three lengths (GADGET, SWIFT), which begin at 0, at minus half the
@@ -158,19 +183,12 @@ public:
    * with "boundaryType", 1 where periodic (SPH-EXA). With several processes, any of them may have the array.
    * An error if there is none, or if processes have different ones. Off by default.
    */
-  vtkSetMacro(DetectPeriod, vtkTypeBool);
-  vtkGetMacro(DetectPeriod, vtkTypeBool);
-  vtkBooleanMacro(DetectPeriod, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectPeriod);
 
-  ///@{
   /**
    * Find smoothing length, volume, mass and density arrays by their usual names. On by default.
    */
-  vtkSetMacro(DetectArrays, vtkTypeBool);
-  vtkGetMacro(DetectArrays, vtkTypeBool);
-  vtkBooleanMacro(DetectArrays, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectArrays);
 
   ///@{
   /**
@@ -251,17 +269,13 @@ public:
   vtkGetMacro(FluidValue, double);
   ///@}
 
-  ///@{
   /**
    * If no fluid array is named, look for something that clearly tells fluid from walls: an array with a
    * usual name (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
    * together, with names such as "walls" or "boundary", whose particles are then solid. Off by default: a
    * warning then names such arrays and blocks. GetUsedFluid() returns what was found.
    */
-  vtkSetMacro(DetectFluid, vtkTypeBool);
-  vtkGetMacro(DetectFluid, vtkTypeBool);
-  vtkBooleanMacro(DetectFluid, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectFluid);
 
   /**
    * What marked fluid in the last run, such as "ParticleType = 0"; empty: all particles were fluid.
@@ -357,15 +371,11 @@ public:
   vtkGetMacro(DeviceMemoryLimit, int);
   ///@}
 
-  ///@{
   /**
    * Keep the search grid and the node values on the device for the next update. On by default. Off: all
    * memory is freed as soon as an update no longer needs it.
    */
-  vtkSetMacro(KeepDeviceData, vtkTypeBool);
-  vtkGetMacro(KeepDeviceData, vtkTypeBool);
-  vtkBooleanMacro(KeepDeviceData, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(KeepDeviceData);
 
 protected:
   vtkSPHAlgorithm();
@@ -377,6 +387,11 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+
+  /**
+   * Asks for all of an input, whatever part of the output is wanted.
+   */
+  static void AskForAll(vtkInformation* input);
 
   /**
    * The name of the class that Process() makes of a data object of this class, which is no
@@ -412,9 +427,15 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Says that no particle is fluid.
+   * Says that no particle is fluid, and so `consequence`; or that an array tells fluid from solids, and is not used.
    */
-  void WarnOfNoFluid(const vtkSPHParticlesChoice& choice, const std::string& consequence);
+  void WarnOfFluid(
+    vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence);
+
+  /**
+   * Keeps which arrays were found, and warns of the fluid. False, and reported, if the particles are not usable.
+   */
+  bool Accept(vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
 
   /**
    * Warns, naming the block: once in a run of each kind, however many blocks there are. Kinds are
@@ -448,7 +469,7 @@ protected:
     const std::function<int(mcor_context*)>& call);
 
   /**
-   * Whether processes share a run, in a build and a class that can.
+   * Whether processes share a run, in a build that can.
    */
   bool IsShared() const;
 
@@ -464,20 +485,19 @@ protected:
   /** Of all ranks: false where one has a problem, which is reported. */
   bool AgreeDistributed(vtkSPHRanks& ranks, std::string problem);
   /** Whether any rank has fluid; the first one says so if not. */
-  bool HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
-    vtkSPHParticles& particles, const std::string& consequence);
+  bool HasFluidDistributed(
+    vtkSPHRanks& ranks, vtkSPHParticles& particles, const std::string& consequence);
   /** What is global, for a surface, or for mcor_probe and mcor_derive; what the dimension found means for the
    * options. False if that failed. */
   bool MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
     mcor_options& options, bool forSamples, mcor_globals& globals);
 
-  void FillChoice(vtkSPHParticlesChoice& choice) const;
   /** Names the fluid in the choice, where it is to be found, and is. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
   /** The same on all ranks together; these are one's own. */
   void FindFluidDistributed(
     vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
-  int FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
+  int FindDimensionDistributed(vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
   /**
@@ -492,38 +512,22 @@ protected:
   void SetUsedNames(const vtkSPHParticles* particles);
   bool IsAborted();
 
-  std::string SmoothingLengthArrayName;
-  double SmoothingLength = 0.0;
-  vtkTypeBool EstimateSmoothingLength = 0;
-  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
-  std::string VolumeArrayName;
-  std::string MassArrayName;
-  std::string DensityArrayName;
-  double Mass = 0.0;
-  double Density = 0.0;
-  vtkTypeBool DetectArrays = 1;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   vtkTypeBool DetectPeriod = 0;
   std::string UsedSmoothingLengthArrayName;
   std::string UsedVolumeArrayName;
   std::string UsedMassArrayName;
   std::string UsedDensityArrayName;
-  int Kernel = CUBIC_SPLINE;
   double HScaleFactor = 1.0;
   int Dimension = DIMENSION_AUTO;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UsedFluid;
   int Blocks = TOGETHER;
-  vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
-  std::vector<std::string> ExcludedArrays;
   int Precision = SINGLE_PRECISION;
   std::string Device;
   int DeviceMemoryLimit = 0;
   vtkTypeBool KeepDeviceData = 1;
   vtkMultiProcessController* Controller = nullptr;
-  bool SharesRuns = false; ///< whether a subclass's Process() is for many processes
 
   std::string ErrorMessage;
   std::set<int> Warned;  // kinds of warnings that this run has given

@@ -59,14 +59,10 @@ public:
   vtkTypeMacro(vtkSPHGauge, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
    */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(IgnoreSolids);
 
   /**
    * The table.

@@ -18,7 +18,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHSamples.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <limits>
@@ -170,7 +169,6 @@ int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mco
 vtkSPHProbe::vtkSPHProbe()
 {
   this->SetNumberOfInputPorts(2);
-  this->SharesRuns = true;
 }
 
 vtkSPHProbe::~vtkSPHProbe() = default;
@@ -182,7 +180,7 @@ vtkDataObject* vtkSPHProbe::GetSource()
 
 int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 1)
+  if (port == this->GetParticlesPort())
   {
     return this->Superclass::FillInputPortInformation(port, info);
   }
@@ -196,28 +194,15 @@ const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
   return inputClassName;
 }
 
-void vtkSPHProbe::AskForAll(vtkInformation* particles)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (particles && !this->IsShared())
-  {
-    particles->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-    particles->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    particles->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    if (particles->Has(Pipeline::WHOLE_EXTENT()))
-    {
-      int extent[6];
-      particles->Get(Pipeline::WHOLE_EXTENT(), extent);
-      particles->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
-    }
-  }
-}
-
 // Each piece of the points needs all particles; ranks find them by themselves.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  this->AskForAll(inputVector[1]->GetInformationObject(0));
+  vtkInformation* particles = inputVector[this->GetParticlesPort()]->GetInformationObject(0);
+  if (particles && !this->IsShared())
+  {
+    AskForAll(particles);
+  }
   return 1;
 }
 
@@ -250,21 +235,15 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluid(choice, this->Particles);
   vtkSPHParticles input(choice, this->Particles);
   if (this->Particles->GetNumberOfPoints() > 0)
   {
-    const bool usable = input.CollectParticles();
-    this->SetUsedNames(&input);
-    if (!usable)
+    if (!this->Accept(input, input.CollectParticles(), "no point is valid"))
     {
-      this->Fail(input.Error);
       return;
     }
-    input.FluidCount == 0 ? this->WarnOfNoFluid(choice, "no point is valid")
-                          : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
     if (this->InterpolateAttributes)
     {
       input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });

@@ -71,23 +71,15 @@ public:
   vtkDataObject* GetSource();
   ///@}
 
-  ///@{
   /**
    * Also leave solid particles out when volumes are computed from positions. Off by default.
    */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(IgnoreSolids);
 
-  ///@{
   /**
    * Divide the SPH sums by the sum of the weights (Shepard). On by default.
    */
-  vtkSetMacro(ShepardNormalization, vtkTypeBool);
-  vtkGetMacro(ShepardNormalization, vtkTypeBool);
-  vtkBooleanMacro(ShepardNormalization, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ShepardNormalization);
 
   ///@{
   /**
@@ -97,32 +89,22 @@ public:
   vtkGetMacro(WeightThreshold, double);
   ///@}
 
-  ///@{
   /**
    * Add the particles' arrays; off: only WeightSum and the mask. On by default.
    */
-  vtkSetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkGetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkBooleanMacro(InterpolateAttributes, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(InterpolateAttributes);
 
-  ///@{
   /**
    * Add the gradients, unit of the array / L. Off by default.
    */
-  vtkSetMacro(ComputeGradients, vtkTypeBool);
-  vtkGetMacro(ComputeGradients, vtkTypeBool);
-  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ComputeGradients);
 
   ///@{
   /**
    * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by default).
    * NaNOutside is off by default.
    */
-  vtkSetMacro(NaNOutside, vtkTypeBool);
-  vtkGetMacro(NaNOutside, vtkTypeBool);
-  vtkBooleanMacro(NaNOutside, vtkTypeBool);
+  vtkSPHFlagMacro(NaNOutside);
   vtkSetMacro(NullValue, double);
   vtkGetMacro(NullValue, double);
   ///@}
@@ -156,8 +138,8 @@ protected:
   double NullValue = 0.0;
   std::string ValidPointMaskArrayName = "vtkValidPointMask";
 
-  /** Asks for all particles, whatever part of the points is wanted. */
-  void AskForAll(vtkInformation* particles);
+  /** Behind the points, where these are an input. */
+  int GetParticlesPort() { return this->GetNumberOfInputPorts() - 1; }
 
   vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
 

@@ -61,12 +61,6 @@ vtkSPHResample::vtkSPHResample()
 
 vtkSPHResample::~vtkSPHResample() = default;
 
-// The particles, which the superclass has at another port.
-int vtkSPHResample::FillInputPortInformation(int, vtkInformation* info)
-{
-  return this->Superclass::FillInputPortInformation(1, info);
-}
-
 const char* vtkSPHResample::GetOutputClassName(const char*)
 {
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
@@ -87,14 +81,6 @@ int vtkSPHResample::RequestInformation(
   {
     info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
   }
-  return 1;
-}
-
-// Each part needs all particles; ranks find them by themselves.
-int vtkSPHResample::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
-{
-  this->AskForAll(inputVector[0]->GetInformationObject(0));
   return 1;
 }
 
@@ -120,8 +106,7 @@ int vtkSPHResample::RequestData(
 // False where no particle is fluid.
 bool vtkSPHResample::FindBounds(double bounds[6])
 {
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   double ends[6];
 #if MCOR_HAS_RANKS
   if (this->IsShared())

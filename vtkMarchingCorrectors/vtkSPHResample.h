@@ -54,15 +54,11 @@ public:
   void SetShapeToVolume() { this->SetShape(VOLUME); }
   ///@}
 
-  ///@{
   /**
    * Fit Origin, Point1 and Point2, or Bounds to the fluid's particles instead of taking what is set. On by
    * default.
    */
-  vtkSetMacro(FitBounds, vtkTypeBool);
-  vtkGetMacro(FitBounds, vtkTypeBool);
-  vtkBooleanMacro(FitBounds, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(FitBounds);
 
   ///@{
   /**
@@ -108,23 +104,16 @@ public:
   vtkGetVector3Macro(Dimensions, int);
   ///@}
 
-  ///@{
   /**
    * Leave quads of a slice out that have a corner without fluid. On by default.
    */
-  vtkSetMacro(OnlyFluid, vtkTypeBool);
-  vtkGetMacro(OnlyFluid, vtkTypeBool);
-  vtkBooleanMacro(OnlyFluid, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(OnlyFluid);
 
 protected:
   vtkSPHResample();
   ~vtkSPHResample() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;

@@ -423,7 +423,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
                 self._set_versions(particles, arguments)
             self._context.run(lambda handle: lib.mcor_extract(
                 handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)),
-                arguments.options, self._report, lambda: lib.mcor_free_surface(ctypes.byref(surface)))
+                arguments.options, self._report)
         except BaseException as failure:
             self._signatures = (None, None)
             if isinstance(failure, DeviceError):

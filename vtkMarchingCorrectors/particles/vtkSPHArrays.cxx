@@ -3,9 +3,9 @@
 #include "vtkSPHArrays.h"
 
 #include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSPHReals.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkVariant.h"
@@ -34,9 +34,19 @@ vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkI
   }
   void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
   float* floats = static_cast<float*>(kept ? kept : values);
-  auto array = vtkSPHAdopt<vtkFloatArray>(floats, components, count > 0 ? tuples : 0);
+  auto array = vtkSPHAdopt(floats, components, count > 0 ? tuples : 0);
   values = count > 0 ? nullptr : values;
   return array;
+}
+
+template <typename ArrayT, typename ValueT>
+void AddTuple(vtkFieldData* data, const char* name, std::initializer_list<ValueT> values)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkSPHAddArray(data, name, array);
 }
 
 // One component per phase, building the program and the total; 0 so far.
@@ -63,7 +73,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   {
     return RoundToFloat(values, components, tuples);
   }
-  return vtkSPHAdopt<vtkDoubleArray>(values, components, tuples);
+  return vtkSPHAdopt(values, components, tuples);
 }
 
 void vtkSPHAddArray(
@@ -75,21 +85,13 @@ void vtkSPHAddArray(
 
 void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values)
 {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetNumberOfComponents(static_cast<int>(values.size()));
-  array->SetNumberOfTuples(1);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkSPHAddArray(data, name, array);
+  AddTuple<vtkDoubleArray>(data, name, values);
 }
 
 void vtkSPHAddCount(
   vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values)
 {
-  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
-  array->SetNumberOfComponents(static_cast<int>(values.size()));
-  array->SetNumberOfTuples(1);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkSPHAddArray(data, name, array);
+  AddTuple<vtkTypeInt64Array>(data, name, values);
 }
 
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text)
@@ -187,9 +189,8 @@ void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
     array->GetRange(range, c);
     varies = varies || range[0] < range[1];
   }
-  const int type = array->GetDataType();
   choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
-    type == VTK_FLOAT || type == VTK_DOUBLE, varies);
+    vtkSPHIsReal(array), varies);
 }
 }
 

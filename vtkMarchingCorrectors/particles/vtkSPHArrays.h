@@ -10,6 +10,7 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkSmartPointer.h"
+#include "vtkTypeTraits.h"
 
 #include <cstdint>
 #include <initializer_list>
@@ -18,14 +19,15 @@
 class vtkPointSet;
 
 /** Hands a malloc'ed buffer over to a VTK array. */
-template <typename ArrayT, typename ValueT>
-vtkSmartPointer<ArrayT> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
+template <typename ValueT>
+vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
 {
-  auto array = vtkSmartPointer<ArrayT>::New();
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(vtkTypeTraits<ValueT>::VTK_TYPE_ID));
   array->SetNumberOfComponents(components);
   if (values && tuples > 0)
   {
-    array->SetArray(values, tuples * components, 0, ArrayT::VTK_DATA_ARRAY_FREE);
+    array->SetVoidArray(values, tuples * components, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
     values = nullptr;
   }
   return array;

@@ -2,25 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHParticles.h"
 
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cstring>
 
 namespace
 {
-bool IsReal(vtkAbstractArray* array)
-{
-  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-}
-
 /** An array without values has no pointer, which to the core would be a constant. */
 const void* OrEmpty(const void* values)
 {
@@ -206,7 +200,7 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
     }
     const vtkSPHAttribute attribute = { array, NameOf(array), array->GetNumberOfComponents() };
     vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
-    if (numbers && IsReal(numbers))
+    if (numbers && vtkSPHIsReal(numbers))
     {
       this->Interpolated.push_back(attribute);
       this->Attributes.push_back(this->View(numbers));
@@ -284,21 +278,10 @@ mcor_array vtkSPHParticles::View(vtkDataArray* array)
   this->Names.push_back(NameOf(array));
   view.name = array->GetName() ? this->Names.back().c_str() : nullptr;
   view.components = array->GetNumberOfComponents();
-  if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array))
-  {
-    view.type = MCOR_FLOAT32;
-    view.data = OrEmpty(floats->GetPointer(0));
-    this->Viewed.push_back(array);
-    return view;
-  }
-  vtkSmartPointer<vtkDataArray> doubles = array;
-  if (!vtkAOSDataArrayTemplate<double>::FastDownCast(array))
-  {
-    doubles = vtkMarchingCorrectorsCopyAsDouble(array);
-  }
-  view.type = MCOR_FLOAT64;
-  view.data = OrEmpty(doubles->GetVoidPointer(0));
-  this->Viewed.push_back(doubles);
+  const vtkSmartPointer<vtkDataArray> real = vtkSPHAsReal(array);
+  view.type = real->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
+  view.data = OrEmpty(real->GetVoidPointer(0));
+  this->Viewed.push_back(real);
   return view;
 }
 
@@ -367,7 +350,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
   bool isFloat = true;
   for (vtkDataArray* part : parts)
   {
-    if (!part || !IsReal(part) || part->GetNumberOfComponents() != 1 ||
+    if (!part || !vtkSPHIsReal(part) || part->GetNumberOfComponents() != 1 ||
       part->GetNumberOfTuples() != this->Core.count)
     {
       return nullptr;

@@ -11,6 +11,7 @@
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkPointSet.h"
+#include "vtkSPHAlgorithm.h"
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
@@ -27,28 +28,6 @@ struct vtkSPHRequest
   vtkSmartPointer<vtkAbstractArray> Array;
   std::string Name;
   bool OnPoints = true;
-};
-
-/**
- * What the user chose about the particles, copied: an observer may change the filter while it runs.
- */
-struct vtkSPHParticlesChoice
-{
-  std::string SmoothingLengthArrayName;
-  double SmoothingLength = 0.0;
-  bool EstimateSmoothingLength = false;
-  bool SmoothingLengthIsSupportRadius = false;
-  std::string VolumeArrayName;
-  std::string MassArrayName;
-  std::string DensityArrayName;
-  double Mass = 0.0;
-  double Density = 0.0;
-  bool DetectArrays = true;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
-  bool IgnoreSolids = false;
-  int Kernel = MCOR_CUBIC_SPLINE;
-  std::vector<std::string> ExcludedArrays;
 };
 
 /**

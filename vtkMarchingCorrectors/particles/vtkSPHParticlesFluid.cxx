@@ -3,9 +3,9 @@
 // Which particles are fluid: as chosen, or as an array tells.
 #include "vtkSPHParticles.h"
 
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ bool vtkSPHParticles::CollectSolids()
   }
   this->Solid.resize(std::max<size_t>(static_cast<size_t>(this->Core.count), 1));
   this->FluidCount =
-    vtkMarchingCorrectorsMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
+    vtkSPHMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
   this->Core.solid = this->Solid.data();
   return true;
 }
@@ -74,8 +74,8 @@ void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* poin
 
 bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
 {
-  const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
-    points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
+  const std::map<double, vtkIdType> counts =
+    vtkSPHCountValues(points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
   const bool whole = std::all_of(counts.begin(), counts.end(),
     [](const std::pair<const double, vtkIdType>& count)
     { return count.first == std::floor(count.first); });
@@ -103,8 +103,8 @@ std::string vtkSPHParticles::DescribeUnusedType()
   {
     std::vector<double> values;
     std::vector<std::int64_t> counts;
-    for (const auto& count : vtkMarchingCorrectorsCountValues(
-           this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
+    for (const auto& count :
+      vtkSPHCountValues(this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
     {
       values.push_back(count.first);
       counts.push_back(count.second);

@@ -89,7 +89,7 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   const bool isUsable = mine.Collect();
   this->SetUsedNames(&mine);
   if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error) ||
-    !this->HasFluidDistributed(ranks, choice, mine, "no surface") ||
+    !this->HasFluidDistributed(ranks, mine, "no surface") ||
     !this->SetPeriodDistributed(ranks, own, options))
   {
     return;

@@ -51,15 +51,14 @@ bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
   return good;
 }
 
-bool vtkSPHAlgorithm::HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
-  vtkSPHParticles& particles, const std::string& consequence)
+bool vtkSPHAlgorithm::HasFluidDistributed(
+  vtkSPHRanks& ranks, vtkSPHParticles& particles, const std::string& consequence)
 {
   std::int64_t fluid = particles.FluidCount;
   ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
   if (ranks.GetRank() == 0)
   {
-    fluid == 0 ? this->WarnOfNoFluid(choice, consequence)
-               : this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+    this->WarnOfFluid(particles, fluid, consequence);
   }
   return fluid > 0;
 }
@@ -167,8 +166,9 @@ void vtkSPHAlgorithm::FindFluidDistributed(
   }
 }
 
-int vtkSPHAlgorithm::FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
+int vtkSPHAlgorithm::FindDimensionDistributed(vtkPointSet* particles)
 {
+  vtkSPHParticlesChoice choice(*this);
   vtkSPHRanks ranks(this->Controller);
   const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
   this->FindFluidDistributed(ranks, choice, own);

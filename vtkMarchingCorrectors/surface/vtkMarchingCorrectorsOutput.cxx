@@ -7,7 +7,6 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkMarchingCorrectorsInput.h"
@@ -19,7 +18,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
 #include "vtkTypeInt64Array.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -199,42 +197,26 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
 {
   vtkPointData* pointData = output->GetPointData();
   mcor_surface& s = this->Surface;
-  const vtkIdType count = s.point_count;
-  if (s.normals)
+  const auto add = [&](const char* name, auto*& values, int components)
   {
-    vtkSPHAddArray(pointData, "Normals", vtkSPHAdopt<vtkFloatArray>(s.normals, 3, count));
-    if (s.statistics.dimension != 2 || this->Options.filled) // VTK would draw lines dark by them
+    if (values)
     {
-      pointData->SetActiveNormals("Normals");
+      vtkSPHAddArray(pointData, name, vtkSPHAdopt(values, components, s.point_count));
     }
-  }
-  if (s.gradients)
+  };
+  // VTK would draw lines dark by them.
+  const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
+  add("Normals", s.normals, 3);
+  if (areActive)
   {
-    vtkSPHAddArray(pointData, "Gradients", vtkSPHAdopt<vtkDoubleArray>(s.gradients, 3, count));
+    pointData->SetActiveNormals("Normals");
   }
-  if (s.weight_sum)
-  {
-    vtkSPHAddArray(pointData, "WeightSum", vtkSPHAdopt<vtkFloatArray>(s.weight_sum, 1, count));
-  }
-  if (s.boundary_eigenvalue)
-  {
-    vtkSPHAddArray(
-      pointData, "BoundaryEigenvalue", vtkSPHAdopt<vtkFloatArray>(s.boundary_eigenvalue, 1, count));
-  }
-  if (s.correction_length)
-  {
-    vtkSPHAddArray(
-      pointData, "CorrectionLength", vtkSPHAdopt<vtkFloatArray>(s.correction_length, 1, count));
-  }
-  if (s.residual)
-  {
-    vtkSPHAddArray(pointData, "Residual", vtkSPHAdopt<vtkFloatArray>(s.residual, 1, count));
-  }
-  if (s.boundary_flag)
-  {
-    vtkSPHAddArray(
-      pointData, "BoundaryFlag", vtkSPHAdopt<vtkUnsignedCharArray>(s.boundary_flag, 1, count));
-  }
+  add("Gradients", s.gradients, 3);
+  add("WeightSum", s.weight_sum, 1);
+  add("BoundaryEigenvalue", s.boundary_eigenvalue, 1);
+  add("CorrectionLength", s.correction_length, 1);
+  add("Residual", s.residual, 1);
+  add("BoundaryFlag", s.boundary_flag, 1);
 }
 
 void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsSummary.h"
 
+#include "vtkSPHReals.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,16 +12,6 @@
 
 namespace
 {
-double ValueOf(const mcor_array& array, std::int64_t i)
-{
-  if (!array.data)
-  {
-    return array.constant;
-  }
-  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
-                                    : static_cast<const double*>(array.data)[i];
-}
-
 bool HasOneLength(const mcor_input& input)
 {
   return input.estimate_smoothing_length || !input.smoothing_length.data;
@@ -27,7 +19,7 @@ bool HasOneLength(const mcor_input& input)
 
 double LengthOf(const mcor_input& input, std::int64_t i)
 {
-  return input.estimate_smoothing_length ? 1.0 : ValueOf(input.smoothing_length, i);
+  return input.estimate_smoothing_length ? 1.0 : vtkSPHValueOf(input.smoothing_length, i);
 }
 
 /** Whether the particle is in the box. */
@@ -36,7 +28,7 @@ bool IsIn(const double box[6], const mcor_input& input, std::int64_t i)
   bool isIn = true;
   for (int a = 0; a < 3; ++a)
   {
-    const double x = ValueOf(input.positions, 3 * i + a);
+    const double x = vtkSPHValueOf(input.positions, 3 * i + a);
     const double low = box[2 * a], high = box[2 * a + 1];
     isIn = isIn && x >= low && (x < high || x == low); // a flat box is around flat particles
   }

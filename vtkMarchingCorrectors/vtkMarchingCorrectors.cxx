@@ -7,7 +7,6 @@
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
-#include "vtkMarchingCorrectorsSummary.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -17,9 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <memory>
+#include <sstream>
+#include <string>
 #include <vector>
 
 static_assert(static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) == MCOR_MAGNITUDE,
@@ -201,8 +200,8 @@ void vtkMarchingCorrectors::Extract(
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
-  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(
-    input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
+  this->EstimatedCells =
+    mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   this->WarnOfHugeRun();
   mcor_surface surface = {};
   if (!this->CallCore(input, options,
@@ -230,9 +229,9 @@ void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
   }
   for (int kind = 0; kind < MCOR_WARNING_COUNT; ++kind)
   {
-    const std::unique_ptr<char, decltype(&std::free)> text(
-      mcor_describe_warning(static_cast<mcor_warning>(kind), &core, &options, &surface), std::free);
-    this->WarnOnce(kind, text ? text.get() : "");
+    this->WarnOnce(kind,
+      vtkSPHTakeText(
+        mcor_describe_warning(static_cast<mcor_warning>(kind), &core, &options, &surface)));
   }
 }
 
@@ -250,11 +249,10 @@ void vtkMarchingCorrectors::ClearSummary()
 
 void vtkMarchingCorrectors::WarnOfHugeRun()
 {
-  if (this->EstimatedCells >= vtkMarchingCorrectorsHugeCells)
+  const std::string warning = vtkSPHTakeText(mcor_describe_estimate(this->EstimatedCells));
+  if (!warning.empty())
   {
-    vtkWarningMacro(<< this->BlockName << "The fluid fills about " << this->EstimatedCells
-                    << " cells of the virtual grid, so this may take minutes and much memory. "
-                    << "A larger cube size takes less; the run can be cancelled.");
+    this->Warn(warning);
   }
 }
 
@@ -314,8 +312,8 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
   if (input.Collect())
   {
     next.Fluid = input.DescribeFluid();
-    next.Cells += vtkMarchingCorrectorsEstimateCells(
-      input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
+    next.Cells +=
+      mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   }
 }
 
@@ -327,12 +325,18 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
     this->FluidScalarRange[0] = statistics.scalar_min;
     this->FluidScalarRange[1] = statistics.scalar_max;
   }
-  this->UsedIsoValues = vtkMarchingCorrectorsDescribeIsoValues(options);
+  std::ostringstream isoValues;
+  for (int i = 0; i < options.iso_count; ++i)
+  {
+    isoValues << (i ? ", " : "") << options.iso_values[i];
+  }
+  this->UsedIsoValues = isoValues.str();
   this->IsoValueArrayName = options.iso_value ? input.IsoValueName : "";
-  this->UsedSmoothingLength = vtkMarchingCorrectorsDescribeSmoothingLength(input.Core, statistics);
-  this->UsedVolume = vtkMarchingCorrectorsDescribeVolume(input.Core);
+  this->UsedSmoothingLength =
+    vtkSPHTakeText(mcor_describe_smoothing_length(&input.Core, &statistics));
+  this->UsedVolume = vtkSPHTakeText(mcor_describe_volume(&input.Core));
   this->UsedCubeSize = statistics.cube_size;
-  this->SurfaceMeasures = vtkMarchingCorrectorsDescribeMeasures(statistics);
+  this->SurfaceMeasures = vtkSPHTakeText(mcor_describe_measures(&statistics));
 }
 
 void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
@@ -351,12 +355,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles")
      << "\n";
   os << indent << "Use Box: " << this->UseBox << "\n";
-  os << indent << "Box:";
-  for (const double side : this->Box)
-  {
-    os << " " << side;
-  }
-  os << "\n";
+  PrintNumbers(os, indent, "Box", this->Box, 6);
   os << indent << "Capping: " << this->Capping << "\n";
   os << indent << "Filled: " << this->Filled << "\n";
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
@@ -381,8 +380,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Output Points Precision: " << this->OutputPointsPrecision << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Iteration Limit: " << this->IterationLimit << "\n";
-  os << indent << "Fluid Scalar Range: " << this->FluidScalarRange[0] << " "
-     << this->FluidScalarRange[1] << "\n";
+  PrintNumbers(os, indent, "Fluid Scalar Range", this->FluidScalarRange, 2);
   os << indent << "Used Iso Values: " << this->UsedIsoValues << "\n";
   os << indent << "Used Smoothing Length: " << this->UsedSmoothingLength << "\n";
   os << indent << "Used Volume: " << this->UsedVolume << "\n";

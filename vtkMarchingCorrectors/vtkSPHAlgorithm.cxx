@@ -18,7 +18,6 @@
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 
 // These are handed to the core as they are.
@@ -92,9 +91,7 @@ std::string vtkSPHAlgorithm::ListDevices()
 {
   char* text = nullptr;
   mcor_list_devices(&text);
-  const std::string result = text ? text : "";
-  std::free(text);
-  return result;
+  return vtkSPHTakeText(text);
 }
 
 vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
@@ -386,6 +383,14 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
   this->UsedFluid = particles ? particles->DescribeFluid() : "";
 }
 
+void vtkSPHAlgorithm::PrintNumbers(
+  ostream& os, vtkIndent indent, const char* name, const double* values, int count)
+{
+  os << indent << name << ":";
+  std::for_each(values, values + count, [&os](double value) { os << " " << value; });
+  os << "\n";
+}
+
 void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -402,12 +407,8 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Mass: " << this->Mass << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
-  os << indent << "Periodic Bounds:";
-  for (const double side : this->PeriodicBounds)
-  {
-    os << " " << side;
-  }
-  os << "\n" << indent << "Detect Period: " << this->DetectPeriod << "\n";
+  PrintNumbers(os, indent, "Periodic Bounds", this->PeriodicBounds, 6);
+  os << indent << "Detect Period: " << this->DetectPeriod << "\n";
   printName("Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
   printName("Used Volume Array Name", this->UsedVolumeArrayName);
   printName("Used Mass Array Name", this->UsedMassArrayName);

@@ -510,6 +510,9 @@ protected:
   /** False, and reported, where none was found, or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles);
+  /** A line "Name: 1 2 3" of PrintSelf(). */
+  static void PrintNumbers(
+    ostream& os, vtkIndent indent, const char* name, const double* values, int count);
   bool IsAborted();
 
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

@@ -282,17 +282,10 @@ void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Level: " << this->Level << "\n";
   os << indent << "Time: " << this->Time << "\n";
-  os << indent << "Point1: " << this->Point1[0] << " " << this->Point1[1] << " " << this->Point1[2]
-     << "\n";
-  os << indent << "Point2: " << this->Point2[0] << " " << this->Point2[1] << " " << this->Point2[2]
-     << "\n";
+  PrintNumbers(os, indent, "Point1", this->Point1, 3);
+  PrintNumbers(os, indent, "Point2", this->Point2, 3);
   for (const Gauge& gauge : this->Gauges)
   {
-    os << indent << "Gauge " << gauge.Name << ":";
-    for (const double c : gauge.Ends)
-    {
-      os << " " << c;
-    }
-    os << "\n";
+    PrintNumbers(os, indent, ("Gauge " + gauge.Name).c_str(), gauge.Ends.data(), 6);
   }
 }

@@ -3,7 +3,6 @@
 #include "vtkSPHProbe.h"
 
 #include "mcor.h"
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -17,6 +16,7 @@
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHReals.h"
 #include "vtkSPHSamples.h"
 
 #include <algorithm>
@@ -36,7 +36,8 @@ public:
     : Data(data)
   {
     auto* set = vtkPointSet::SafeDownCast(data);
-    this->Stored = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+    vtkDataArray* stored = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+    this->Stored = stored ? vtkSPHAsReal(stored) : nullptr;
   }
 
   /** Valid until the next call. */
@@ -44,16 +45,11 @@ public:
   {
     mcor_array view = {};
     view.components = 3;
-    if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(this->Stored))
+    view.type =
+      this->Stored && this->Stored->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
+    if (this->Stored)
     {
-      view.type = MCOR_FLOAT32;
-      view.data = floats->GetPointer(3 * first);
-      return view;
-    }
-    view.type = MCOR_FLOAT64;
-    if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(this->Stored))
-    {
-      view.data = doubles->GetPointer(3 * first);
+      view.data = this->Stored->GetVoidPointer(3 * first);
       return view;
     }
     if (count > this->Room)
@@ -107,7 +103,7 @@ private:
   }
 
   vtkDataSet* Data;
-  vtkDataArray* Stored;
+  vtkSmartPointer<vtkDataArray> Stored;
   std::unique_ptr<double[]> Copied; // not a vector, which would write zeros first
   vtkIdType Room = 0;
 };

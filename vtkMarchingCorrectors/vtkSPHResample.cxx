@@ -202,19 +202,13 @@ void vtkSPHResample::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   const char* const shapes[] = { "slice", "line", "volume" };
-  const auto print = [&](const char* name, const double* values, int count)
-  {
-    os << indent << name << ":";
-    std::for_each(values, values + count, [&os](double value) { os << " " << value; });
-    os << "\n";
-  };
   os << indent << "Shape: " << shapes[this->Shape] << "\n";
   os << indent << "Fit Bounds: " << this->FitBounds << "\n";
-  print("Origin", this->Origin, 3);
-  print("Normal", this->Normal, 3);
-  print("Point1", this->Point1, 3);
-  print("Point2", this->Point2, 3);
-  print("Bounds", this->Bounds, 6);
+  PrintNumbers(os, indent, "Origin", this->Origin, 3);
+  PrintNumbers(os, indent, "Normal", this->Normal, 3);
+  PrintNumbers(os, indent, "Point1", this->Point1, 3);
+  PrintNumbers(os, indent, "Point2", this->Point2, 3);
+  PrintNumbers(os, indent, "Bounds", this->Bounds, 6);
   os << indent << "Resolution: " << this->Resolution << "\n";
   os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
      << this->Dimensions[2] << "\n";

@@ -66,6 +66,13 @@ void AddSeconds(vtkFieldData* run)
 }
 }
 
+std::string vtkSPHTakeText(char* text)
+{
+  const std::string taken = text ? text : "";
+  std::free(text);
+  return taken;
+}
+
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat)
 {
@@ -178,19 +185,47 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
   }
 }
 
+std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
+  const std::function<void(std::vector<double>&)>& merge)
+{
+  std::vector<double> ends; // least value, and minus the greatest, of each component
+  for (const auto& each : arrays)
+  {
+    for (int c = 0; c < each.second; ++c)
+    {
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (each.first && each.first->GetNumberOfTuples() > 0)
+      {
+        each.first->GetRange(range, c);
+      }
+      ends.insert(ends.end(), { range[0], -range[1] });
+    }
+  }
+  if (merge)
+  {
+    merge(ends);
+  }
+  std::vector<bool> varying;
+  const double* end = ends.data();
+  for (const auto& each : arrays)
+  {
+    bool varies = false;
+    for (int c = 0; c < each.second; ++c, end += 2)
+    {
+      varies = varies || end[0] < -end[1];
+    }
+    varying.push_back(varies);
+  }
+  return varying;
+}
+
 namespace
 {
 void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
 {
-  bool varies = false;
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-  {
-    double range[2];
-    array->GetRange(range, c);
-    varies = varies || range[0] < range[1];
-  }
-  choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
-    vtkSPHIsReal(array), varies);
+  const int components = array->GetNumberOfComponents();
+  choice.Consider(array->GetName() ? array->GetName() : "", components, vtkSPHIsReal(array),
+    vtkSPHFindVarying({ { array, components } }, nullptr).front());
 }
 }
 

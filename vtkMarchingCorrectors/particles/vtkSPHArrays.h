@@ -13,10 +13,16 @@
 #include "vtkTypeTraits.h"
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <string>
+#include <utility>
+#include <vector>
 
 class vtkPointSet;
+
+/** A text of the core, which is freed; empty for null. */
+std::string vtkSPHTakeText(char* text);
 
 /** Hands a malloc'ed buffer over to a VTK array. */
 template <typename ValueT>
@@ -58,6 +64,13 @@ struct vtkSPHArrayChoice
   std::string Best; ///< empty where none is fit
   int Rank = -1;
 };
+
+/**
+ * Which of the arrays, of so many components, have two different values in one. Null: there is none here. `merge`
+ * makes each number the least of all processes that share the arrays; all of them call this.
+ */
+std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
+  const std::function<void(std::vector<double>&)>& merge);
 
 /** The same of all that it has. */
 std::string vtkSPHChooseArray(vtkFieldData* data);

@@ -5,13 +5,12 @@
 
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <memory>
 #include <sstream>
 
 bool vtkSPHParticles::CollectSolids()
@@ -109,13 +108,11 @@ std::string vtkSPHParticles::DescribeUnusedType()
       values.push_back(count.first);
       counts.push_back(count.second);
     }
-    const std::unique_ptr<char, decltype(&std::free)> text(
-      mcor_describe_unused_type(
-        name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())),
-      std::free);
-    if (text)
+    const std::string text = vtkSPHTakeText(mcor_describe_unused_type(
+      name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())));
+    if (!text.empty())
     {
-      return text.get();
+      return text;
     }
   }
   return {};

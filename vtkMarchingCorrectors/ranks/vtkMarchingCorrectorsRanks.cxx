@@ -10,7 +10,6 @@
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
-#include "vtkMarchingCorrectorsSummary.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
@@ -56,9 +55,9 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValuesDistributed(
 void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
 {
-  double least = vtkMarchingCorrectorsLeastLength(own);
+  double least = mcor_least_smoothing_length(&own);
   ranks.Reduce(vtkSPHRanks::LEAST, &least, 1);
-  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(own, options, least);
+  this->EstimatedCells = mcor_estimate_cells(&own, &options, least);
   ranks.Reduce(vtkSPHRanks::SUM, &this->EstimatedCells, 1);
   if (ranks.GetRank() == 0)
   {

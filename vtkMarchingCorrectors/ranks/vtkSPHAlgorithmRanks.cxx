@@ -14,9 +14,11 @@
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
 #include "vtkSPHRanksParticles.h"
+#include "vtkSPHReals.h"
 
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
@@ -98,36 +100,23 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
     return request;
   }
   vtkPointData* data = particles->GetPointData();
-  std::vector<double> ends; // least value, and minus the greatest, of each component
+  std::vector<std::pair<vtkDataArray*, int>> arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
-    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
-    {
-      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
-      if (array->GetNumberOfTuples() > 0)
-      {
-        array->GetRange(range, c);
-      }
-      ends.insert(ends.end(), { range[0], -range[1] });
-    }
+    arrays.emplace_back(array, array ? array->GetNumberOfComponents() : 0);
   }
-  ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size()));
+  const std::vector<bool> varying = vtkSPHFindVarying(arrays,
+    [&ranks](std::vector<double>& ends)
+    { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
   vtkSPHArrayChoice all, active;
-  const double* end = ends.data();
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  for (size_t i = 0; i < arrays.size(); ++i)
   {
-    vtkDataArray* array = data->GetArray(i);
-    bool varies = false;
-    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c, end += 2)
-    {
-      varies = varies || end[0] < -end[1];
-    }
+    vtkDataArray* array = arrays[i].first;
     vtkSPHArrayChoice& choice = array && array == request.Array ? active : all;
     if (array && array->GetName())
     {
-      choice.Consider(array->GetName(), array->GetNumberOfComponents(),
-        array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE, varies);
+      choice.Consider(array->GetName(), arrays[i].second, vtkSPHIsReal(array), varying[i]);
     }
   }
   const std::string& best = active.Best.empty() ? all.Best : active.Best;

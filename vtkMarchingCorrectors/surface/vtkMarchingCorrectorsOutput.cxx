@@ -236,38 +236,17 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const
 {
   vtkPointData* data = output->GetPointData();
-  std::vector<double> ends; // least value, and minus the greatest, of each component
-  const auto look = [&](const std::string& name, int components)
+  const std::vector<vtkSPHAttribute>& attributes = this->Input.Interpolated;
+  std::vector<std::pair<vtkDataArray*, int>> arrays;
+  for (const vtkSPHAttribute& attribute : attributes)
   {
-    vtkDataArray* array = data->GetArray(name.c_str());
-    for (int c = 0; c < components; ++c)
-    {
-      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
-      if (array && array->GetNumberOfTuples() > 0)
-      {
-        array->GetRange(range, c);
-      }
-      ends.insert(ends.end(), { range[0], -range[1] });
-    }
-  };
-  for (const vtkSPHAttribute& attribute : this->Input.Interpolated)
-  {
-    look(attribute.Name, attribute.Components);
+    arrays.emplace_back(data->GetArray(attribute.Name.c_str()), attribute.Components);
   }
-  if (merge)
-  {
-    merge(ends);
-  }
+  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
   vtkSPHArrayChoice choice;
-  const double* end = ends.data();
-  for (const vtkSPHAttribute& attribute : this->Input.Interpolated)
+  for (size_t i = 0; i < attributes.size(); ++i)
   {
-    bool varies = false;
-    for (int c = 0; c < attribute.Components; ++c, end += 2)
-    {
-      varies = varies || end[0] < -end[1];
-    }
-    choice.Consider(attribute.Name, attribute.Components, true, varies);
+    choice.Consider(attributes[i].Name, attributes[i].Components, true, varying[i]);
   }
   choice.Consider(this->Input.IsoValueName, 1, true, this->Options.iso_count > 1);
   if (data->HasArray(choice.Best.c_str()))

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -60,25 +61,21 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 }
 
 // What is not a number, as an empty row of a panel's list, is none.
-std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrectorsInput& input)
+bool vtkMarchingCorrectors::ListIsoValues(
+  const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list)
 {
-  vtkContourValues* values =
-    input.Choice.FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
-  std::vector<double> list(
-    values->GetValues(), values->GetValues() + values->GetNumberOfContours());
-  list.erase(
-    std::remove_if(list.begin(), list.end(), [](double value) { return std::isnan(value); }),
-    list.end());
-  if (list.empty())
+  const bool isFree = input.Choice.FreeSurface;
+  vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
+  std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
+    std::back_inserter(list), [](double value) { return !std::isnan(value); });
+  if (!list.empty())
   {
-    double range[2], value = 0.5;
-    if (!input.Choice.FreeSurface && !mcor_find_iso_value(&input.Core, nullptr, range, &value))
-    {
-      value = 0.0;
-    }
-    list.push_back(value);
+    return true;
   }
-  return list;
+  double range[2], value = isFree ? 0.5 : 0.0;
+  const bool isFound = isFree || mcor_find_iso_value(&input.Core, ranks, range, &value);
+  list.push_back(value);
+  return isFound;
 }
 
 void vtkMarchingCorrectors::SetPanelBoxPosition(double x, double y, double z)
@@ -196,7 +193,8 @@ void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
 {
   const int precision = this->OutputPointsPrecision;
-  const std::vector<double> isoValues = this->ListIsoValues(input);
+  std::vector<double> isoValues;
+  this->ListIsoValues(input, nullptr, isoValues);
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = input.FromNearest.empty() ? 0 : 1;

@@ -97,6 +97,7 @@
 class vtkMarchingCorrectorsInput;
 class vtkPointSet;
 struct mcor_input;
+struct mcor_ranks;
 struct mcor_statistics;
 struct mcor_surface;
 struct vtkMarchingCorrectorsChoice;
@@ -556,8 +557,6 @@ private:
   void operator=(const vtkMarchingCorrectors&) = delete;
 
   void ProcessDistributed(vtkPointSet* particles, vtkPolyData* output);
-  std::vector<double> ListIsoValuesDistributed(
-    vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
   void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
   void ExtractDistributed(vtkSPHRanks& ranks, vtkMarchingCorrectorsChoice& choice, vtkPolyData* own,
     const vtkSPHRanksRoute& route, mcor_options options, std::int64_t count, vtkPolyData* output);
@@ -584,7 +583,9 @@ private:
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
+  /** Those that were given, or a usual one, over all ranks unless that is null. False if there is none. */
+  bool ListIsoValues(
+    const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list);
 
   vtkAhead Next;
   vtkTimeStamp LookTime; // when that was found

@@ -160,10 +160,6 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
     {
       return false;
     }
-    if (!this->HasOneComponent(role, array))
-    {
-      return false;
-    }
   }
   else if (this->Description.DetectArrays)
   {
@@ -198,28 +194,31 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
     {
       continue;
     }
-    const vtkSPHAttribute attribute = { array, NameOf(array), array->GetNumberOfComponents() };
     vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
     if (numbers && vtkSPHIsReal(numbers))
     {
-      this->Interpolated.push_back(attribute);
-      this->Attributes.push_back(this->View(numbers));
+      this->Interpolate(numbers);
     }
     else
     {
-      this->FromNearest.push_back(attribute);
+      this->FromNearest.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
     }
   }
   const vtkSmartPointer<vtkDataArray> velocity = this->JoinVelocity();
   if (velocity && this->IsCarried(velocity, taken))
   {
-    this->Interpolated.push_back({ velocity, NameOf(velocity), 3 });
-    this->Attributes.push_back(this->View(velocity));
+    this->Interpolate(velocity);
   }
   for (const vtkSPHAttribute& attribute : this->Interpolated)
   {
     SignObject(this->AttributesSignature, attribute.Array);
   }
+}
+
+void vtkSPHParticles::Interpolate(vtkDataArray* array)
+{
+  this->Interpolated.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
+  this->Attributes.push_back(this->View(array));
   this->Core.attributes = this->Attributes.data();
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
 }
@@ -238,15 +237,11 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
     return false;
   }
   vtkDataArray* array = this->Check("derivatives", request.Name, request.Array);
-  if (!array)
+  if (array)
   {
-    return false;
+    this->Interpolate(array);
   }
-  this->Interpolated.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
-  this->Attributes.push_back(this->View(array));
-  this->Core.attributes = this->Attributes.data();
-  this->Core.attribute_count = 1;
-  return true;
+  return array != nullptr;
 }
 
 // The data set's own time is part of it: users change arrays in place and tell the data set.
@@ -287,7 +282,16 @@ mcor_array vtkSPHParticles::View(vtkDataArray* array)
 
 vtkDataArray* vtkSPHParticles::Find(const std::string& role, const std::string& name)
 {
-  return this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
+  vtkDataArray* array =
+    this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
+  const int components = array ? array->GetNumberOfComponents() : 1;
+  if (components != 1)
+  {
+    this->Error = "The " + role + " array " + Quote(name) + " has " + std::to_string(components) +
+      " components; it must have one.";
+    return nullptr;
+  }
+  return array;
 }
 
 vtkDataArray* vtkSPHParticles::Check(
@@ -317,17 +321,6 @@ vtkDataArray* vtkSPHParticles::Check(
     return nullptr;
   }
   return numbers;
-}
-
-bool vtkSPHParticles::HasOneComponent(const std::string& role, vtkDataArray* array)
-{
-  const int components = array->GetNumberOfComponents();
-  if (components != 1)
-  {
-    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " has " +
-      std::to_string(components) + " components; it must have one.";
-  }
-  return components == 1;
 }
 
 std::string vtkSPHParticles::FindLayout() const

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -23,7 +24,7 @@ bool vtkSPHParticles::CollectSolids()
     return true;
   }
   this->Fluid = this->Find("fluid", name);
-  if (!this->Fluid || !this->HasOneComponent("fluid", this->Fluid))
+  if (!this->Fluid)
   {
     return false;
   }
@@ -57,33 +58,38 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
   return list;
 }
 
-void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points)
+void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
+  const std::function<void(double ends[2])>& reduce)
 {
-  double range[2];
+  const double none = std::numeric_limits<double>::infinity();
   for (const std::string& name : ListTypes(choice, points))
   {
-    if (FindWholeRange(points, name, range) &&
-      mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
+    const std::map<double, vtkIdType> counts =
+      vtkSPHCountValues(points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
+    const bool areWhole = !counts.empty() &&
+      std::all_of(counts.begin(), counts.end(),
+        [](const std::pair<const double, vtkIdType>& count)
+        { return count.first == std::floor(count.first); });
+    double ends[2] = { none, none };
+    if (areWhole)
+    {
+      ends[0] = counts.begin()->first;
+      ends[1] = -counts.rbegin()->first;
+    }
+    else if (points->GetNumberOfPoints() > 0)
+    {
+      ends[0] = -none;
+    }
+    if (reduce)
+    {
+      reduce(ends);
+    }
+    if (mcor_find_fluid_value(name.c_str(), ends[0], -ends[1], &choice.FluidValue))
     {
       choice.FluidArrayName = name;
       return;
     }
   }
-}
-
-bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
-{
-  const std::map<double, vtkIdType> counts =
-    vtkSPHCountValues(points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
-  const bool whole = std::all_of(counts.begin(), counts.end(),
-    [](const std::pair<const double, vtkIdType>& count)
-    { return count.first == std::floor(count.first); });
-  if (whole && !counts.empty())
-  {
-    range[0] = counts.begin()->first;
-    range[1] = counts.rbegin()->first;
-  }
-  return whole && !counts.empty();
 }
 
 std::string vtkSPHParticles::DescribeFluid() const

@@ -39,19 +39,6 @@ struct vtkMarchingCorrectorsRun
   const mcor_plane& Plane;
 };
 
-std::vector<double> vtkMarchingCorrectors::ListIsoValuesDistributed(
-  vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input)
-{
-  if (this->GetNumberOfContours() > 0 || input.Choice.FreeSurface)
-  {
-    return this->ListIsoValues(input);
-  }
-  vtkSPHRanksCalls calls(ranks);
-  double range[2], value = 0.0;
-  calls.End(!mcor_find_iso_value(&input.Core, calls.Get(), range, &value));
-  return { value };
-}
-
 void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
 {
@@ -93,7 +80,9 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   {
     return;
   }
-  const std::vector<double> isoValues = this->ListIsoValuesDistributed(ranks, mine);
+  std::vector<double> isoValues;
+  vtkSPHRanksCalls calls(ranks);
+  calls.End(!this->ListIsoValues(mine, calls.Get(), isoValues));
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = mine.FromNearest.empty() ? 0 : 1;

@@ -131,27 +131,10 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
 void vtkSPHAlgorithm::FindFluidDistributed(
   vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles)
 {
-  const double none = std::numeric_limits<double>::infinity();
-  for (const std::string& name :
-    this->DetectFluid ? vtkSPHParticles::ListTypes(choice, particles) : std::vector<std::string>())
+  if (this->DetectFluid)
   {
-    double ends[2] = { none, none };
-    double range[2];
-    if (vtkSPHParticles::FindWholeRange(particles, name, range))
-    {
-      ends[0] = range[0];
-      ends[1] = -range[1];
-    }
-    else if (particles->GetNumberOfPoints() > 0)
-    {
-      ends[0] = -none;
-    }
-    ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
-    if (mcor_find_fluid_value(name.c_str(), ends[0], -ends[1], &choice.FluidValue))
-    {
-      choice.FluidArrayName = name;
-      return;
-    }
+    vtkSPHParticles::FindFluid(
+      choice, particles, [&ranks](double ends[2]) { ranks.Reduce(vtkSPHRanks::LEAST, ends, 2); });
   }
 }
 

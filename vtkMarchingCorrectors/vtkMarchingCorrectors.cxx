@@ -211,9 +211,7 @@ void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsOutput builder(input, options, surface);
   this->Summarize(input, options, surface.statistics);
   this->WarnOf(input, surface, input.Core, options);
-  builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
-  builder.AddMeasures(this->RunStatistics);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
 }

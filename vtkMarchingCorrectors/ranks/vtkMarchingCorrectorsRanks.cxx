@@ -190,9 +190,7 @@ void vtkMarchingCorrectors::FinishDistributed(
   }
   this->Summarize(run.Input, run.Options, surface.statistics);
   vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
-  builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
-  builder.AddMeasures(this->RunStatistics);
   vtkSPHAddCount(this->RunStatistics, "Points", { points });
   vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
   if (lines)

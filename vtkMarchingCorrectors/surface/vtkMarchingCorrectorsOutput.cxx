@@ -81,6 +81,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
+  this->AddIsoValues(output->GetFieldData());
   this->ChooseActive(output, merge);
 }
 
@@ -263,6 +264,7 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
   this->AddIsoValues(run);
   this->AddParameters(run);
   vtkSPHAddRunStatistics(run, this->Surface.statistics);
+  this->AddMeasures(run);
 }
 
 void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const

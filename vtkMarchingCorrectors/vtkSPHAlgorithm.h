@@ -455,9 +455,10 @@ protected:
 
   /**
    * The first one. Where none was named, the active scalars if they are fit to be looked at, see
-   * mcor_view_priority(), else the array that is fittest.
+   * mcor_view_priority(), else the array that is fittest. `merge` makes each number the least of all ranks.
    */
-  vtkSPHRequest FindFirstRequest(vtkPointSet* particles);
+  vtkSPHRequest FindFirstRequest(
+    vtkPointSet* particles, const std::function<void(std::vector<double>&)>& merge = nullptr);
   /** The same on all ranks together; these are one's own. */
   vtkSPHRequest FindFirstRequestDistributed(vtkSPHRanks& ranks, vtkPointSet* particles);
 

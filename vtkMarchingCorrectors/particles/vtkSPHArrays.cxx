@@ -185,8 +185,8 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
   }
 }
 
-std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
-  const std::function<void(std::vector<double>&)>& merge)
+std::vector<bool> vtkSPHFindVarying(
+  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMerge& merge)
 {
   std::vector<double> ends; // least value, and minus the greatest, of each component
   for (const auto& each : arrays)
@@ -219,32 +219,36 @@ std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, i
   return varying;
 }
 
-namespace
+std::string vtkSPHChooseArray(vtkFieldData* data, vtkDataArray* preferred, const vtkSPHMerge& merge)
 {
-void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
-{
-  const int components = array->GetNumberOfComponents();
-  choice.Consider(array->GetName() ? array->GetName() : "", components, vtkSPHIsReal(array),
-    vtkSPHFindVarying({ { array, components } }, nullptr).front());
-}
-}
-
-std::string vtkSPHChooseArray(vtkFieldData* data)
-{
-  vtkSPHArrayChoice choice;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  vtkSPHArrayChoice first, other;
+  const auto consider = [](vtkSPHArrayChoice& choice, vtkDataArray* array, bool varies)
   {
-    if (vtkDataArray* array = data->GetArray(i))
+    choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
+      vtkSPHIsReal(array), varies);
+  };
+  if (preferred && !merge) // without a look at all values of others
+  {
+    consider(first, preferred,
+      vtkSPHFindVarying({ { preferred, preferred->GetNumberOfComponents() } }).front());
+    if (first.Rank >= 0)
     {
-      Consider(array, choice);
+      return first.Best;
     }
   }
-  return choice.Best;
-}
-
-bool vtkSPHIsFit(vtkDataArray* array)
-{
-  vtkSPHArrayChoice choice;
-  Consider(array, choice);
-  return choice.Rank >= 0;
+  std::vector<std::pair<vtkDataArray*, int>> arrays;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    if (array && array->GetName())
+    {
+      arrays.emplace_back(array, array->GetNumberOfComponents());
+    }
+  }
+  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
+  for (size_t i = 0; i < arrays.size(); ++i)
+  {
+    consider(arrays[i].first == preferred ? first : other, arrays[i].first, varying[i]);
+  }
+  return first.Rank >= 0 ? first.Best : other.Best;
 }

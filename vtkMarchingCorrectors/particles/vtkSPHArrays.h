@@ -65,17 +65,16 @@ struct vtkSPHArrayChoice
   int Rank = -1;
 };
 
-/**
- * Which of the arrays, of so many components, have two different values in one. Null: there is none here. `merge`
- * makes each number the least of all processes that share the arrays; all of them call this.
- */
-std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
-  const std::function<void(std::vector<double>&)>& merge);
+/** Makes each number the least of all processes that share the arrays, which all call this. */
+using vtkSPHMerge = std::function<void(std::vector<double>&)>;
 
-/** The same of all that it has. */
-std::string vtkSPHChooseArray(vtkFieldData* data);
-/** Whether an array is fit. */
-bool vtkSPHIsFit(vtkDataArray* array);
+/** Which of the arrays, of so many components, have two different values in one. Null: there is none here. */
+std::vector<bool> vtkSPHFindVarying(
+  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMerge& merge = nullptr);
+
+/** The name of an array to be looked at: of `preferred` if it is fit, else the fittest; empty where none is. */
+std::string vtkSPHChooseArray(
+  vtkFieldData* data, vtkDataArray* preferred = nullptr, const vtkSPHMerge& merge = nullptr);
 
 /** A line "Name: values" for each array. */
 std::string vtkSPHDescribe(vtkFieldData* data);

@@ -158,7 +158,7 @@ void JoinPoints(const Blocks& blocks, vtkPolyData* joined, vtkIdType total)
 void MarkWallParticles(const Blocks& blocks, const std::vector<bool>& walls, vtkPolyData* joined)
 {
   auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  marks->SetName(vtkSPHWallBlockName);
+  marks->SetName(MCOR_WALL_BLOCK);
   marks->SetNumberOfTuples(joined->GetNumberOfPoints());
   vtkIdType at = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b)
@@ -186,8 +186,6 @@ std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
   return all;
 }
 }
-
-const char* const vtkSPHWallBlockName = MCOR_WALL_BLOCK;
 
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
 {

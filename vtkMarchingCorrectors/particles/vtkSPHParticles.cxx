@@ -7,7 +7,6 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHBlocks.h"
 #include "vtkSPHReals.h"
 
 #include <algorithm>
@@ -178,7 +177,7 @@ bool vtkSPHParticles::IsCarried(
 {
   const std::string name = NameOf(array);
   return !name.empty() && !Contains(taken, name) &&
-    name != vtkDataSetAttributes::GhostArrayName() && name != vtkSPHWallBlockName &&
+    name != vtkDataSetAttributes::GhostArrayName() && name != MCOR_WALL_BLOCK &&
     !Contains(this->Description.ExcludedArrays, name) &&
     array->GetNumberOfTuples() == this->Core.count;
 }

@@ -6,19 +6,15 @@
 
 #include "mcor.h"
 #include "mcor_parts.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHReals.h"
 
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
@@ -94,37 +90,9 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
 vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
   vtkSPHRanks& ranks, vtkPointSet* particles)
 {
-  vtkSPHRequest request = this->FindRequest(0, particles);
-  if (!request.Name.empty())
-  {
-    return request;
-  }
-  vtkPointData* data = particles->GetPointData();
-  std::vector<std::pair<vtkDataArray*, int>> arrays;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    arrays.emplace_back(array, array ? array->GetNumberOfComponents() : 0);
-  }
-  const std::vector<bool> varying = vtkSPHFindVarying(arrays,
+  return this->FindFirstRequest(particles,
     [&ranks](std::vector<double>& ends)
     { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
-  vtkSPHArrayChoice all, active;
-  for (size_t i = 0; i < arrays.size(); ++i)
-  {
-    vtkDataArray* array = arrays[i].first;
-    vtkSPHArrayChoice& choice = array && array == request.Array ? active : all;
-    if (array && array->GetName())
-    {
-      choice.Consider(array->GetName(), arrays[i].second, vtkSPHIsReal(array), varying[i]);
-    }
-  }
-  const std::string& best = active.Best.empty() ? all.Best : active.Best;
-  if (!best.empty())
-  {
-    request.Array = data->GetAbstractArray(best.c_str());
-  }
-  return request;
 }
 
 // All have the same arrays, or no particles.

@@ -187,8 +187,7 @@ public:
    * Which component of the scalar array to contour; MAGNITUDE (-1, the default) is the Euclidean
    * norm. Not used for arrays with one component.
    */
-  vtkSetMacro(ScalarComponent, int);
-  vtkGetMacro(ScalarComponent, int);
+  vtkSPHValueMacro(ScalarComponent, int);
   void SetScalarComponentToMagnitude() { this->SetScalarComponent(MAGNITUDE); }
   ///@}
 
@@ -238,10 +237,8 @@ public:
    * differ between time steps or pieces of a data set. CubeSize sets the size itself, unit L; 0 (the
    * default): use CubeSizeFactor. Nodes lie at multiples of the size, from the origin of the coordinates.
    */
-  vtkSetMacro(CubeSizeFactor, double);
-  vtkGetMacro(CubeSizeFactor, double);
-  vtkSetMacro(CubeSize, double);
-  vtkGetMacro(CubeSize, double);
+  vtkSPHValueMacro(CubeSizeFactor, double);
+  vtkSPHValueMacro(CubeSize, double);
   ///@}
 
   ///@{
@@ -254,12 +251,10 @@ public:
    * statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and "HighestLevel", which periods
    * may lower.
    */
-  vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
-  vtkGetMacro(CubeSizeMode, int);
+  vtkSPHClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
   void SetCubeSizeModeToAdaptive() { this->SetCubeSizeMode(ADAPTIVE); }
-  vtkSetClampMacro(CubeLevelLimit, int, 0, 24);
-  vtkGetMacro(CubeLevelLimit, int);
+  vtkSPHClampMacro(CubeLevelLimit, int, 0, 24);
   ///@}
 
   ///@{
@@ -273,8 +268,7 @@ public:
     BY_PARTICLES = 0,
     BY_WORK
   };
-  vtkSetClampMacro(Partition, int, BY_PARTICLES, BY_WORK);
-  vtkGetMacro(Partition, int);
+  vtkSPHClampMacro(Partition, int, BY_PARTICLES, BY_WORK);
   void SetPartitionToByParticles() { this->SetPartition(BY_PARTICLES); }
   void SetPartitionToByWork() { this->SetPartition(BY_WORK); }
   ///@}
@@ -320,8 +314,7 @@ public:
    * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
    * pair of particles lies on both sides of the fluid's surface.
    */
-  vtkSetClampMacro(SeedMode, int, COMPLETE, PAIRS);
-  vtkGetMacro(SeedMode, int);
+  vtkSPHClampMacro(SeedMode, int, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }
   void SetSeedModeToPairs() { this->SetSeedMode(PAIRS); }
   ///@}
@@ -333,8 +326,7 @@ public:
    * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are those of
    * the field. The surface is a manifold with both.
    */
-  vtkSetClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
-  vtkGetMacro(Topology, int);
+  vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
   void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
   ///@}
@@ -352,13 +344,10 @@ public:
    */
   vtkSPHFlagMacro(Trim);
 
-  ///@{
   /**
    * Cells with a node whose weight sum is lower are discarded. No unit, 0.1 by default.
    */
-  vtkSetMacro(NodeThreshold, double);
-  vtkGetMacro(NodeThreshold, double);
-  ///@}
+  vtkSPHValueMacro(NodeThreshold, double);
 
   ///@{
   /**
@@ -369,20 +358,16 @@ public:
    * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid, 0.9
    * smoothing lengths from a flat surface. Near 0.5 the border is ragged.
    */
-  vtkSetClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
-  vtkGetMacro(BoundaryDetection, int);
+  vtkSPHClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
   void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
   void SetBoundaryDetectionToEigenvalue() { this->SetBoundaryDetection(EIGENVALUE); }
   ///@}
 
-  ///@{
   /**
    * Triangles are trimmed where the weight sum (or the eigenvalue, see BoundaryDetection) is lower.
    * No unit, 0.5 by default.
    */
-  vtkSetMacro(VertexThreshold, double);
-  vtkGetMacro(VertexThreshold, double);
-  ///@}
+  vtkSPHValueMacro(VertexThreshold, double);
 
   ///@{
   /**
@@ -396,7 +381,6 @@ public:
   vtkGetMacro(Solids, int);
   ///@}
 
-  ///@{
   /**
    * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does not
    * end at them. -1, the default: measured, as the median share at the solids that face the fluid, so that
@@ -404,9 +388,7 @@ public:
    * fluid, about half way between the particles of both; greater shares are farther into the wall.
    * GetRunStatistics() reports the share in use.
    */
-  vtkSetMacro(WallShare, double);
-  vtkGetMacro(WallShare, double);
-  ///@}
+  vtkSPHValueMacro(WallShare, double);
 
   ///@{
   /**
@@ -442,14 +424,11 @@ public:
    */
   vtkSPHFlagMacro(InterpolateAttributes);
 
-  ///@{
   /**
    * Precision of the output points: vtkAlgorithm::DEFAULT_PRECISION (as the input points, the
    * default), SINGLE_PRECISION or DOUBLE_PRECISION.
    */
-  vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
-  vtkGetMacro(OutputPointsPrecision, int);
-  ///@}
+  vtkSPHClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
 
   ///@{
   /**
@@ -457,10 +436,8 @@ public:
    * scalar (no unit, > 0, 1e-6 by default) and the vertex is within 2e-5 cubes of the surface, or after
    * IterationLimit iterations (1 to 255, 30 by default).
    */
-  vtkSetMacro(Tolerance, double);
-  vtkGetMacro(Tolerance, double);
-  vtkSetClampMacro(IterationLimit, int, 1, 255);
-  vtkGetMacro(IterationLimit, int);
+  vtkSPHValueMacro(Tolerance, double);
+  vtkSPHClampMacro(IterationLimit, int, 1, 255);
   ///@}
 
   ///@{

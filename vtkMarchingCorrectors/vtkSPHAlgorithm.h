@@ -57,11 +57,19 @@ struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
 /**
- * A setting that is on or off: SetX(), GetX(), XOn() and XOff().
+ * A setting of the filters, by VTK's macros: SetX() and GetX(); of a flag XOn() and XOff(), too.
  */
+#define vtkSPHValueMacro(name, type)                                                               \
+  vtkSetMacro(name, type);                                                                         \
+  vtkGetMacro(name, type)
+#define vtkSPHClampMacro(name, type, least, most)                                                  \
+  vtkSetClampMacro(name, type, least, most);                                                       \
+  vtkGetMacro(name, type)
+#define vtkSPHTextMacro(name)                                                                      \
+  vtkSetStdStringFromCharMacro(name);                                                              \
+  vtkGetCharFromStdStringMacro(name)
 #define vtkSPHFlagMacro(name)                                                                      \
-  vtkSetMacro(name, vtkTypeBool);                                                                  \
-  vtkGetMacro(name, vtkTypeBool);                                                                  \
+  vtkSPHValueMacro(name, vtkTypeBool);                                                             \
   vtkBooleanMacro(name, vtkTypeBool)
 
 #ifndef __VTK_WRAP__
@@ -116,22 +124,16 @@ public:
     SINC_6 = 8          ///< (sin x / x)^6, x = pi r / (2 h), support radius 2 h
   };
 
-  ///@{
   /**
    * The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name.
    */
-  vtkSetStdStringFromCharMacro(SmoothingLengthArrayName);
-  vtkGetCharFromStdStringMacro(SmoothingLengthArrayName);
-  ///@}
+  vtkSPHTextMacro(SmoothingLengthArrayName);
 
-  ///@{
   /**
    * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no array,
    * set this, or EstimateSmoothingLength.
    */
-  vtkSetMacro(SmoothingLength, double);
-  vtkGetMacro(SmoothingLength, double);
-  ///@}
+  vtkSPHValueMacro(SmoothingLength, double);
 
   /**
    * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
@@ -153,16 +155,11 @@ public:
    * densities may have any units that give volumes in L^3; densities are used only with masses. Mass and
    * Density: one value for all particles; 0 (the default): use the array.
    */
-  vtkSetStdStringFromCharMacro(VolumeArrayName);
-  vtkGetCharFromStdStringMacro(VolumeArrayName);
-  vtkSetStdStringFromCharMacro(MassArrayName);
-  vtkGetCharFromStdStringMacro(MassArrayName);
-  vtkSetStdStringFromCharMacro(DensityArrayName);
-  vtkGetCharFromStdStringMacro(DensityArrayName);
-  vtkSetMacro(Mass, double);
-  vtkGetMacro(Mass, double);
-  vtkSetMacro(Density, double);
-  vtkGetMacro(Density, double);
+  vtkSPHTextMacro(VolumeArrayName);
+  vtkSPHTextMacro(MassArrayName);
+  vtkSPHTextMacro(DensityArrayName);
+  vtkSPHValueMacro(Mass, double);
+  vtkSPHValueMacro(Density, double);
   ///@}
 
   ///@{
@@ -204,8 +201,7 @@ public:
   /**
    * The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation.
    */
-  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
-  vtkGetMacro(Kernel, int);
+  vtkSPHClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
   void SetKernelToCubicSpline() { this->SetKernel(CUBIC_SPLINE); }
   void SetKernelToQuadratic() { this->SetKernel(QUADRATIC); }
   void SetKernelToMPrime4() { this->SetKernel(M_PRIME_4); }
@@ -227,14 +223,11 @@ public:
   static const char* GetKernelName(int kernel);
   ///@}
 
-  ///@{
   /**
    * The kernels use this factor times the smoothing length; volumes do not change. No unit, > 0,
    * 1 by default. Less than 1 gives less smoothing.
    */
-  vtkSetMacro(HScaleFactor, double);
-  vtkGetMacro(HScaleFactor, double);
-  ///@}
+  vtkSPHValueMacro(HScaleFactor, double);
 
   ///@{
   /**
@@ -248,8 +241,7 @@ public:
     DIMENSION_2 = 2,
     DIMENSION_3 = 3
   };
-  vtkSetClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
-  vtkGetMacro(Dimension, int);
+  vtkSPHClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
   ///@}
 
   /**
@@ -263,10 +255,8 @@ public:
    * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
    * default.
    */
-  vtkSetStdStringFromCharMacro(FluidArrayName);
-  vtkGetCharFromStdStringMacro(FluidArrayName);
-  vtkSetMacro(FluidValue, double);
-  vtkGetMacro(FluidValue, double);
+  vtkSPHTextMacro(FluidArrayName);
+  vtkSPHValueMacro(FluidValue, double);
   ///@}
 
   /**
@@ -287,8 +277,7 @@ public:
    * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each is
    * processed by itself (APART), as the blocks of a probe's points always are.
    */
-  vtkSetClampMacro(Blocks, int, TOGETHER, APART);
-  vtkGetMacro(Blocks, int);
+  vtkSPHClampMacro(Blocks, int, TOGETHER, APART);
   void SetBlocksToTogether() { this->SetBlocks(TOGETHER); }
   void SetBlocksToApart() { this->SetBlocks(APART); }
   ///@}
@@ -303,23 +292,17 @@ public:
   const char* GetExcludedArray(int i) const;
   ///@}
 
-  ///@{
   /**
    * Precision of the field evaluation on the device: vtkAlgorithm::SINGLE_PRECISION (the default)
    * or DOUBLE_PRECISION, which some devices lack.
    */
-  vtkSetClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
-  vtkGetMacro(Precision, int);
-  ///@}
+  vtkSPHClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
 
-  ///@{
   /**
    * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
    * Empty (the default): a GPU if there is one, else the built-in device.
    */
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
+  vtkSPHTextMacro(Device);
 
   ///@{
   /**
@@ -362,14 +345,11 @@ public:
    */
   void ReleaseDeviceMemory();
 
-  ///@{
   /**
    * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default): no
    * limit. An update that would need more fails, and the error says how much.
    */
-  vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
-  vtkGetMacro(DeviceMemoryLimit, int);
-  ///@}
+  vtkSPHClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
 
   /**
    * Keep the search grid and the node values on the device for the next update. On by default. Off: all

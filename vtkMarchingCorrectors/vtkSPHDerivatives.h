@@ -77,14 +77,11 @@ public:
    */
   vtkSPHFlagMacro(ComputeGradient);
 
-  ///@{
   /**
    * The name of the gradient's array, "Gradients" by default. The array that marks corrected gradients has
    * this name and "Corrected".
    */
-  vtkSetStdStringFromCharMacro(ResultArrayName);
-  vtkGetCharFromStdStringMacro(ResultArrayName);
-  ///@}
+  vtkSPHTextMacro(ResultArrayName);
 
   /**
    * Replace existing arrays of the same names. Off by default: the new ones are then called NAME_SPH.

@@ -95,21 +95,15 @@ public:
   vtkGetVector3Macro(Point2, double);
   ///@}
 
-  ///@{
   /**
    * The weight sum at which the fluid ends, above 0. 0.5 by default.
    */
-  vtkSetMacro(Level, double);
-  vtkGetMacro(Level, double);
-  ///@}
+  vtkSPHValueMacro(Level, double);
 
-  ///@{
   /**
    * The time in the table where the input does not tell. 0 by default.
    */
-  vtkSetMacro(Time, double);
-  vtkGetMacro(Time, double);
-  ///@}
+  vtkSPHValueMacro(Time, double);
 
 protected:
   vtkSPHGauge();

@@ -81,13 +81,10 @@ public:
    */
   vtkSPHFlagMacro(ShepardNormalization);
 
-  ///@{
   /**
    * Points with a lower weight are not valid. No unit, 0.1 by default.
    */
-  vtkSetClampMacro(WeightThreshold, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(WeightThreshold, double);
-  ///@}
+  vtkSPHClampMacro(WeightThreshold, double, 0.0, VTK_DOUBLE_MAX);
 
   /**
    * Add the particles' arrays; off: only WeightSum and the mask. On by default.
@@ -105,17 +102,13 @@ public:
    * NaNOutside is off by default.
    */
   vtkSPHFlagMacro(NaNOutside);
-  vtkSetMacro(NullValue, double);
-  vtkGetMacro(NullValue, double);
+  vtkSPHValueMacro(NullValue, double);
   ///@}
 
-  ///@{
   /**
    * The name of the mask of valid points, "vtkValidPointMask" by default.
    */
-  vtkSetStdStringFromCharMacro(ValidPointMaskArrayName);
-  vtkGetCharFromStdStringMacro(ValidPointMaskArrayName);
-  ///@}
+  vtkSPHTextMacro(ValidPointMaskArrayName);
 
 protected:
   vtkSPHProbe();

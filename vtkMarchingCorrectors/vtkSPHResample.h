@@ -47,8 +47,7 @@ public:
   /**
    * What the points are, see ShapeType; SLICE by default.
    */
-  vtkSetClampMacro(Shape, int, SLICE, VOLUME);
-  vtkGetMacro(Shape, int);
+  vtkSPHClampMacro(Shape, int, SLICE, VOLUME);
   void SetShapeToSlice() { this->SetShape(SLICE); }
   void SetShapeToLine() { this->SetShape(LINE); }
   void SetShapeToVolume() { this->SetShape(VOLUME); }
@@ -88,13 +87,10 @@ public:
   vtkGetVector6Macro(Bounds, double);
   ///@}
 
-  ///@{
   /**
    * How many points a slice has along its longer side, or a line; 2 and more, 500 by default.
    */
-  vtkSetClampMacro(Resolution, int, 2, 100000);
-  vtkGetMacro(Resolution, int);
-  ///@}
+  vtkSPHClampMacro(Resolution, int, 2, 100000);
 
   ///@{
   /**

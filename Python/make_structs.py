@@ -18,11 +18,24 @@ NUMBERS = {
     "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
 }
 
-STRUCT = re.compile(r"^  (?:typedef )?struct (\w+)\s*\{(.*?)\n  \}\s*(\w*);", re.S | re.M)
-
-
 def fail(sentence):
     sys.exit(f"make_structs.py: {sentence}")
+
+
+def tokens_of(text):
+    """The declarations with one blank between all tokens, whatever lines they are on, and the comments. A comment's
+    token is @NUMBER; @<NUMBER where it begins on the line on which a declaration ends, to which it then belongs."""
+    text = re.sub(r"^[ \t]*#(?:.*\\\n)*.*$", "", text, flags=re.M)
+    tokens, comments, end = [], [], 0
+    for token in re.finditer(r'/\*(.*?)\*/|"[^"]*"|\w+|\S', text, re.S):
+        if token.group(1) is None:
+            tokens.append(token.group())
+            end = token.end()
+            continue
+        is_behind = tokens and tokens[-1] == ";" and "\n" not in text[end:token.start()]
+        tokens.append(f"@{'<' if is_behind else ''}{len(comments)}")
+        comments.append(" ".join(re.sub(r"\n\s*\*", " ", token.group(1)).split()))
+    return " ".join(tokens), comments
 
 
 class Header:
@@ -32,13 +45,14 @@ class Header:
         self.constants = {name: int(value) for name, value in
                           re.findall(r"#define (\w+) \(?(-?\d+)\)?", text)}
         self.version = re.search(r'#define MCOR_VERSION "([^"]+)"', text).group(1)
-        self.enums, self.structs = {}, {}
-        for body, name in re.findall(r"typedef enum \w+\s*\{(.*?)\}\s*(\w+);", text, re.S):
-            self.enums[name] = self.read_enum(without_comments(body))
-        for tag, body, name in re.findall(STRUCT, text):
+        tokens, self.comments = tokens_of(text)
+        code = re.sub(r"@<?\d+ ", "", tokens)
+        self.enums = {name: self.read_enum(body)
+                      for body, name in re.findall(r"typedef enum \w+ \{ (.*?) \} (\w+) ;", code)}
+        self.structs = {}
+        for tag, body, name in re.findall(r"struct (\w+) \{ (.*?) \}(?: (\w+))? ;", tokens):
             self.structs[name or tag] = self.read_struct(body)
-        self.functions = sorted(set(
-            re.findall(r"^  [\w \*]+?\b(mcor_\w+)\(", without_comments(text), re.M)))
+        self.functions = sorted(set(re.findall(r"(?<=[;{}]) [\w *]+? (mcor_\w+) \(", code)))
 
     def read_enum(self, body):
         values, next_value = {}, 0
@@ -50,38 +64,36 @@ class Header:
         return values
 
     def read_struct(self, body):
-        """[(field, C type, pointers, array length, comment)]. A comment belongs to the declaration
-        on whose last line it begins, else to the one that follows."""
-        fields, before, end, behind = [], "", -1, []
-        for token in re.finditer(r"/\*(.*?)\*/|[^/;\s][^/;]*;", body, re.S):
-            if token.group(1) is None:
-                behind = self.read_fields(" ".join(token.group().rstrip(";").split()), before)
+        """[(field, C type, pointers, array length, comment)]. A comment that is not behind a declaration belongs to
+        the one that follows."""
+        fields, before, behind = [], "", []
+        for is_behind, number, declaration in re.findall(r"@(<?)(\d+)|([^@;]+) ;", body):
+            if declaration:
+                behind = self.read_fields(declaration.strip(), before)
                 fields += behind
-                before, end = "", token.end()
-                continue
-            words = " ".join(re.sub(r"\n\s*\*", " ", token.group(1)).split())
-            if end >= 0 and "\n" not in body[end:token.start()]:
-                fields[-len(behind):] = [field[:4] + (" ".join([*field[4:], words]).strip(),)
+                before = ""
+            elif is_behind:
+                fields[-len(behind):] = [field[:4] + (f"{field[4]} {self.comments[int(number)]}".strip(),)
                                          for field in fields[-len(behind):]]
             else:
-                before = words
+                before = self.comments[int(number)]
         return fields
 
     def read_fields(self, declaration, comment):
-        callback = re.match(r"int \(\*(\w+)\)\(", declaration)
+        callback = re.match(r"int \( \* (\w+) \) \(", declaration)
         if callback:
             return [(callback.group(1), "callback", 0, None, comment)]
         base, rest = re.match(r"(?:const )?(\w+)(.*)", declaration).groups()
         fields = []
-        for item in rest.split(","):
-            match = re.fullmatch(r"\s*(\**)\s*(\w+)(?:\[(\w+)\])?", item)
+        for item in rest.split(" ,"):
+            match = re.fullmatch(r"((?: \*)*) (\w+)(?: \[ (\w+) \])?", item)
             if not match or (base != "void" and base not in NUMBERS and base not in self.enums
                              and base not in self.structs):
                 fail(f"cannot read '{declaration}'")
             stars, name, length = match.groups()
             if length:
                 length = int(length) if length.isdigit() else self.constants[length]
-            fields.append((name, base, len(stars), length, comment))
+            fields.append((name, base, stars.count("*"), length, comment))
         return fields
 
     def ctype(self, base, pointers, length):
@@ -94,10 +106,6 @@ class Header:
         for _ in range(pointers):
             kind = f"ctypes.POINTER({kind})"
         return f"{kind} * {length}" if length else kind
-
-
-def without_comments(text):
-    return re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
 
 
 def shape_of(struct, name, comment, constants):

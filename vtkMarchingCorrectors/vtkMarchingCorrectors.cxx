@@ -7,7 +7,6 @@
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
-#include "vtkMarchingCorrectorsSummary.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -17,9 +16,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <iterator>
 #include <limits>
-#include <memory>
+#include <sstream>
+#include <string>
 #include <vector>
 
 static_assert(static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) == MCOR_MAGNITUDE,
@@ -29,7 +29,6 @@ vtkStandardNewMacro(vtkMarchingCorrectors);
 
 vtkMarchingCorrectors::vtkMarchingCorrectors()
 {
-  this->SharesRuns = true;
   this->ContourValues->SetNumberOfContours(0);
   this->FreeSurfaceValues->SetValue(0, 0.5);
   this->SetInputArrayToProcess(
@@ -62,25 +61,21 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 }
 
 // What is not a number, as an empty row of a panel's list, is none.
-std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrectorsInput& input)
+bool vtkMarchingCorrectors::ListIsoValues(
+  const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list)
 {
-  vtkContourValues* values =
-    input.Choice.FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
-  std::vector<double> list(
-    values->GetValues(), values->GetValues() + values->GetNumberOfContours());
-  list.erase(
-    std::remove_if(list.begin(), list.end(), [](double value) { return std::isnan(value); }),
-    list.end());
-  if (list.empty())
+  const bool isFree = input.Choice.FreeSurface;
+  vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
+  std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
+    std::back_inserter(list), [](double value) { return !std::isnan(value); });
+  if (!list.empty())
   {
-    double range[2], value = 0.5;
-    if (!input.Choice.FreeSurface && !mcor_find_iso_value(&input.Core, nullptr, range, &value))
-    {
-      value = 0.0;
-    }
-    list.push_back(value);
+    return true;
   }
-  return list;
+  double range[2], value = isFree ? 0.5 : 0.0;
+  const bool isFound = isFree || mcor_find_iso_value(&input.Core, ranks, range, &value);
+  list.push_back(value);
+  return isFound;
 }
 
 void vtkMarchingCorrectors::SetPanelBoxPosition(double x, double y, double z)
@@ -142,7 +137,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
 
 void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
 {
-  this->Superclass::FillChoice(choice);
+  static_cast<vtkSPHParticlesChoice&>(choice) = *this;
   this->FillRequests(choice, particles);
   choice.ScalarComponent = this->ScalarComponent;
   choice.FreeSurface = this->FreeSurface != 0;
@@ -186,23 +181,9 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   this->FindFluid(choice, particles);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput input(choice, particles);
-  const bool usable = input.Collect();
-  this->SetUsedNames(&input);
-  if (!usable)
+  if (this->Accept(input, input.Collect(), "no surface") && input.FluidCount > 0 &&
+    this->SetPeriod(particles, options))
   {
-    this->Fail(input.Error);
-  }
-  else if (input.FluidCount == 0)
-  {
-    this->WarnOfNoFluid(choice, "no surface");
-  }
-  else
-  {
-    this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
-    if (!this->SetPeriod(particles, options))
-    {
-      return;
-    }
     this->Extract(input, options, vtkPolyData::SafeDownCast(output));
   }
 }
@@ -212,12 +193,13 @@ void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
 {
   const int precision = this->OutputPointsPrecision;
-  const std::vector<double> isoValues = this->ListIsoValues(input);
+  std::vector<double> isoValues;
+  this->ListIsoValues(input, nullptr, isoValues);
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
-  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(
-    input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
+  this->EstimatedCells =
+    mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   this->WarnOfHugeRun();
   mcor_surface surface = {};
   if (!this->CallCore(input, options,
@@ -229,9 +211,7 @@ void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsOutput builder(input, options, surface);
   this->Summarize(input, options, surface.statistics);
   this->WarnOf(input, surface, input.Core, options);
-  builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
-  builder.AddMeasures(this->RunStatistics);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
 }
@@ -245,9 +225,9 @@ void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
   }
   for (int kind = 0; kind < MCOR_WARNING_COUNT; ++kind)
   {
-    const std::unique_ptr<char, decltype(&std::free)> text(
-      mcor_describe_warning(static_cast<mcor_warning>(kind), &core, &options, &surface), std::free);
-    this->WarnOnce(kind, text ? text.get() : "");
+    this->WarnOnce(kind,
+      vtkSPHTakeText(
+        mcor_describe_warning(static_cast<mcor_warning>(kind), &core, &options, &surface)));
   }
 }
 
@@ -265,42 +245,32 @@ void vtkMarchingCorrectors::ClearSummary()
 
 void vtkMarchingCorrectors::WarnOfHugeRun()
 {
-  if (this->EstimatedCells >= vtkMarchingCorrectorsHugeCells)
+  const std::string warning = vtkSPHTakeText(mcor_describe_estimate(this->EstimatedCells));
+  if (!warning.empty())
   {
-    vtkWarningMacro(<< this->BlockName << "The fluid fills about " << this->EstimatedCells
-                    << " cells of the virtual grid, so this may take minutes and much memory. "
-                    << "A larger cube size takes less; the run can be cancelled.");
+    this->Warn(warning);
   }
 }
 
-vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
+vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
 {
   if (this->IsShared())
   {
-    std::copy_n(this->FluidScalarRange, 2, this->NextScalarRange);
-    this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
-    this->NextFluid = this->UsedFluid;
-    this->NextComponents = 0;
-    this->NextArray.clear();
-    this->NextCells = this->EstimatedCells;
-    return *this;
+    this->Next = {};
+    std::copy_n(this->FluidScalarRange, 2, this->Next.ScalarRange);
+    this->Next.Fluid = this->UsedFluid;
+    this->Next.Cells = this->EstimatedCells;
+    return this->Next;
   }
   vtkDataObject* data =
     this->GetNumberOfInputConnections(0) > 0 ? this->GetInputDataObject(0, 0) : nullptr;
   if (data && std::max(this->GetMTime(), data->GetMTime()) < this->LookTime.GetMTime())
   {
-    return *this;
+    return this->Next;
   }
-  const double none = std::numeric_limits<double>::infinity();
   mcor_options options;
   this->FillOptions(options);
-  this->NextScalarRange[0] = none;
-  this->NextScalarRange[1] = -none;
-  this->NextIsoValue = std::numeric_limits<double>::quiet_NaN();
-  this->NextCells = 0.0;
-  this->NextComponents = 0;
-  this->NextFluid.clear();
-  this->NextArray.clear();
+  this->Next = {};
   const bool together = this->TakesTogether();
   const vtkSmartPointer<vtkPointSet> all = together ? this->TakeParticles(data) : nullptr;
   for (vtkPointSet* particles :
@@ -308,41 +278,38 @@ vtkMarchingCorrectors& vtkMarchingCorrectors::LookAhead()
   {
     this->LookAhead(particles, options);
   }
-  if (this->NextScalarRange[0] > this->NextScalarRange[1])
-  {
-    std::fill_n(this->NextScalarRange, 2, 0.0);
-  }
   this->LookTime.Modified();
-  return *this;
+  return this->Next;
 }
 
 // What is known does not wait for the rest: the range needs no smoothing length, the number of cells
 // no scalar. Of several blocks the first one's iso value.
 void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
 {
+  vtkAhead& next = this->Next;
   vtkMarchingCorrectorsChoice choice;
   this->FillChoice(choice, particles);
   this->FindFluid(choice, particles);
   choice.InterpolateAttributes = false;
-  this->NextArray =
-    this->NextArray.empty() ? vtkSPHChooseArray(particles->GetPointData()) : this->NextArray;
+  next.Array = next.Array.empty() ? vtkSPHChooseArray(particles->GetPointData()) : next.Array;
   vtkMarchingCorrectorsInput contoured(choice, particles);
   double range[2], value;
   if (!choice.FreeSurface && contoured.CollectContoured() &&
     mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
   {
-    this->NextScalarRange[0] = std::min(this->NextScalarRange[0], range[0]);
-    this->NextScalarRange[1] = std::max(this->NextScalarRange[1], range[1]);
-    this->NextIsoValue = std::isnan(this->NextIsoValue) ? value : this->NextIsoValue;
-    this->NextComponents = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
+    const bool isFirst = std::isnan(next.IsoValue);
+    next.ScalarRange[0] = isFirst ? range[0] : std::min(next.ScalarRange[0], range[0]);
+    next.ScalarRange[1] = isFirst ? range[1] : std::max(next.ScalarRange[1], range[1]);
+    next.IsoValue = isFirst ? value : next.IsoValue;
+    next.Components = contoured.ScalarDot ? 1 : contoured.Scalar->GetNumberOfComponents();
   }
   choice.FreeSurface = true;
   vtkMarchingCorrectorsInput input(choice, particles);
   if (input.Collect())
   {
-    this->NextFluid = input.DescribeFluid();
-    this->NextCells += vtkMarchingCorrectorsEstimateCells(
-      input.Core, options, vtkMarchingCorrectorsLeastLength(input.Core));
+    next.Fluid = input.DescribeFluid();
+    next.Cells +=
+      mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   }
 }
 
@@ -354,12 +321,18 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
     this->FluidScalarRange[0] = statistics.scalar_min;
     this->FluidScalarRange[1] = statistics.scalar_max;
   }
-  this->UsedIsoValues = vtkMarchingCorrectorsDescribeIsoValues(options);
+  std::ostringstream isoValues;
+  for (int i = 0; i < options.iso_count; ++i)
+  {
+    isoValues << (i ? ", " : "") << options.iso_values[i];
+  }
+  this->UsedIsoValues = isoValues.str();
   this->IsoValueArrayName = options.iso_value ? input.IsoValueName : "";
-  this->UsedSmoothingLength = vtkMarchingCorrectorsDescribeSmoothingLength(input.Core, statistics);
-  this->UsedVolume = vtkMarchingCorrectorsDescribeVolume(input.Core);
+  this->UsedSmoothingLength =
+    vtkSPHTakeText(mcor_describe_smoothing_length(&input.Core, &statistics));
+  this->UsedVolume = vtkSPHTakeText(mcor_describe_volume(&input.Core));
   this->UsedCubeSize = statistics.cube_size;
-  this->SurfaceMeasures = vtkMarchingCorrectorsDescribeMeasures(statistics);
+  this->SurfaceMeasures = vtkSPHTakeText(mcor_describe_measures(&statistics));
 }
 
 void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
@@ -378,12 +351,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles")
      << "\n";
   os << indent << "Use Box: " << this->UseBox << "\n";
-  os << indent << "Box:";
-  for (const double side : this->Box)
-  {
-    os << " " << side;
-  }
-  os << "\n";
+  PrintNumbers(os, indent, "Box", this->Box, 6);
   os << indent << "Capping: " << this->Capping << "\n";
   os << indent << "Filled: " << this->Filled << "\n";
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
@@ -408,8 +376,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Output Points Precision: " << this->OutputPointsPrecision << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Iteration Limit: " << this->IterationLimit << "\n";
-  os << indent << "Fluid Scalar Range: " << this->FluidScalarRange[0] << " "
-     << this->FluidScalarRange[1] << "\n";
+  PrintNumbers(os, indent, "Fluid Scalar Range", this->FluidScalarRange, 2);
   os << indent << "Used Iso Values: " << this->UsedIsoValues << "\n";
   os << indent << "Used Smoothing Length: " << this->UsedSmoothingLength << "\n";
   os << indent << "Used Volume: " << this->UsedVolume << "\n";

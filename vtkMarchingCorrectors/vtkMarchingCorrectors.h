@@ -91,12 +91,13 @@
 #include "vtkTimeStamp.h" // For members
 
 #include <cstdint> // For members
-#include <limits> // For members
-#include <vector> // For members
+#include <limits>  // For members
+#include <vector>  // For members
 
 class vtkMarchingCorrectorsInput;
 class vtkPointSet;
 struct mcor_input;
+struct mcor_ranks;
 struct mcor_statistics;
 struct mcor_surface;
 struct vtkMarchingCorrectorsChoice;
@@ -186,8 +187,7 @@ public:
    * Which component of the scalar array to contour; MAGNITUDE (-1, the default) is the Euclidean
    * norm. Not used for arrays with one component.
    */
-  vtkSetMacro(ScalarComponent, int);
-  vtkGetMacro(ScalarComponent, int);
+  vtkSPHValueMacro(ScalarComponent, int);
   void SetScalarComponentToMagnitude() { this->SetScalarComponent(MAGNITUDE); }
   ///@}
 
@@ -199,25 +199,17 @@ public:
     this->SetScalarComponent(component >= 3 ? static_cast<int>(MAGNITUDE) : component);
   }
 
-  ///@{
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
    * the plain sum of the paper.
    */
-  vtkSetMacro(ShepardNormalization, vtkTypeBool);
-  vtkGetMacro(ShepardNormalization, vtkTypeBool);
-  vtkBooleanMacro(ShepardNormalization, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ShepardNormalization);
 
-  ///@{
   /**
    * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. Off by
    * default. When on, the scalar, the contour values and the thresholds are not used.
    */
-  vtkSetMacro(FreeSurface, vtkTypeBool);
-  vtkGetMacro(FreeSurface, vtkTypeBool);
-  vtkBooleanMacro(FreeSurface, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(FreeSurface);
 
   ///@{
   /**
@@ -245,10 +237,8 @@ public:
    * differ between time steps or pieces of a data set. CubeSize sets the size itself, unit L; 0 (the
    * default): use CubeSizeFactor. Nodes lie at multiples of the size, from the origin of the coordinates.
    */
-  vtkSetMacro(CubeSizeFactor, double);
-  vtkGetMacro(CubeSizeFactor, double);
-  vtkSetMacro(CubeSize, double);
-  vtkGetMacro(CubeSize, double);
+  vtkSPHValueMacro(CubeSizeFactor, double);
+  vtkSPHValueMacro(CubeSize, double);
   ///@}
 
   ///@{
@@ -261,12 +251,10 @@ public:
    * statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and "HighestLevel", which periods
    * may lower.
    */
-  vtkSetClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
-  vtkGetMacro(CubeSizeMode, int);
+  vtkSPHClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
   void SetCubeSizeModeToAdaptive() { this->SetCubeSizeMode(ADAPTIVE); }
-  vtkSetClampMacro(CubeLevelLimit, int, 0, 24);
-  vtkGetMacro(CubeLevelLimit, int);
+  vtkSPHClampMacro(CubeLevelLimit, int, 0, 24);
   ///@}
 
   ///@{
@@ -280,8 +268,7 @@ public:
     BY_PARTICLES = 0,
     BY_WORK
   };
-  vtkSetClampMacro(Partition, int, BY_PARTICLES, BY_WORK);
-  vtkGetMacro(Partition, int);
+  vtkSPHClampMacro(Partition, int, BY_PARTICLES, BY_WORK);
   void SetPartitionToByParticles() { this->SetPartition(BY_PARTICLES); }
   void SetPartitionToByWork() { this->SetPartition(BY_WORK); }
   ///@}
@@ -293,35 +280,25 @@ public:
    * make up the whole. Only the particles that reach the box are evaluated (with pairs as seeds: all,
    * except in the correction). The lattice is that of all particles.
    */
-  vtkSetMacro(UseBox, vtkTypeBool);
-  vtkGetMacro(UseBox, vtkTypeBool);
-  vtkBooleanMacro(UseBox, vtkTypeBool);
+  vtkSPHFlagMacro(UseBox);
   vtkSetVector6Macro(Box, double);
   vtkGetVector6Macro(Box, double);
   ///@}
 
-  ///@{
   /**
    * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines: by lines) where
    * values are above the iso value; they share the points of its border. With SOLIDS_WALL the free surface is
    * closed at walls, too; lines are not. Trimming may leave it open. Off by default. An error with PAIRS or Filled.
    */
-  vtkSetMacro(Capping, vtkTypeBool);
-  vtkGetMacro(Capping, vtkTypeBool);
-  vtkBooleanMacro(Capping, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Capping);
 
-  ///@{
   /**
    * Of particles in a plane, fill the region above the least iso value, off by default: by triangles beside the lines,
    * whose points they share, inside of what trimming leaves. The other values divide it into bands. The cell array
    * "BandValue" has the iso value with which a triangle's band begins, and that of a line. In three dimensions it is
    * an error.
    */
-  vtkSetMacro(Filled, vtkTypeBool);
-  vtkGetMacro(Filled, vtkTypeBool);
-  vtkBooleanMacro(Filled, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Filled);
 
   ///@{
   /**
@@ -337,8 +314,7 @@ public:
    * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
    * pair of particles lies on both sides of the fluid's surface.
    */
-  vtkSetClampMacro(SeedMode, int, COMPLETE, PAIRS);
-  vtkGetMacro(SeedMode, int);
+  vtkSPHClampMacro(SeedMode, int, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }
   void SetSeedModeToPairs() { this->SetSeedMode(PAIRS); }
   ///@}
@@ -350,40 +326,28 @@ public:
    * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are those of
    * the field. The surface is a manifold with both.
    */
-  vtkSetClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
-  vtkGetMacro(Topology, int);
+  vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
   void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
   ///@}
 
-  ///@{
   /**
    * Quick look: vertices by linear interpolation, no correction, normals of the triangles. Off by
    * default.
    */
-  vtkSetMacro(Preview, vtkTypeBool);
-  vtkGetMacro(Preview, vtkTypeBool);
-  vtkBooleanMacro(Preview, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Preview);
 
-  ///@{
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by default.
    * Off keeps the triangles beyond, except for those that NodeThreshold discards. The free surface is not
    * trimmed.
    */
-  vtkSetMacro(Trim, vtkTypeBool);
-  vtkGetMacro(Trim, vtkTypeBool);
-  vtkBooleanMacro(Trim, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(Trim);
 
-  ///@{
   /**
    * Cells with a node whose weight sum is lower are discarded. No unit, 0.1 by default.
    */
-  vtkSetMacro(NodeThreshold, double);
-  vtkGetMacro(NodeThreshold, double);
-  ///@}
+  vtkSPHValueMacro(NodeThreshold, double);
 
   ///@{
   /**
@@ -394,20 +358,16 @@ public:
    * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid, 0.9
    * smoothing lengths from a flat surface. Near 0.5 the border is ragged.
    */
-  vtkSetClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
-  vtkGetMacro(BoundaryDetection, int);
+  vtkSPHClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
   void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
   void SetBoundaryDetectionToEigenvalue() { this->SetBoundaryDetection(EIGENVALUE); }
   ///@}
 
-  ///@{
   /**
    * Triangles are trimmed where the weight sum (or the eigenvalue, see BoundaryDetection) is lower.
    * No unit, 0.5 by default.
    */
-  vtkSetMacro(VertexThreshold, double);
-  vtkGetMacro(VertexThreshold, double);
-  ///@}
+  vtkSPHValueMacro(VertexThreshold, double);
 
   ///@{
   /**
@@ -421,7 +381,6 @@ public:
   vtkGetMacro(Solids, int);
   ///@}
 
-  ///@{
   /**
    * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does not
    * end at them. -1, the default: measured, as the median share at the solids that face the fluid, so that
@@ -429,9 +388,7 @@ public:
    * fluid, about half way between the particles of both; greater shares are farther into the wall.
    * GetRunStatistics() reports the share in use.
    */
-  vtkSetMacro(WallShare, double);
-  vtkGetMacro(WallShare, double);
-  ///@}
+  vtkSPHValueMacro(WallShare, double);
 
   ///@{
   /**
@@ -449,52 +406,29 @@ public:
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
    *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone.
    */
-  vtkSetMacro(ComputeNormals, vtkTypeBool);
-  vtkGetMacro(ComputeNormals, vtkTypeBool);
-  vtkBooleanMacro(ComputeNormals, vtkTypeBool);
-  vtkSetMacro(ComputeScalars, vtkTypeBool);
-  vtkGetMacro(ComputeScalars, vtkTypeBool);
-  vtkBooleanMacro(ComputeScalars, vtkTypeBool);
-  vtkSetMacro(ComputeGradients, vtkTypeBool);
-  vtkGetMacro(ComputeGradients, vtkTypeBool);
-  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
-  vtkSetMacro(ComputeWeightSum, vtkTypeBool);
-  vtkGetMacro(ComputeWeightSum, vtkTypeBool);
-  vtkBooleanMacro(ComputeWeightSum, vtkTypeBool);
-  vtkSetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  vtkGetMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  vtkBooleanMacro(ComputeBoundaryEigenvalue, vtkTypeBool);
-  vtkSetMacro(ComputeCorrectionLength, vtkTypeBool);
-  vtkGetMacro(ComputeCorrectionLength, vtkTypeBool);
-  vtkBooleanMacro(ComputeCorrectionLength, vtkTypeBool);
-  vtkSetMacro(ComputeResidual, vtkTypeBool);
-  vtkGetMacro(ComputeResidual, vtkTypeBool);
-  vtkBooleanMacro(ComputeResidual, vtkTypeBool);
-  vtkSetMacro(ComputeBoundaryFlag, vtkTypeBool);
-  vtkGetMacro(ComputeBoundaryFlag, vtkTypeBool);
-  vtkBooleanMacro(ComputeBoundaryFlag, vtkTypeBool);
+  vtkSPHFlagMacro(ComputeNormals);
+  vtkSPHFlagMacro(ComputeScalars);
+  vtkSPHFlagMacro(ComputeGradients);
+  vtkSPHFlagMacro(ComputeWeightSum);
+  vtkSPHFlagMacro(ComputeBoundaryEigenvalue);
+  vtkSPHFlagMacro(ComputeCorrectionLength);
+  vtkSPHFlagMacro(ComputeResidual);
+  vtkSPHFlagMacro(ComputeBoundaryFlag);
   ///@}
 
-  ///@{
   /**
    * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method with the
    * kernel; integers, identifiers and strings from the nearest particle. An array that is NaN or infinite
    * at a fluid particle is left out, with a warning, and so is one with the name of a computed array or of
    * the iso value. On by default.
    */
-  vtkSetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkGetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkBooleanMacro(InterpolateAttributes, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(InterpolateAttributes);
 
-  ///@{
   /**
    * Precision of the output points: vtkAlgorithm::DEFAULT_PRECISION (as the input points, the
    * default), SINGLE_PRECISION or DOUBLE_PRECISION.
    */
-  vtkSetClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
-  vtkGetMacro(OutputPointsPrecision, int);
-  ///@}
+  vtkSPHClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
 
   ///@{
   /**
@@ -502,10 +436,8 @@ public:
    * scalar (no unit, > 0, 1e-6 by default) and the vertex is within 2e-5 cubes of the surface, or after
    * IterationLimit iterations (1 to 255, 30 by default).
    */
-  vtkSetMacro(Tolerance, double);
-  vtkGetMacro(Tolerance, double);
-  vtkSetClampMacro(IterationLimit, int, 1, 255);
-  vtkGetMacro(IterationLimit, int);
+  vtkSPHValueMacro(Tolerance, double);
+  vtkSPHClampMacro(IterationLimit, int, 1, 255);
   ///@}
 
   ///@{
@@ -535,12 +467,12 @@ public:
    * 0, 0, or empty: not known, without particles or a scalar. If processes share a run, these are those of
    * the last update, because one process cannot ask the others without waiting for them.
    */
-  double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().NextScalarRange; }
-  double GetNextIsoValue() { return this->LookAhead().NextIsoValue; }
-  int GetNextComponents() { return this->LookAhead().NextComponents; }
-  double GetNextCells() { return this->LookAhead().NextCells; }
-  const char* GetNextFluid() { return this->LookAhead().NextFluid.c_str(); }
-  const char* GetNextArray() { return this->LookAhead().NextArray.c_str(); }
+  double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
+  double GetNextIsoValue() { return this->LookAhead().IsoValue; }
+  int GetNextComponents() { return this->LookAhead().Components; }
+  double GetNextCells() { return this->LookAhead().Cells; }
+  const char* GetNextFluid() { return this->LookAhead().Fluid.c_str(); }
+  const char* GetNextArray() { return this->LookAhead().Array.c_str(); }
   ///@}
 
 protected:
@@ -596,19 +528,12 @@ protected:
   double UsedCubeSize = 0.0;
   std::string SurfaceMeasures;
   double EstimatedCells = 0.0;
-  double NextScalarRange[2] = { 0.0, 0.0 };
-  double NextIsoValue = std::numeric_limits<double>::quiet_NaN();
-  int NextComponents = 0;
-  double NextCells = 0.0;
-  std::string NextFluid, NextArray;
 
 private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
   void ProcessDistributed(vtkPointSet* particles, vtkPolyData* output);
-  std::vector<double> ListIsoValuesDistributed(
-    vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input);
   void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
   void ExtractDistributed(vtkSPHRanks& ranks, vtkMarchingCorrectorsChoice& choice, vtkPolyData* own,
     const vtkSPHRanksRoute& route, mcor_options options, std::int64_t count, vtkPolyData* output);
@@ -621,14 +546,26 @@ private:
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);
   void ClearSummary();
-  vtkMarchingCorrectors& LookAhead();
+  /** What the next update would find. */
+  struct vtkAhead
+  {
+    double ScalarRange[2] = { 0.0, 0.0 };
+    double IsoValue = std::numeric_limits<double>::quiet_NaN();
+    int Components = 0;
+    double Cells = 0.0;
+    std::string Fluid, Array;
+  };
+  vtkAhead& LookAhead();
   void LookAhead(vtkPointSet* particles, const mcor_options& options);
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  std::vector<double> ListIsoValues(const vtkMarchingCorrectorsInput& input);
+  /** Those that were given, or a usual one, over all ranks unless that is null. False if there is none. */
+  bool ListIsoValues(
+    const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list);
 
-  vtkTimeStamp LookTime; // of the last look ahead
+  vtkAhead Next;
+  vtkTimeStamp LookTime; // when that was found
 };
 
 #endif

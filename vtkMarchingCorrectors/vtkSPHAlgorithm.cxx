@@ -5,7 +5,6 @@
 #include "mcor.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTypes.h"
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -15,10 +14,10 @@
 #include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 
 // These are handed to the core as they are.
@@ -92,9 +91,7 @@ std::string vtkSPHAlgorithm::ListDevices()
 {
   char* text = nullptr;
   mcor_list_devices(&text);
-  const std::string result = text ? text : "";
-  std::free(text);
-  return result;
+  return vtkSPHTakeText(text);
 }
 
 vtkFieldData* vtkSPHAlgorithm::GetRunStatistics()
@@ -129,7 +126,7 @@ int vtkSPHAlgorithm::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_DATA_OBJECT()))
   {
     return this->RequestDataObject(inputVector, outputVector);
   }
@@ -158,6 +155,20 @@ int vtkSPHAlgorithm::RequestDataObject(
     outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
   }
   return 1;
+}
+
+void vtkSPHAlgorithm::AskForAll(vtkInformation* input)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  if (input->Has(Pipeline::WHOLE_EXTENT()))
+  {
+    int extent[6];
+    input->Get(Pipeline::WHOLE_EXTENT(), extent);
+    input->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
+  }
 }
 
 bool vtkSPHAlgorithm::IsAborted()
@@ -191,14 +202,15 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
 }
 
 // Nobody has chosen the active scalars of a file.
-vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(vtkPointSet* particles)
+vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
+  vtkPointSet* particles, const std::function<void(std::vector<double>&)>& merge)
 {
   vtkSPHRequest request = this->FindRequest(0, particles);
-  vtkPointData* data = particles->GetPointData();
-  auto* active = vtkArrayDownCast<vtkDataArray>(request.Array);
-  if (request.Name.empty() && (!active || !vtkSPHIsFit(active)))
+  if (request.Name.empty())
   {
-    const std::string best = vtkSPHChooseArray(data);
+    vtkPointData* data = particles->GetPointData();
+    const std::string best =
+      vtkSPHChooseArray(data, vtkArrayDownCast<vtkDataArray>(request.Array), merge);
     if (!best.empty())
     {
       request.Array = data->GetAbstractArray(best.c_str());
@@ -220,11 +232,32 @@ void vtkSPHAlgorithm::Warn(const std::string& message)
   vtkWarningMacro(<< this->BlockName << message);
 }
 
-void vtkSPHAlgorithm::WarnOfNoFluid(
-  const vtkSPHParticlesChoice& choice, const std::string& consequence)
+void vtkSPHAlgorithm::WarnOfFluid(
+  vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence)
 {
+  const vtkSPHParticlesChoice& choice = particles.Description;
+  if (fluidCount > 0)
+  {
+    this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+    return;
+  }
   vtkWarningMacro(<< this->BlockName << "No particle has " << choice.FluidArrayName << " = "
                   << choice.FluidValue << ", so there is no fluid and " << consequence << ".");
+}
+
+bool vtkSPHAlgorithm::Accept(
+  vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
+{
+  this->SetUsedNames(&particles);
+  if (isUsable)
+  {
+    this->WarnOfFluid(particles, particles.FluidCount, consequence);
+  }
+  else
+  {
+    this->Fail(particles.Error);
+  }
+  return isUsable;
 }
 
 void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
@@ -244,25 +277,6 @@ void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
   std::copy(this->PeriodicBounds, this->PeriodicBounds + 6, options.periodic);
   options.memory_limit = static_cast<int64_t>(this->DeviceMemoryLimit) << 20;
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
-}
-
-void vtkSPHAlgorithm::FillChoice(vtkSPHParticlesChoice& choice) const
-{
-  choice.SmoothingLengthArrayName = this->SmoothingLengthArrayName;
-  choice.SmoothingLength = this->SmoothingLength;
-  choice.EstimateSmoothingLength = this->EstimateSmoothingLength != 0;
-  choice.SmoothingLengthIsSupportRadius = this->SmoothingLengthIsSupportRadius != 0;
-  choice.VolumeArrayName = this->VolumeArrayName;
-  choice.MassArrayName = this->MassArrayName;
-  choice.DensityArrayName = this->DensityArrayName;
-  choice.Mass = this->Mass;
-  choice.Density = this->Density;
-  choice.DetectArrays = this->DetectArrays != 0;
-  choice.FluidArrayName = this->FluidArrayName;
-  choice.FluidValue = this->FluidValue;
-  choice.IgnoreSolids = this->IgnoreSolids != 0;
-  choice.Kernel = this->Kernel;
-  choice.ExcludedArrays = this->ExcludedArrays;
 }
 
 // An update that fails has an empty output, and succeeds for the pipeline: ParaView never again updates
@@ -352,7 +366,7 @@ bool vtkSPHAlgorithm::CallCore(
 bool vtkSPHAlgorithm::IsShared() const
 {
 #if MCOR_HAS_RANKS
-  return this->SharesRuns && this->Controller && this->Controller->IsA("vtkMPIController") &&
+  return this->Controller && this->Controller->IsA("vtkMPIController") &&
     this->Controller->GetNumberOfProcesses() > 1;
 #else
   return false;
@@ -368,6 +382,14 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
   this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
   this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
   this->UsedFluid = particles ? particles->DescribeFluid() : "";
+}
+
+void vtkSPHAlgorithm::PrintNumbers(
+  ostream& os, vtkIndent indent, const char* name, const double* values, int count)
+{
+  os << indent << name << ":";
+  std::for_each(values, values + count, [&os](double value) { os << " " << value; });
+  os << "\n";
 }
 
 void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
@@ -386,12 +408,8 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Mass: " << this->Mass << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
-  os << indent << "Periodic Bounds:";
-  for (const double side : this->PeriodicBounds)
-  {
-    os << " " << side;
-  }
-  os << "\n" << indent << "Detect Period: " << this->DetectPeriod << "\n";
+  PrintNumbers(os, indent, "Periodic Bounds", this->PeriodicBounds, 6);
+  os << indent << "Detect Period: " << this->DetectPeriod << "\n";
   printName("Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
   printName("Used Volume Array Name", this->UsedVolumeArrayName);
   printName("Used Mass Array Name", this->UsedMassArrayName);

@@ -53,11 +53,53 @@ struct mcor_context;
 struct mcor_globals;
 struct mcor_input;
 struct mcor_options;
-struct vtkSPHParticlesChoice;
 struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm : public vtkPolyDataAlgorithm
+/**
+ * A setting of the filters, by VTK's macros: SetX() and GetX(); of a flag XOn() and XOff(), too.
+ */
+#define vtkSPHValueMacro(name, type)                                                               \
+  vtkSetMacro(name, type);                                                                         \
+  vtkGetMacro(name, type)
+#define vtkSPHClampMacro(name, type, least, most)                                                  \
+  vtkSetClampMacro(name, type, least, most);                                                       \
+  vtkGetMacro(name, type)
+#define vtkSPHTextMacro(name)                                                                      \
+  vtkSetStdStringFromCharMacro(name);                                                              \
+  vtkGetCharFromStdStringMacro(name)
+#define vtkSPHFlagMacro(name)                                                                      \
+  vtkSPHValueMacro(name, vtkTypeBool);                                                             \
+  vtkBooleanMacro(name, vtkTypeBool)
+
+#ifndef __VTK_WRAP__
+/**
+ * How particles are described, see the setters of vtkSPHAlgorithm. A run has a copy: an observer may change
+ * the filter meanwhile.
+ */
+struct vtkSPHParticlesChoice
+{
+  std::string SmoothingLengthArrayName;
+  double SmoothingLength = 0.0;
+  vtkTypeBool EstimateSmoothingLength = 0;
+  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
+  std::string VolumeArrayName;
+  std::string MassArrayName;
+  std::string DensityArrayName;
+  double Mass = 0.0;
+  double Density = 0.0;
+  vtkTypeBool DetectArrays = 1;
+  std::string FluidArrayName;
+  double FluidValue = 0.0;
+  vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
+  int Kernel = 0;
+  std::vector<std::string> ExcludedArrays;
+};
+#endif
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm
+  : public vtkPolyDataAlgorithm
+  , protected vtkSPHParticlesChoice
 {
 public:
   vtkAbstractTypeMacro(vtkSPHAlgorithm, vtkPolyDataAlgorithm);
@@ -82,43 +124,29 @@ public:
     SINC_6 = 8          ///< (sin x / x)^6, x = pi r / (2 h), support radius 2 h
   };
 
-  ///@{
   /**
    * The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name.
    */
-  vtkSetStdStringFromCharMacro(SmoothingLengthArrayName);
-  vtkGetCharFromStdStringMacro(SmoothingLengthArrayName);
-  ///@}
+  vtkSPHTextMacro(SmoothingLengthArrayName);
 
-  ///@{
   /**
    * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no array,
    * set this, or EstimateSmoothingLength.
    */
-  vtkSetMacro(SmoothingLength, double);
-  vtkGetMacro(SmoothingLength, double);
-  ///@}
+  vtkSPHValueMacro(SmoothingLength, double);
 
-  ///@{
   /**
    * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
    * without further data. It takes precedence over array and constant. Off by default. The statistics
    * report it as "SmoothingLengthRange".
    */
-  vtkSetMacro(EstimateSmoothingLength, vtkTypeBool);
-  vtkGetMacro(EstimateSmoothingLength, vtkTypeBool);
-  vtkBooleanMacro(EstimateSmoothingLength, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(EstimateSmoothingLength);
 
-  ///@{
   /**
    * The array or constant is the support radius of the kernel (where it becomes 0) instead of the
    * smoothing length. Off by default.
    */
-  vtkSetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  vtkGetMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  vtkBooleanMacro(SmoothingLengthIsSupportRadius, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(SmoothingLengthIsSupportRadius);
 
   ///@{
   /**
@@ -127,16 +155,11 @@ public:
    * densities may have any units that give volumes in L^3; densities are used only with masses. Mass and
    * Density: one value for all particles; 0 (the default): use the array.
    */
-  vtkSetStdStringFromCharMacro(VolumeArrayName);
-  vtkGetCharFromStdStringMacro(VolumeArrayName);
-  vtkSetStdStringFromCharMacro(MassArrayName);
-  vtkGetCharFromStdStringMacro(MassArrayName);
-  vtkSetStdStringFromCharMacro(DensityArrayName);
-  vtkGetCharFromStdStringMacro(DensityArrayName);
-  vtkSetMacro(Mass, double);
-  vtkGetMacro(Mass, double);
-  vtkSetMacro(Density, double);
-  vtkGetMacro(Density, double);
+  vtkSPHTextMacro(VolumeArrayName);
+  vtkSPHTextMacro(MassArrayName);
+  vtkSPHTextMacro(DensityArrayName);
+  vtkSPHValueMacro(Mass, double);
+  vtkSPHValueMacro(Density, double);
   ///@}
 
   ///@{
@@ -150,7 +173,6 @@ public:
   vtkGetVector6Macro(PeriodicBounds, double);
   ///@}
 
-  ///@{
   /**
    * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds" of six
    * bounds; from "BoxSize" of one or three lengths (GADGET, SWIFT), which begin at 0, at minus half the
@@ -158,19 +180,12 @@ public:
    * with "boundaryType", 1 where periodic (SPH-EXA). With several processes, any of them may have the array.
    * An error if there is none, or if processes have different ones. Off by default.
    */
-  vtkSetMacro(DetectPeriod, vtkTypeBool);
-  vtkGetMacro(DetectPeriod, vtkTypeBool);
-  vtkBooleanMacro(DetectPeriod, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectPeriod);
 
-  ///@{
   /**
    * Find smoothing length, volume, mass and density arrays by their usual names. On by default.
    */
-  vtkSetMacro(DetectArrays, vtkTypeBool);
-  vtkGetMacro(DetectArrays, vtkTypeBool);
-  vtkBooleanMacro(DetectArrays, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectArrays);
 
   ///@{
   /**
@@ -186,8 +201,7 @@ public:
   /**
    * The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation.
    */
-  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
-  vtkGetMacro(Kernel, int);
+  vtkSPHClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
   void SetKernelToCubicSpline() { this->SetKernel(CUBIC_SPLINE); }
   void SetKernelToQuadratic() { this->SetKernel(QUADRATIC); }
   void SetKernelToMPrime4() { this->SetKernel(M_PRIME_4); }
@@ -209,14 +223,11 @@ public:
   static const char* GetKernelName(int kernel);
   ///@}
 
-  ///@{
   /**
    * The kernels use this factor times the smoothing length; volumes do not change. No unit, > 0,
    * 1 by default. Less than 1 gives less smoothing.
    */
-  vtkSetMacro(HScaleFactor, double);
-  vtkGetMacro(HScaleFactor, double);
-  ///@}
+  vtkSPHValueMacro(HScaleFactor, double);
 
   ///@{
   /**
@@ -230,8 +241,7 @@ public:
     DIMENSION_2 = 2,
     DIMENSION_3 = 3
   };
-  vtkSetClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
-  vtkGetMacro(Dimension, int);
+  vtkSPHClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
   ///@}
 
   /**
@@ -245,23 +255,17 @@ public:
    * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
    * default.
    */
-  vtkSetStdStringFromCharMacro(FluidArrayName);
-  vtkGetCharFromStdStringMacro(FluidArrayName);
-  vtkSetMacro(FluidValue, double);
-  vtkGetMacro(FluidValue, double);
+  vtkSPHTextMacro(FluidArrayName);
+  vtkSPHValueMacro(FluidValue, double);
   ///@}
 
-  ///@{
   /**
    * If no fluid array is named, look for something that clearly tells fluid from walls: an array with a
    * usual name (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
    * together, with names such as "walls" or "boundary", whose particles are then solid. Off by default: a
    * warning then names such arrays and blocks. GetUsedFluid() returns what was found.
    */
-  vtkSetMacro(DetectFluid, vtkTypeBool);
-  vtkGetMacro(DetectFluid, vtkTypeBool);
-  vtkBooleanMacro(DetectFluid, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectFluid);
 
   /**
    * What marked fluid in the last run, such as "ParticleType = 0"; empty: all particles were fluid.
@@ -273,8 +277,7 @@ public:
    * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each is
    * processed by itself (APART), as the blocks of a probe's points always are.
    */
-  vtkSetClampMacro(Blocks, int, TOGETHER, APART);
-  vtkGetMacro(Blocks, int);
+  vtkSPHClampMacro(Blocks, int, TOGETHER, APART);
   void SetBlocksToTogether() { this->SetBlocks(TOGETHER); }
   void SetBlocksToApart() { this->SetBlocks(APART); }
   ///@}
@@ -289,23 +292,17 @@ public:
   const char* GetExcludedArray(int i) const;
   ///@}
 
-  ///@{
   /**
    * Precision of the field evaluation on the device: vtkAlgorithm::SINGLE_PRECISION (the default)
    * or DOUBLE_PRECISION, which some devices lack.
    */
-  vtkSetClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
-  vtkGetMacro(Precision, int);
-  ///@}
+  vtkSPHClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
 
-  ///@{
   /**
    * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
    * Empty (the default): a GPU if there is one, else the built-in device.
    */
-  vtkSetStdStringFromCharMacro(Device);
-  vtkGetCharFromStdStringMacro(Device);
-  ///@}
+  vtkSPHTextMacro(Device);
 
   ///@{
   /**
@@ -348,24 +345,17 @@ public:
    */
   void ReleaseDeviceMemory();
 
-  ///@{
   /**
    * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default): no
    * limit. An update that would need more fails, and the error says how much.
    */
-  vtkSetClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
-  vtkGetMacro(DeviceMemoryLimit, int);
-  ///@}
+  vtkSPHClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
 
-  ///@{
   /**
    * Keep the search grid and the node values on the device for the next update. On by default. Off: all
    * memory is freed as soon as an update no longer needs it.
    */
-  vtkSetMacro(KeepDeviceData, vtkTypeBool);
-  vtkGetMacro(KeepDeviceData, vtkTypeBool);
-  vtkBooleanMacro(KeepDeviceData, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(KeepDeviceData);
 
 protected:
   vtkSPHAlgorithm();
@@ -377,6 +367,11 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+
+  /**
+   * Asks for all of an input, whatever part of the output is wanted.
+   */
+  static void AskForAll(vtkInformation* input);
 
   /**
    * The name of the class that Process() makes of a data object of this class, which is no
@@ -412,9 +407,15 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Says that no particle is fluid.
+   * Says that no particle is fluid, and so `consequence`; or that an array tells fluid from solids, and is not used.
    */
-  void WarnOfNoFluid(const vtkSPHParticlesChoice& choice, const std::string& consequence);
+  void WarnOfFluid(
+    vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence);
+
+  /**
+   * Keeps which arrays were found, and warns of the fluid. False, and reported, if the particles are not usable.
+   */
+  bool Accept(vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
 
   /**
    * Warns, naming the block: once in a run of each kind, however many blocks there are. Kinds are
@@ -434,9 +435,10 @@ protected:
 
   /**
    * The first one. Where none was named, the active scalars if they are fit to be looked at, see
-   * mcor_view_priority(), else the array that is fittest.
+   * mcor_view_priority(), else the array that is fittest. `merge` makes each number the least of all ranks.
    */
-  vtkSPHRequest FindFirstRequest(vtkPointSet* particles);
+  vtkSPHRequest FindFirstRequest(
+    vtkPointSet* particles, const std::function<void(std::vector<double>&)>& merge = nullptr);
   /** The same on all ranks together; these are one's own. */
   vtkSPHRequest FindFirstRequestDistributed(vtkSPHRanks& ranks, vtkPointSet* particles);
 
@@ -448,7 +450,7 @@ protected:
     const std::function<int(mcor_context*)>& call);
 
   /**
-   * Whether processes share a run, in a build and a class that can.
+   * Whether processes share a run, in a build that can.
    */
   bool IsShared() const;
 
@@ -464,20 +466,19 @@ protected:
   /** Of all ranks: false where one has a problem, which is reported. */
   bool AgreeDistributed(vtkSPHRanks& ranks, std::string problem);
   /** Whether any rank has fluid; the first one says so if not. */
-  bool HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
-    vtkSPHParticles& particles, const std::string& consequence);
+  bool HasFluidDistributed(
+    vtkSPHRanks& ranks, vtkSPHParticles& particles, const std::string& consequence);
   /** What is global, for a surface, or for mcor_probe and mcor_derive; what the dimension found means for the
    * options. False if that failed. */
   bool MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
     mcor_options& options, bool forSamples, mcor_globals& globals);
 
-  void FillChoice(vtkSPHParticlesChoice& choice) const;
   /** Names the fluid in the choice, where it is to be found, and is. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
   /** The same on all ranks together; these are one's own. */
   void FindFluidDistributed(
     vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
-  int FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
+  int FindDimensionDistributed(vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
   /**
@@ -490,40 +491,27 @@ protected:
   /** False, and reported, where none was found, or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles);
+  /** A line "Name: 1 2 3" of PrintSelf(). */
+  static void PrintNumbers(
+    ostream& os, vtkIndent indent, const char* name, const double* values, int count);
   bool IsAborted();
 
-  std::string SmoothingLengthArrayName;
-  double SmoothingLength = 0.0;
-  vtkTypeBool EstimateSmoothingLength = 0;
-  vtkTypeBool SmoothingLengthIsSupportRadius = 0;
-  std::string VolumeArrayName;
-  std::string MassArrayName;
-  std::string DensityArrayName;
-  double Mass = 0.0;
-  double Density = 0.0;
-  vtkTypeBool DetectArrays = 1;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   vtkTypeBool DetectPeriod = 0;
   std::string UsedSmoothingLengthArrayName;
   std::string UsedVolumeArrayName;
   std::string UsedMassArrayName;
   std::string UsedDensityArrayName;
-  int Kernel = CUBIC_SPLINE;
   double HScaleFactor = 1.0;
   int Dimension = DIMENSION_AUTO;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
   vtkTypeBool DetectFluid = 0;
   std::string UsedFluid;
   int Blocks = TOGETHER;
-  vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
-  std::vector<std::string> ExcludedArrays;
   int Precision = SINGLE_PRECISION;
   std::string Device;
   int DeviceMemoryLimit = 0;
   vtkTypeBool KeepDeviceData = 1;
   vtkMultiProcessController* Controller = nullptr;
-  bool SharesRuns = false; ///< whether a subclass's Process() is for many processes
 
   std::string ErrorMessage;
   std::set<int> Warned;  // kinds of warnings that this run has given

@@ -117,14 +117,13 @@ void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* part
 
 int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)
 {
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
 #if MCOR_HAS_RANKS
   if (this->IsShared())
   {
-    return this->FindDimensionDistributed(choice, particles);
+    return this->FindDimensionDistributed(particles);
   }
 #endif
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluid(choice, particles);
   return vtkSPHParticles(choice, particles).FindDimension(nullptr, this->Dimension);
 }

@@ -29,35 +29,31 @@ std::string vtkSPHAlgorithm::vtkInternals::Prepare(const std::string& device, in
   return why;
 }
 
+bool vtkSPHAlgorithm::vtkInternals::Kept::Take(
+  const std::vector<std::uint64_t>& signature, bool isOther)
+{
+  isOther = isOther || signature != this->Signature;
+  this->Version += isOther ? 1 : 0;
+  this->Signature = signature;
+  return isOther;
+}
+
 // The scalar is kept in the order of the particles: new particles make a new scalar.
 void vtkSPHAlgorithm::vtkInternals::SetVersions(vtkSPHParticles& input)
 {
-  const bool sameParticles = input.ParticlesSignature == this->Particles;
-  if (!sameParticles || input.ScalarSignature != this->Scalar)
-  {
-    ++this->ScalarVersion;
-  }
-  if (!sameParticles)
-  {
-    ++this->ParticlesVersion;
-  }
-  if (input.AttributesSignature != this->Attributes)
-  {
-    ++this->AttributesVersion;
-  }
-  this->Particles = input.ParticlesSignature;
-  this->Scalar = input.ScalarSignature;
-  this->Attributes = input.AttributesSignature;
-  input.Core.particles_version = this->ParticlesVersion;
-  input.Core.scalar_version = this->ScalarVersion;
-  input.Core.attributes_version = this->AttributesVersion;
+  const bool areOthers = this->Particles.Take(input.ParticlesSignature);
+  this->Scalar.Take(input.ScalarSignature, areOthers);
+  this->Attributes.Take(input.AttributesSignature);
+  input.Core.particles_version = this->Particles.Version;
+  input.Core.scalar_version = this->Scalar.Version;
+  input.Core.attributes_version = this->Attributes.Version;
 }
 
 void vtkSPHAlgorithm::vtkInternals::Forget(mcor_status status)
 {
-  this->Particles.clear();
-  this->Scalar.clear();
-  this->Attributes.clear();
+  this->Particles.Signature.clear();
+  this->Scalar.Signature.clear();
+  this->Attributes.Signature.clear();
   if (status == MCOR_DEVICE_ERROR)
   {
     mcor_free_context(this->Context);

@@ -53,8 +53,16 @@ private:
   int Place = 0, Count = 0;
   bool InRun = false;
   bool ReleaseAfterRun = false;
-  std::vector<std::uint64_t> Particles, Scalar, Attributes;
-  std::uint64_t ParticlesVersion = 0, ScalarVersion = 0, AttributesVersion = 0;
+  /** What something was in the last run, and how many others it has been. */
+  struct Kept
+  {
+    std::vector<std::uint64_t> Signature;
+    std::uint64_t Version = 0;
+
+    /** Whether this is another one. */
+    bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false);
+  };
+  Kept Particles, Scalar, Attributes;
 };
 
 #endif

@@ -10,7 +10,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHDerivativesWanted.h"
 #include "vtkSPHParticles.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <cstdlib>
 
@@ -53,7 +52,7 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
       vtkSPHAdoptReal(derivatives.gradients[0], 3 * from.Components, derivatives.count, asFloat));
   }
   vtkSPHAddArray(data, (this->GradientName + "Corrected").c_str(),
-    vtkSPHAdopt<vtkUnsignedCharArray>(derivatives.corrected, 1, derivatives.count));
+    vtkSPHAdopt(derivatives.corrected, 1, derivatives.count));
   return true;
 }
 
@@ -69,7 +68,6 @@ vtkSPHDerivatives::vtkSPHDerivatives()
 {
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  this->SharesRuns = true;
 }
 
 vtkSPHDerivatives::~vtkSPHDerivatives() = default;
@@ -127,27 +125,21 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
     output->ShallowCopy(particles);
     return;
   }
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluid(choice, particles);
   vtkSPHParticles input(choice, particles);
-  const bool usable =
+  const bool isUsable =
     input.CollectArray(this->FindFirstRequest(particles)) && input.CollectParticles();
-  this->SetUsedNames(&input);
-  if (!usable)
+  if (!this->Accept(input, isUsable, "there are no derivatives"))
   {
-    this->Fail(input.Error);
+    return;
   }
-  else if (input.FluidCount == 0)
+  if (input.FluidCount == 0)
   {
-    this->WarnOfNoFluid(choice, "there are no derivatives");
     output->ShallowCopy(particles);
+    return;
   }
-  else
-  {
-    this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
-    this->Derive(input, particles, vtkPointSet::SafeDownCast(output));
-  }
+  this->Derive(input, particles, vtkPointSet::SafeDownCast(output));
 }
 
 // What an observer of the progress may change is read before the run.

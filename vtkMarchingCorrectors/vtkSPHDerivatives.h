@@ -62,71 +62,42 @@ public:
    */
   vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
 
-  ///@{
   /**
    * Also leave solid particles out when volumes are computed from positions. Off by default.
    */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(IgnoreSolids);
 
-  ///@{
   /**
    * Use the corrected form of the gradient. On by default.
    */
-  vtkSetMacro(CorrectGradients, vtkTypeBool);
-  vtkGetMacro(CorrectGradients, vtkTypeBool);
-  vtkBooleanMacro(CorrectGradients, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(CorrectGradients);
 
-  ///@{
   /**
    * Add the gradient of the array, unit of the array / L. On by default.
    */
-  vtkSetMacro(ComputeGradient, vtkTypeBool);
-  vtkGetMacro(ComputeGradient, vtkTypeBool);
-  vtkBooleanMacro(ComputeGradient, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ComputeGradient);
 
-  ///@{
   /**
    * The name of the gradient's array, "Gradients" by default. The array that marks corrected gradients has
    * this name and "Corrected".
    */
-  vtkSetStdStringFromCharMacro(ResultArrayName);
-  vtkGetCharFromStdStringMacro(ResultArrayName);
-  ///@}
+  vtkSPHTextMacro(ResultArrayName);
 
-  ///@{
   /**
    * Replace existing arrays of the same names. Off by default: the new ones are then called NAME_SPH.
    */
-  vtkSetMacro(ReplaceArrays, vtkTypeBool);
-  vtkGetMacro(ReplaceArrays, vtkTypeBool);
-  vtkBooleanMacro(ReplaceArrays, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ReplaceArrays);
 
   ///@{
   /**
    * Add these quantities of the gradient of a vector; no effect for other arrays. On by default, except the
    * strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
    */
-  vtkSetMacro(ComputeDivergence, vtkTypeBool);
-  vtkGetMacro(ComputeDivergence, vtkTypeBool);
-  vtkBooleanMacro(ComputeDivergence, vtkTypeBool);
-  vtkSetMacro(ComputeVorticity, vtkTypeBool);
-  vtkGetMacro(ComputeVorticity, vtkTypeBool);
-  vtkBooleanMacro(ComputeVorticity, vtkTypeBool);
-  vtkSetMacro(ComputeQCriterion, vtkTypeBool);
-  vtkGetMacro(ComputeQCriterion, vtkTypeBool);
-  vtkBooleanMacro(ComputeQCriterion, vtkTypeBool);
-  vtkSetMacro(ComputeLambda2, vtkTypeBool);
-  vtkGetMacro(ComputeLambda2, vtkTypeBool);
-  vtkBooleanMacro(ComputeLambda2, vtkTypeBool);
-  vtkSetMacro(ComputeStrainRate, vtkTypeBool);
-  vtkGetMacro(ComputeStrainRate, vtkTypeBool);
-  vtkBooleanMacro(ComputeStrainRate, vtkTypeBool);
+  vtkSPHFlagMacro(ComputeDivergence);
+  vtkSPHFlagMacro(ComputeVorticity);
+  vtkSPHFlagMacro(ComputeQCriterion);
+  vtkSPHFlagMacro(ComputeLambda2);
+  vtkSPHFlagMacro(ComputeStrainRate);
   ///@}
 
 protected:

@@ -44,7 +44,6 @@ vtkStandardNewMacro(vtkSPHGauge);
 vtkSPHGauge::vtkSPHGauge()
 {
   this->SetNumberOfInputPorts(2);
-  this->SharesRuns = true;
 }
 
 vtkSPHGauge::~vtkSPHGauge() = default;
@@ -103,9 +102,7 @@ int vtkSPHGauge::RequestUpdateExtent(
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
     if (info && (port == 1 || !this->IsShared()))
     {
-      info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-      info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-      info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+      AskForAll(info);
     }
   }
   return 1;
@@ -194,23 +191,14 @@ void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluid(choice, particles);
   vtkSPHParticles input(choice, particles);
-  if (particles->GetNumberOfPoints() > 0)
+  if (particles->GetNumberOfPoints() == 0 ||
+    this->Accept(input, input.CollectParticles(), "all gauges are dry"))
   {
-    const bool usable = input.CollectParticles();
-    this->SetUsedNames(&input);
-    if (!usable)
-    {
-      this->Fail(input.Error);
-      return;
-    }
-    input.FluidCount == 0 ? this->WarnOfNoFluid(choice, "all gauges are dry")
-                          : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
+    this->Measure(input, particles, gauges, table);
   }
-  this->Measure(input, particles, gauges, table);
 }
 
 std::vector<mcor_gauge_line> vtkSPHGauge::ListLines(const std::vector<Gauge>& gauges)
@@ -294,17 +282,10 @@ void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Level: " << this->Level << "\n";
   os << indent << "Time: " << this->Time << "\n";
-  os << indent << "Point1: " << this->Point1[0] << " " << this->Point1[1] << " " << this->Point1[2]
-     << "\n";
-  os << indent << "Point2: " << this->Point2[0] << " " << this->Point2[1] << " " << this->Point2[2]
-     << "\n";
+  PrintNumbers(os, indent, "Point1", this->Point1, 3);
+  PrintNumbers(os, indent, "Point2", this->Point2, 3);
   for (const Gauge& gauge : this->Gauges)
   {
-    os << indent << "Gauge " << gauge.Name << ":";
-    for (const double c : gauge.Ends)
-    {
-      os << " " << c;
-    }
-    os << "\n";
+    PrintNumbers(os, indent, ("Gauge " + gauge.Name).c_str(), gauge.Ends.data(), 6);
   }
 }

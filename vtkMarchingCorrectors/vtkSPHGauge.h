@@ -59,14 +59,10 @@ public:
   vtkTypeMacro(vtkSPHGauge, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
    */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(IgnoreSolids);
 
   /**
    * The table.
@@ -99,21 +95,15 @@ public:
   vtkGetVector3Macro(Point2, double);
   ///@}
 
-  ///@{
   /**
    * The weight sum at which the fluid ends, above 0. 0.5 by default.
    */
-  vtkSetMacro(Level, double);
-  vtkGetMacro(Level, double);
-  ///@}
+  vtkSPHValueMacro(Level, double);
 
-  ///@{
   /**
    * The time in the table where the input does not tell. 0 by default.
    */
-  vtkSetMacro(Time, double);
-  vtkGetMacro(Time, double);
-  ///@}
+  vtkSPHValueMacro(Time, double);
 
 protected:
   vtkSPHGauge();

@@ -3,7 +3,6 @@
 #include "vtkSPHProbe.h"
 
 #include "mcor.h"
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
@@ -17,8 +16,8 @@
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHReals.h"
 #include "vtkSPHSamples.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <limits>
@@ -37,7 +36,8 @@ public:
     : Data(data)
   {
     auto* set = vtkPointSet::SafeDownCast(data);
-    this->Stored = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+    vtkDataArray* stored = set && set->GetPoints() ? set->GetPoints()->GetData() : nullptr;
+    this->Stored = stored ? vtkSPHAsReal(stored) : nullptr;
   }
 
   /** Valid until the next call. */
@@ -45,16 +45,11 @@ public:
   {
     mcor_array view = {};
     view.components = 3;
-    if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(this->Stored))
+    view.type =
+      this->Stored && this->Stored->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
+    if (this->Stored)
     {
-      view.type = MCOR_FLOAT32;
-      view.data = floats->GetPointer(3 * first);
-      return view;
-    }
-    view.type = MCOR_FLOAT64;
-    if (auto* doubles = vtkAOSDataArrayTemplate<double>::FastDownCast(this->Stored))
-    {
-      view.data = doubles->GetPointer(3 * first);
+      view.data = this->Stored->GetVoidPointer(3 * first);
       return view;
     }
     if (count > this->Room)
@@ -108,7 +103,7 @@ private:
   }
 
   vtkDataSet* Data;
-  vtkDataArray* Stored;
+  vtkSmartPointer<vtkDataArray> Stored;
   std::unique_ptr<double[]> Copied; // not a vector, which would write zeros first
   vtkIdType Room = 0;
 };
@@ -170,7 +165,6 @@ int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mco
 vtkSPHProbe::vtkSPHProbe()
 {
   this->SetNumberOfInputPorts(2);
-  this->SharesRuns = true;
 }
 
 vtkSPHProbe::~vtkSPHProbe() = default;
@@ -182,7 +176,7 @@ vtkDataObject* vtkSPHProbe::GetSource()
 
 int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
 {
-  if (port == 1)
+  if (port == this->GetParticlesPort())
   {
     return this->Superclass::FillInputPortInformation(port, info);
   }
@@ -196,28 +190,15 @@ const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
   return inputClassName;
 }
 
-void vtkSPHProbe::AskForAll(vtkInformation* particles)
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (particles && !this->IsShared())
-  {
-    particles->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-    particles->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    particles->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-    if (particles->Has(Pipeline::WHOLE_EXTENT()))
-    {
-      int extent[6];
-      particles->Get(Pipeline::WHOLE_EXTENT(), extent);
-      particles->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
-    }
-  }
-}
-
 // Each piece of the points needs all particles; ranks find them by themselves.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  this->AskForAll(inputVector[1]->GetInformationObject(0));
+  vtkInformation* particles = inputVector[this->GetParticlesPort()]->GetInformationObject(0);
+  if (particles && !this->IsShared())
+  {
+    AskForAll(particles);
+  }
   return 1;
 }
 
@@ -250,21 +231,15 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluid(choice, this->Particles);
   vtkSPHParticles input(choice, this->Particles);
   if (this->Particles->GetNumberOfPoints() > 0)
   {
-    const bool usable = input.CollectParticles();
-    this->SetUsedNames(&input);
-    if (!usable)
+    if (!this->Accept(input, input.CollectParticles(), "no point is valid"))
     {
-      this->Fail(input.Error);
       return;
     }
-    input.FluidCount == 0 ? this->WarnOfNoFluid(choice, "no point is valid")
-                          : this->WarnOnce(WARN_TYPE_ARRAY, input.DescribeUnusedType());
     if (this->InterpolateAttributes)
     {
       input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });

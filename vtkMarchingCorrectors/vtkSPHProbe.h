@@ -71,69 +71,44 @@ public:
   vtkDataObject* GetSource();
   ///@}
 
-  ///@{
   /**
    * Also leave solid particles out when volumes are computed from positions. Off by default.
    */
-  vtkSetMacro(IgnoreSolids, vtkTypeBool);
-  vtkGetMacro(IgnoreSolids, vtkTypeBool);
-  vtkBooleanMacro(IgnoreSolids, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(IgnoreSolids);
 
-  ///@{
   /**
    * Divide the SPH sums by the sum of the weights (Shepard). On by default.
    */
-  vtkSetMacro(ShepardNormalization, vtkTypeBool);
-  vtkGetMacro(ShepardNormalization, vtkTypeBool);
-  vtkBooleanMacro(ShepardNormalization, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ShepardNormalization);
 
-  ///@{
   /**
    * Points with a lower weight are not valid. No unit, 0.1 by default.
    */
-  vtkSetClampMacro(WeightThreshold, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(WeightThreshold, double);
-  ///@}
+  vtkSPHClampMacro(WeightThreshold, double, 0.0, VTK_DOUBLE_MAX);
 
-  ///@{
   /**
    * Add the particles' arrays; off: only WeightSum and the mask. On by default.
    */
-  vtkSetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkGetMacro(InterpolateAttributes, vtkTypeBool);
-  vtkBooleanMacro(InterpolateAttributes, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(InterpolateAttributes);
 
-  ///@{
   /**
    * Add the gradients, unit of the array / L. Off by default.
    */
-  vtkSetMacro(ComputeGradients, vtkTypeBool);
-  vtkGetMacro(ComputeGradients, vtkTypeBool);
-  vtkBooleanMacro(ComputeGradients, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(ComputeGradients);
 
   ///@{
   /**
    * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by default).
    * NaNOutside is off by default.
    */
-  vtkSetMacro(NaNOutside, vtkTypeBool);
-  vtkGetMacro(NaNOutside, vtkTypeBool);
-  vtkBooleanMacro(NaNOutside, vtkTypeBool);
-  vtkSetMacro(NullValue, double);
-  vtkGetMacro(NullValue, double);
+  vtkSPHFlagMacro(NaNOutside);
+  vtkSPHValueMacro(NullValue, double);
   ///@}
 
-  ///@{
   /**
    * The name of the mask of valid points, "vtkValidPointMask" by default.
    */
-  vtkSetStdStringFromCharMacro(ValidPointMaskArrayName);
-  vtkGetCharFromStdStringMacro(ValidPointMaskArrayName);
-  ///@}
+  vtkSPHTextMacro(ValidPointMaskArrayName);
 
 protected:
   vtkSPHProbe();
@@ -156,8 +131,8 @@ protected:
   double NullValue = 0.0;
   std::string ValidPointMaskArrayName = "vtkValidPointMask";
 
-  /** Asks for all particles, whatever part of the points is wanted. */
-  void AskForAll(vtkInformation* particles);
+  /** Behind the points, where these are an input. */
+  int GetParticlesPort() { return this->GetNumberOfInputPorts() - 1; }
 
   vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
 

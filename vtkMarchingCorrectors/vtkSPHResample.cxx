@@ -61,12 +61,6 @@ vtkSPHResample::vtkSPHResample()
 
 vtkSPHResample::~vtkSPHResample() = default;
 
-// The particles, which the superclass has at another port.
-int vtkSPHResample::FillInputPortInformation(int, vtkInformation* info)
-{
-  return this->Superclass::FillInputPortInformation(1, info);
-}
-
 const char* vtkSPHResample::GetOutputClassName(const char*)
 {
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
@@ -87,14 +81,6 @@ int vtkSPHResample::RequestInformation(
   {
     info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
   }
-  return 1;
-}
-
-// Each part needs all particles; ranks find them by themselves.
-int vtkSPHResample::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
-{
-  this->AskForAll(inputVector[0]->GetInformationObject(0));
   return 1;
 }
 
@@ -120,8 +106,7 @@ int vtkSPHResample::RequestData(
 // False where no particle is fluid.
 bool vtkSPHResample::FindBounds(double bounds[6])
 {
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   double ends[6];
 #if MCOR_HAS_RANKS
   if (this->IsShared())
@@ -217,19 +202,13 @@ void vtkSPHResample::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   const char* const shapes[] = { "slice", "line", "volume" };
-  const auto print = [&](const char* name, const double* values, int count)
-  {
-    os << indent << name << ":";
-    std::for_each(values, values + count, [&os](double value) { os << " " << value; });
-    os << "\n";
-  };
   os << indent << "Shape: " << shapes[this->Shape] << "\n";
   os << indent << "Fit Bounds: " << this->FitBounds << "\n";
-  print("Origin", this->Origin, 3);
-  print("Normal", this->Normal, 3);
-  print("Point1", this->Point1, 3);
-  print("Point2", this->Point2, 3);
-  print("Bounds", this->Bounds, 6);
+  PrintNumbers(os, indent, "Origin", this->Origin, 3);
+  PrintNumbers(os, indent, "Normal", this->Normal, 3);
+  PrintNumbers(os, indent, "Point1", this->Point1, 3);
+  PrintNumbers(os, indent, "Point2", this->Point2, 3);
+  PrintNumbers(os, indent, "Bounds", this->Bounds, 6);
   os << indent << "Resolution: " << this->Resolution << "\n";
   os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
      << this->Dimensions[2] << "\n";

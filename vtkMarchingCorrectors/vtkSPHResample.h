@@ -47,22 +47,17 @@ public:
   /**
    * What the points are, see ShapeType; SLICE by default.
    */
-  vtkSetClampMacro(Shape, int, SLICE, VOLUME);
-  vtkGetMacro(Shape, int);
+  vtkSPHClampMacro(Shape, int, SLICE, VOLUME);
   void SetShapeToSlice() { this->SetShape(SLICE); }
   void SetShapeToLine() { this->SetShape(LINE); }
   void SetShapeToVolume() { this->SetShape(VOLUME); }
   ///@}
 
-  ///@{
   /**
    * Fit Origin, Point1 and Point2, or Bounds to the fluid's particles instead of taking what is set. On by
    * default.
    */
-  vtkSetMacro(FitBounds, vtkTypeBool);
-  vtkGetMacro(FitBounds, vtkTypeBool);
-  vtkBooleanMacro(FitBounds, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(FitBounds);
 
   ///@{
   /**
@@ -92,13 +87,10 @@ public:
   vtkGetVector6Macro(Bounds, double);
   ///@}
 
-  ///@{
   /**
    * How many points a slice has along its longer side, or a line; 2 and more, 500 by default.
    */
-  vtkSetClampMacro(Resolution, int, 2, 100000);
-  vtkGetMacro(Resolution, int);
-  ///@}
+  vtkSPHClampMacro(Resolution, int, 2, 100000);
 
   ///@{
   /**
@@ -108,23 +100,16 @@ public:
   vtkGetVector3Macro(Dimensions, int);
   ///@}
 
-  ///@{
   /**
    * Leave quads of a slice out that have a corner without fluid. On by default.
    */
-  vtkSetMacro(OnlyFluid, vtkTypeBool);
-  vtkGetMacro(OnlyFluid, vtkTypeBool);
-  vtkBooleanMacro(OnlyFluid, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(OnlyFluid);
 
 protected:
   vtkSPHResample();
   ~vtkSPHResample() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;

@@ -60,21 +60,6 @@ void ListDevices()
   }
 }
 
-/// No file is written over another, and all can be written: said before the work, not after it.
-void CheckFiles(const Job& job, MessageCapture* messages)
-{
-  std::vector<std::string> outputs;
-  for (const std::string& file :
-    { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File })
-  {
-    if (!file.empty())
-    {
-      outputs.push_back(file);
-    }
-  }
-  CheckOutputs(ListFiles(job.ParticleFiles(), messages), outputs);
-}
-
 /// The last of the runs, and what is known of all.
 Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
   std::vector<vtkSmartPointer<vtkFieldData>>& runs, std::vector<double>& wallSeconds,
@@ -101,7 +86,8 @@ Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
 
 void MakeSurface(const Job& job, MessageCapture* messages)
 {
-  CheckFiles(job, messages);
+  CheckOutputs(ListFiles(job.ParticleFiles(), messages),
+    { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File });
   vtkSmartPointer<vtkPointSet> particles =
     AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));
   SetUpSurface(job, particles);

@@ -31,11 +31,11 @@ from marchingcorrectors._library import lib
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._vtk_ahead import Ahead
 from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of, period_of
-from marchingcorrectors._vtk_summary import HUGE_CELLS, Box, Summary, estimate_cells
+from marchingcorrectors._vtk_summary import Box, Summary, estimate_cells
 from marchingcorrectors._vtk_blocks import find_walls, join_blocks, list_all, name_blocks
 from marchingcorrectors._vtk_surface import (add_iso_values, add_run, build_mesh, computed_arrays, describe,
                                              left_out)
-from marchingcorrectors._warnings import describe_warnings
+from marchingcorrectors._warnings import describe_warnings, take_text
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
@@ -81,6 +81,12 @@ def with_properties(kind):
         if sort == "flag":
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
+    for name in ("FluidScalarRange", "UsedIsoValues", "IsoValueArrayName", "UsedSmoothingLength", "UsedVolume",
+                 "UsedCubeSize", "SurfaceMeasures", "EstimatedCells", "Box", "PeriodicBounds", "Solids", "ErrorMessage",
+                 "RunStatistics", "UsedFluid"):
+        setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
+    for name in ("ScalarRange", "IsoValue", "Components", "Cells", "Fluid", "Array"):
+        setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
     for quantity in ("SmoothingLength", "Volume", "Mass", "Density"):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
     kernels = {"KernelTo" + "".join(part.capitalize() for part in name.split("_")): ("Kernel", number)
@@ -212,9 +218,6 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             self.Solids = legal
             self.Modified()
 
-    def GetSolids(self):
-        return self.Solids
-
     def SetKernelByName(self, name):
         kernel = lib.mcor_find_sph_kernel((name or "").encode())
         if kernel >= 0:
@@ -238,17 +241,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def GetExcludedArray(self, i):
         return self.ExcludedArrays[i] if 0 <= i < len(self.ExcludedArrays) else None
 
-    def GetErrorMessage(self):
-        return self.ErrorMessage
-
-    def GetRunStatistics(self):
-        return self.RunStatistics
-
     def GetStatistics(self):
         return describe(self.RunStatistics)
-
-    def GetUsedFluid(self):
-        return self.UsedFluid
 
     @staticmethod
     def ListDevices():
@@ -293,7 +287,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     def _process_blocks(self, data, output):
         """A block that fails leaves its place empty, and the others as they are."""
         output.CopyStructure(data)
-        names, iterator = list(name_blocks(data)), data.NewTreeIterator()
+        names, iterator = name_blocks(data), data.NewTreeIterator()
         iterator.InitTraversal()
         self._warn_once("walls", find_walls(names))
         for i, name in enumerate(names):
@@ -389,10 +383,10 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             iso = [0.5 if choice.FreeSurface else found[1] if found else 0.0]
         arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
-        self.EstimatedCells = estimate_cells(particles, arguments, options)
-        if self.EstimatedCells >= HUGE_CELLS:
-            self._say(f"The fluid fills about {self.EstimatedCells:g} cells of the virtual grid, so this may take "
-                      "minutes and much memory. A larger cube size takes less; the run can be cancelled.", "Warning")
+        self.EstimatedCells = estimate_cells(arguments, options)
+        huge = take_text(lib.mcor_describe_estimate(self.EstimatedCells))
+        if huge:
+            self._say(huge, "Warning")
         try:
             self._call_core(particles, arguments, surface)
             self.summarize(arguments, particles.iso_value_name, surface)
@@ -423,7 +417,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
                 self._set_versions(particles, arguments)
             self._context.run(lambda handle: lib.mcor_extract(
                 handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)),
-                arguments.options, self._report, lambda: lib.mcor_free_surface(ctypes.byref(surface)))
+                arguments.options, self._report)
         except BaseException as failure:
             self._signatures = (None, None)
             if isinstance(failure, DeviceError):

@@ -85,7 +85,7 @@ class Context:
         if getattr(self, "_handle", None):
             self.close()
 
-    def run(self, call, options, progress, free):
+    def run(self, call, options, progress):
         """call(handle) with the context to itself; raises what went wrong, the callback's exceptions
         and KeyboardInterrupt included."""
         start()
@@ -99,7 +99,6 @@ class Context:
                 options.progress = c.Progress()
             error = ERRORS.get(status, Error)(self._sentence()) if status else None
         if watch.failure is not None or watch.interrupted:
-            free()
             watch.raise_it()
         if error:
             raise error

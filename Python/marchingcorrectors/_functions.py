@@ -3,6 +3,7 @@
 """isosurface, free_surface, probe, derivatives: one call of the core each."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Union
@@ -29,10 +30,11 @@ if TYPE_CHECKING:
     Attributes = Mapping[str, ArrayLike]
 
 
-def _prepare(units, attributes, solid, quantities, options):
+def prepare(units, attributes, given, options):
+    """given: the arguments of the function that was called."""
     arguments = Arguments(units.positions)
-    arguments.set_quantities(units.quantities(quantities))
-    arguments.set_solid(solid)
+    arguments.set_quantities(units.quantities(given))
+    arguments.set_solid(given["solid"])
     names = arguments.set_attributes(attributes)
     arguments.set_options(units.options(options))
     return arguments, names
@@ -44,16 +46,25 @@ def _warn_of(missing):
              "Correct its values, or do not ask for it.")
 
 
-def _run(arguments, context, device, progress, call, free):
+@contextlib.contextmanager
+def called(function, kind, arguments, given, *more):
+    """What a function of the core returns, which is freed at the end. given: the arguments of the function that was
+    called, of which context, device and progress are read."""
+    context = given["context"]
     own = context is None
     if not own and not isinstance(context, Context):
         raise InvalidArgument(f"The context is a {type(context).__name__}; it must be a Context.")
-    context = default_context(device) if own else context
+    context, result = default_context(given["device"]) if own else context, kind()
     try:
-        context.run(call, arguments.options, progress, free)
+        try:
+            context.run(lambda handle: function(handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options),
+                                                *more, ctypes.byref(result)), arguments.options, given["progress"])
+        finally:
+            if own:
+                context.release_memory()
+        yield result
     finally:
-        if own:
-            context.release_memory()
+        getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))
 
 
 def _of_files(function):
@@ -131,7 +142,7 @@ def _extract(given, options):
     attributes, units = as_named(given["attributes"]), Units(given["positions"])
     real = {name: array for name, array in attributes.items() if is_real(array)}
     scalar, scalar_dot, iso = scalar_and_iso(given["scalar"], given["scalar_dot"], given["iso"])
-    arguments, names = _prepare(units, real, given["solid"], given, options)
+    arguments, names = prepare(units, real, given, options)
     free_surface_wanted = arguments.options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
     _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted)
     if iso is None:
@@ -139,18 +150,9 @@ def _extract(given, options):
     arguments.set_iso_values(iso)
     wanted = bool(arguments.options.nearest_particle)
     from_nearest = _from_nearest(attributes, real, arguments)
-    surface = c.mcor_surface()
-
-    def free():
-        lib.mcor_free_surface(ctypes.byref(surface))
-
-    _run(arguments, given["context"], given["device"], given["progress"], lambda handle: lib.mcor_extract(
-        handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)), free)
-    try:
+    with called(lib.mcor_extract, c.mcor_surface, arguments, given) as surface:
         found = _surface(surface, arguments, names, attributes, from_nearest, wanted)
         sentences = describe_warnings(arguments, surface)
-    finally:
-        free()
     _warn_of(found.left_out)
     for sentence in sentences.values():
         warn(sentence)
@@ -252,29 +254,18 @@ def probe(positions: ArrayLike, points: ArrayLike, *,
     {options}
     """
     check_names(probe, options, PROBE)
-    attributes, units = as_named(attributes), Units(positions)
-    arguments, names = _prepare(units, attributes, solid, {
-        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
+    given, attributes, units = locals(), as_named(attributes), Units(positions)
+    arguments, names = prepare(units, attributes, given, options)
     where = as_points(units.lengths(points, "array of points"), "points", "(points, 3)")
-    view, samples = arguments.view(where, "points"), c.mcor_samples()
-
-    def free():
-        lib.mcor_free_samples(ctypes.byref(samples))
-
-    _run(arguments, context, device, progress, lambda handle: lib.mcor_probe(
-        handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(view),
-        len(where), ctypes.byref(samples)), free)
-    try:
+    view, n = arguments.view(where, "points"), len(where)
+    with called(lib.mcor_probe, c.mcor_samples, arguments, given, ctypes.byref(view), n) as samples:
         arrays = take_all("mcor_samples", samples, {"count": samples.count})
-        n = len(where)
         result = Samples(
             weight_sum=_or_zeros(arrays["weight_sum"], n), valid=_or_zeros(arrays["valid"], n).astype(bool),
             values=take_each(samples.values, names, arguments.components, samples.count),
             gradients=take_each(samples.gradients, names, arguments.components, samples.count, (3,)),
             weight_gradient=arrays["weight_gradient"], left_out=left_out(samples, names),
             statistics=statistics(samples.statistics))
-    finally:
-        free()
     _warn_of(result.left_out)
     return result
 
@@ -306,25 +297,15 @@ def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Literal["
     {options}
     """
     check_names(derivatives, options, DERIVATIVES)
-    attributes = as_named(attributes)
-    arguments, names = _prepare(Units(positions), attributes, solid, {
-        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
-    chosen, result = number("form", "mcor_gradient", form), c.mcor_derivatives()
-
-    def free():
-        lib.mcor_free_derivatives(ctypes.byref(result))
-
-    _run(arguments, context, device, progress, lambda handle: lib.mcor_derive(
-        handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), chosen,
-        ctypes.byref(result)), free)
-    try:
+    given = locals()
+    arguments, names = prepare(Units(positions), as_named(attributes), given, options)
+    chosen = number("form", "mcor_gradient", form)
+    with called(lib.mcor_derive, c.mcor_derivatives, arguments, given, chosen) as result:
         corrected = take(result.corrected, (result.count,))
         found = Derivatives(
             gradients=take_each(result.gradients, names, arguments.components, result.count, (3,)),
             corrected=_or_zeros(corrected, arguments.count).astype(bool), left_out=left_out(result, names),
             statistics=statistics(result.statistics))
-    finally:
-        free()
     _warn_of(found.left_out)
     return found
 

@@ -3,7 +3,6 @@
 """gauge: where lines cross the free surface."""
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Mapping
 from dataclasses import dataclass, field as dataclass_field
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Union
@@ -13,7 +12,7 @@ import numpy as np
 from . import _structs as c
 from ._arrays import as_bytes, contiguous, statistics
 from ._context import Context
-from ._functions import _prepare, _run
+from ._functions import called, prepare
 from ._library import InvalidArgument, lib
 from ._options import GAUGE, check_names, with_options
 from ._surface import Result
@@ -106,20 +105,9 @@ def gauge(positions: ArrayLike, lines: Any, iso: float = 0.5, *,
     {options}
     """
     check_names(gauge, options, GAUGE)
-    units = Units(positions)
-    arguments, _ = _prepare(units, {}, solid, {
-        "smoothing_length": smoothing_length, "volume": volume, "mass": mass, "density": density}, options)
+    given, units = locals(), Units(positions)
+    arguments, _ = prepare(units, {}, given, options)
     names, array = _as_lines(lines, units)
     arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
-    made, found = _structures(names, array), c.mcor_gauges()
-
-    def free():
-        lib.mcor_free_gauges(ctypes.byref(found))
-
-    _run(arguments, context, device, progress, lambda handle: lib.mcor_gauge(
-        handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), made, len(array),
-        ctypes.byref(found)), free)
-    try:
+    with called(lib.mcor_gauge, c.mcor_gauges, arguments, given, _structures(names, array), len(array)) as found:
         return _gauges(found, names)
-    finally:
-        free()

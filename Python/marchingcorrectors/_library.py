@@ -75,6 +75,12 @@ def _open():
                                                  pointer(ctypes.c_double)]),
         "mcor_view_priority": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_int]),
         "mcor_find_dimension": (ctypes.c_int, [pointer(c.mcor_input), ctypes.c_void_p, ctypes.c_int]),
+        "mcor_least_smoothing_length": (ctypes.c_double, [pointer(c.mcor_input)]),
+        "mcor_estimate_cells": (ctypes.c_double, [pointer(c.mcor_input), pointer(c.mcor_options), ctypes.c_double]),
+        "mcor_describe_estimate": (ctypes.c_void_p, [ctypes.c_double]),
+        "mcor_describe_smoothing_length": (ctypes.c_void_p, [pointer(c.mcor_input), pointer(c.mcor_statistics)]),
+        "mcor_describe_volume": (ctypes.c_void_p, [pointer(c.mcor_input)]),
+        "mcor_describe_measures": (ctypes.c_void_p, [pointer(c.mcor_statistics)]),
         "mcor_find_iso_value": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_ranks),
                                                pointer(ctypes.c_double), pointer(ctypes.c_double)]),
     }

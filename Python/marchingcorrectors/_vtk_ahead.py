@@ -26,30 +26,12 @@ class Ahead:
     def forget_ahead(self):
         self._ahead, self._look_time = None, vtkTimeStamp()
 
-    def GetNextScalarRange(self):
-        return self._look_ahead()["range"]
-
-    def GetNextIsoValue(self):
-        return self._look_ahead()["iso"]
-
-    def GetNextComponents(self):
-        return self._look_ahead()["components"]
-
-    def GetNextCells(self):
-        return self._look_ahead()["cells"]
-
-    def GetNextFluid(self):
-        return self._look_ahead()["fluid"]
-
-    def GetNextArray(self):
-        return self._look_ahead()["array"]
-
     def _look_ahead(self):
         data = self.GetInputDataObject(0, 0) if self.GetNumberOfInputConnections(0) else None
         if data is not None and max(self.GetMTime(), data.GetMTime()) < self._look_time.GetMTime():
             return self._ahead
-        ahead = self._ahead = {"range": (0.0, 0.0), "iso": float("nan"), "cells": 0.0, "fluid": "", "array": "",
-                               "components": 0}
+        ahead = self._ahead = {"ScalarRange": (0.0, 0.0), "IsoValue": float("nan"), "Components": 0, "Cells": 0.0,
+                               "Fluid": "", "Array": ""}
         for points in list_point_sets(self._take_particles(data)):
             self._look_at(points, ahead)
         self._look_time.Modified()
@@ -58,23 +40,23 @@ class Ahead:
     def _look_at(self, points, ahead):
         """What is known does not wait for the rest: the range needs no smoothing length, the cells no scalar."""
         fittest = choose_array(points.GetPointData())
-        ahead["array"] = ahead["array"] or name_of(fittest)
+        ahead["Array"] = ahead["Array"] or name_of(fittest)
         choice = self._choice()
         choice.InterpolateAttributes = False
         particles = Particles(choice, points)
         try:
             particles.collect_solids()
-            ahead["fluid"] = particles.describe_fluid()
+            ahead["Fluid"] = particles.describe_fluid()
             found = None
             if not choice.FreeSurface:
                 particles.collect_scalar(Request(self, 0, points), Request(self, 1, points))
                 found = particles.find_iso_value()
             if found:
-                before = [ahead["range"]] if ahead["iso"] == ahead["iso"] else []
+                before = [ahead["ScalarRange"]] if ahead["IsoValue"] == ahead["IsoValue"] else []
                 ranges = [*before, found[0]]
-                ahead["range"] = min(low for low, _ in ranges), max(high for _, high in ranges)
-                ahead["iso"] = ahead["iso"] if before else found[1]
-                ahead["components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
+                ahead["ScalarRange"] = min(low for low, _ in ranges), max(high for _, high in ranges)
+                ahead["IsoValue"] = ahead["IsoValue"] if before else found[1]
+                ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
         except Unusable:
             pass
         choice = self._choice()
@@ -82,6 +64,6 @@ class Ahead:
         particles = Particles(choice, points)
         try:
             particles.collect((None, None), [])
-            ahead["cells"] += estimate_cells(particles, particles.arguments(), self._options(choice))
+            ahead["Cells"] += estimate_cells(particles.arguments(), self._options(choice))
         except Unusable:
             pass

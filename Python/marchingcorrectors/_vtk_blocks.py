@@ -13,20 +13,7 @@ WALL_WORDS = ("wall", "bound", "solid", "obstacle", "rigid")
 
 def name_blocks(tree):
     """"Block 'name', index 2" of the leaves."""
-    iterator = tree.NewTreeIterator()
-    iterator.VisitOnlyLeavesOff()
-    whole, last = "", 0
-    iterator.InitTraversal()
-    while not iterator.IsDoneWithTraversal():
-        index, data = iterator.GetCurrentFlatIndex(), iterator.GetCurrentDataObject()
-        about = iterator.GetCurrentMetaData() if iterator.HasCurrentMetaData() else None
-        own = about.Get(vtkDataObjectTree.NAME()) if about else None
-        if isinstance(data, vtkPartitionedDataSet):  # its name is that of its partitions
-            whole, last = own or "", index + data.GetNumberOfPartitions()
-        elif not data.IsA("vtkCompositeDataSet"):
-            name = own or (whole if index <= last else "")
-            yield "Block " + (f"'{name}', " if name else "") + f"index {index}"
-        iterator.GoToNextItem()
+    return ["Block " + (f"'{name}', " if name else "") + f"index {index}" for _, name, leaf, index in walk(tree) if leaf]
 
 
 def tells_of_walls(name):
@@ -43,7 +30,8 @@ def find_walls(names):
 
 
 def walk(tree, empty=False):
-    """(data, name, whether it is a leaf) of all nodes; partitions are called by the name of what they are parts of."""
+    """(data, name, whether it is a leaf, flat index) of all nodes; partitions are called by the name of what they are
+    parts of."""
     iterator = tree.NewTreeIterator()
     iterator.VisitOnlyLeavesOff()
     if empty:
@@ -57,7 +45,7 @@ def walk(tree, empty=False):
         if isinstance(data, vtkPartitionedDataSet):
             whole, last = own or "", index + data.GetNumberOfPartitions()
         leaf = data is None or not data.IsA("vtkCompositeDataSet")
-        yield data, own or (whole if index <= last else ""), leaf
+        yield data, own or (whole if index <= last else ""), leaf, index
         iterator.GoToNextItem()
 
 
@@ -98,7 +86,7 @@ def join_array(blocks, walls, like, total):
 def join_blocks(tree):
     """The points of all blocks with the point arrays that all of them have; which are of blocks with names that tell
     of walls, where some do."""
-    leaves = [(data, tells_of_walls(name)) for data, name, leaf in walk(tree, True) if leaf]
+    leaves = [(data, tells_of_walls(name)) for data, name, leaf, _ in walk(tree, True) if leaf]
     some = len({wall for _, wall in leaves}) == 2
     sets = [(data, wall and some) for data, wall in leaves
             if isinstance(data, vtkPointSet) and data.GetNumberOfPoints() > 0]

@@ -171,49 +171,43 @@ def add_run(data, surface, particles, arguments):
     add_run_statistics(data, surface)
 
 
+def add_named(data, s, *names):
+    """Statistics by the core's names: "cube_size" is CubeSize."""
+    for name in names:
+        values = s[name] if isinstance(s[name], tuple) else (s[name],)
+        add_it = add_real if isinstance(values[0], float) else add_count
+        add_it(data, "".join(part.capitalize() for part in name.split("_")), *values)
+
+
 def add_statistics(data, s, surface, options):
-    add_count(data, "FluidParticles", s["fluid_particles"])
-    add_count(data, "SolidParticles", s["solid_particles"])
+    plane = s["dimension"] == 2
+    add_named(data, s, "fluid_particles", "solid_particles")
     add_real(data, "SmoothingLengthRange", s["smoothing_length_min"], s["smoothing_length_max"])
     if options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
         add_real(data, "ScalarRange", s["scalar_min"], s["scalar_max"])
-    add_real(data, "CubeSize", s["cube_size"])
-    add_count(data, "LatticeOrigin", *s["lattice_origin"])
-    add_count(data, "LatticeCells", *s["lattice_cells"])
-    for name in ("virtual_cells", "seed_cells", "seed_cells_not_intersected", "cells_used", "ambiguous_faces",
-                 "joined_faces", "ambiguous_cells", "tunnels"):
-        add_count(data, camel(name), s[name])
-        if name == "cells_used" and options.level_limit:
-            add_levels(data, "CellsOfLevel", s["cells_of_level"])
-            add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
-            add_count(data, "FlatLoops", s["flat_loops"])
-            add_count(data, "HighestLevel", s["highest_level"])
+    add_named(data, s, "cube_size", "lattice_origin", "lattice_cells", "virtual_cells", "seed_cells",
+              "seed_cells_not_intersected", "cells_used")
+    if options.level_limit:
+        add_levels(data, "CellsOfLevel", s["cells_of_level"])
+        add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
+        add_named(data, s, "flat_loops", "highest_level")
+    add_named(data, s, "ambiguous_faces", "joined_faces", "ambiguous_cells", "tunnels")
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
-    if s["dimension"] == 2:
-        add_count(data, "Dimension", 2)
+    if plane:
+        add_named(data, s, "dimension")
         add_count(data, "Lines", surface.line_count)
-    add_count(data, "TrianglesBeforeTrimming", s["triangles_before_trimming"])
-    if options.capping:
-        add_count(data, "CapTriangles", s["cap_triangles"])
-    add_real(data, "CorrectionMean", s["correction_mean"])
-    add_real(data, "CorrectionMax", s["correction_max"])
+    add_named(data, s, "triangles_before_trimming", *["cap_triangles"] * bool(options.capping), "correction_mean",
+              "correction_max")
     add_real(data, "CorrectionStandardDeviation", s["correction_deviation"])
-    add_count(data, "VerticesCorrected", s["vertices_corrected"])
-    add_count(data, "VerticesAboveTolerance", s["vertices_above_tolerance"])
-    add_real(data, "IterationsMean", s["iterations_mean"])
-    add_count(data, "IterationsMax", s["iterations_max"])
-    add_count(data, "NewtonEvaluations", s["newton_evaluations"])
-    add_real(data, "ResidualMax", s["residual_max"])
-    add_real(data, "PositionError", s["position_error"])
-    add_count(data, "TrimVertices", s["trim_vertices"])
-    add_count(data, "TrimVerticesLinear", s["trim_vertices_linear"])
-    if s["dimension"] == 2:
-        add_real(data, "Length", s["length"])
-    if s["dimension"] != 2 or s["is_closed"] or options.filled:
-        add_real(data, "Area", s["area"])
-    if s["dimension"] != 2 and s["is_closed"]:
-        add_real(data, "Volume", s["volume"])
+    add_named(data, s, "vertices_corrected", "vertices_above_tolerance", "iterations_mean", "iterations_max",
+              "newton_evaluations", "residual_max", "position_error", "trim_vertices", "trim_vertices_linear")
+    if plane:
+        add_named(data, s, "length")
+    if not plane or s["is_closed"] or options.filled:
+        add_named(data, s, "area")
+    if not plane and s["is_closed"]:
+        add_named(data, s, "volume")
 
 
 def add_quantity(data, name, array):
@@ -264,10 +258,6 @@ def add_parameters(data, particles, arguments, wall_share):
     add_count(data, "Preview", o.preview)
 
 
-def camel(name):
-    return "".join(part.capitalize() for part in name.split("_"))
-
-
 def add_run_statistics(run, surface):
     """Sums over the blocks of composite data."""
     s = statistics(surface.statistics)
@@ -284,8 +274,10 @@ def add_run_statistics(run, surface):
     def before(name):
         return int(run.GetArray(name).GetComponent(0, 0)) if run.HasArray(name) else 0
 
-    for name in ("particles_in_reach", "bricks", "nodes_evaluated", "march_rounds"):
-        add_count(run, camel(name), before(camel(name)) + s[name])
+    add_count(run, "ParticlesInReach", before("ParticlesInReach") + s["particles_in_reach"])
+    add_count(run, "Bricks", before("Bricks") + s["bricks"])
+    add_count(run, "NodesEvaluated", before("NodesEvaluated") + s["nodes_evaluated"])
+    add_count(run, "MarchRounds", before("MarchRounds") + s["march_rounds"])
     add_count(run, "DeviceBytesPeak", max(before("DeviceBytesPeak"), s["device_bytes_peak"]))
     add_real(run, "MedianNeighbors", s["neighbours_median"])
     add_real(run, "MedianSpacing", s["spacing_median"])

@@ -151,8 +151,9 @@ class Test(unittest.TestCase):
         text = "".join((folder / name).read_text() for name in ("vtkSPHAlgorithm.h", "vtkMarchingCorrectors.h"))
         names = {"Set" + name for name in re.findall(r"vtkSet(?:Clamp|StdStringFromChar|Vector\d)?Macro\((\w+)", text)}
         names |= {"Get" + name for name in re.findall(r"vtkGet(?:CharFromStdString|Vector\d)?Macro\((\w+)", text)}
-        for name in re.findall(r"vtkBooleanMacro\((\w+)", text):
-            names |= {name + "On", name + "Off"}
+        for kind, name in re.findall(r"^  vtkSPH(\w+)Macro\((\w+)", text, re.M):
+            names |= {"Set" + name, "Get" + name, *([name + "On", name + "Off"] if kind == "Flag" else [])}
+        names -= {"Setname", "Getname"}  # the macros' own
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 text.split("protected:")[0], re.M))
         self.assertGreater(len(names), 100)

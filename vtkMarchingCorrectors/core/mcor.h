@@ -81,9 +81,9 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    MCOR_PAIRS = 1     /* the paper's: cells between pairs of particles that are at most an (unscaled)
-                        * smoothing length apart and straddle the iso value. MCOR_WEIGHT_SUM has no
-                        * values at particles, so seeds are always complete */
+    /* The paper's: cells between pairs of particles that are at most an (unscaled) smoothing length apart and
+     * straddle the iso value. MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
+    MCOR_PAIRS = 1
   } mcor_seed_mode;
 
   /* How nodes are connected on an ambiguous face (two above the iso value and two below, diagonally) and
@@ -116,20 +116,18 @@ extern "C"
   typedef enum mcor_boundary_detection
   {
     MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
-    MCOR_BOUNDARY_EIGENVALUE = 1  /* the smallest eigenvalue of the symmetric part of
-                                   * sum V (x_j - x) (outer product) grad W(x - x_j), the inverse of
-                                   * the renormalisation matrix (Marrone et al. 2010), over the same
-                                   * particles. Set vertex_threshold, too: 0.3 trims about where a
-                                   * weight of 0.5 does, 0.75 inside the fluid, 0.9 smoothing lengths
-                                   * from a flat surface. Near 0.5 the border is ragged. */
+    /* The smallest eigenvalue of the symmetric part of sum V (x_j - x) (outer product) grad W(x - x_j), the
+     * inverse of the renormalisation matrix (Marrone et al. 2010), over the same particles. Set
+     * vertex_threshold, too: 0.3 trims about where a weight of 0.5 does, 0.75 inside the fluid, 0.9 smoothing
+     * lengths from a flat surface. Near 0.5 the border is ragged. */
+    MCOR_BOUNDARY_EIGENVALUE = 1
   } mcor_boundary_detection;
 
   /* A per-particle quantity, or one constant for all particles. */
   typedef struct mcor_array
   {
-    const void*
-      data; /* [count][components], finite (attributes need not be); borrowed until return;
-                       * NULL: constant */
+    /* [count][components], finite (attributes need not be); borrowed until return; NULL: constant */
+    const void* data;
     mcor_type type;
     int components;   /* 1 unless said otherwise; 0 is read as 1 */
     double constant;  /* the value of all particles where data is NULL */
@@ -215,41 +213,43 @@ extern "C"
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
-    int level_limit; /* highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24;
-                              * mcor_probe and mcor_derive do not read it */
+    /* Highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24. mcor_probe and mcor_derive do
+     * not read it. */
+    int level_limit;
     const double* iso_values; /* [iso_count], finite; none give an empty surface */
     int iso_count;
-    double node_threshold; /* cells with a node of lower weight are discarded; default 0.1. With
-                            * MCOR_SHEPARD, so are cells with a node of fluid weight below 0.001. */
+    /* Cells with a node of lower weight are discarded; default 0.1. With MCOR_SHEPARD, so are cells with a node
+     * of fluid weight below 0.001. */
+    double node_threshold;
     mcor_boundary_detection boundary_detection;
-    double vertex_threshold; /* triangles are trimmed where the weight (or the boundary eigenvalue)
-                              * is lower; default 0.5. With MCOR_SHEPARD they are always trimmed where
-                              * the fluid's own weight is below 0.001, or below 0.05 with M'4, whose
-                              * negative lobes give the mean poles. */
-    double
-      wall_share;     /* above 0: the surface, a free surface too, also ends where the solids' share
-                        * of the weight exceeds this, unless solids are ignored; 0.5: where they weigh
-                        * more than the fluid. 0: it does not end at solids. Or MCOR_WALL_SHARE_AUTO
-                        * (the default), MCOR_WALL_SHARE_MEASURED */
-    int preview;      /* nonzero: vertices by linear interpolation, no correction */
+    /* Triangles are trimmed where the weight (or the boundary eigenvalue) is lower; default 0.5. With
+     * MCOR_SHEPARD they are always trimmed where the fluid's own weight is below 0.001, or below 0.05 with M'4,
+     * whose negative lobes give the mean poles. */
+    double vertex_threshold;
+    /* Above 0: the surface, a free surface too, also ends where the solids' share of the weight exceeds this,
+     * unless solids are ignored; 0.5: where they weigh more than the fluid. 0: it does not end at solids. Or
+     * MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED. */
+    double wall_share;
+    int preview; /* nonzero: vertices by linear interpolation, no correction */
     /* Two dimensions, nonzero: triangles fill the region above the least iso value, inside of what trimming
      * leaves, divided by the lines of the other values: see mcor_surface.band_value. They share the points of
      * lines; their other points are nodes of the virtual grid, and where trimming cuts its edges. iso_value is
      * given, too. Seeds are complete, and all squares have the smallest size. Three dimensions are refused. */
     int filled;
-    double tolerance; /* |f - iso| reached by the correction / range of A; default 1e-6 */
-    int iteration_limit;  /* of the correction, per vertex; 1 to 255, default 30 */
-    mcor_type precision;  /* of the field evaluation on the device; MCOR_FLOAT32 by default */
-    int64_t memory_limit; /* bytes of device memory in use and kept, >= 0; 0: no limit. Memory
-                              * kept for reuse is freed before a run fails for lack of memory. */
+    double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
+    int iteration_limit; /* of the correction, per vertex; 1 to 255, default 30 */
+    mcor_type precision; /* of the field evaluation on the device; MCOR_FLOAT32 by default */
+    /* Bytes of device memory in use and kept, >= 0; 0: no limit. Memory kept for reuse is freed before a run
+     * fails for lack of memory. */
+    int64_t memory_limit;
 
-    /* Not all 0: the surface is that of the cells whose centres are in the box, box[2 a] <= x <
-     * box[2 a + 1] along axis a, to the last bit; boxes side by side make up the whole surface. Sides may
-     * be infinite. Lattice, ranges and smallest h are measured over all particles; only those that reach
+    /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the surface is that of the cells whose centres are in the box,
+     * box[2 a] <= x < box[2 a + 1] along axis a, to the last bit; boxes side by side make up the whole surface.
+     * Sides may be infinite; flat (y0 = y1) only around particles in that plane. Lattice, ranges and smallest h are measured over all particles; only those that reach
      * the box are evaluated. With MCOR_PAIRS and no ranks, the whole surface is evaluated up to the
      * correction, because cells grow from wherever pairs are. mcor_probe and mcor_derive read the box only
      * with globals. */
-    double box[6]; /* x0, x1, y0, y1, z0, z1; unit L; flat (y0 = y1) only around particles in that plane */
+    double box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
      * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that of
@@ -327,7 +327,7 @@ extern "C"
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
-    double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; else 0 */
+    double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; or 0 */
     double plane_extent;    /* of the positions of all particles along it */
     int dimension;          /* 2 or 3, see mcor_options.dimension */
     double cube_size;       /* unit L; the shortest of: */
@@ -374,7 +374,8 @@ extern "C"
      * caps, nor of the trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
-    int64_t trim_vertices, trim_vertices_linear; /* linear: kept at the linear cut, off the iso value */
+    int64_t trim_vertices,
+      trim_vertices_linear; /* linear: left at the linear cut, off the iso value */
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
@@ -407,9 +408,10 @@ extern "C"
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
-    double* band_value; /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the
-                         * field there, with which the band begins. The last band has no end. At points
-                         * inside, iso_value is this, and residual what the field is above it */
+    /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the field there, with which
+     * the band begins. The last band has no end. At points inside, iso_value is this, and residual what the field
+     * is above it. */
+    double* band_value;
     /* Optional arrays, NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */
@@ -417,20 +419,18 @@ extern "C"
     float* boundary_eigenvalue; /* [point_count], see MCOR_BOUNDARY_EIGENVALUE */
     float* correction_length;   /* [point_count], unit L */
     float* residual;            /* [point_count], f - iso, scalar unit */
-    uint8_t*
-      boundary_flag;   /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or
-                             * eigenvalue) is the vertex threshold or the solids' share the wall
-                             * share; 2: the same, but left at the linear cut; 4: on a lattice edge
-                             * next to a cell that the node threshold discarded; 8: belongs to a cap
-                             * alone, see capping, or is a node that is filled around */
-    double* iso_value; /* [point_count] */
+    /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or eigenvalue) is the vertex threshold
+     * or the solids' share the wall share; 2: the same, but left at the linear cut; 4: on a lattice edge next to a
+     * cell that the node threshold discarded; 8: belongs to a cap alone, see capping, or is a node that is filled
+     * around. */
+    uint8_t* boundary_flag;
+    double* iso_value;         /* [point_count] */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
     double** attributes;       /* [attribute_count] -> [point_count][components] */
-    int64_t*
-      attribute_not_finite; /* [attribute_count]: -1; or the first fluid particle at which the
-                             * attribute is NaN or infinite. Such an attribute is left out; its
-                             * entry in `attributes` is NULL */
+    /* [attribute_count]: -1; or the first fluid particle at which the attribute is NaN or infinite. Such an
+     * attribute is left out; its entry in `attributes` is NULL. */
+    int64_t* attribute_not_finite;
     int attribute_count;
     mcor_statistics statistics;
   } mcor_surface;
@@ -532,6 +532,23 @@ extern "C"
   /* 2 or 3: the dimension of a call with this input, over all ranks unless `ranks` is NULL, and this
    * mcor_options.dimension. Reads only the positions and the solids. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
+
+  /* The least smoothing length of the fluid, as the input has it; 1 with estimate_smoothing_length, infinite
+   * without fluid. */
+  double mcor_least_smoothing_length(const mcor_input* input);
+
+  /* About how many cubes (in a plane squares) of the virtual grid the fluid, in the box if there is one, fills: a
+   * particle takes (h / 1.3)^3. 0 with estimate_smoothing_length if the cube size does not follow from that.
+   * least: mcor_least_smoothing_length, of all ranks that share the particles, whose numbers add up. */
+  double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
+
+  /* What a run of so many cells may take, a warning; what was used, "0.02 to 0.045 (array h)", "array Mass / array
+   * Density"; and area and volume, or length and area, "" where there is no surface. In words, with six digits;
+   * free them with free(). NULL if there is no such warning, or if memory ran out. */
+  char* mcor_describe_estimate(double cells);
+  char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
+  char* mcor_describe_volume(const mcor_input* input);
+  char* mcor_describe_measures(const mcor_statistics* statistics);
 
   /* What may be wrong with the input although the extraction succeeded. */
   typedef enum mcor_warning

@@ -3,9 +3,9 @@
 #include "vtkSPHArrays.h"
 
 #include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSPHReals.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkVariant.h"
@@ -34,9 +34,19 @@ vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkI
   }
   void* kept = count > 0 ? std::realloc(values, count * sizeof(float)) : nullptr;
   float* floats = static_cast<float*>(kept ? kept : values);
-  auto array = vtkSPHAdopt<vtkFloatArray>(floats, components, count > 0 ? tuples : 0);
+  auto array = vtkSPHAdopt(floats, components, count > 0 ? tuples : 0);
   values = count > 0 ? nullptr : values;
   return array;
+}
+
+template <typename ArrayT, typename ValueT>
+void AddTuple(vtkFieldData* data, const char* name, std::initializer_list<ValueT> values)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfComponents(static_cast<int>(values.size()));
+  array->SetNumberOfTuples(1);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  vtkSPHAddArray(data, name, array);
 }
 
 // One component per phase, building the program and the total; 0 so far.
@@ -56,6 +66,13 @@ void AddSeconds(vtkFieldData* run)
 }
 }
 
+std::string vtkSPHTakeText(char* text)
+{
+  const std::string taken = text ? text : "";
+  std::free(text);
+  return taken;
+}
+
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat)
 {
@@ -63,7 +80,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   {
     return RoundToFloat(values, components, tuples);
   }
-  return vtkSPHAdopt<vtkDoubleArray>(values, components, tuples);
+  return vtkSPHAdopt(values, components, tuples);
 }
 
 void vtkSPHAddArray(
@@ -75,21 +92,13 @@ void vtkSPHAddArray(
 
 void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values)
 {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetNumberOfComponents(static_cast<int>(values.size()));
-  array->SetNumberOfTuples(1);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkSPHAddArray(data, name, array);
+  AddTuple<vtkDoubleArray>(data, name, values);
 }
 
 void vtkSPHAddCount(
   vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values)
 {
-  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
-  array->SetNumberOfComponents(static_cast<int>(values.size()));
-  array->SetNumberOfTuples(1);
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkSPHAddArray(data, name, array);
+  AddTuple<vtkTypeInt64Array>(data, name, values);
 }
 
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text)
@@ -176,39 +185,70 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
   }
 }
 
-namespace
+std::vector<bool> vtkSPHFindVarying(
+  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMerge& merge)
 {
-void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
-{
-  bool varies = false;
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  std::vector<double> ends; // least value, and minus the greatest, of each component
+  for (const auto& each : arrays)
   {
-    double range[2];
-    array->GetRange(range, c);
-    varies = varies || range[0] < range[1];
-  }
-  const int type = array->GetDataType();
-  choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
-    type == VTK_FLOAT || type == VTK_DOUBLE, varies);
-}
-}
-
-std::string vtkSPHChooseArray(vtkFieldData* data)
-{
-  vtkSPHArrayChoice choice;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    if (vtkDataArray* array = data->GetArray(i))
+    for (int c = 0; c < each.second; ++c)
     {
-      Consider(array, choice);
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (each.first && each.first->GetNumberOfTuples() > 0)
+      {
+        each.first->GetRange(range, c);
+      }
+      ends.insert(ends.end(), { range[0], -range[1] });
     }
   }
-  return choice.Best;
+  if (merge)
+  {
+    merge(ends);
+  }
+  std::vector<bool> varying;
+  const double* end = ends.data();
+  for (const auto& each : arrays)
+  {
+    bool varies = false;
+    for (int c = 0; c < each.second; ++c, end += 2)
+    {
+      varies = varies || end[0] < -end[1];
+    }
+    varying.push_back(varies);
+  }
+  return varying;
 }
 
-bool vtkSPHIsFit(vtkDataArray* array)
+std::string vtkSPHChooseArray(vtkFieldData* data, vtkDataArray* preferred, const vtkSPHMerge& merge)
 {
-  vtkSPHArrayChoice choice;
-  Consider(array, choice);
-  return choice.Rank >= 0;
+  vtkSPHArrayChoice first, other;
+  const auto consider = [](vtkSPHArrayChoice& choice, vtkDataArray* array, bool varies)
+  {
+    choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
+      vtkSPHIsReal(array), varies);
+  };
+  if (preferred && !merge) // without a look at all values of others
+  {
+    consider(first, preferred,
+      vtkSPHFindVarying({ { preferred, preferred->GetNumberOfComponents() } }).front());
+    if (first.Rank >= 0)
+    {
+      return first.Best;
+    }
+  }
+  std::vector<std::pair<vtkDataArray*, int>> arrays;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = data->GetArray(i);
+    if (array && array->GetName())
+    {
+      arrays.emplace_back(array, array->GetNumberOfComponents());
+    }
+  }
+  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
+  for (size_t i = 0; i < arrays.size(); ++i)
+  {
+    consider(arrays[i].first == preferred ? first : other, arrays[i].first, varying[i]);
+  }
+  return first.Rank >= 0 ? first.Best : other.Best;
 }

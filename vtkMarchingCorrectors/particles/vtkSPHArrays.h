@@ -10,22 +10,30 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkSmartPointer.h"
+#include "vtkTypeTraits.h"
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <string>
+#include <utility>
+#include <vector>
 
 class vtkPointSet;
 
+/** A text of the core, which is freed; empty for null. */
+std::string vtkSPHTakeText(char* text);
+
 /** Hands a malloc'ed buffer over to a VTK array. */
-template <typename ArrayT, typename ValueT>
-vtkSmartPointer<ArrayT> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
+template <typename ValueT>
+vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkIdType tuples)
 {
-  auto array = vtkSmartPointer<ArrayT>::New();
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(vtkTypeTraits<ValueT>::VTK_TYPE_ID));
   array->SetNumberOfComponents(components);
   if (values && tuples > 0)
   {
-    array->SetArray(values, tuples * components, 0, ArrayT::VTK_DATA_ARRAY_FREE);
+    array->SetVoidArray(values, tuples * components, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
     values = nullptr;
   }
   return array;
@@ -57,10 +65,16 @@ struct vtkSPHArrayChoice
   int Rank = -1;
 };
 
-/** The same of all that it has. */
-std::string vtkSPHChooseArray(vtkFieldData* data);
-/** Whether an array is fit. */
-bool vtkSPHIsFit(vtkDataArray* array);
+/** Makes each number the least of all processes that share the arrays, which all call this. */
+using vtkSPHMerge = std::function<void(std::vector<double>&)>;
+
+/** Which of the arrays, of so many components, have two different values in one. Null: there is none here. */
+std::vector<bool> vtkSPHFindVarying(
+  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMerge& merge = nullptr);
+
+/** The name of an array to be looked at: of `preferred` if it is fit, else the fittest; empty where none is. */
+std::string vtkSPHChooseArray(
+  vtkFieldData* data, vtkDataArray* preferred = nullptr, const vtkSPHMerge& merge = nullptr);
 
 /** A line "Name: values" for each array. */
 std::string vtkSPHDescribe(vtkFieldData* data);

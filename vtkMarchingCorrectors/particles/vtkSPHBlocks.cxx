@@ -53,7 +53,8 @@ vtkSmartPointer<vtkAbstractArray> JoinArrays(
       joined->InsertTuples(
         at, count, 0, blocks[b]->GetPointData()->GetAbstractArray(first->GetName()));
     }
-    else if (!walls[b] || isType || blocks[b]->GetPointData()->HasArray(first->GetName()))
+    else if (walls.empty() || !walls[b] || isType ||
+      blocks[b]->GetPointData()->HasArray(first->GetName()))
     {
       return nullptr;
     }
@@ -76,13 +77,18 @@ bool TellsOfWalls(const std::string& name)
     [&small](const char* word) { return small.find(word) != std::string::npos; });
 }
 
-/** Which of the blocks have names that tell of walls; of all that the tree has, empty ones too, so that
- * processes that have but some agree. All false where none, or all do. */
-std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const Blocks& blocks, bool& some)
+/** A place for a block, and what it is called. */
+struct Leaf
 {
-  std::vector<bool> walls(blocks.size(), false);
-  std::size_t wallCount = 0, count = 0;
-  std::string whole;
+  vtkDataObject* Data; ///< null where it is empty
+  std::string Name;    ///< its own, or that of what it is a partition of; empty where there is none
+  unsigned int Index;
+};
+
+std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
+{
+  std::vector<Leaf> leaves;
+  std::string whole; // of which the blocks up to index `last` are partitions
   unsigned int last = 0;
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(tree->NewTreeIterator());
@@ -102,18 +108,35 @@ std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const Blocks& blocks, bool&
     }
     else if (!data || !data->IsA("vtkCompositeDataSet"))
     {
-      const bool isWall = TellsOfWalls(own ? own : index <= last ? whole : "");
-      wallCount += isWall ? 1 : 0;
-      ++count;
-      const auto found = std::find(blocks.begin(), blocks.end(), data);
-      if (data && found != blocks.end())
-      {
-        walls[static_cast<std::size_t>(found - blocks.begin())] = isWall;
-      }
+      leaves.push_back({ data, own ? own : index <= last ? whole : "", index });
     }
   }
-  some = wallCount > 0 && wallCount < count;
-  return some ? walls : std::vector<bool>(blocks.size(), false);
+  return leaves;
+}
+
+vtkPointSet* PointsOf(vtkDataObject* data)
+{
+  auto* points = vtkPointSet::SafeDownCast(data);
+  return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
+}
+
+/** Which of the blocks with points have names that tell of walls; nothing where none of all that the tree has,
+ * or all do. Empty ones count, so that processes that have but some agree. */
+std::vector<bool> MarkWalls(vtkDataObjectTree* tree)
+{
+  std::vector<bool> walls;
+  const std::vector<Leaf> leaves = ListLeaves(tree);
+  std::size_t count = 0;
+  for (const Leaf& leaf : leaves)
+  {
+    const bool isWall = TellsOfWalls(leaf.Name);
+    count += isWall ? 1 : 0;
+    if (PointsOf(leaf.Data))
+    {
+      walls.push_back(isWall);
+    }
+  }
+  return count > 0 && count < leaves.size() ? walls : std::vector<bool>();
 }
 
 void JoinPoints(const Blocks& blocks, vtkPolyData* joined, vtkIdType total)
@@ -135,7 +158,7 @@ void JoinPoints(const Blocks& blocks, vtkPolyData* joined, vtkIdType total)
 void MarkWallParticles(const Blocks& blocks, const std::vector<bool>& walls, vtkPolyData* joined)
 {
   auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  marks->SetName(vtkSPHWallBlockName);
+  marks->SetName(MCOR_WALL_BLOCK);
   marks->SetNumberOfTuples(joined->GetNumberOfPoints());
   vtkIdType at = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b)
@@ -164,32 +187,15 @@ std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
 }
 }
 
-const char* const vtkSPHWallBlockName = MCOR_WALL_BLOCK;
-
 std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
 {
   std::vector<std::string> names;
-  std::string whole; // of which the blocks up to index `last` are partitions
-  unsigned int last = 0;
-  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(tree->NewTreeIterator());
-  iterator->VisitOnlyLeavesOff();
-  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  for (const Leaf& leaf : ListLeaves(tree))
   {
-    const unsigned int index = iterator->GetCurrentFlatIndex();
-    vtkInformation* about =
-      iterator->HasCurrentMetaData() ? iterator->GetCurrentMetaData() : nullptr;
-    const char* own = about ? about->Get(vtkCompositeDataSet::NAME()) : nullptr;
-    if (auto* parts = vtkPartitionedDataSet::SafeDownCast(iterator->GetCurrentDataObject()))
+    if (leaf.Data)
     {
-      whole = own ? own : "";
-      last = index + parts->GetNumberOfPartitions();
-    }
-    else if (!iterator->GetCurrentDataObject()->IsA("vtkCompositeDataSet"))
-    {
-      const std::string name = own ? own : index <= last ? whole : "";
-      names.push_back(
-        "Block " + (name.empty() ? "" : "'" + name + "', ") + "index " + std::to_string(index));
+      names.push_back("Block " + (leaf.Name.empty() ? "" : "'" + leaf.Name + "', ") + "index " +
+        std::to_string(leaf.Index));
     }
   }
   return names;
@@ -198,24 +204,14 @@ std::vector<std::string> vtkSPHNameBlocks(vtkDataObjectTree* tree)
 std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data)
 {
   Blocks found;
-  const auto add = [&found](vtkDataObject* block)
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  for (const Leaf& leaf : tree ? ListLeaves(tree) : std::vector<Leaf>{ { data, "", 0 } })
   {
-    auto* points = vtkPointSet::SafeDownCast(block);
-    if (points && points->GetNumberOfPoints() > 0)
+    if (vtkPointSet* points = PointsOf(leaf.Data))
     {
       found.push_back(points);
     }
-  };
-  if (auto* tree = vtkDataObjectTree::SafeDownCast(data))
-  {
-    vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-    iterator.TakeReference(tree->NewTreeIterator());
-    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-    {
-      add(iterator->GetCurrentDataObject());
-    }
   }
-  add(data);
   return found;
 }
 
@@ -232,8 +228,7 @@ vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree)
 vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
 {
   const Blocks blocks = vtkSPHListPointSets(tree);
-  bool someAreWalls = false;
-  const std::vector<bool> walls = MarkWalls(tree, blocks, someAreWalls);
+  const std::vector<bool> walls = MarkWalls(tree);
   auto joined = vtkSmartPointer<vtkPolyData>::New();
   vtkIdType total = 0;
   for (vtkPointSet* block : blocks)
@@ -253,7 +248,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
       }
     }
   }
-  if (someAreWalls)
+  if (!walls.empty())
   {
     MarkWallParticles(blocks, walls, joined);
   }

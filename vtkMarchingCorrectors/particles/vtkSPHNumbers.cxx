@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHNumbers.h"
 
-#include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
-#include "vtkDataArrayRange.h"
 #include "vtkSMPTools.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <atomic>
@@ -33,37 +32,29 @@ std::string NameOf(vtkDataArray* array)
 bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
 {
   numbers.resize(static_cast<size_t>(array->GetNumberOfTuples()));
-  const bool isReal = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+  const bool isReal = vtkSPHIsReal(array);
   std::atomic<vtkIdType> first(std::numeric_limits<vtkIdType>::max());
-  const auto read = [&](auto* typed)
-  {
-    vtkSMPTools::For(0, typed->GetNumberOfValues(), Grain,
-      [&](vtkIdType begin, vtkIdType end)
+  vtkSPHForValues(array,
+    [&](auto values, vtkIdType i)
+    {
+      for (const auto value : values)
       {
-        vtkIdType i = begin;
-        for (const auto value : vtk::DataArrayValueRange(typed, begin, end))
+        // Beyond 2^53 the floating point numbers are not all whole numbers that once were there.
+        const double real = static_cast<double>(value);
+        if (isReal && !(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
         {
-          // Beyond 2^53 the floating point numbers are not all whole numbers that once were there.
-          const double real = static_cast<double>(value);
-          if (isReal && !(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
+          vtkIdType known = first;
+          while (i < known && !first.compare_exchange_weak(known, i))
           {
-            vtkIdType known = first;
-            while (i < known && !first.compare_exchange_weak(known, i))
-            {
-            }
           }
-          else
-          {
-            numbers[static_cast<size_t>(i)] = static_cast<std::int64_t>(value);
-          }
-          ++i;
         }
-      });
-  };
-  if (!vtkArrayDispatch::Dispatch::Execute(array, read))
-  {
-    read(array);
-  }
+        else
+        {
+          numbers[static_cast<size_t>(i)] = static_cast<std::int64_t>(value);
+        }
+        ++i;
+      }
+    });
   bad = first;
   return bad == std::numeric_limits<vtkIdType>::max();
 }

@@ -2,25 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHParticles.h"
 
-#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHBlocks.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cstring>
 
 namespace
 {
-bool IsReal(vtkAbstractArray* array)
-{
-  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-}
-
 /** An array without values has no pointer, which to the core would be a constant. */
 const void* OrEmpty(const void* values)
 {
@@ -166,10 +159,6 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
     {
       return false;
     }
-    if (!this->HasOneComponent(role, array))
-    {
-      return false;
-    }
   }
   else if (this->Description.DetectArrays)
   {
@@ -188,7 +177,7 @@ bool vtkSPHParticles::IsCarried(
 {
   const std::string name = NameOf(array);
   return !name.empty() && !Contains(taken, name) &&
-    name != vtkDataSetAttributes::GhostArrayName() && name != vtkSPHWallBlockName &&
+    name != vtkDataSetAttributes::GhostArrayName() && name != MCOR_WALL_BLOCK &&
     !Contains(this->Description.ExcludedArrays, name) &&
     array->GetNumberOfTuples() == this->Core.count;
 }
@@ -204,28 +193,31 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
     {
       continue;
     }
-    const vtkSPHAttribute attribute = { array, NameOf(array), array->GetNumberOfComponents() };
     vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
-    if (numbers && IsReal(numbers))
+    if (numbers && vtkSPHIsReal(numbers))
     {
-      this->Interpolated.push_back(attribute);
-      this->Attributes.push_back(this->View(numbers));
+      this->Interpolate(numbers);
     }
     else
     {
-      this->FromNearest.push_back(attribute);
+      this->FromNearest.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
     }
   }
   const vtkSmartPointer<vtkDataArray> velocity = this->JoinVelocity();
   if (velocity && this->IsCarried(velocity, taken))
   {
-    this->Interpolated.push_back({ velocity, NameOf(velocity), 3 });
-    this->Attributes.push_back(this->View(velocity));
+    this->Interpolate(velocity);
   }
   for (const vtkSPHAttribute& attribute : this->Interpolated)
   {
     SignObject(this->AttributesSignature, attribute.Array);
   }
+}
+
+void vtkSPHParticles::Interpolate(vtkDataArray* array)
+{
+  this->Interpolated.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
+  this->Attributes.push_back(this->View(array));
   this->Core.attributes = this->Attributes.data();
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
 }
@@ -244,15 +236,11 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
     return false;
   }
   vtkDataArray* array = this->Check("derivatives", request.Name, request.Array);
-  if (!array)
+  if (array)
   {
-    return false;
+    this->Interpolate(array);
   }
-  this->Interpolated.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
-  this->Attributes.push_back(this->View(array));
-  this->Core.attributes = this->Attributes.data();
-  this->Core.attribute_count = 1;
-  return true;
+  return array != nullptr;
 }
 
 // The data set's own time is part of it: users change arrays in place and tell the data set.
@@ -284,27 +272,25 @@ mcor_array vtkSPHParticles::View(vtkDataArray* array)
   this->Names.push_back(NameOf(array));
   view.name = array->GetName() ? this->Names.back().c_str() : nullptr;
   view.components = array->GetNumberOfComponents();
-  if (auto* floats = vtkAOSDataArrayTemplate<float>::FastDownCast(array))
-  {
-    view.type = MCOR_FLOAT32;
-    view.data = OrEmpty(floats->GetPointer(0));
-    this->Viewed.push_back(array);
-    return view;
-  }
-  vtkSmartPointer<vtkDataArray> doubles = array;
-  if (!vtkAOSDataArrayTemplate<double>::FastDownCast(array))
-  {
-    doubles = vtkMarchingCorrectorsCopyAsDouble(array);
-  }
-  view.type = MCOR_FLOAT64;
-  view.data = OrEmpty(doubles->GetVoidPointer(0));
-  this->Viewed.push_back(doubles);
+  const vtkSmartPointer<vtkDataArray> real = vtkSPHAsReal(array);
+  view.type = real->GetDataType() == VTK_FLOAT ? MCOR_FLOAT32 : MCOR_FLOAT64;
+  view.data = OrEmpty(real->GetVoidPointer(0));
+  this->Viewed.push_back(real);
   return view;
 }
 
 vtkDataArray* vtkSPHParticles::Find(const std::string& role, const std::string& name)
 {
-  return this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
+  vtkDataArray* array =
+    this->Check(role, name, this->Points->GetPointData()->GetAbstractArray(name.c_str()));
+  const int components = array ? array->GetNumberOfComponents() : 1;
+  if (components != 1)
+  {
+    this->Error = "The " + role + " array " + Quote(name) + " has " + std::to_string(components) +
+      " components; it must have one.";
+    return nullptr;
+  }
+  return array;
 }
 
 vtkDataArray* vtkSPHParticles::Check(
@@ -336,17 +322,6 @@ vtkDataArray* vtkSPHParticles::Check(
   return numbers;
 }
 
-bool vtkSPHParticles::HasOneComponent(const std::string& role, vtkDataArray* array)
-{
-  const int components = array->GetNumberOfComponents();
-  if (components != 1)
-  {
-    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " has " +
-      std::to_string(components) + " components; it must have one.";
-  }
-  return components == 1;
-}
-
 std::string vtkSPHParticles::FindLayout() const
 {
   std::string names;
@@ -367,7 +342,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
   bool isFloat = true;
   for (vtkDataArray* part : parts)
   {
-    if (!part || !IsReal(part) || part->GetNumberOfComponents() != 1 ||
+    if (!part || !vtkSPHIsReal(part) || part->GetNumberOfComponents() != 1 ||
       part->GetNumberOfTuples() != this->Core.count)
     {
       return nullptr;

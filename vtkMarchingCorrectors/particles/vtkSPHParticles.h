@@ -11,10 +11,12 @@
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkPointSet.h"
+#include "vtkSPHAlgorithm.h"
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,28 +29,6 @@ struct vtkSPHRequest
   vtkSmartPointer<vtkAbstractArray> Array;
   std::string Name;
   bool OnPoints = true;
-};
-
-/**
- * What the user chose about the particles, copied: an observer may change the filter while it runs.
- */
-struct vtkSPHParticlesChoice
-{
-  std::string SmoothingLengthArrayName;
-  double SmoothingLength = 0.0;
-  bool EstimateSmoothingLength = false;
-  bool SmoothingLengthIsSupportRadius = false;
-  std::string VolumeArrayName;
-  std::string MassArrayName;
-  std::string DensityArrayName;
-  double Mass = 0.0;
-  double Density = 0.0;
-  bool DetectArrays = true;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
-  bool IgnoreSolids = false;
-  int Kernel = MCOR_CUBIC_SPLINE;
-  std::vector<std::string> ExcludedArrays;
 };
 
 /**
@@ -116,13 +96,10 @@ public:
 
   /**
    * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such.
+   * `reduce` makes both ends the least of all processes that share the particles, for each array in turn.
    */
-  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points);
-
-  /**
-   * Least and greatest value of an array of some whole numbers; false for any other, and an empty one.
-   */
-  static bool FindWholeRange(vtkPointSet* points, const std::string& name, double range[2]);
+  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
+    const std::function<void(double ends[2])>& reduce = nullptr);
 
   /**
    * "ParticleType = 0"; empty where all particles are fluid.
@@ -174,10 +151,11 @@ private:
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
   void Sign();
 
+  /** The point array of that name and one component; null if there is none. Error then says why. */
   vtkDataArray* Find(const std::string& role, const std::string& name);
   bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
     mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core);
-  bool HasOneComponent(const std::string& role, vtkDataArray* array);
+  void Interpolate(vtkDataArray* array);
 
   std::vector<vtkSmartPointer<vtkDataArray>> Viewed; // held while the core reads them
   std::deque<std::string> Names;                     // of these, for the core's messages

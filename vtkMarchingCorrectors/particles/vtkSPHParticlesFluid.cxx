@@ -3,15 +3,15 @@
 // Which particles are fluid: as chosen, or as an array tells.
 #include "vtkSPHParticles.h"
 
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <limits>
 #include <map>
-#include <memory>
 #include <sstream>
 
 bool vtkSPHParticles::CollectSolids()
@@ -24,13 +24,13 @@ bool vtkSPHParticles::CollectSolids()
     return true;
   }
   this->Fluid = this->Find("fluid", name);
-  if (!this->Fluid || !this->HasOneComponent("fluid", this->Fluid))
+  if (!this->Fluid)
   {
     return false;
   }
   this->Solid.resize(std::max<size_t>(static_cast<size_t>(this->Core.count), 1));
   this->FluidCount =
-    vtkMarchingCorrectorsMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
+    vtkSPHMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
   this->Core.solid = this->Solid.data();
   return true;
 }
@@ -58,33 +58,38 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
   return list;
 }
 
-void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points)
+void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
+  const std::function<void(double ends[2])>& reduce)
 {
-  double range[2];
+  const double none = std::numeric_limits<double>::infinity();
   for (const std::string& name : ListTypes(choice, points))
   {
-    if (FindWholeRange(points, name, range) &&
-      mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
+    const std::map<double, vtkIdType> counts =
+      vtkSPHCountValues(points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
+    const bool areWhole = !counts.empty() &&
+      std::all_of(counts.begin(), counts.end(),
+        [](const std::pair<const double, vtkIdType>& count)
+        { return count.first == std::floor(count.first); });
+    double ends[2] = { none, none };
+    if (areWhole)
+    {
+      ends[0] = counts.begin()->first;
+      ends[1] = -counts.rbegin()->first;
+    }
+    else if (points->GetNumberOfPoints() > 0)
+    {
+      ends[0] = -none;
+    }
+    if (reduce)
+    {
+      reduce(ends);
+    }
+    if (mcor_find_fluid_value(name.c_str(), ends[0], -ends[1], &choice.FluidValue))
     {
       choice.FluidArrayName = name;
       return;
     }
   }
-}
-
-bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
-{
-  const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
-    points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
-  const bool whole = std::all_of(counts.begin(), counts.end(),
-    [](const std::pair<const double, vtkIdType>& count)
-    { return count.first == std::floor(count.first); });
-  if (whole && !counts.empty())
-  {
-    range[0] = counts.begin()->first;
-    range[1] = counts.rbegin()->first;
-  }
-  return whole && !counts.empty();
 }
 
 std::string vtkSPHParticles::DescribeFluid() const
@@ -103,19 +108,17 @@ std::string vtkSPHParticles::DescribeUnusedType()
   {
     std::vector<double> values;
     std::vector<std::int64_t> counts;
-    for (const auto& count : vtkMarchingCorrectorsCountValues(
-           this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
+    for (const auto& count :
+      vtkSPHCountValues(this->Points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES))
     {
       values.push_back(count.first);
       counts.push_back(count.second);
     }
-    const std::unique_ptr<char, decltype(&std::free)> text(
-      mcor_describe_unused_type(
-        name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())),
-      std::free);
-    if (text)
+    const std::string text = vtkSPHTakeText(mcor_describe_unused_type(
+      name.c_str(), values.data(), counts.data(), static_cast<int>(values.size())));
+    if (!text.empty())
     {
-      return text.get();
+      return text;
     }
   }
   return {};

@@ -1,15 +1,21 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: values of arrays of real numbers, in double.
+ * Private to the module: values of arrays of any type and layout, as real numbers.
  */
 #ifndef vtkSPHReals_h
 #define vtkSPHReals_h
 
-#include "vtkAOSDataArrayTemplate.h"
+#include "mcor.h"
+#include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
-#include "vtkMarchingCorrectorsValues.h"
+#include "vtkDataArrayRange.h"
+#include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
 
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
 {
@@ -17,12 +23,7 @@ inline bool vtkSPHIsReal(vtkAbstractArray* array)
 }
 
 /** Itself where it is of a type and layout for vtkSPHReals, else a copy. */
-inline vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array)
-{
-  const bool plain = vtkAOSDataArrayTemplate<float>::FastDownCast(array) ||
-    vtkAOSDataArrayTemplate<double>::FastDownCast(array);
-  return plain ? vtkSmartPointer<vtkDataArray>(array) : vtkMarchingCorrectorsCopyAsDouble(array);
-}
+vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
 
 /** The values of an array that vtkSPHAsReal() has returned. */
 class vtkSPHReals
@@ -48,5 +49,33 @@ private:
   const float* const Floats;
   const double* const Doubles;
 };
+
+/** work(values, index of the first) for all values, on all processors. */
+template <typename WorkT>
+void vtkSPHForValues(vtkDataArray* array, const WorkT& work)
+{
+  const auto run = [&work](auto* typed)
+  {
+    vtkSMPTools::For(0, typed->GetNumberOfValues(), 65536,
+      [&](vtkIdType begin, vtkIdType end)
+      { work(vtk::DataArrayValueRange(typed, begin, end), begin); });
+  };
+  if (!vtkArrayDispatch::Dispatch::Execute(array, run))
+  {
+    run(array);
+  }
+}
+
+/** Writes 0 to `solid` where the array has the value `fluid`, else 1. Returns how many are 0. */
+vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid);
+
+/** How often each value occurs in an array of one component; empty if there are more than `most`. */
+std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most);
+
+/** Of the core's array, or the constant that stands for it. */
+double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
+
+/** What is contoured at a particle. */
+double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);
 
 #endif

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHSamples.h"
 
-#include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHParticles.h"
 
@@ -11,31 +9,22 @@
 
 namespace
 {
-/** Values that one thread copies at a time. */
-constexpr vtkIdType CopyGrain = 1 << 16;
+/** Tuples that one thread copies at a time. */
+constexpr vtkIdType CopyGrain = 1 << 14;
 
-void Copy(const double* from, vtkIdType first, vtkIdType tuples, vtkDataArray* to)
+/** With `null` where `valid` is 0. */
+template <typename ValueT>
+void Copy(const double* from, const std::uint8_t* valid, double null, vtkIdType tuples,
+  int components, ValueT* to)
 {
-  if (!from || !to)
-  {
-    return;
-  }
-  const vtkIdType components = to->GetNumberOfComponents();
-  const vtkIdType at = first * components, count = tuples * components;
-  if (auto* floats = vtkFloatArray::FastDownCast(to))
-  {
-    float* out = floats->GetPointer(at);
-    vtkSMPTools::For(0, count, CopyGrain,
-      [from, out](vtkIdType begin, vtkIdType end)
+  vtkSMPTools::For(0, tuples, CopyGrain,
+    [=](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin * components; i < end * components; ++i)
       {
-        std::transform(from + begin, from + end, out + begin,
-          [](double value) { return static_cast<float>(value); });
-      });
-  }
-  else
-  {
-    std::copy(from, from + count, static_cast<vtkDoubleArray*>(to)->GetPointer(at));
-  }
+        to[i] = static_cast<ValueT>(valid && !valid[i / components] ? null : from[i]);
+      }
+    });
 }
 }
 
@@ -90,29 +79,33 @@ vtkSPHSamples::Pair vtkSPHSamples::Make(
 
 void vtkSPHSamples::Put(vtkIdType first, const mcor_samples& samples)
 {
+  const auto copy =
+    [&](const double* from, const std::uint8_t* valid, const vtkSmartPointer<vtkDataArray>& to)
+  {
+    const int components = to ? to->GetNumberOfComponents() : 0;
+    void* out = to ? to->GetVoidPointer(first * components) : nullptr;
+    if (to && to->GetDataType() == VTK_FLOAT)
+    {
+      Copy(from, valid, this->Null, samples.count, components, static_cast<float*>(out));
+    }
+    else if (to)
+    {
+      Copy(from, valid, this->Null, samples.count, components, static_cast<double*>(out));
+    }
+  };
   for (size_t a = 0; a < this->Arrays.size(); ++a)
   {
     this->NotFinite[a] = samples.attribute_not_finite[a];
-    Copy(samples.values[a], first, samples.count, this->Arrays[a].Values);
-    Copy(samples.gradients ? samples.gradients[a] : nullptr, first, samples.count,
-      this->Arrays[a].Gradient);
-    this->PutNull(first, samples, this->Arrays[a].Values);
-    this->PutNull(first, samples, this->Arrays[a].Gradient);
-  }
-  Copy(samples.weight_sum, first, samples.count, this->Weight.Values);
-  Copy(samples.weight_gradient, first, samples.count, this->Weight.Gradient);
-  std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
-}
-
-void vtkSPHSamples::PutNull(vtkIdType first, const mcor_samples& samples, vtkDataArray* array) const
-{
-  for (vtkIdType i = 0; array && this->Null != 0.0 && i < samples.count; ++i)
-  {
-    for (int c = 0; !samples.valid[i] && c < array->GetNumberOfComponents(); ++c)
+    if (samples.values[a])
     {
-      array->SetComponent(first + i, c, this->Null);
+      copy(samples.values[a], samples.valid, this->Arrays[a].Values);
+      copy(samples.gradients ? samples.gradients[a] : nullptr, samples.valid,
+        this->Arrays[a].Gradient);
     }
   }
+  copy(samples.weight_sum, nullptr, this->Weight.Values);
+  copy(samples.weight_gradient, nullptr, this->Weight.Gradient);
+  std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
 }
 
 void vtkSPHSamples::AddTo(vtkFieldData* data) const

@@ -43,8 +43,6 @@ private:
 
   Pair Make(const std::string& name, int components, bool asFloat, bool gradient) const;
 
-  void PutNull(vtkIdType first, const mcor_samples& samples, vtkDataArray* array) const;
-
   const vtkIdType Count;
   const double Null;        // what arrays are at points that are not valid
   std::vector<Pair> Arrays; // in the order of the core's attributes

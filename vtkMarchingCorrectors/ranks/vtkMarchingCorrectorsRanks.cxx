@@ -10,7 +10,6 @@
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
-#include "vtkMarchingCorrectorsSummary.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
@@ -40,25 +39,12 @@ struct vtkMarchingCorrectorsRun
   const mcor_plane& Plane;
 };
 
-std::vector<double> vtkMarchingCorrectors::ListIsoValuesDistributed(
-  vtkSPHRanks& ranks, const vtkMarchingCorrectorsInput& input)
-{
-  if (this->GetNumberOfContours() > 0 || input.Choice.FreeSurface)
-  {
-    return this->ListIsoValues(input);
-  }
-  vtkSPHRanksCalls calls(ranks);
-  double range[2], value = 0.0;
-  calls.End(!mcor_find_iso_value(&input.Core, calls.Get(), range, &value));
-  return { value };
-}
-
 void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
 {
-  double least = vtkMarchingCorrectorsLeastLength(own);
+  double least = mcor_least_smoothing_length(&own);
   ranks.Reduce(vtkSPHRanks::LEAST, &least, 1);
-  this->EstimatedCells = vtkMarchingCorrectorsEstimateCells(own, options, least);
+  this->EstimatedCells = mcor_estimate_cells(&own, &options, least);
   ranks.Reduce(vtkSPHRanks::SUM, &this->EstimatedCells, 1);
   if (ranks.GetRank() == 0)
   {
@@ -89,12 +75,14 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   const bool isUsable = mine.Collect();
   this->SetUsedNames(&mine);
   if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error) ||
-    !this->HasFluidDistributed(ranks, choice, mine, "no surface") ||
+    !this->HasFluidDistributed(ranks, mine, "no surface") ||
     !this->SetPeriodDistributed(ranks, own, options))
   {
     return;
   }
-  const std::vector<double> isoValues = this->ListIsoValuesDistributed(ranks, mine);
+  std::vector<double> isoValues;
+  vtkSPHRanksCalls calls(ranks);
+  calls.End(!this->ListIsoValues(mine, calls.Get(), isoValues));
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = mine.FromNearest.empty() ? 0 : 1;
@@ -202,9 +190,7 @@ void vtkMarchingCorrectors::FinishDistributed(
   }
   this->Summarize(run.Input, run.Options, surface.statistics);
   vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
-  builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
-  builder.AddMeasures(this->RunStatistics);
   vtkSPHAddCount(this->RunStatistics, "Points", { points });
   vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
   if (lines)

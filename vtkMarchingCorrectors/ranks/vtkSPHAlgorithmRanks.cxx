@@ -6,10 +6,8 @@
 
 #include "mcor.h"
 #include "mcor_parts.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
@@ -51,15 +49,14 @@ bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
   return good;
 }
 
-bool vtkSPHAlgorithm::HasFluidDistributed(vtkSPHRanks& ranks, const vtkSPHParticlesChoice& choice,
-  vtkSPHParticles& particles, const std::string& consequence)
+bool vtkSPHAlgorithm::HasFluidDistributed(
+  vtkSPHRanks& ranks, vtkSPHParticles& particles, const std::string& consequence)
 {
   std::int64_t fluid = particles.FluidCount;
   ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
   if (ranks.GetRank() == 0)
   {
-    fluid == 0 ? this->WarnOfNoFluid(choice, consequence)
-               : this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+    this->WarnOfFluid(particles, fluid, consequence);
   }
   return fluid > 0;
 }
@@ -93,82 +90,25 @@ bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHPartic
 vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
   vtkSPHRanks& ranks, vtkPointSet* particles)
 {
-  vtkSPHRequest request = this->FindRequest(0, particles);
-  if (!request.Name.empty())
-  {
-    return request;
-  }
-  vtkPointData* data = particles->GetPointData();
-  std::vector<double> ends; // least value, and minus the greatest, of each component
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
-    {
-      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
-      if (array->GetNumberOfTuples() > 0)
-      {
-        array->GetRange(range, c);
-      }
-      ends.insert(ends.end(), { range[0], -range[1] });
-    }
-  }
-  ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size()));
-  vtkSPHArrayChoice all, active;
-  const double* end = ends.data();
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = data->GetArray(i);
-    bool varies = false;
-    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c, end += 2)
-    {
-      varies = varies || end[0] < -end[1];
-    }
-    vtkSPHArrayChoice& choice = array && array == request.Array ? active : all;
-    if (array && array->GetName())
-    {
-      choice.Consider(array->GetName(), array->GetNumberOfComponents(),
-        array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE, varies);
-    }
-  }
-  const std::string& best = active.Best.empty() ? all.Best : active.Best;
-  if (!best.empty())
-  {
-    request.Array = data->GetAbstractArray(best.c_str());
-  }
-  return request;
+  return this->FindFirstRequest(particles,
+    [&ranks](std::vector<double>& ends)
+    { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
 }
 
 // All have the same arrays, or no particles.
 void vtkSPHAlgorithm::FindFluidDistributed(
   vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles)
 {
-  const double none = std::numeric_limits<double>::infinity();
-  for (const std::string& name :
-    this->DetectFluid ? vtkSPHParticles::ListTypes(choice, particles) : std::vector<std::string>())
+  if (this->DetectFluid)
   {
-    double ends[2] = { none, none };
-    double range[2];
-    if (vtkSPHParticles::FindWholeRange(particles, name, range))
-    {
-      ends[0] = range[0];
-      ends[1] = -range[1];
-    }
-    else if (particles->GetNumberOfPoints() > 0)
-    {
-      ends[0] = -none;
-    }
-    ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
-    if (mcor_find_fluid_value(name.c_str(), ends[0], -ends[1], &choice.FluidValue))
-    {
-      choice.FluidArrayName = name;
-      return;
-    }
+    vtkSPHParticles::FindFluid(
+      choice, particles, [&ranks](double ends[2]) { ranks.Reduce(vtkSPHRanks::LEAST, ends, 2); });
   }
 }
 
-int vtkSPHAlgorithm::FindDimensionDistributed(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
+int vtkSPHAlgorithm::FindDimensionDistributed(vtkPointSet* particles)
 {
+  vtkSPHParticlesChoice choice(*this);
   vtkSPHRanks ranks(this->Controller);
   const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
   this->FindFluidDistributed(ranks, choice, own);

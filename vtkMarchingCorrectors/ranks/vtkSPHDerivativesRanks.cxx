@@ -75,8 +75,7 @@ void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* 
     return;
   }
   bool hasFluid = false;
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
@@ -88,7 +87,7 @@ void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* 
     {
       return;
     }
-    hasFluid = this->HasFluidDistributed(ranks, choice, mine, "there are no derivatives");
+    hasFluid = this->HasFluidDistributed(ranks, mine, "there are no derivatives");
   }
   vtkNew<vtkPointData> found;
   const vtkIdType count = particles ? particles->GetNumberOfPoints() : 0;

@@ -97,8 +97,7 @@ void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
   {
     return;
   }
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   const bool isUsable = counts[0] == 0 || mine.CollectParticles();
@@ -107,7 +106,7 @@ void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
   {
     return;
   }
-  if (counts[0] > 0 && this->HasFluidDistributed(ranks, choice, mine, "all gauges are dry"))
+  if (counts[0] > 0 && this->HasFluidDistributed(ranks, mine, "all gauges are dry"))
   {
     this->MeasureDistributed(ranks, own, mine, gauges, output);
   }

@@ -158,8 +158,7 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
   {
     return;
   }
-  vtkSPHParticlesChoice choice;
-  this->FillChoice(choice);
+  vtkSPHParticlesChoice choice(*this);
   this->FindFluidDistributed(ranks, choice, own);
   vtkSPHParticles mine(choice, own);
   if (counts[0] > 0)
@@ -176,7 +175,7 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
     }
   }
   const bool hasFluid =
-    counts[0] > 0 && this->HasFluidDistributed(ranks, choice, mine, "no point is valid");
+    counts[0] > 0 && this->HasFluidDistributed(ranks, mine, "no point is valid");
   if (hasFluid && counts[1] > 0)
   {
     this->ProbeDistributed(ranks, own, mine, points, output);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksWork.h"
 
-#include "vtkMarchingCorrectorsValues.h"
 #include "vtkSPHRanks.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +69,7 @@ public:
         const std::size_t cell = this->Find(i);
         this->CellOf[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(cell);
         ++this->Counts[cell];
-        const double value = hasValues ? vtkMarchingCorrectorsScalarOf(this->Input, i) : 0.0;
+        const double value = hasValues ? vtkSPHScalarOf(this->Input, i) : 0.0;
         this->Low[cell] = std::min(this->Low[cell], value);
         this->High[cell] = std::min(this->High[cell], -value);
       }
@@ -118,7 +118,7 @@ private:
     for (int a = 2; a >= 0; --a)
     {
       const double at =
-        (vtkMarchingCorrectorsPositionOf(this->Input, i, a) - this->Globals.measured.x_low[a]) /
+        (vtkSPHValueOf(this->Input.positions, 3 * i + a) - this->Globals.measured.x_low[a]) /
         this->Edge;
       const double within = std::min(std::max(std::floor(at), 0.0), this->Size[a] - 1.0);
       cell = cell * static_cast<std::size_t>(this->Size[a]) + static_cast<std::size_t>(within);

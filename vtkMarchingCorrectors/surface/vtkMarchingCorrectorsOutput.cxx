@@ -7,7 +7,6 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkFloatArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkMarchingCorrectorsInput.h"
@@ -19,7 +18,6 @@
 #include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
 #include "vtkTypeInt64Array.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -83,6 +81,7 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
   this->BuildIsoValue(output);
+  this->AddIsoValues(output->GetFieldData());
   this->ChooseActive(output, merge);
 }
 
@@ -199,42 +198,26 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
 {
   vtkPointData* pointData = output->GetPointData();
   mcor_surface& s = this->Surface;
-  const vtkIdType count = s.point_count;
-  if (s.normals)
+  const auto add = [&](const char* name, auto*& values, int components)
   {
-    vtkSPHAddArray(pointData, "Normals", vtkSPHAdopt<vtkFloatArray>(s.normals, 3, count));
-    if (s.statistics.dimension != 2 || this->Options.filled) // VTK would draw lines dark by them
+    if (values)
     {
-      pointData->SetActiveNormals("Normals");
+      vtkSPHAddArray(pointData, name, vtkSPHAdopt(values, components, s.point_count));
     }
-  }
-  if (s.gradients)
+  };
+  // VTK would draw lines dark by them.
+  const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
+  add("Normals", s.normals, 3);
+  if (areActive)
   {
-    vtkSPHAddArray(pointData, "Gradients", vtkSPHAdopt<vtkDoubleArray>(s.gradients, 3, count));
+    pointData->SetActiveNormals("Normals");
   }
-  if (s.weight_sum)
-  {
-    vtkSPHAddArray(pointData, "WeightSum", vtkSPHAdopt<vtkFloatArray>(s.weight_sum, 1, count));
-  }
-  if (s.boundary_eigenvalue)
-  {
-    vtkSPHAddArray(
-      pointData, "BoundaryEigenvalue", vtkSPHAdopt<vtkFloatArray>(s.boundary_eigenvalue, 1, count));
-  }
-  if (s.correction_length)
-  {
-    vtkSPHAddArray(
-      pointData, "CorrectionLength", vtkSPHAdopt<vtkFloatArray>(s.correction_length, 1, count));
-  }
-  if (s.residual)
-  {
-    vtkSPHAddArray(pointData, "Residual", vtkSPHAdopt<vtkFloatArray>(s.residual, 1, count));
-  }
-  if (s.boundary_flag)
-  {
-    vtkSPHAddArray(
-      pointData, "BoundaryFlag", vtkSPHAdopt<vtkUnsignedCharArray>(s.boundary_flag, 1, count));
-  }
+  add("Gradients", s.gradients, 3);
+  add("WeightSum", s.weight_sum, 1);
+  add("BoundaryEigenvalue", s.boundary_eigenvalue, 1);
+  add("CorrectionLength", s.correction_length, 1);
+  add("Residual", s.residual, 1);
+  add("BoundaryFlag", s.boundary_flag, 1);
 }
 
 void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
@@ -254,38 +237,17 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const
 {
   vtkPointData* data = output->GetPointData();
-  std::vector<double> ends; // least value, and minus the greatest, of each component
-  const auto look = [&](const std::string& name, int components)
+  const std::vector<vtkSPHAttribute>& attributes = this->Input.Interpolated;
+  std::vector<std::pair<vtkDataArray*, int>> arrays;
+  for (const vtkSPHAttribute& attribute : attributes)
   {
-    vtkDataArray* array = data->GetArray(name.c_str());
-    for (int c = 0; c < components; ++c)
-    {
-      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
-      if (array && array->GetNumberOfTuples() > 0)
-      {
-        array->GetRange(range, c);
-      }
-      ends.insert(ends.end(), { range[0], -range[1] });
-    }
-  };
-  for (const vtkSPHAttribute& attribute : this->Input.Interpolated)
-  {
-    look(attribute.Name, attribute.Components);
+    arrays.emplace_back(data->GetArray(attribute.Name.c_str()), attribute.Components);
   }
-  if (merge)
-  {
-    merge(ends);
-  }
+  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
   vtkSPHArrayChoice choice;
-  const double* end = ends.data();
-  for (const vtkSPHAttribute& attribute : this->Input.Interpolated)
+  for (size_t i = 0; i < attributes.size(); ++i)
   {
-    bool varies = false;
-    for (int c = 0; c < attribute.Components; ++c, end += 2)
-    {
-      varies = varies || end[0] < -end[1];
-    }
-    choice.Consider(attribute.Name, attribute.Components, true, varies);
+    choice.Consider(attributes[i].Name, attributes[i].Components, true, varying[i]);
   }
   choice.Consider(this->Input.IsoValueName, 1, true, this->Options.iso_count > 1);
   if (data->HasArray(choice.Best.c_str()))
@@ -302,6 +264,7 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
   this->AddIsoValues(run);
   this->AddParameters(run);
   vtkSPHAddRunStatistics(run, this->Surface.statistics);
+  this->AddMeasures(run);
 }
 
 void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const

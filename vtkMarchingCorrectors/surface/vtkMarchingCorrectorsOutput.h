@@ -29,15 +29,11 @@ public:
    */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
-  /** precision: of the points, as vtkAlgorithm has it. merge: makes each number the least over ranks. */
+  /** The surface, and its iso values. precision: of the points, as vtkAlgorithm has it. merge: makes each number the least over ranks. */
   void BuildMesh(vtkPolyData* output, int precision,
     const std::function<void(std::vector<double>&)>& merge = nullptr);
-  /** The iso values, to the output's field data. */
-  void AddIsoValues(vtkFieldData* fieldData) const;
   /** Statistics and parameters: but for what it cost a function of the input and the options alone. */
   void AddRun(vtkFieldData* run) const;
-  /** Area, and of a closed surface its volume. */
-  void AddMeasures(vtkFieldData* run) const;
 
   /** Triangles, lines, and between which iso values they are. Takes the surface's triangles. */
   static void BuildCells(mcor_surface& surface, vtkPolyData* output);
@@ -48,7 +44,9 @@ private:
   void BuildIsoValue(vtkPolyData* output);
   void ChooseActive(
     vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const;
+  void AddIsoValues(vtkFieldData* fieldData) const;
   void AddStatistics(vtkFieldData* fieldData) const;
+  void AddMeasures(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 
   const vtkMarchingCorrectorsInput& Input;

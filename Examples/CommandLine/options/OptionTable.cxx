@@ -35,11 +35,8 @@ void SetFluid(Job& job, Text option, Text text)
   {
     throw UsageError(option + " needs NAME=VALUE, not '" + text + "'");
   }
-  for (vtkSPHAlgorithm* filter : job.All())
-  {
-    filter->SetFluidArrayName(Printable(text.substr(0, equals)).c_str());
-    filter->SetFluidValue(ToNumber(option, text.substr(equals + 1)));
-  }
+  SetAll(job, &vtkSPHAlgorithm::SetFluidArrayName, Printable(text.substr(0, equals)).c_str());
+  SetAll(job, &vtkSPHAlgorithm::SetFluidValue, ToNumber(option, text.substr(equals + 1)));
 }
 
 void SetSolids(Job& job, Text option, Text text)
@@ -201,12 +198,7 @@ const Options TheParticles = {
     { SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true); } },
   { "--volume", "NAME", "array of particle volumes",
     [](Job& j, Text, Text v)
-    {
-      for (vtkSPHAlgorithm* filter : j.All())
-      {
-        filter->SetVolumeArrayName(Printable(v).c_str());
-      }
-    } },
+    { SetAll(j, &vtkSPHAlgorithm::SetVolumeArrayName, Printable(v).c_str()); } },
   { "--mass", "NAME|VALUE", "array of particle masses, or one value",
     [](Job& j, Text n, Text v) { j.Mass = ToQuantity(n, v); } },
   { "--density", "NAME|VALUE", "array of densities, or one value",
@@ -396,13 +388,7 @@ const Options Output = {
 const Options DeviceAndHelp = {
   { "", "", "Device and help", {} },
   { "--device", "N|SUBSTRING", "OpenCL device, by number or part of its name (see --list-devices)",
-    [](Job& j, Text, Text v)
-    {
-      for (vtkSPHAlgorithm* filter : j.All())
-      {
-        filter->SetDevice(v.c_str());
-      }
-    } },
+    [](Job& j, Text, Text v) { SetAll(j, &vtkSPHAlgorithm::SetDevice, v.c_str()); } },
   { "--threads", "N",
     "maximum number of threads of the built-in device (default: one per processor)",
     [](Job&, Text n, Text v)

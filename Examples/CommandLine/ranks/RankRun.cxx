@@ -62,12 +62,9 @@ void CheckUse(const Job& job, const RankSession& session, MessageCapture* messag
       outputs.push_back(PieceName(job.Output, rank));
     }
   }
-  for (const std::string& file : { job.Output, job.StatisticsFile, job.ComponentFile })
+  if (session.IsFirst())
   {
-    if (session.IsFirst() && !file.empty())
-    {
-      outputs.push_back(file);
-    }
+    outputs.insert(outputs.end(), { job.Output, job.StatisticsFile, job.ComponentFile });
   }
   CheckOutputs(ListFiles(job.ParticleFiles(), messages), outputs);
 }

@@ -69,14 +69,9 @@ void CheckFiles(const Job& job, const std::vector<std::string>& stored,
   {
     outputs.push_back(NameOfStep(job.Picture.File, i));
   }
-  for (const std::string& file : { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
-         IsCollectionFile(job.Output) ? job.Output : "" })
-  {
-    if (!file.empty())
-    {
-      outputs.push_back(file);
-    }
-  }
+  outputs.insert(outputs.end(),
+    { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
+      IsCollectionFile(job.Output) ? job.Output : "" });
   CheckOutputs(ListFiles(inputs, messages), outputs);
   for (const std::string& surface : surfaces)
   {
@@ -142,18 +137,10 @@ private:
 
   bool TryStep(std::size_t i)
   {
-    std::string sentence = "host memory ran out";
-    try
+    const std::string sentence = FailureOf([&] { this->MakeStep(i); });
+    if (sentence.empty())
     {
-      this->MakeStep(i);
       return true;
-    }
-    catch (const std::bad_alloc&)
-    {
-    }
-    catch (const std::exception& error)
-    {
-      sentence = error.what();
     }
     if (ShowsProgress(this->Options))
     {

@@ -23,7 +23,6 @@
 #include "vtkTable.h"
 
 #include <iostream>
-#include <new>
 #include <stdexcept>
 
 namespace
@@ -104,10 +103,7 @@ private:
     std::vector<std::string> inputs = this->Options.ParticleFiles();
     const std::vector<std::string> stored = this->Times.ListFiles();
     inputs.insert(inputs.end(), stored.begin(), stored.end());
-    if (!this->Options.GaugeFile.empty())
-    {
-      inputs.push_back(this->Options.GaugeFile);
-    }
+    inputs.push_back(this->Options.GaugeFile);
     CheckOutputs(ListFiles(inputs, this->Messages), { this->Options.Output });
   }
 
@@ -119,18 +115,10 @@ private:
 
   bool TryStep(double time)
   {
-    std::string error = "host memory ran out";
-    try
+    const std::string error = FailureOf([&] { this->MakeStep(time); });
+    if (error.empty())
     {
-      this->MakeStep(time);
       return true;
-    }
-    catch (const std::bad_alloc&)
-    {
-    }
-    catch (const std::exception& failure)
-    {
-      error = failure.what();
     }
     if (this->Times.Get().size() == 1)
     {

@@ -150,17 +150,9 @@ void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
 
 void CheckProbeFiles(const Job& job, MessageCapture* messages)
 {
-  std::vector<std::string> inputs = ListFiles(job.ParticleFiles(), messages),
-                           outputs = { job.Output };
-  if (!job.ProbeFile.empty())
-  {
-    inputs.push_back(job.ProbeFile);
-  }
-  if (!job.Picture.File.empty())
-  {
-    outputs.push_back(job.Picture.File);
-  }
-  CheckOutputs(inputs, outputs);
+  std::vector<std::string> inputs = ListFiles(job.ParticleFiles(), messages);
+  inputs.push_back(job.ProbeFile);
+  CheckOutputs(inputs, { job.Output, job.Picture.File });
 }
 
 vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)

@@ -259,12 +259,25 @@ void WriteList(JsonText& json, const char* key, const std::vector<std::string>& 
   json.EndList();
 }
 
-void WriteWalls(JsonText& json, const Job& job)
+/// Who made it, of which files. Opens the outermost braces.
+void WriteBeginning(JsonText& json, const Job& job)
 {
+  json.Begin("");
+  json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
+  json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
+  if (job.IsFilm())
+  {
+    WriteList(json, "inputs", job.Inputs);
+  }
+  else
+  {
+    json.Value("input", job.Inputs.front());
+  }
   if (!job.Walls.empty())
   {
     WriteList(json, "walls", job.Walls);
   }
+  json.Value("output", job.Output);
 }
 }
 
@@ -311,12 +324,7 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
 {
   vtkFieldData* last = runs.back();
   JsonText json;
-  json.Begin("");
-  json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
-  json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
-  json.Value("input", job.Inputs.front());
-  WriteWalls(json, job);
-  json.Value("output", job.Output);
+  WriteBeginning(json, job);
   WriteSetting(json, job, last);
   WriteGroup(json, last, "statistics", StatisticNames);
   WriteSeconds(json, last);
@@ -331,12 +339,7 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
     json.End();
   }
   json.EndList();
-  json.BeginList("warnings");
-  for (const std::string& warning : warnings)
-  {
-    json.Value("", warning);
-  }
-  json.EndList();
+  WriteList(json, "warnings", warnings);
   json.Value("peak_resident_bytes", peakResidentBytes);
   json.End();
   return json.Get() + "\n";
@@ -375,12 +378,7 @@ std::string FilmAsJson(
   const Job& job, const std::vector<FilmStep>& steps, const std::string& setting)
 {
   JsonText json;
-  json.Begin("");
-  json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
-  json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
-  WriteList(json, "inputs", job.Inputs);
-  WriteWalls(json, job);
-  json.Value("output", job.Output);
+  WriteBeginning(json, job);
   if (!setting.empty())
   {
     json.Raw(setting);

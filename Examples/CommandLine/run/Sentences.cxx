@@ -4,6 +4,26 @@
 
 #include "SafeText.h"
 
+#include <exception>
+#include <new>
+
+std::string FailureOf(const std::function<void()>& work)
+{
+  try
+  {
+    work();
+    return "";
+  }
+  catch (const std::bad_alloc&)
+  {
+    return "host memory ran out";
+  }
+  catch (const std::exception& error)
+  {
+    return error.what();
+  }
+}
+
 void Sentences::Tell(const std::string& kind, const std::string& step, const std::string& sentence)
 {
   if (++this->Counts[kind + sentence] == 1)

@@ -3,8 +3,12 @@
 #ifndef Sentences_h
 #define Sentences_h
 
+#include <functional>
 #include <map>
 #include <string>
+
+/// Why the work failed, in one sentence; empty if it did not.
+std::string FailureOf(const std::function<void()>& work);
 
 /// Says each sentence of many steps once, with the first step's name, and at the end how often it came.
 class Sentences

@@ -301,6 +301,10 @@ void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std:
   }
   for (const std::string& output : outputs)
   {
+    if (output.empty())
+    {
+      continue;
+    }
     const Target target = Find(output);
     const Identity identity = Identify(target);
     if (target.Exists && S_ISCHR(target.Status.st_mode))

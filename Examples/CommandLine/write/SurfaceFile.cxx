@@ -75,30 +75,23 @@ bool WriteXml(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   return good;
 }
 
+/// The least significant byte first, on every machine.
 template <typename T>
 void Append(std::string& bytes, T value)
 {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-
-/// The least significant byte first, on every machine.
-template <typename T>
-void AppendLittle(std::string& bytes, T value)
-{
   const std::uint16_t one = 1;
-  Append(bytes, value);
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
   if (*reinterpret_cast<const unsigned char*>(&one) != 1)
   {
     std::reverse(bytes.end() - sizeof(value), bytes.end());
   }
 }
 
-template <typename T>
 void AppendVector(std::string& bytes, const double (&vector)[3])
 {
   for (const double value : vector)
   {
-    Append(bytes, static_cast<T>(value));
+    Append(bytes, static_cast<float>(value));
   }
 }
 
@@ -120,7 +113,7 @@ bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   bytes = "binary STL by marching-correctors";
   bytes.resize(80, ' ');
-  AppendLittle(bytes, static_cast<std::uint32_t>(surface->GetNumberOfPolys()));
+  Append(bytes, static_cast<std::uint32_t>(surface->GetNumberOfPolys()));
   ForTriangles(surface,
     [&](const vtkIdType* corners)
     {
@@ -130,14 +123,12 @@ bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
         surface->GetPoint(corners[k], points[k]);
       }
       vtkTriangle::ComputeNormal(points[0], points[1], points[2], normal);
-      for (const auto& vector : { normal, points[0], points[1], points[2] })
+      AppendVector(bytes, normal);
+      for (const auto& point : points)
       {
-        for (int c = 0; c < 3; ++c)
-        {
-          AppendLittle(bytes, static_cast<float>(vector[c]));
-        }
+        AppendVector(bytes, point);
       }
-      AppendLittle(bytes, std::uint16_t(0));
+      Append(bytes, std::uint16_t(0));
     });
   return true;
 }
@@ -186,11 +177,8 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   vtkDataArray* colored = scale.ArrayOf(surface);
   const std::vector<unsigned char> colors =
     colored ? scale.Map(colored) : std::vector<unsigned char>();
-  const std::uint16_t one = 1;
-  const bool isLittle = *reinterpret_cast<const unsigned char*>(&one) == 1;
   std::ostringstream head;
-  head << "ply\nformat binary_" << (isLittle ? "little" : "big")
-       << "_endian 1.0\ncomment by marching-correctors\nelement vertex "
+  head << "ply\nformat binary_little_endian 1.0\ncomment by marching-correctors\nelement vertex "
        << surface->GetNumberOfPoints() << "\nproperty float x\nproperty float y\nproperty float z";
   head << (normals ? "\nproperty float nx\nproperty float ny\nproperty float nz" : "");
   head << (colored ? "\nproperty uchar red\nproperty uchar green\nproperty uchar blue" : "");
@@ -201,11 +189,11 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
     surface->GetPoint(i, vector);
-    AppendVector<float>(bytes, vector);
+    AppendVector(bytes, vector);
     if (normals)
     {
       normals->GetTuple(i, vector);
-      AppendVector<float>(bytes, vector);
+      AppendVector(bytes, vector);
     }
     for (std::size_t c = 0; colored && c < 3; ++c)
     {

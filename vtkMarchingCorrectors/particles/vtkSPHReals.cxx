@@ -1,71 +1,53 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkMarchingCorrectorsValues.h"
+#include "vtkSPHReals.h"
 
-#include "vtkArrayDispatch.h"
-#include "vtkDataArrayRange.h"
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkDoubleArray.h"
-#include "vtkSMPTools.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
-namespace
+double vtkSPHValueOf(const mcor_array& array, std::int64_t i)
 {
-/** work(values, index of the first) for all values of an array of any layout, in parallel. */
-template <typename WorkT>
-void ForValues(vtkDataArray* array, const WorkT& work)
-{
-  const auto run = [&work](auto* typed)
+  if (!array.data)
   {
-    vtkSMPTools::For(0, typed->GetNumberOfValues(), 65536,
-      [&](vtkIdType begin, vtkIdType end)
-      { work(vtk::DataArrayValueRange(typed, begin, end), begin); });
-  };
-  if (!vtkArrayDispatch::Dispatch::Execute(array, run))
-  {
-    run(array);
+    return array.constant;
   }
-}
-
-/** Value i, of either type. */
-double ValueOf(const mcor_array& array, vtkIdType i)
-{
   return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
                                     : static_cast<const double*>(array.data)[i];
 }
-}
 
-double vtkMarchingCorrectorsScalarOf(const mcor_input& core, vtkIdType particle)
+double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle)
 {
   const int components = core.scalar.components;
   const vtkIdType first = particle * components;
   if (core.scalar_component >= 0 && !core.scalar_dot.data)
   {
-    return ValueOf(core.scalar, first + core.scalar_component);
+    return vtkSPHValueOf(core.scalar, first + core.scalar_component);
   }
   double sum = 0.0;
   for (vtkIdType i = first; i < first + components; ++i)
   {
-    sum +=
-      ValueOf(core.scalar, i) * ValueOf(core.scalar_dot.data ? core.scalar_dot : core.scalar, i);
+    sum += vtkSPHValueOf(core.scalar, i) *
+      vtkSPHValueOf(core.scalar_dot.data ? core.scalar_dot : core.scalar, i);
   }
   return core.scalar_dot.data ? sum : std::sqrt(sum);
 }
 
-double vtkMarchingCorrectorsPositionOf(const mcor_input& core, vtkIdType particle, int axis)
+vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array)
 {
-  return ValueOf(core.positions, 3 * particle + axis);
-}
-
-vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* array)
-{
+  if (vtkAOSDataArrayTemplate<float>::FastDownCast(array) ||
+    vtkAOSDataArrayTemplate<double>::FastDownCast(array))
+  {
+    return array;
+  }
   auto copy = vtkSmartPointer<vtkDoubleArray>::New();
   copy->SetNumberOfComponents(array->GetNumberOfComponents());
   copy->SetNumberOfTuples(array->GetNumberOfTuples());
   double* to = copy->GetPointer(0);
-  ForValues(array,
+  vtkSPHForValues(array,
     [to](auto values, vtkIdType first)
     {
       std::transform(values.begin(), values.end(), to + first,
@@ -74,10 +56,10 @@ vtkSmartPointer<vtkDataArray> vtkMarchingCorrectorsCopyAsDouble(vtkDataArray* ar
   return copy;
 }
 
-vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid)
+vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid)
 {
   std::atomic<vtkIdType> fluidCount{ 0 };
-  ForValues(array,
+  vtkSPHForValues(array,
     [&](auto values, vtkIdType first)
     {
       vtkIdType count = 0;
@@ -94,7 +76,7 @@ vtkIdType vtkMarchingCorrectorsMarkSolids(vtkDataArray* array, double fluid, std
 }
 
 // In an array that is not of kinds, the first values tell.
-std::map<double, vtkIdType> vtkMarchingCorrectorsCountValues(vtkDataArray* array, std::size_t most)
+std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most)
 {
   std::map<double, vtkIdType> counts;
   const vtkIdType number = array->GetNumberOfTuples();

@@ -1,0 +1,101 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What a run may take, worked out by hand, and what it used, in words. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Four particles, of which the last is twice as large. */
+static const double place[4][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+static const double length[4] = { 0.1, 0.1, 0.1, 0.2 };
+
+static mcor_input make_input(void)
+{
+  return (mcor_input){ .count = 4,
+    .positions = { .data = place, .type = MCOR_FLOAT64, .components = 3 },
+    .smoothing_length = { .data = length, .type = MCOR_FLOAT64, .name = "h" } };
+}
+
+static void assert_near(double found, double expected)
+{
+  assert_true(fabs(found - expected) < 1e-9 * expected);
+}
+
+static void test_estimate(void** state)
+{
+  mcor_input input = make_input();
+  mcor_options options;
+  mcor_set_default_options(&options);
+  const double one = pow(2.0 / 1.3, 3); /* cubes that a particle of the smallest size takes */
+  const double least = mcor_least_smoothing_length(&input);
+  assert_true(least == 0.1);
+  /* The cubes of the large one are twice as large, unless all are of one size. */
+  assert_near(mcor_estimate_cells(&input, &options, least), 4 * one);
+  options.level_limit = 0;
+  assert_near(mcor_estimate_cells(&input, &options, least), 11 * one);
+  const uint8_t solid[4] = { 0, 0, 0, 1 };
+  input.solid = solid;
+  assert_near(mcor_estimate_cells(&input, &options, least), 3 * one);
+  memcpy(options.box, (double[6]){ 0, 2, -1, 0.5, -1, 2 }, sizeof options.box);
+  assert_near(mcor_estimate_cells(&input, &options, least), 2 * one);
+  options.cube_size = 0.1;
+  assert_near(mcor_estimate_cells(&input, &options, least), 2 * one / 8);
+  input.estimate_smoothing_length = 1;
+  assert_true(mcor_estimate_cells(&input, &options, 1) == 0);
+  input.solid = (const uint8_t[4]){ 1, 1, 1, 1 };
+  assert_true(isinf(mcor_least_smoothing_length(&input)));
+  assert_null(mcor_describe_estimate(0.999e9));
+  char* text = mcor_describe_estimate(2e9);
+  assert_non_null(strstr(text, "fills about 2e+09 cells"));
+  free(text);
+  (void)state;
+}
+
+static void expect(char* text, const char* words)
+{
+  assert_string_equal(text, words);
+  free(text);
+}
+
+static void test_words(void** state)
+{
+  mcor_input input = make_input();
+  mcor_statistics found = { .smoothing_length_min = 0.1, .smoothing_length_max = 0.2 };
+  expect(mcor_describe_smoothing_length(&input, &found), "0.1 to 0.2 (array h)");
+  input.smoothing_length = (mcor_array){ .constant = 0.2 };
+  input.smoothing_length_is_support_radius = 1;
+  found.smoothing_length_max = 0.1;
+  expect(mcor_describe_smoothing_length(&input, &found), "0.1 (given, support radius)");
+  input.estimate_smoothing_length = 1;
+  expect(mcor_describe_smoothing_length(&input, &found), "0.1 (estimated)");
+  expect(mcor_describe_volume(&input), "computed from the positions");
+  input.mass = (mcor_array){ .constant = 0.5 };
+  expect(mcor_describe_volume(&input), "0.5 / density summed from it");
+  input.density = (mcor_array){ .data = length, .type = MCOR_FLOAT64, .name = "rho" };
+  expect(mcor_describe_volume(&input), "0.5 / array rho");
+  input.volume = input.density;
+  expect(mcor_describe_volume(&input), "array rho");
+  expect(mcor_describe_measures(&found), "");
+  found.area = 2;
+  expect(mcor_describe_measures(&found), "area 2; open, so that it has no volume");
+  found.is_closed = 1;
+  found.volume = 3;
+  expect(mcor_describe_measures(&found), "area 2, volume 3");
+  found.dimension = 2;
+  found.length = 4;
+  expect(mcor_describe_measures(&found), "two dimensions: length 4, area 2");
+  found.area = 0;
+  expect(mcor_describe_measures(&found), "two dimensions: length 4; open, so that it has no area");
+  (void)state;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_estimate),
+    cmocka_unit_test(test_words) };
+  return cmocka_run_group_tests_name("summary", tests, NULL, NULL);
+}

@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""make_structs.py reads the core's headers alike however their lines are broken.
+
+    test_structs.py SOURCES
+"""
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sources = Path(sys.argv[1])
+core = sources / "vtkMarchingCorrectors" / "core"
+NAMES = "mcor_parts.h", "mcor.h"
+
+
+def made_of(texts, folder):
+    """All that is written, by the files' names."""
+    folder.mkdir()
+    for name, text in zip(NAMES, texts):
+        (folder / name).write_text(text, encoding="utf-8")
+    subprocess.run([sys.executable, sources / "Python" / "make_structs.py", *(folder / name for name in NAMES),
+                    folder / "made"], check=True)
+    return {file.name: file.read_text(encoding="utf-8") for file in (folder / "made").iterdir()}
+
+
+def with_other_lines(text):
+    """A line for each token, except for comments, which stay behind what they follow."""
+    parts = re.split(r"(/\*.*?\*/|^[ \t]*#[^\n]*)", text, flags=re.M | re.S)
+    return "".join(part if i % 2 else re.sub(r"\s+(?=\S)", "\n", part) for i, part in enumerate(parts))
+
+
+def formatted(text, columns):
+    style = (sources / ".clang-format").read_text(encoding="utf-8").replace("ColumnLimit: 100", f"ColumnLimit: {columns}")
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / ".clang-format").write_text(style, encoding="utf-8")
+        return subprocess.run(["clang-format", "--assume-filename", str(Path(folder) / "header.h")], input=text,
+                              stdout=subprocess.PIPE, check=True, encoding="utf-8").stdout
+
+
+texts = [(core / name).read_text(encoding="utf-8") for name in NAMES]
+with tempfile.TemporaryDirectory() as scratch:
+    expected = made_of(texts, Path(scratch) / "0")
+    others = [[with_other_lines(text) for text in texts]]
+    if shutil.which("clang-format"):
+        others += [[formatted(text, columns) for text in texts] for columns in (60, 180)]
+    for i, other in enumerate(others, 1):
+        assert other != texts, i
+        found = made_of(other, Path(scratch) / str(i))
+        assert found == expected, [name for name in expected if found[name] != expected[name]]

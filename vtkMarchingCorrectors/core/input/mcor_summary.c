@@ -1,0 +1,181 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What a run may take, and what it found and used, in words: for panels. */
+
+#include "mcor_input.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* From this number of cells in the fluid on, a run is said to be a huge one. */
+#define MCOR_HUGE_CELLS 1e9
+
+static bool mcor_has_one_length(const mcor_input* input)
+{
+  return input->estimate_smoothing_length || !input->smoothing_length.data;
+}
+
+static double mcor_length_at(const mcor_input* input, int64_t i)
+{
+  return input->estimate_smoothing_length ? 1.0 : mcor_array_at(&input->smoothing_length, i, 0);
+}
+
+static bool mcor_is_in_box(const mcor_input* input, int64_t i, const double box[6])
+{
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  bool is_in = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double x = mcor_array_at(&positions, i, a);
+    const double low = box[2 * a], high = box[2 * a + 1];
+    is_in = is_in && x >= low && (x < high || x == low); /* a flat box is around flat particles */
+  }
+  return is_in;
+}
+
+double mcor_least_smoothing_length(const mcor_input* input)
+{
+  double least = INFINITY;
+  const bool is_one = mcor_has_one_length(input);
+  for (int64_t i = 0; i < input->count && !(is_one && isfinite(least)); ++i)
+  {
+    if (!input->solid || !input->solid[i])
+    {
+      const double h = mcor_length_at(input, i);
+      least = h < least ? h : least;
+    }
+  }
+  return least;
+}
+
+/* Of the fluid in the box: the sum of h^3, or in a plane h^2, where cubes are larger of h in their units. */
+static double mcor_sum_cubes(
+  const mcor_input* input, const mcor_options* options, double least, bool is_plane)
+{
+  const bool has_box = mcor_has_box(options) != 0;
+  const bool one_for_all = mcor_has_one_length(input) && !input->solid && !has_box;
+  double cubes = 0.0;
+  for (int64_t i = 0; i < (one_for_all && input->count > 1 ? 1 : input->count); ++i)
+  {
+    if ((!input->solid || !input->solid[i]) && (!has_box || mcor_is_in_box(input, i, options->box)))
+    {
+      double h = mcor_length_at(input, i);
+      for (int level = 0; level < options->level_limit && h >= 2.0 * least; ++level)
+      {
+        h *= 0.5;
+      }
+      cubes += h * h * (is_plane ? 1.0 : h);
+    }
+  }
+  return one_for_all && input->count > 1 ? cubes * (double)input->count : cubes;
+}
+
+double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least)
+{
+  const bool is_known = !input->estimate_smoothing_length || options->cube_size <= 0.0;
+  if (!isfinite(least) || !is_known)
+  {
+    return 0.0;
+  }
+  /* Lengths are in units of the smoothing length or, as a factor of it, the support radius. */
+  const bool is_plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
+  const double cubes = mcor_sum_cubes(input, options, least, is_plane);
+  const bool is_radius =
+    input->smoothing_length_is_support_radius && !input->estimate_smoothing_length;
+  const double per_length = is_radius ? 1.0 / mcor_support_factor(options->sph_kernel) : 1.0;
+  const double size =
+    options->cube_size > 0.0 ? options->cube_size : options->cube_size_factor * least * per_length;
+  const double spacing = per_length / 1.3;
+  const double area = cubes * spacing * spacing, per_area = size * size;
+  return size <= 0.0 ? 0.0 : is_plane ? area / per_area : area * spacing / (per_area * size);
+}
+
+/* NULL if memory ran out. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 1, 2)))
+#endif
+static char*
+mcor_text(const char* format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  const int length = vsnprintf(NULL, 0, format, arguments);
+  va_end(arguments);
+  char* text = length < 0 ? NULL : malloc((size_t)length + 1);
+  va_start(arguments, format);
+  if (text)
+  {
+    vsnprintf(text, (size_t)length + 1, format, arguments);
+  }
+  va_end(arguments);
+  return text;
+}
+
+char* mcor_describe_estimate(double cells)
+{
+  return !(cells >= MCOR_HUGE_CELLS)
+    ? NULL
+    : mcor_text("The fluid fills about %g cells of the virtual grid, so this may take minutes and "
+                "much memory. "
+                "A larger cube size takes less; the run can be cancelled.",
+        cells);
+}
+
+char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics)
+{
+  const double low = statistics->smoothing_length_min, high = statistics->smoothing_length_max;
+  const mcor_array* array = &input->smoothing_length;
+  char end[32] = "";
+  if (low < high)
+  {
+    snprintf(end, sizeof end, " to %g", high);
+  }
+  return input->estimate_smoothing_length
+    ? mcor_text("%g%s (estimated)", low, end)
+    : mcor_text("%g%s (%s%s%s)", low, end, array->data ? "array " : "given",
+        array->data && array->name ? array->name : "",
+        input->smoothing_length_is_support_radius ? ", support radius" : "");
+}
+
+static char* mcor_describe_array(const mcor_array* array)
+{
+  return array->data ? mcor_text("array %s", array->name ? array->name : "")
+                     : mcor_text("%g", array->constant);
+}
+
+char* mcor_describe_volume(const mcor_input* input)
+{
+  if (mcor_is_given(&input->volume))
+  {
+    return mcor_describe_array(&input->volume);
+  }
+  if (!mcor_is_given(&input->mass))
+  {
+    return mcor_text("computed from the positions");
+  }
+  char* mass = mcor_describe_array(&input->mass);
+  char* density = mcor_is_given(&input->density) ? mcor_describe_array(&input->density)
+                                                 : mcor_text("density summed from it");
+  char* both = mass && density ? mcor_text("%s / %s", mass, density) : NULL;
+  free(mass);
+  free(density);
+  return both;
+}
+
+char* mcor_describe_measures(const mcor_statistics* statistics)
+{
+  const double length = statistics->length, area = statistics->area;
+  if (statistics->dimension == 2 && length > 0.0)
+  {
+    return area > 0.0
+      ? mcor_text("two dimensions: length %g, area %g", length, area)
+      : mcor_text("two dimensions: length %g; open, so that it has no area", length);
+  }
+  return area <= 0.0        ? mcor_text("%s", "")
+    : statistics->is_closed ? mcor_text("area %g, volume %g", area, statistics->volume)
+                            : mcor_text("area %g; open, so that it has no volume", area);
+}

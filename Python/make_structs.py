@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 NUMBERS = {
-    "int": "c_int", "double": "c_double", "float": "c_float", "char": "c_char",
+    "int": "c_int", "unsigned": "c_uint", "double": "c_double", "float": "c_float", "char": "c_char",
     "int64_t": "c_int64", "uint64_t": "c_uint64", "int32_t": "c_int32", "uint8_t": "c_uint8",
 }
 

@@ -125,14 +125,19 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
-  options.normals = this->ComputeNormals;
-  options.gradients = this->ComputeGradients;
-  options.weight_sum = this->ComputeWeightSum;
-  options.boundary_eigenvalue = this->ComputeBoundaryEigenvalue;
-  options.correction_length = this->ComputeCorrectionLength;
-  options.residual = this->ComputeResidual;
-  options.boundary_flag = this->ComputeBoundaryFlag;
-  options.iso_value = this->ComputeScalars;
+  const std::pair<bool, mcor_output> outputs[] = { { this->ComputeNormals, MCOR_OUT_NORMALS },
+    { this->ComputeGradients, MCOR_OUT_GRADIENTS },
+    { this->ComputeWeightSum, MCOR_OUT_WEIGHT_SUM },
+    { this->ComputeBoundaryEigenvalue, MCOR_OUT_BOUNDARY_EIGENVALUE },
+    { this->ComputeCorrectionLength, MCOR_OUT_CORRECTION_LENGTH },
+    { this->ComputeResidual, MCOR_OUT_RESIDUAL },
+    { this->ComputeBoundaryFlag, MCOR_OUT_BOUNDARY_FLAG },
+    { this->ComputeScalars, MCOR_OUT_ISO_VALUE } };
+  options.outputs = 0;
+  for (const auto& output : outputs)
+  {
+    options.outputs |= output.first ? output.second : 0;
+  }
 }
 
 void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
@@ -197,7 +202,7 @@ void vtkMarchingCorrectors::Extract(
   this->ListIsoValues(input, nullptr, isoValues);
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
-  options.nearest_particle = input.FromNearest.empty() ? 0 : 1;
+  options.outputs |= input.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
   this->EstimatedCells =
     mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   this->WarnOfHugeRun();
@@ -327,7 +332,7 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
     isoValues << (i ? ", " : "") << options.iso_values[i];
   }
   this->UsedIsoValues = isoValues.str();
-  this->IsoValueArrayName = options.iso_value ? input.IsoValueName : "";
+  this->IsoValueArrayName = options.outputs & MCOR_OUT_ISO_VALUE ? input.IsoValueName : "";
   this->UsedSmoothingLength =
     vtkSPHTakeText(mcor_describe_smoothing_length(&input.Core, &statistics));
   this->UsedVolume = vtkSPHTakeText(mcor_describe_volume(&input.Core));

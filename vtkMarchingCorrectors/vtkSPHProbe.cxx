@@ -253,7 +253,7 @@ void vtkSPHProbe::FillProbeOptions(mcor_options& options) const
   this->FillOptions(options);
   options.field = this->ShepardNormalization ? MCOR_SHEPARD : MCOR_SUM;
   options.node_threshold = this->WeightThreshold;
-  options.gradients = this->ComputeGradients;
+  options.outputs = this->ComputeGradients ? MCOR_OUT_GRADIENTS : 0;
 }
 
 // What an observer of the progress may change is read before the run.

@@ -168,7 +168,7 @@ class Arguments:
         """Options by their names in mcor.h, which were checked."""
         for name in ISOSURFACE:
             if name in words:
-                target = self.options if name in c.KINDS["mcor_options"] else self.input
+                target = self.options if hasattr(self.options, name) else self.input
                 value = self.bounds_of_period(words[name]) if name == "periodic" else words[name]
                 set_option(target, name, kind_of(name), value)
         if self.options.capping and any(self.options.box):

@@ -12,6 +12,20 @@ from ._library import lib
 
 Function = TypeVar("Function", bound=Callable)  # type checkers see it as it is written
 
+# What a surface carries is a bit set of mcor_options; here each bit is a member of its own.
+OUTPUTS = {name[len("MCOR_OUT_"):].lower(): bit for name, bit in c.ENUMS["mcor_output"].items()}
+
+
+def output_property(bit):
+    def put(options, wanted):
+        options.outputs = options.outputs | bit if wanted else options.outputs & ~bit
+
+    return property(lambda options: int(options.outputs & bit != 0), put)
+
+
+for _name, _bit in OUTPUTS.items():
+    setattr(c.mcor_options, _name, output_property(_bit))
+
 
 class Options(TypedDict, total=False):
     """Keywords of isosurface(); the other functions take those of them that matter there."""
@@ -143,6 +157,8 @@ def words_of(kind):
 
 
 def kind_of(name):
+    if name in OUTPUTS:
+        return "int"
     return c.KINDS["mcor_options" if name in c.KINDS["mcor_options"] else "mcor_input"][name]
 
 

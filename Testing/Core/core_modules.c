@@ -66,9 +66,9 @@ static mcor_options modules_options(mcor_field field)
   mcor_options options = core_options(field == MCOR_WEIGHT_SUM ? &modules_weight : modules_isos);
   options.field = field;
   options.cube_size_factor = 1;
-  options.gradients = options.weight_sum = options.correction_length = options.residual = 1;
-  options.boundary_flag = options.nearest_particle = options.iso_value = 1;
-  options.point_keys = options.triangle_keys = 1;
+  options.outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_ISO_VALUE;
+  options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   return options;
 }
 
@@ -103,7 +103,7 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
   }
   const int good = modules_surface(context, "box", &fine, &options);
   memset(options.box, 0, sizeof options.box);
-  options.point_keys = options.triangle_keys = 0;
+  options.outputs &= ~(unsigned)(MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
   options.field = MCOR_WEIGHT_SUM;
   options.iso_values = &modules_weight;
   options.capping = 1;

@@ -233,9 +233,9 @@ void core_check_cuts(
 
 void core_ask_for_all(mcor_options* options)
 {
-  options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
-  options->boundary_flag = options->nearest_particle = options->iso_value = 1;
-  options->point_keys = options->triangle_keys = 1;
+  options->outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  options->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_ISO_VALUE;
+  options->outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
 }
 
 void core_add_near(

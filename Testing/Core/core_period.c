@@ -58,7 +58,7 @@ mcor_options core_period_options(const double* iso, const double period[6])
 {
   mcor_options options = core_options(iso);
   memcpy(options.periodic, period, sizeof options.periodic);
-  options.boundary_flag = options.gradients = options.weight_sum = options.residual = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL;
   return options;
 }
 

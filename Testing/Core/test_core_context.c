@@ -13,9 +13,9 @@
 
 static void ask_for_all(mcor_options* options)
 {
-  options->boundary_eigenvalue = 1;
-  options->gradients = options->weight_sum = options->correction_length = options->residual = 1;
-  options->boundary_flag = options->iso_value = options->nearest_particle = 1;
+  options->outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
+  options->outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  options->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_ISO_VALUE | MCOR_OUT_NEAREST_PARTICLE;
 }
 
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
@@ -170,7 +170,7 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
   input.estimate_smoothing_length = at->estimate;
   mcor_options options = core_options(&iso);
   ask_for_all(&options);
-  options.nearest_particle = 0;
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   options.field = at->field;
   options.precision = at->precision;
   options.seeds = at->seeds;

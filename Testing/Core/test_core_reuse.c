@@ -107,8 +107,8 @@ static void set_base(reuse_call* call, reuse_base base)
   {
     o->cube_size_factor = 0.7;
   }
-  o->gradients = o->weight_sum = o->correction_length = o->residual = 1;
-  o->boundary_flag = o->iso_value = o->nearest_particle = 1;
+  o->outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  o->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_ISO_VALUE | MCOR_OUT_NEAREST_PARTICLE;
 }
 
 /* One parameter changes. The versions promise the content of arrays only: what else there is in an
@@ -187,15 +187,15 @@ STEP(box, c->options.box[0] = c->options.box[2] = c->options.box[4] = -1.5;
      c->options.box[1] = c->options.box[3] = c->options.box[5] = 2.5)
 STEP(periodic, c->options.periodic[0] = c->options.periodic[2] = -4;
      c->options.periodic[1] = c->options.periodic[3] = 4)
-STEP(normals, c->options.normals = 0)
-STEP(gradients, c->options.gradients = 0)
-STEP(weight_sum, c->options.weight_sum = 0)
-STEP(boundary_eigenvalue, c->options.boundary_eigenvalue = 1)
-STEP(correction_length, c->options.correction_length = 0)
-STEP(residual, c->options.residual = 0)
-STEP(boundary_flag, c->options.boundary_flag = 0)
-STEP(iso_value_array, c->options.iso_value = 0)
-STEP(nearest_particle, c->options.nearest_particle = 0)
+STEP(normals, c->options.outputs &= ~(unsigned)MCOR_OUT_NORMALS)
+STEP(gradients, c->options.outputs &= ~(unsigned)MCOR_OUT_GRADIENTS)
+STEP(weight_sum, c->options.outputs &= ~(unsigned)MCOR_OUT_WEIGHT_SUM)
+STEP(boundary_eigenvalue, c->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE)
+STEP(correction_length, c->options.outputs &= ~(unsigned)MCOR_OUT_CORRECTION_LENGTH)
+STEP(residual, c->options.outputs &= ~(unsigned)MCOR_OUT_RESIDUAL)
+STEP(boundary_flag, c->options.outputs &= ~(unsigned)MCOR_OUT_BOUNDARY_FLAG)
+STEP(iso_value_array, c->options.outputs &= ~(unsigned)MCOR_OUT_ISO_VALUE)
+STEP(nearest_particle, c->options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE)
 STEP(triangle_normals, c->options.triangle_normals = 1)
 
 #define AT(base, name)                                                                             \
@@ -362,7 +362,7 @@ static void extract_all(mcor_context* context, reuse_call* call)
     set_base(call, kind & 1 ? REUSE_MASS_ONLY : REUSE_ARRAYS);
     call->input.ignore_solids = !(kind & 1);
     call->input.attribute_count = 2;
-    call->options.boundary_eigenvalue = 1;
+    call->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     call->options.iso_count = 2;
     call->options.seeds = kind & 2 ? MCOR_PAIRS : MCOR_COMPLETE;
     call->options.topology = kind & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;

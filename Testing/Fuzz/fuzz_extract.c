@@ -97,9 +97,12 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   o->seeds = (mcor_seed_mode)(what & 1);
   o->preview = (what & 0x0e) == 2;
   o->boundary_detection = (mcor_boundary_detection)(what == 0xff ? 2 : what >> 3 & 1);
-  o->boundary_eigenvalue = what >> 4 & 1;
-  o->gradients = o->weight_sum = o->residual = o->correction_length = what >> 4 & 1;
-  o->boundary_flag = o->nearest_particle = o->iso_value = what >> 5 & 1;
+  o->outputs |= what >> 4 & 1 ? MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_GRADIENTS |
+      MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_CORRECTION_LENGTH
+                              : 0;
+  o->outputs |= what >> 5 & 1
+    ? MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_ISO_VALUE
+    : 0;
   o->triangle_normals = (what & 0xc0) == 0xc0;
   o->node_threshold = fuzz_threshold(bytes);
   o->vertex_threshold = fuzz_threshold(bytes);

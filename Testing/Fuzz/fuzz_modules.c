@@ -37,8 +37,8 @@ void fuzz_regions(unsigned modules, fuzz_bytes* bytes, fuzz_call* call)
     {
       h[i] = h[i] > 100 ? 100 : h[i]; /* small cubes all over a huge reach take long, as they may */
     }
-    o->point_keys = b > 250;
-    o->triangle_keys = b > 251;
+    o->outputs |= b > 250 ? MCOR_OUT_POINT_KEYS : 0;
+    o->outputs |= b > 251 ? MCOR_OUT_TRIANGLE_KEYS : 0;
   }
 }
 

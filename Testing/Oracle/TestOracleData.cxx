@@ -187,7 +187,7 @@ void RunCase(oracle_suite& suite, const std::string& directory, const DataCase& 
   {
     at.options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
     at.options.vertex_threshold = one.Eigenvalue;
-    at.options.boundary_eigenvalue = 1;
+    at.options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
   }
   at.options.level_limit = one.Adaptive ? MCOR_CUBE_LEVELS - 1 : 0;
   at.skip_pairs = one.Field == MCOR_WEIGHT_SUM || one.Eigenvalue > 0.0;

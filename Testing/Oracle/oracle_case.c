@@ -82,8 +82,8 @@ mcor_options oracle_case_options(const double* iso)
   options.iso_values = iso;
   options.iso_count = 1;
   options.dimension = 3; /* few particles may share a coordinate */
-  options.normals = options.gradients = options.weight_sum = options.boundary_flag = 1;
-  options.residual = options.correction_length = 1;
+  options.outputs |= MCOR_OUT_NORMALS | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG;
+  options.outputs |= MCOR_OUT_RESIDUAL | MCOR_OUT_CORRECTION_LENGTH;
   return options;
 }
 

@@ -45,7 +45,7 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
   if (v->eigenvalue > 0.0)
   {
     at->options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
-    at->options.boundary_eigenvalue = 1;
+    at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = v->eigenvalue;
   }
   at->rough = v->rough;

@@ -147,7 +147,7 @@ static void test_iso_values(const char* device)
     int64_t triangles = 0;
     b.options.iso_values = iso;
     b.options.iso_count = 3;
-    b.options.iso_value = 1;
+    b.options.outputs |= MCOR_OUT_ISO_VALUE;
     mcor_surface all = extract(&b);
     for (int n = 0; n < 3; ++n)
     {
@@ -338,7 +338,7 @@ static void test_attributes(const char* name, const char* device)
     double* component = malloc((size_t)b.set.count * sizeof(double));
     b.input.attributes = attributes;
     b.input.attribute_count = 2;
-    b.options.nearest_particle = 1;
+    b.options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
     mcor_surface surface = extract(&b);
     ORACLE_CHECK(surface.triangle_count > 50 && surface.attribute_count == 2, "%s", name);
     reference.field.kind = ORACLE_SHEPARD;

@@ -52,7 +52,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
   {
     static const double thresholds[] = { 0.2, 0.3, 0.5, 0.75 };
     at->options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
-    at->options.boundary_eigenvalue = 1;
+    at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
   /* Of the free surface, computed volumes would differ with and without solids. */

@@ -198,6 +198,22 @@ extern "C"
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
+  /* What a surface carries beside points and triangles: the array of mcor_surface of that name, or of mcor_samples. */
+  typedef enum mcor_output
+  {
+    MCOR_OUT_NORMALS = 1,
+    MCOR_OUT_GRADIENTS = 2,
+    MCOR_OUT_WEIGHT_SUM = 4,
+    MCOR_OUT_BOUNDARY_EIGENVALUE = 8,
+    MCOR_OUT_CORRECTION_LENGTH = 16,
+    MCOR_OUT_RESIDUAL = 32,
+    MCOR_OUT_BOUNDARY_FLAG = 64,
+    MCOR_OUT_ISO_VALUE = 128,
+    MCOR_OUT_NEAREST_PARTICLE = 256,
+    MCOR_OUT_POINT_KEYS = 512,    /* see MCOR_POINT_KEY */
+    MCOR_OUT_TRIANGLE_KEYS = 1024 /* see MCOR_TRIANGLE_KEY */
+  } mcor_output;
+
   typedef struct mcor_options
   {
     /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are those of two
@@ -288,11 +304,7 @@ extern "C"
     const mcor_ranks* ranks;
 
     /* What the surface carries besides points and triangles. */
-    int normals; /* default on */
-    int gradients, weight_sum, boundary_eigenvalue, correction_length, residual, boundary_flag;
-    int iso_value, nearest_particle;
-    int point_keys;       /* see MCOR_POINT_KEY */
-    int triangle_keys;    /* see MCOR_TRIANGLE_KEY */
+    unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
     /* Called between device launches with 0 <= fraction <= 1; nonzero return: stop. May be NULL. */
@@ -581,13 +593,13 @@ extern "C"
   {
     int64_t count;           /* of points */
     double* weight_sum;      /* [count], of fluid particles */
-    double* weight_gradient; /* [count][3], unit 1 / L; NULL unless options.gradients */
+    double* weight_gradient; /* [count][3], unit 1 / L; NULL without MCOR_OUT_GRADIENTS */
     uint8_t* valid; /* [count], 1 where the weight sum is not below options.node_threshold */
     /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard mean),
      * and its gradient. 0 where not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
     double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
-                                    * unless options.gradients */
+                                    * without MCOR_OUT_GRADIENTS */
     int64_t* attribute_not_finite; /* [attribute_count], as in mcor_surface */
     int attribute_count;
     mcor_statistics statistics;

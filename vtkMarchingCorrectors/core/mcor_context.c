@@ -33,7 +33,7 @@ void mcor_set_default_options(mcor_options* options)
     .tolerance = 1e-6,
     .iteration_limit = 30,
     .precision = MCOR_FLOAT32,
-    .normals = 1 };
+    .outputs = MCOR_OUT_NORMALS };
 }
 
 /* Between signs of life, so that cancelling is answered at once and reports cost nothing. */

@@ -93,6 +93,12 @@ static inline int mcor_batches(const mcor_context* context, int count)
   return (count - 1) / MCOR_BATCH_OF(context->cl.lanes) + 1;
 }
 
+/* Whether the surface is to carry this. */
+static inline bool mcor_wants(const mcor_context* context, mcor_output output)
+{
+  return context->run.options->outputs & output;
+}
+
 /* The wall share that is asked for. */
 static inline double mcor_asked_share(const mcor_options* options)
 {

@@ -67,7 +67,8 @@ static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
     same = same && a->box[i] == b->box[i] && a->periodic[i] == b->periodic[i];
     part = part || a->periodic[i] != 0;
   }
-  return same && (!part || (a->seeds == b->seeds && a->nearest_particle == b->nearest_particle));
+  const unsigned changed = a->outputs ^ b->outputs;
+  return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));
 }
 
 /* What of the last call still holds. The caller's version numbers stand for the arrays' content;

@@ -34,7 +34,7 @@ vtkSPHSamples::vtkSPHSamples(const vtkSPHParticles& particles, const mcor_option
   , Count(count)
   , Null(null)
 {
-  const bool gradients = options.gradients != 0;
+  const bool gradients = (options.outputs & MCOR_OUT_GRADIENTS) != 0;
   for (const vtkSPHAttribute& from : particles.Interpolated)
   {
     this->Arrays.push_back(

@@ -85,8 +85,8 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   calls.End(!this->ListIsoValues(mine, calls.Get(), isoValues));
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
-  options.nearest_particle = mine.FromNearest.empty() ? 0 : 1;
-  options.point_keys = options.triangle_keys = 1;
+  options.outputs |= mine.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
+  options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
 
   mcor_globals globals = {};
   const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(

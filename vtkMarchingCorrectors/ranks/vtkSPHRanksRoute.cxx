@@ -185,7 +185,7 @@ public:
   {
     std::vector<double> radii(static_cast<std::size_t>(ranks.GetCount()), 0.0);
     const mcor_options& o = this->Options;
-    if (this->ComputesVolumes || o.nearest_particle)
+    if (this->ComputesVolumes || (o.outputs & MCOR_OUT_NEAREST_PARTICLE))
     {
       std::vector<int> found;
       for (std::int64_t i = 0; i < this->Input.count; ++i)
@@ -215,7 +215,7 @@ public:
     {
       const double cubes = this->LeastMargin;
       const double volumes = this->ComputesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
-      const double nearest = o.nearest_particle ? radius + cubes : 0.0;
+      const double nearest = (o.outputs & MCOR_OUT_NEAREST_PARTICLE) ? radius + cubes : 0.0;
       radius = std::max({ radius > 0.0 ? volumes : 0.0, radius > 0.0 ? nearest : 0.0, pairs });
     }
     return radii;

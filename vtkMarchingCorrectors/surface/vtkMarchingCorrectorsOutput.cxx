@@ -52,15 +52,15 @@ vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
 
 std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_options& options)
 {
-  const std::pair<int, const char*> arrays[] = { { options.normals, "Normals" },
-    { options.gradients, "Gradients" }, { options.weight_sum, "WeightSum" },
-    { options.boundary_eigenvalue, "BoundaryEigenvalue" },
-    { options.correction_length, "CorrectionLength" }, { options.residual, "Residual" },
-    { options.boundary_flag, "BoundaryFlag" } };
+  const std::pair<mcor_output, const char*> arrays[] = { { MCOR_OUT_NORMALS, "Normals" },
+    { MCOR_OUT_GRADIENTS, "Gradients" }, { MCOR_OUT_WEIGHT_SUM, "WeightSum" },
+    { MCOR_OUT_BOUNDARY_EIGENVALUE, "BoundaryEigenvalue" },
+    { MCOR_OUT_CORRECTION_LENGTH, "CorrectionLength" }, { MCOR_OUT_RESIDUAL, "Residual" },
+    { MCOR_OUT_BOUNDARY_FLAG, "BoundaryFlag" } };
   std::vector<std::string> names;
   for (const auto& array : arrays)
   {
-    if (array.first)
+    if (options.outputs & array.first)
     {
       names.emplace_back(array.second);
     }

@@ -61,7 +61,7 @@ static void trimmed(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(isos, MCOR_SHEPARD);
   options.iso_count = 2;
-  options.boundary_flag = options.residual = options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_RESIDUAL | MCOR_OUT_WEIGHT_SUM;
   mcor_surface surface = core_extract(*state, &input, &options);
   assert_in_range(levels_used(&surface), 3, 9);
   core_check_flags(&surface);

@@ -396,7 +396,7 @@ static void order_form_and_reuse(void** state)
   mcor_options options = pair_options(isos);
   options.iso_count = 2;
   core_ask_for_all(&options);
-  options.nearest_particle = 0; /* numbers of particles */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* numbers of particles */
   mcor_surface surface = core_extract(*state, &other, &options);
   const uint64_t hash = core_hash(&surface);
   assert_true(surface.triangle_count > 2000);

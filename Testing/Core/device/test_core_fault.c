@@ -303,7 +303,7 @@ static void test_every_call_fails_once(void** state)
   s.input.attribute_count = 1;
   s.options.topology = MCOR_TOPOLOGY_FIELD;
   s.options.seeds = MCOR_PAIRS;
-  s.options.boundary_eigenvalue = s.options.nearest_particle = 1;
+  s.options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_NEAREST_PARTICLE;
   begin_sweep(context, &s);
   const int calls = sweep_calls(context, &s, CL_INVALID_COMMAND_QUEUE, 0);
   CORE_CHECK(calls > 500, "only %d calls", calls);
@@ -330,7 +330,7 @@ static void test_probe_and_derive(void** state)
     .points = core_array(points, 3),
     .point_count = 4 };
   s.options.iso_count = 0;
-  s.options.gradients = 1;
+  s.options.outputs |= MCOR_OUT_GRADIENTS;
   s.input.attributes = &attribute;
   s.input.attribute_count = 1;
   sweep_room(*state, &s, 3, 40);
@@ -355,7 +355,8 @@ static void test_filled(void** state)
   }
   sweep filled = { .call = extract, .input = core_input(&set), .options = core_options(isos) };
   filled.options.iso_count = 2;
-  filled.options.filled = filled.options.point_keys = filled.options.triangle_keys = 1;
+  filled.options.filled = 1;
+  filled.options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   sweep_room(*state, &filled, 23, 100);
   core_free_set(&set);
 }
@@ -368,7 +369,7 @@ static void test_regions(void** state)
   sweep box = { .call = extract, .input = core_input(&set), .options = core_options(&iso) };
   sweep period = box, wall = box;
   const double sides[6] = { -9, 0.4, -9, 9, -9, 9 };
-  box.options.point_keys = box.options.triangle_keys = 1;
+  box.options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   memcpy(box.options.box, sides, sizeof sides);
   sweep_room(*state, &box, 23, 100);
   period.options.periodic[0] = -4;

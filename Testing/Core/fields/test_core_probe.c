@@ -26,7 +26,7 @@ static mcor_options probe_options(void)
 {
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
-  options.gradients = 1;
+  options.outputs |= MCOR_OUT_GRADIENTS;
   return options;
 }
 
@@ -518,7 +518,7 @@ static void test_means_are_between(void** state)
   }
   double* points = probe_points(20000, 10, 5);
   mcor_options options = probe_options();
-  options.gradients = 0;
+  options.outputs &= ~(unsigned)MCOR_OUT_GRADIENTS;
   mcor_samples samples = probe(*state, &set, &options, points, 20000);
   int zero = 0, more = 0;
   for (int64_t i = 0; i < 20000; ++i)

@@ -256,7 +256,7 @@ static void check_volumes(mcor_context* context, double h_scale, double ratio)
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.h_scale = h_scale;
-  options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_WEIGHT_SUM;
   options.node_threshold = 0;
   options.vertex_threshold = 0;
   check_weights(context, &set, &input, &options, "array");
@@ -305,13 +305,13 @@ static void check_volumes_of_solids(mcor_context* context, int with_mass, int ig
   input.mass = with_mass ? core_array(mass, 1) : input.volume;
   input.ignore_solids = ignored;
   mcor_options options = core_options(&iso);
-  options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_WEIGHT_SUM;
   naive_volumes(&set, MCOR_CUBIC_SPLINE, with_mass ? mass : NULL, ignored);
   oracle_particles particles = core_oracle(&set);
   particles.ignore_solids = ignored;
   oracle_field field;
   assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
-  options.boundary_flag = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface = core_extract(context, &input, &options);
   CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
   for (int64_t i = 0; i < surface.point_count; ++i)

@@ -118,7 +118,7 @@ static void test_exact_threshold(void** state)
   core_set set = core_make_block(7, 0.35, 9, core_slope);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
-  options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_WEIGHT_SUM;
   options.vertex_threshold = 0;
   mcor_surface whole = core_extract(*state, &input, &options);
   int thresholds = 0;
@@ -166,7 +166,7 @@ static void test_coincident(void** state)
   }
   mcor_input input = core_input_to_keep(&set);
   mcor_options options = core_options(&iso);
-  options.nearest_particle = 1;
+  options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
   mcor_surface first = core_extract(*state, &input, &options);
   mcor_free_surface(&first);
   input.scalar = core_array(other, 1);

@@ -51,7 +51,7 @@ static mcor_options make_options(const wall_case* at, const double* iso)
   options.boundary_detection = at->boundary;
   options.vertex_threshold = at->boundary == MCOR_BOUNDARY_EIGENVALUE ? 0.3 : 0.5;
   options.wall_share = at->share;
-  options.weight_sum = options.boundary_flag = options.residual = 1;
+  options.outputs |= MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_RESIDUAL;
   return options;
 }
 

@@ -90,7 +90,7 @@ static void given_levels(void** state)
   core_set set = core_make_graded(40, 0.3);
   mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  options.nearest_particle = 0; /* would be numbers of other inputs */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be numbers of other inputs */
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_true(globals.split_count > 10);
@@ -140,7 +140,7 @@ static void cuts_through_large_cubes(void** state)
   core_set set = core_make_graded(150, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  options.nearest_particle = 0; /* as that needs all around */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* as that needs all around */
   core_check_these_cuts(*state, "large cubes", &input, &options, cuts, 2);
   core_free_set(&set);
 }
@@ -152,7 +152,7 @@ static void small_boxes(void** state)
   core_set set = core_make_graded(60, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  options.nearest_particle = 0; /* may be any around */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* may be any around */
   mcor_surface whole = core_extract(*state, &input, &options);
   const double box[6] = { -70, -45, -20, 20, -20, 20 };
   memcpy(options.box, box, sizeof box);

@@ -44,7 +44,7 @@ static void trimmed_surfaces(void** state)
   input.volume = (mcor_array){ 0 };
   core_check_cuts(*state, "normals from triangles, computed volumes", &input, &options);
   options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
-  options.boundary_eigenvalue = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
   options.vertex_threshold = 0.3;
   options.preview = 1;
   core_check_cuts(*state, "eigenvalue, preview", &input, &options);
@@ -131,7 +131,7 @@ static void given_globals(void** state)
   mcor_input input = input_of(&set, attributes);
   mcor_options options = core_options(&iso);
   core_ask_for_all(&options);
-  options.nearest_particle = 0; /* would be numbers of other inputs */
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be numbers of other inputs */
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_int_equal(globals.component_count, 5);
@@ -218,7 +218,8 @@ static void kept_particles(void** state)
   {
     options.box[0] = options.box[2] = options.box[4] = call == 1 ? 0 : -1;
     options.box[1] = options.box[3] = options.box[5] = call == 1 ? 0 : call == 6 ? 2.5 : 3;
-    options.nearest_particle = call >= 3;
+    options.outputs = call >= 3 ? options.outputs | MCOR_OUT_NEAREST_PARTICLE
+                                : options.outputs & ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
     options.seeds = call == 4 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.iso_values = iso + (call == 2);
     mcor_surface surface = core_extract(*state, &kept, &options);

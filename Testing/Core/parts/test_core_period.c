@@ -158,7 +158,7 @@ static void images_count(void** state)
   core_set set = core_make_period(cube, 5);
   mcor_options options = core_period_options(&iso, around);
   check_images(*state, "all axes", &set, &options, 0);
-  options.nearest_particle = 1;
+  options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
   check_images(*state, "computed volumes", &set, &options, 1);
   options.sph_kernel = MCOR_M_PRIME_4;
   check_images(*state, "computed volumes, tensor kernel", &set, &options, 1);

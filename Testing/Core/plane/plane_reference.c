@@ -151,7 +151,7 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
 mcor_options plane_options(const double* iso)
 {
   mcor_options options = core_options(iso);
-  options.boundary_flag = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   options.vertex_threshold = 0;
   return options;
 }

@@ -14,7 +14,7 @@ static mcor_options fill_options(const double* isos, int count)
   mcor_options options = core_options(isos);
   options.iso_count = count;
   options.filled = 1;
-  options.boundary_flag = options.residual = options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_RESIDUAL | MCOR_OUT_WEIGHT_SUM;
   return options;
 }
 
@@ -124,7 +124,7 @@ static void test_trimming(void** state)
     options.boundary_detection = mode == 1 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     options.vertex_threshold = mode == 1 ? 0.75 : mode == 2 ? 0.8 : 0.5;
     options.wall_share = mode == 3 ? 0 : mode == 4 ? 0.5 : MCOR_WALL_SHARE_AUTO;
-    options.boundary_eigenvalue = mode == 1;
+    options.outputs |= mode == 1 ? MCOR_OUT_BOUNDARY_EIGENVALUE : 0;
     options.node_threshold = 0.02;
     mcor_surface surface;
     const plane_field field = { &set, &options, 0, NULL };
@@ -234,7 +234,7 @@ static void test_boxes(void** state)
   const double isos[2] = { -8, 2 };
   core_set set = plane_make(14, 0.3, 1.3, 0, 4, 9);
   mcor_options options = fill_options(isos, 2);
-  options.point_keys = options.triangle_keys = 1;
+  options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   mcor_surface whole;
   const fill_report all = extract(*state, &set, &options, 0, &whole);
   int64_t count, parts = 0;
@@ -354,7 +354,7 @@ static void test_attributes(void** state)
   input.attributes = attributes;
   input.attribute_count = ARRAYS;
   mcor_options options = fill_options(isos, 2);
-  options.nearest_particle = options.gradients = 1;
+  options.outputs |= MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_GRADIENTS;
   mcor_surface surface = core_extract(context, &input, &options);
   mcor_samples samples;
   const mcor_array points = core_array(surface.points, 3);

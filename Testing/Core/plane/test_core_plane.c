@@ -74,7 +74,7 @@ static void test_circle(void** state)
   double isos[2] = { 0, -16 };
   mcor_options options = plane_options(isos);
   options.iso_count = 2;
-  options.iso_value = options.gradients = options.residual = options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_ISO_VALUE | MCOR_OUT_GRADIENTS | MCOR_OUT_RESIDUAL | MCOR_OUT_WEIGHT_SUM;
   mcor_input input = core_input(&set);
   mcor_surface surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.line_count, 2);
@@ -110,7 +110,7 @@ static void test_trimming(void** state)
   const double iso = 0.2;
   mcor_options options = plane_options(&iso);
   mcor_input input = core_input(&set);
-  options.boundary_eigenvalue = options.weight_sum = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_WEIGHT_SUM;
   for (int eigenvalue = 0; eigenvalue < 2; ++eigenvalue)
   {
     options.boundary_detection = eigenvalue ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;

@@ -410,7 +410,7 @@ static void check_trimmed(mcor_context* context, const trim_case* at)
   options.preview = at->preview;
   options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
   options.vertex_threshold = at->threshold;
-  options.weight_sum = options.boundary_eigenvalue = options.boundary_flag = 1;
+  options.outputs |= MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface = core_extract(context, &input, &options);
   oracle_particles particles = core_oracle(&set);
   particles.ignore_solids = at->ignore_solids;
@@ -452,7 +452,7 @@ static void test_array(void** state)
   oracle_field field;
   assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
   mcor_options options = core_options(&iso);
-  options.boundary_eigenvalue = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
   for (int free_surface = 0; free_surface < 2; ++free_surface)
   {
     options.field = free_surface ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;

@@ -72,7 +72,7 @@ static void check_box(
   const mcor_input input = core_input(set);
   mcor_options options = box_options(MCOR_CAP_NONE, box);
   options.level_limit = 0; /* as with caps */
-  options.normals = 1;
+  options.outputs |= MCOR_OUT_NORMALS;
   memcpy(options.periodic, periodic, sizeof options.periodic);
   mcor_surface open, closed;
   CORE_OK(context, mcor_extract(context, &input, &options, &open));

@@ -61,7 +61,7 @@ static void check_tank(mcor_context* context, double share, mcor_topology topolo
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(share);
   options.topology = topology;
-  options.normals = options.boundary_flag = 1;
+  options.outputs |= MCOR_OUT_NORMALS | MCOR_OUT_BOUNDARY_FLAG;
   options.level_limit = 0; /* as with caps */
   mcor_surface open, closed;
   CORE_OK(context, mcor_extract(context, &input, &options, &open));
@@ -98,7 +98,7 @@ static void test_share(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.35);
   options.capping = MCOR_CAP_PERIOD;
-  options.boundary_flag = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface;
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
   const oracle_particles particles = core_oracle(&set);

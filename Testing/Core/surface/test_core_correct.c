@@ -104,8 +104,8 @@ static void check_case(mcor_context* context, const correct_case* at)
   options.precision = at->precision;
   options.cube_size_factor = at->cube_factor;
   options.vertex_threshold = 0;
-  options.correction_length = 1;
-  options.residual = 1;
+  options.outputs |= MCOR_OUT_CORRECTION_LENGTH;
+  options.outputs |= MCOR_OUT_RESIDUAL;
   mcor_surface surface = core_extract(context, &input, &options);
   const double cube = surface.statistics.cube_size;
   const double limit = at->precision == MCOR_FLOAT64 ? 1e-6 : 5e-6;
@@ -214,7 +214,7 @@ static void test_reported_numbers(void** state)
   const double iso = 1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
-  options.correction_length = options.residual = options.gradients = 1;
+  options.outputs |= MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL | MCOR_OUT_GRADIENTS;
   options.vertex_threshold = 0;
   mcor_surface corrected = core_extract(*state, &input, &options);
   options.preview = 1;
@@ -327,7 +327,7 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
   mcor_options options = core_options(&iso);
   options.sph_kernel = MCOR_M_PRIME_4;
   options.level_limit = level_limit;
-  options.boundary_flag = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface = core_extract(context, &input, &options);
   oracle_particles particles = core_oracle(&set);
   oracle_field field;

@@ -21,7 +21,7 @@ static void check_normals(
   const double iso = kind == MCOR_WEIGHT_SUM ? 0.5 : 1.5;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
-  options.gradients = 1;
+  options.outputs |= MCOR_OUT_GRADIENTS;
   options.sph_kernel = kernel;
   options.field = kind;
   options.precision = precision;
@@ -136,7 +136,7 @@ static void test_triangle_normals(void** state)
     }
     mcor_free_surface(&surface);
   }
-  options.normals = 0;
+  options.outputs &= ~(unsigned)MCOR_OUT_NORMALS;
   mcor_surface surface = core_extract(*state, &input, &options);
   CORE_CHECK(!surface.normals && !surface.gradients && !surface.weight_sum &&
       !surface.boundary_eigenvalue && !surface.correction_length && !surface.residual &&
@@ -234,7 +234,7 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
   }
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
-  options.nearest_particle = 1;
+  options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
   options.node_threshold = 0.01;
   options.vertex_threshold = 0;
   options.cube_size = 0.3;

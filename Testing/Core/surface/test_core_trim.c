@@ -249,7 +249,7 @@ static void check_boundary(mcor_context* context, mcor_type precision, int previ
   const double iso = 0;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
-  options.weight_sum = options.boundary_flag = options.residual = 1;
+  options.outputs |= MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_RESIDUAL;
   options.precision = precision;
   options.preview = preview;
   mcor_surface surface = core_extract(context, &input, &options);

@@ -240,7 +240,7 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   const bool uses_solids = mcor_uses_solids(input, &own);
   mcor_evaluate_without_scalar(input, &own);
   own.ranks = options->globals ? options->ranks : NULL;
-  own.gradients = 0;
+  own.outputs = 0;
   own.node_threshold = 0;
   mcor_input without = *input;
   without.attributes = NULL;

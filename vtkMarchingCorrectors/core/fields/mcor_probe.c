@@ -345,7 +345,7 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   mcor_context* context = run->context;
   const mcor_input* input = run->input;
   mcor_samples* samples = run->samples;
-  const bool gradients = options->gradients;
+  const bool gradients = options->outputs & MCOR_OUT_GRADIENTS;
   mcor_free_samples(samples); /* of an attempt before */
   samples->count = run->point_count;
   MCOR_TRY(mcor_check_input(context, input, options));

@@ -363,7 +363,7 @@ static double mcor_reach_beyond(
 {
   const double volumes = mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
   const double nearest =
-    options->nearest_particle || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
+    (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
   return farthest > 0 ? fmax(volumes, nearest) : 0;
 }
 
@@ -406,7 +406,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     reach->period[a] = context->lattice.period[a] * edge;
     reach->first[a] = context->lattice.period_first[a] * edge;
   }
-  if (mcor_needs_density(input) || context->run.options->nearest_particle || pairs)
+  if (mcor_needs_density(input) || mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) || pairs)
   {
     mcor_reach_job job = { .context = context, .input = input, .box = reach };
     const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);

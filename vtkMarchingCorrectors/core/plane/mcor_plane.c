@@ -327,7 +327,7 @@ mcor_status mcor_flatten(
   {
     o->seeds = MCOR_COMPLETE;
     o->level_limit = 0;
-    o->iso_value = 1;
+    o->outputs |= MCOR_OUT_ISO_VALUE;
   }
   mcor_flatten_sides(plane, options->box, o->box);
   for (int i = 0; i < 6; ++i) /* a period across the plane means nothing */

@@ -108,7 +108,7 @@ mcor_status mcor_list_components(
 /* Whether something is left to be evaluated at the finished mesh's vertices. */
 bool mcor_attributes_remain(const mcor_context* context)
 {
-  return context->run.options->nearest_particle ||
+  return mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) ||
     context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT;
 }
 

@@ -195,7 +195,7 @@ static mcor_status mcor_append_places(
 static mcor_status mcor_keep_cap_keys(
   mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
 {
-  if (!context->run.options->point_keys)
+  if (!mcor_wants(context, MCOR_OUT_POINT_KEYS))
   {
     return MCOR_OK;
   }

@@ -79,17 +79,17 @@ static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNL
     { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag } };
   int count = 8;
   memcpy(mappings, all, sizeof all);
-  if (options->boundary_eigenvalue)
+  if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE)
   {
     mappings[count++] = (mcor_mapping){ &context->trim.eigenvalue, n * real, &d->eigenvalue };
   }
-  if (options->nearest_particle)
+  if (options->outputs & MCOR_OUT_NEAREST_PARTICLE)
   {
     mappings[count++] =
       (mcor_mapping){ &context->attributes.nearest, n * sizeof(cl_int), &d->nearest };
   }
   const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
-  if (options->point_keys && cuts > 0)
+  if ((options->outputs & MCOR_OUT_POINT_KEYS) && cuts > 0)
   {
     mappings[count++] = (mcor_mapping){ &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts };
   }
@@ -337,13 +337,13 @@ static mcor_status mcor_evaluate_extras(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
   mcor_buffer* eigenvalue = &context->trim.eigenvalue;
-  if (options->boundary_eigenvalue) /* trimming needs it at other vertices */
+  if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming needs it at other vertices */
   {
     MCOR_TRY(mcor_reserve(
       context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
     MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
   }
-  return options->nearest_particle ? mcor_find_nearest(context) : MCOR_OK;
+  return (options->outputs & MCOR_OUT_NEAREST_PARTICLE) ? mcor_find_nearest(context) : MCOR_OK;
 }
 
 static mcor_status mcor_append_mesh(
@@ -381,7 +381,7 @@ static mcor_status mcor_append_mesh(
 /* Whether the output still needs particles on the device. */
 bool mcor_output_evaluates(const mcor_context* context)
 {
-  return context->run.options->boundary_eigenvalue || mcor_attributes_remain(context);
+  return mcor_wants(context, MCOR_OUT_BOUNDARY_EIGENVALUE) || mcor_attributes_remain(context);
 }
 
 /* Gives back what only making the mesh needed, so that the output finds room. */

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The points, then in the order of mcor_output. */
 void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS])
 {
   const mcor_surface_array all[MCOR_SURFACE_ARRAYS] = { { (void**)&s->points, 3 * sizeof(double) },
@@ -47,14 +48,11 @@ mcor_status mcor_grow_surface(
 {
   const mcor_options* o = context->run.options;
   const int64_t n = s->point_count;
-  const int wanted[MCOR_SURFACE_ARRAYS] = { 1, o->normals, o->gradients, o->weight_sum,
-    o->boundary_eigenvalue, o->correction_length, o->residual, o->boundary_flag, o->iso_value,
-    o->nearest_particle, o->point_keys };
   mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
   mcor_list_surface_arrays(s, arrays);
   for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)
   {
-    if (wanted[i])
+    if (i == 0 || o->outputs >> (i - 1) & 1)
     {
       MCOR_TRY(mcor_grow(context, arrays[i].array, n, points, arrays[i].width));
     }

@@ -15,7 +15,7 @@
 
 bool mcor_follows_cells(const mcor_context* context)
 {
-  return context->box.is_part || context->run.options->triangle_keys || mcor_caps_walls(context);
+  return context->box.is_part || mcor_wants(context, MCOR_OUT_TRIANGLE_KEYS) || mcor_caps_walls(context);
 }
 
 /* ---- Mesh ---- */
@@ -60,7 +60,7 @@ mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* 
   const int64_t old = surface->triangle_count;
   void **kept = (void**)&context->box.kept, **keys = (void**)&surface->triangle_keys;
   MCOR_TRY(context->box.is_part ? mcor_grow(context, kept, old, more, 1) : MCOR_OK);
-  return context->run.options->triangle_keys
+  return mcor_wants(context, MCOR_OUT_TRIANGLE_KEYS)
     ? mcor_grow(context, keys, old, more, MCOR_TRIANGLE_KEY * sizeof(uint64_t))
     : MCOR_OK;
 }

@@ -126,8 +126,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
   const std::pair<bool, mcor_output> outputs[] = { { this->ComputeNormals, MCOR_OUT_NORMALS },
-    { this->ComputeGradients, MCOR_OUT_GRADIENTS },
-    { this->ComputeWeightSum, MCOR_OUT_WEIGHT_SUM },
+    { this->ComputeGradients, MCOR_OUT_GRADIENTS }, { this->ComputeWeightSum, MCOR_OUT_WEIGHT_SUM },
     { this->ComputeBoundaryEigenvalue, MCOR_OUT_BOUNDARY_EIGENVALUE },
     { this->ComputeCorrectionLength, MCOR_OUT_CORRECTION_LENGTH },
     { this->ComputeResidual, MCOR_OUT_RESIDUAL },

@@ -106,7 +106,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   const double small_cubes = noise ? 1 : 0.325 * mcor_support_factor(at->kernel);
   options.cube_size_factor = small ? small_cubes : noise ? 0.7 : options.cube_size_factor;
   options.h_scale = noise ? 0.5 : options.h_scale;
-  options.outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  options.outputs |=
+    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
   options.boundary_detection = at->boundary;
   options.vertex_threshold = small && eigenvalue ? 0.3 : 0.5;
   options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;

@@ -58,7 +58,8 @@ mcor_options core_period_options(const double* iso, const double period[6])
 {
   mcor_options options = core_options(iso);
   memcpy(options.periodic, period, sizeof options.periodic);
-  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL;
+  options.outputs |=
+    MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL;
   return options;
 }
 

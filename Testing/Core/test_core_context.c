@@ -14,7 +14,8 @@
 static void ask_for_all(mcor_options* options)
 {
   options->outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
-  options->outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  options->outputs |=
+    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
   options->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_ISO_VALUE | MCOR_OUT_NEAREST_PARTICLE;
 }
 

@@ -100,9 +100,8 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   o->outputs |= what >> 4 & 1 ? MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_GRADIENTS |
       MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_CORRECTION_LENGTH
                               : 0;
-  o->outputs |= what >> 5 & 1
-    ? MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_ISO_VALUE
-    : 0;
+  o->outputs |=
+    what >> 5 & 1 ? MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_ISO_VALUE : 0;
   o->triangle_normals = (what & 0xc0) == 0xc0;
   o->node_threshold = fuzz_threshold(bytes);
   o->vertex_threshold = fuzz_threshold(bytes);

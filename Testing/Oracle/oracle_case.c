@@ -82,7 +82,8 @@ mcor_options oracle_case_options(const double* iso)
   options.iso_values = iso;
   options.iso_count = 1;
   options.dimension = 3; /* few particles may share a coordinate */
-  options.outputs |= MCOR_OUT_NORMALS | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG;
+  options.outputs |=
+    MCOR_OUT_NORMALS | MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG;
   options.outputs |= MCOR_OUT_RESIDUAL | MCOR_OUT_CORRECTION_LENGTH;
   return options;
 }

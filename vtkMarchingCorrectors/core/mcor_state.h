@@ -75,23 +75,24 @@ typedef struct mcor_bricks
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer seed_bits, seeds; /* bricks as in bits; ulong, cells by slot */
+  mcor_buffer seed_bits, seeds;       /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
-  mcor_buffer cells;                         /* ulong: those that may be used, all or none of a brick */
-  mcor_buffer plain, leaf_of;                /* ulong, int: of adaptive cubes, see mcor_adaptive_cells */
-  mcor_buffer neighbours;                    /* see mcor_brick_neighbours */
-  mcor_buffer need;                          /* see mcor_march_need */
-  mcor_buffer bit_counts;                            /* of mcor_count_bits */
+  mcor_buffer cells;          /* ulong: those that may be used, all or none of a brick */
+  mcor_buffer plain, leaf_of; /* ulong, int: of adaptive cubes, see mcor_adaptive_cells */
+  mcor_buffer neighbours;     /* see mcor_brick_neighbours */
+  mcor_buffer need;           /* see mcor_march_need */
+  mcor_buffer bit_counts;     /* of mcor_count_bits */
   mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
   mcor_buffer regions;                               /* int: those to examine */
-  mcor_buffer found;      /* int: what a kernel found in any brick, or how many regions */
+  mcor_buffer found; /* int: what a kernel found in any brick, or how many regions */
 } mcor_bricks;
 
 /* [III-D] One iso value's surface while it is made. */
 typedef struct mcor_mesh
 {
-  mcor_buffer used, plain_used; /* ulong: cells; the latter of adaptive cubes, see mcor_march_classify */
+  mcor_buffer used,
+    plain_used; /* ulong: cells; the latter of adaptive cubes, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
@@ -99,8 +100,9 @@ typedef struct mcor_mesh
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
-  mcor_buffer means;     /* real [vertex_count][attributes.count] */
-  mcor_buffer cut_edges; /* ulong, of each vertex of the trim boundary: that it is on, see mcor_trim.cl */
+  mcor_buffer means; /* real [vertex_count][attributes.count] */
+  mcor_buffer
+    cut_edges; /* ulong, of each vertex of the trim boundary: that it is on, see mcor_trim.cl */
   mcor_buffer triangles;
   mcor_buffer scanned;                           /* of the output, see mcor_is_output */
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
@@ -158,10 +160,10 @@ typedef struct mcor_pairs
   int place_count, bucket_shift;
   mcor_buffer keys, index;                      /* while places are found */
   mcor_buffer place_keys, buckets, place_slots; /* ulong, sorted; int */
-  mcor_buffer seeds, reached, grown;   /* ulong: marked by pairs; by now; when last looked at */
-  mcor_buffer domain;                  /* ulong: where growth may go */
-  mcor_buffer heard;                   /* int4: cells that other boxes have reached */
-  mcor_buffer found;                   /* int: what a kernel found in any brick */
+  mcor_buffer seeds, reached, grown; /* ulong: marked by pairs; by now; when last looked at */
+  mcor_buffer domain;                /* ulong: where growth may go */
+  mcor_buffer heard;                 /* int4: cells that other boxes have reached */
+  mcor_buffer found;                 /* int: what a kernel found in any brick */
 } mcor_pairs;
 
 /* Of MCOR_TOPOLOGY_FIELD. */
@@ -188,11 +190,11 @@ typedef struct mcor_point_batch
 /* [III-D.3] */
 typedef struct mcor_trim_data
 {
-  mcor_buffer eigenvalue;            /* real, at vertices; what the vertex threshold may apply to */
-  mcor_buffer margin;                /* real, at vertices; see mcor_trim_margin */
-  mcor_buffer remaining, cuts;       /* per batch of triangles */
+  mcor_buffer eigenvalue;       /* real, at vertices; what the vertex threshold may apply to */
+  mcor_buffer margin;           /* real, at vertices; see mcor_trim_margin */
+  mcor_buffer remaining, cuts;  /* per batch of triangles */
   mcor_buffer keys, index;      /* of cut edges */
-  mcor_buffer triangles, cells;      /* what remains, until it is the mesh's and the box's */
+  mcor_buffer triangles, cells; /* what remains, until it is the mesh's and the box's */
 } mcor_trim_data;
 
 /* mcor_scan.c. flags and order: of mcor_unique. */

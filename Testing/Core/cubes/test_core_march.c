@@ -275,7 +275,8 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
 {
   const double iso = -14;
   mcor_options options = core_options(&iso);
-  options.outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_NEAREST_PARTICLE;
+  options.outputs |=
+    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_NEAREST_PARTICLE;
   core_set part = make_mixed(0), whole = make_mixed(1);
   mcor_input input = core_input(&part);
   mcor_surface a = core_extract(*state, &input, &options);

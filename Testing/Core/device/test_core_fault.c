@@ -577,8 +577,9 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_context),
     cmocka_unit_test(test_every_call_fails_once), cmocka_unit_test(test_probe_and_derive),
-    cmocka_unit_test(test_regions), cmocka_unit_test(test_filled), cmocka_unit_test(test_adaptive_cubes),
-    cmocka_unit_test(test_ranks), cmocka_unit_test(test_extend), cmocka_unit_test(test_build_again),
+    cmocka_unit_test(test_regions), cmocka_unit_test(test_filled),
+    cmocka_unit_test(test_adaptive_cubes), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_extend), cmocka_unit_test(test_build_again),
     cmocka_unit_test(test_build_fails), cmocka_unit_test(test_error_names) };
   return cmocka_run_group_tests_name("fault", tests, core_set_up, core_tear_down);
 }

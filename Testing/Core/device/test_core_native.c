@@ -26,9 +26,9 @@ enum
 };
 
 /* Numbers at which functions differ, as float and as double. */
-static const float extremes[] = { 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, 1.5f, 2.5f, -2.5f, 1e-45f, -1e-45f,
-  1.17549435e-38f, 1.1754942e-38f, 3.4028235e38f, -3.4028235e38f, 8388607.5f, 16777217.0f, -0.49999997f,
-  0.49999997f, 1e10f, -1e10f, 0x1p-126f, 0x1p127f };
+static const float extremes[] = { 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, 1.5f, 2.5f, -2.5f, 1e-45f,
+  -1e-45f, 1.17549435e-38f, 1.1754942e-38f, 3.4028235e38f, -3.4028235e38f, 8388607.5f, 16777217.0f,
+  -0.49999997f, 0.49999997f, 1e10f, -1e10f, 0x1p-126f, 0x1p127f };
 
 /* Bits of numbers of `size` bytes: extreme ones, infinite ones, NaN, small integers, and any. */
 static void fill(unsigned char* bytes, size_t size, uint64_t seed)
@@ -43,9 +43,10 @@ static void fill(unsigned char* bytes, size_t size, uint64_t seed)
                                  : (float)(int)(pick % 41) - 20;
     const double wide = kind == 4 ? (double)real * 0x1p-1000 : (double)real;
     const uint64_t any = random_bits(&seed);
-    memcpy(bytes + i * size, kind == 7 ? (const void*)&any
-        : size == 4                    ? (const void*)&real
-                                       : (const void*)&wide,
+    memcpy(bytes + i * size,
+      kind == 7     ? (const void*)&any
+        : size == 4 ? (const void*)&real
+                    : (const void*)&wide,
       size);
   }
 }
@@ -60,8 +61,8 @@ static int is_nan(const unsigned char* bytes, size_t size)
 }
 
 /* Runs a kernel of a driver, whose last argument is read and written. */
-static void run_driver(mcor_context* context, cl_program program, const char* name,
-  unsigned char* const data[4])
+static void run_driver(
+  mcor_context* context, cl_program program, const char* name, unsigned char* const data[4])
 {
   const mcor_cl* cl = &context->cl;
   const size_t items = ITEMS;
@@ -96,9 +97,8 @@ static cl_program build(mcor_context* context)
   fclose(file);
   cl_program program = clCreateProgramWithSource(context->cl.context, 1, &source, NULL, &error);
   assert_int_equal(error, CL_SUCCESS);
-  assert_int_equal(
-    clBuildProgram(program, 1, &context->cl.device,
-      "-w -cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt", NULL, NULL),
+  assert_int_equal(clBuildProgram(program, 1, &context->cl.device,
+                     "-w -cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt", NULL, NULL),
     CL_SUCCESS);
   return program;
 }
@@ -336,8 +336,8 @@ static void test_what_was_not_compiled(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
-    cmocka_unit_test(test_loops), cmocka_unit_test(test_fork), cmocka_unit_test(test_contexts_side_by_side),
-    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
-    cmocka_unit_test(test_what_was_not_compiled) };
+    cmocka_unit_test(test_loops), cmocka_unit_test(test_fork),
+    cmocka_unit_test(test_contexts_side_by_side), cmocka_unit_test(test_threads_of_environment),
+    cmocka_unit_test(test_shares), cmocka_unit_test(test_what_was_not_compiled) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

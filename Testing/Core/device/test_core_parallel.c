@@ -205,7 +205,8 @@ static outcome extract(mcor_context* context, const core_set* set)
   input.attributes = attributes;
   input.attribute_count = 2;
   mcor_options options = core_options(&iso);
-  options.outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
+  options.outputs |=
+    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   options.cube_size_factor = 0.4;
   outcome result = { .surface = core_extract(context, &input, &options) };

@@ -74,7 +74,8 @@ static void test_circle(void** state)
   double isos[2] = { 0, -16 };
   mcor_options options = plane_options(isos);
   options.iso_count = 2;
-  options.outputs |= MCOR_OUT_ISO_VALUE | MCOR_OUT_GRADIENTS | MCOR_OUT_RESIDUAL | MCOR_OUT_WEIGHT_SUM;
+  options.outputs |=
+    MCOR_OUT_ISO_VALUE | MCOR_OUT_GRADIENTS | MCOR_OUT_RESIDUAL | MCOR_OUT_WEIGHT_SUM;
   mcor_input input = core_input(&set);
   mcor_surface surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.line_count, 2);

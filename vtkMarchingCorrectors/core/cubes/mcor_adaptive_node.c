@@ -113,7 +113,8 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
   const mcor_brick_data* now = &context->bricks.now;
   for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
   {
-    mcor_span span = { .first = context->bricks.first_slot[l], .end = context->bricks.first_slot[l + 1] };
+    mcor_span span = { .first = context->bricks.first_slot[l],
+      .end = context->bricks.first_slot[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_next_span(context, &span));
     while (span.count > 0)

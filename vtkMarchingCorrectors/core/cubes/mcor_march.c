@@ -52,8 +52,8 @@ static mcor_status mcor_find_hanging(mcor_context* context)
   MCOR_TRY(mcor_write(context, &adaptive->flat, &flat, sizeof flat));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_hanging", MCOR_MEDIUM, adaptive->count,
     MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain), MCOR_BUFFER(owned),
-    MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&adaptive->flat)));
+    MCOR_BUFFER(&adaptive->quadrants), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->triangle_base),
+    MCOR_BUFFER(&adaptive->flat)));
   MCOR_TRY(mcor_read(context, &adaptive->flat, 0, &flat, sizeof flat));
   context->run.statistics->flat_loops += flat;
   return mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong));

@@ -48,16 +48,16 @@ static mcor_status mcor_find_places(mcor_context* context)
     MCOR_COUNT_LIMIT, count, top + 1);
   MCOR_TRY(mcor_is_adaptive(context) ? MCOR_OK : mcor_number_uniform(context));
   MCOR_TRY(mcor_reserve(context, &pairs->keys, (size_t)keys * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_keys", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_INT(top), MCOR_BUFFER(&context->adaptive.rungs), MCOR_BUFFER(&bricks->now.bricks),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_keys", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(top),
+    MCOR_BUFFER(&context->adaptive.rungs), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&pairs->keys)));
   MCOR_TRY(mcor_unique(context, &pairs->keys, (int)keys, context->tree.key_limit + 1,
     &pairs->place_keys, &pairs->index, &pairs->place_count));
   MCOR_TRY(
     mcor_fill(context, &pairs->place_slots, 0xff, (size_t)pairs->place_count * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_places", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_INT(top), MCOR_BUFFER(&pairs->index), MCOR_BUFFER(&bricks->cells),
-    MCOR_BUFFER(&pairs->place_slots)));
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_pair_places", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(top),
+      MCOR_BUFFER(&pairs->index), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&pairs->place_slots)));
   MCOR_RELEASE(context, &pairs->keys, &pairs->index);
   mcor_release_sort(context);
   return mcor_index_keys(context, &pairs->place_keys, pairs->place_count,
@@ -75,8 +75,8 @@ static mcor_status mcor_find_places(mcor_context* context)
 static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 {
   mcor_pairs* pairs = &context->pairs;
-  MCOR_TRY(mcor_fill(
-    context, &pairs->reached, 0, (size_t)context->bricks.now.count * sizeof(cl_ulong)));
+  MCOR_TRY(
+    mcor_fill(context, &pairs->reached, 0, (size_t)context->bricks.now.count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, mcor_pair_items(context),
     MCOR_GRID_ARGS(context), MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso),
     MCOR_REAL(context->run.options->h_scale), MCOR_PLACE_ARGS(context),
@@ -93,8 +93,8 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_LEAF_ARGS(context),
     MCOR_PLAIN_ARGS(context), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->cells),
-    MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached),
-    MCOR_BUFFER(&pairs->found)));
+    MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown),
+    MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
   *grown = flag != 0;
   ++context->run.statistics->march_rounds;
@@ -114,8 +114,7 @@ static mcor_status mcor_limit_growth(mcor_context* context)
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
-mcor_status mcor_take_reached(
-  mcor_context* context, const cl_int* cells, int count, bool* fresh)
+mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh)
 {
   mcor_pairs* pairs = &context->pairs;
   cl_int flag;
@@ -152,6 +151,6 @@ mcor_status mcor_keep_reached(mcor_context* context, double iso)
 void mcor_release_pairs(mcor_context* context)
 {
   mcor_pairs* p = &context->pairs;
-  MCOR_RELEASE(context, &p->keys, &p->index, &p->place_keys, &p->buckets, &p->place_slots, &p->reached,
-    &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
+  MCOR_RELEASE(context, &p->keys, &p->index, &p->place_keys, &p->buckets, &p->place_slots,
+    &p->reached, &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
 }

@@ -15,8 +15,7 @@ void mcor_release_pairs(mcor_context* context);
 
 /* Goes on from `count` cells of this box that others have reached: int4, the level last. *fresh: whether one is
  * new. */
-mcor_status mcor_take_reached(
-  mcor_context* context, const cl_int* cells, int count, bool* fresh);
+mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh);
 /* *grown is false when no box has a new cell. */
 mcor_status mcor_exchange_cells(mcor_context* context, bool* grown);
 mcor_status mcor_attend_growth(mcor_context* context);

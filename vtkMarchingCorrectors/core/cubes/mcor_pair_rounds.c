@@ -7,8 +7,8 @@
  * ring, those that one run over all would have examined: a step of growth begins in a used cell, whose
  * box has right values at its nodes, and ends in a cell of that box or of its ring. */
 
-#include "mcor_pair.h"
 #include "mcor_box.h"
+#include "mcor_pair.h"
 #include "mcor_ranks.h"
 
 #include <math.h>

@@ -126,8 +126,7 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   {
     MCOR_TRY(mcor_split_bricks(context, input, tree));
   }
-  const bool keys =
-    context->run.options->outputs & (MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
+  const bool keys = context->run.options->outputs & (MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
   MCOR_RETURN_IF(keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
     "cubes. Use a larger cube size, or fewer levels.",

@@ -20,8 +20,8 @@ static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* d
 
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
 {
-  MCOR_RELEASE(context, &data->bricks, &data->known, &data->value, &data->weight, &data->above,
-    &data->valid);
+  MCOR_RELEASE(
+    context, &data->bricks, &data->known, &data->value, &data->weight, &data->above, &data->valid);
   data->count = 0;
 }
 
@@ -47,14 +47,13 @@ static mcor_status mcor_fill_bricks(
     MCOR_BUFFER(&bricks->seeds)));
   if (last->count > 0)
   {
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_brick_move", MCOR_MEDIUM, last->count, MCOR_BRICK_ARGS(context),
-        MCOR_INT(last->count), MCOR_BUFFER(&last->bricks), MCOR_BUFFER(&last->known),
-        MCOR_BUFFER(&last->above), MCOR_BUFFER(&last->valid),
-        MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))), MCOR_BUFFER(&last->value),
-        MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known),
-        MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
-        MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_move", MCOR_MEDIUM, last->count,
+      MCOR_BRICK_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&last->bricks),
+      MCOR_BUFFER(&last->known), MCOR_BUFFER(&last->above), MCOR_BUFFER(&last->valid),
+      MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))), MCOR_BUFFER(&last->value),
+      MCOR_BUFFER(&last->weight), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.above),
+      MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&bricks->now.value),
+      MCOR_BUFFER(&bricks->now.weight)));
   }
   return MCOR_OK;
 }

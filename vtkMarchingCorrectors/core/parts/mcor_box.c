@@ -224,7 +224,8 @@ static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lowe
   }
   MCOR_TRY(mcor_reserve(context, clipped, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.now.bricks), MCOR_SIDES_ARGS(s), MCOR_INT(adaptive && lower > 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
+    MCOR_BUFFER(&context->bricks.now.bricks), MCOR_SIDES_ARGS(s), MCOR_INT(adaptive && lower > 0),
+    MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
 }
 
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
@@ -363,7 +364,8 @@ static double mcor_reach_beyond(
 {
   const double volumes = mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
   const double nearest =
-    (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
+    (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS ? farthest + 2
+                                                                                   : 0;
   return farthest > 0 ? fmax(volumes, nearest) : 0;
 }
 

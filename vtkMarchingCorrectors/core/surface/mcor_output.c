@@ -389,8 +389,7 @@ static void mcor_release_construction(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
   mcor_release_trim(context);
-  MCOR_RELEASE(
-    context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
+  MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
 }
 
 /* Gives back the vertices and attributes, so that the caller finds room for what it makes of the

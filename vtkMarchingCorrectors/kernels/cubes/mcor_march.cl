@@ -145,9 +145,9 @@ real mcor_march_end(__global const int* neighbours, MCOR_SLOT_PARAMS,
  * edge of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times the level),
  * and the two values against the iso value. */
 __kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, __global const int* neighbours,
-  __global const mcor_rung* rungs, __global const int4* bricks,
-  __global const ulong* edges, __global const real* node_value, __global const int* vertex_base,
-  const real iso, __global int4* vertex_edge, __global real* vertex_ends)
+  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* edges,
+  __global const real* node_value, __global const int* vertex_base, const real iso,
+  __global int4* vertex_edge, __global real* vertex_ends)
 {
   MCOR_ITEM(slot, slot < slot_count);
   const int4 brick = bricks[slot];
@@ -164,8 +164,8 @@ __kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, __global const int* neighbou
         const int4 edge = (int4)(brick.x * MCOR_BRICK + (n & 3),
           brick.y * MCOR_BRICK + (n >> 2 & 3), brick.z * MCOR_BRICK + (n >> 4),
           axis | (int)(e[3 + axis] >> n & 1) << 2 | brick.w << MCOR_LEVEL_SHIFT);
-        const real end = mcor_march_end(
-          neighbours, MCOR_SLOT_ARGS, rungs, brick, slot, n, axis, node_value);
+        const real end =
+          mcor_march_end(neighbours, MCOR_SLOT_ARGS, rungs, brick, slot, n, axis, node_value);
         for (int copy = 0; copy < copies; ++copy, ++to)
         {
           vertex_edge[to] = edge;
@@ -181,8 +181,8 @@ __kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, __global const int* neighbou
  * wanted, the keys of their cells. */
 __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS,
   MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS, const int follows, const int blocks_x, const int blocks_y,
-  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* used, __global const ulong* edges,
-  __global const int* vertex_base, __global const int* triangle_base,
+  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* used,
+  __global const ulong* edges, __global const int* vertex_base, __global const int* triangle_base,
   __global ulong* triangle_cells, __global int* triangles)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
@@ -214,7 +214,8 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS, MCOR
     {
       made = mcor_leaf_emit(&leaf, cell, edges, vertex_base, triangles + 3 * to);
     }
-    for (int i = 0; i < made && follows; ++i) /* Intel's compiler (2026.2) crashes on another form */
+    for (int i = 0; i < made && follows;
+         ++i) /* Intel's compiler (2026.2) crashes on another form */
     {
       triangle_cells[to + i] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
     }

@@ -12,8 +12,7 @@
   const int place_count, const int place_shift, __global const ulong *place_keys,                  \
     __global const int *place_buckets, __global const mcor_rung *rungs,                            \
     __global const int *place_slots
-#define MCOR_PLACE_ARGS                                                                            \
-  place_count, place_shift, place_keys, place_buckets, rungs, place_slots
+#define MCOR_PLACE_ARGS place_count, place_shift, place_keys, place_buckets, rungs, place_slots
 
 /* What such a brick is, if it has no cells that may be used. */
 #define MCOR_PLACE_SPLIT (-1)
@@ -26,8 +25,8 @@ int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
   {
     return MCOR_PLACE_NONE;
   }
-  const int at = mcor_adaptive_find(place_count, place_shift, place_keys, place_buckets,
-    mcor_adaptive_key(rungs, level, x, y, z));
+  const int at = mcor_adaptive_find(
+    place_count, place_shift, place_keys, place_buckets, mcor_adaptive_key(rungs, level, x, y, z));
   return at < 0 ? MCOR_PLACE_NONE : place_slots[at];
 }
 
@@ -46,9 +45,8 @@ void mcor_pair_reach(
 #if MCOR_OF_LATTICE
 /* One work-item = one brick. Where its `cells` may be used, writes its key, and those of the bricks that it is part
  * of: of each level one, of the levels up to its own that of itself; else a key beyond all. */
-__kernel void mcor_pair_keys(const int count, const int top,
-  __global const mcor_rung* rungs, __global const int4* bricks,
-  __global const ulong* cells, __global ulong* keys)
+__kernel void mcor_pair_keys(const int count, const int top, __global const mcor_rung* rungs,
+  __global const int4* bricks, __global const ulong* cells, __global ulong* keys)
 {
   const int i = get_global_id(0);
   const ulong none = mcor_adaptive_key(rungs, top + 1, 0, 0, rungs[top + 1].n[2]);
@@ -467,8 +465,7 @@ __kernel void mcor_pair_take(const int count, __global const int4* heard, MCOR_P
 }
 
 /* One work-item = one brick. Leaves those of its cells that are reached. */
-__kernel void mcor_pair_keep(
-  const int count, __global const ulong* reached, __global ulong* cells)
+__kernel void mcor_pair_keep(const int count, __global const ulong* reached, __global ulong* cells)
 {
   MCOR_ITEM(i, i < count);
   cells[i] &= reached[i];

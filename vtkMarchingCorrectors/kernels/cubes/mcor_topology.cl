@@ -38,7 +38,8 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
     const ulong between = !levels ? ~0UL
       : plane                     ? p[0]
                                   : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
-    const ulong layer = plane ? 0xffffUL : ~0UL; /* of squares; others of a plane are not ambiguous */
+    const ulong layer =
+      plane ? 0xffffUL : ~0UL; /* of squares; others of a plane are not ambiguous */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;

@@ -88,8 +88,7 @@ mcor_cell_cut mcor_cell_cut_of(const ulong* corners, MCOR_CUT_PARAMS, int slot, 
 }
 
 /* The number of triangles of these of a brick's cells; adds to that of tunnels. */
-int mcor_cells_count(
-  const ulong* corners, MCOR_CUT_PARAMS, int slot, ulong cells, int* tunnels)
+int mcor_cells_count(const ulong* corners, MCOR_CUT_PARAMS, int slot, ulong cells, int* tunnels)
 {
   int triangles = 0;
   for (ulong rest = cells; rest; rest &= rest - 1)

@@ -183,11 +183,10 @@ __kernel void mcor_brick_neighbours(
 /* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,
  * if it has one. words: of 4 bytes, that the values of a brick's nodes take. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
-  __global const int4* old_bricks, __global const ulong* old_known,
-  __global const ulong* old_above, __global const ulong* old_valid, const int words,
-  __global const uint* old_value, __global const uint* old_weight, __global ulong* known,
-  __global ulong* above, __global ulong* valid, __global uint* node_value,
-  __global uint* node_weight)
+  __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
+  __global const ulong* old_valid, const int words, __global const uint* old_value,
+  __global const uint* old_weight, __global ulong* known, __global ulong* above,
+  __global ulong* valid, __global uint* node_value, __global uint* node_weight)
 {
   MCOR_ITEM(old, old < old_count);
   const int4 brick = old_bricks[old];

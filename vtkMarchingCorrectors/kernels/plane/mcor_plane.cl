@@ -150,9 +150,9 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
  * above is joined. */
 __kernel void mcor_plane_lines(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS,
   MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS, const int follows, const int blocks_x, const int blocks_y,
-  __global const mcor_rung* rungs, __global const int4* bricks,
-  __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
-  __global const int* line_base, __global ulong* line_cells, __global int* lines)
+  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* used,
+  __global const ulong* edges, __global const int* vertex_base, __global const int* line_base,
+  __global ulong* line_cells, __global int* lines)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
   const ulong own = levels ? plain[slot] : ~0UL;

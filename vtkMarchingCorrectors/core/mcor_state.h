@@ -154,16 +154,17 @@ typedef struct mcor_adaptive
   mcor_buffer flat;      /* int: loops that lie in one face between leaves */
 } mcor_adaptive;
 
-/* Which cells pairs reach; see mcor_pair.c. Masks are by slot. */
+/* Which cells pairs reach; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
   int place_count, bucket_shift;
   mcor_buffer keys, index;                      /* while places are found */
   mcor_buffer place_keys, buckets, place_slots; /* ulong, sorted; int */
-  mcor_buffer seeds, reached, grown; /* ulong: marked by pairs; by now; when last looked at */
-  mcor_buffer domain;                /* ulong: where growth may go */
-  mcor_buffer heard;                 /* int4: cells that other boxes have reached */
-  mcor_buffer found;                 /* int: what a kernel found in any brick */
+  mcor_buffer marked, reached, grown; /* ulong, by place: by pairs; by now; when last looked at */
+  mcor_buffer seeds;                  /* ulong, by slot: those that are marked */
+  mcor_buffer domain;                 /* ulong, by slot: where growth may go */
+  mcor_buffer heard;                  /* int4: cells that other boxes have reached */
+  mcor_buffer found;                  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
 /* Of MCOR_TOPOLOGY_FIELD. */
@@ -243,8 +244,7 @@ typedef struct mcor_box
   mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
   mcor_buffer clipped; /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;       /* per triangle of the surface: 1 of an owned cell; NULL: all are */
-  cl_ulong* told;      /* per brick or leaf, cells that others know of; see mcor_pair_rounds.c */
-  int told_count;
+  cl_ulong* told;      /* by place, cells that others know of; see mcor_pair_rounds.c */
 } mcor_box;
 
 /* The call under way; options are NULL between calls. */

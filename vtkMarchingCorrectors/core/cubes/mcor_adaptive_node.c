@@ -6,6 +6,7 @@
  * is crossed that has them. */
 
 #include "mcor_adaptive.h"
+#include "mcor_pair.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
 
@@ -199,7 +200,8 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   ++context->run.statistics->march_rounds;
   if (context->tree.leaf_count == 0) /* none is in the box */
   {
-    return MCOR_OK;
+    context->bricks.now.count = 0;
+    return mcor_uses_pairs(context) ? mcor_find_reached(context, iso) : MCOR_OK;
   }
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
@@ -214,7 +216,8 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   MCOR_RELEASE(context, &found.value, &found.weight);
   MCOR_TRY(status);
   MCOR_TRY(mcor_evaluate_slots(context, iso));
-  return mcor_complete_leaves(context, iso);
+  MCOR_TRY(mcor_complete_leaves(context, iso));
+  return mcor_uses_pairs(context) ? mcor_find_reached(context, iso) : MCOR_OK;
 }
 
 void mcor_release_adaptive(mcor_context* context)

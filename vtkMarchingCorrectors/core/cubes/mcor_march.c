@@ -5,7 +5,6 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_pair.h"
 #include "mcor_plane.h"
 
 #include <string.h>
@@ -19,15 +18,14 @@ const mcor_buffer* mcor_plain_used(const mcor_context* context)
 /* ---- Cells ---- */
 
 /* The cells to examine, of the box and its ring, as `used`. */
-static mcor_status mcor_find_cells(mcor_context* context, double iso)
+static mcor_status mcor_find_cells(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
   const size_t bytes = (size_t)context->bricks.now.count * sizeof(cl_ulong);
   MCOR_TRY(mcor_reserve(context, &mesh->used, bytes));
   MCOR_TRY(mcor_copy(context, &context->bricks.cells, &mesh->used, 0, bytes));
   MCOR_TRY(mcor_keep_squares(context, &mesh->used));
-  MCOR_TRY(mcor_clip_used(context));
-  return mcor_uses_pairs(context) ? mcor_keep_reached(context, iso) : MCOR_OK;
+  return mcor_clip_used(context);
 }
 
 /* Cells that are counted as seeds. */
@@ -191,10 +189,10 @@ mcor_status mcor_march(mcor_context* context, double iso)
   memset(mesh->level_first, 0, sizeof mesh->level_first);
   if (context->bricks.now.count == 0)
   {
-    return mcor_uses_pairs(context) ? mcor_attend_growth(context) : MCOR_OK;
+    return MCOR_OK;
   }
   MCOR_TRY(mcor_find_neighbours(context));
-  MCOR_TRY(mcor_find_cells(context, iso));
+  MCOR_TRY(mcor_find_cells(context));
   MCOR_TRY(mcor_find_used(context));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));

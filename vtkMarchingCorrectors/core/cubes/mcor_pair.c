@@ -8,8 +8,8 @@
  * whole face, with the finer nodes on its edges, or a quarter of one with smaller cells beyond. So what
  * is marked, and reached, depends on nothing but the particles.
  *
- * All bricks where there may be surface have their nodes evaluated, as for complete seeds; others have no
- * cell that could be used. */
+ * Of uniform cubes only the bricks are evaluated that have nodes of reached cells. Of adaptive ones all leaves where
+ * there may be surface are, as for complete seeds; others have no cell that could be used. */
 
 #include "mcor_pair.h"
 #include "mcor_adaptive.h"
@@ -26,15 +26,14 @@ static size_t mcor_pair_items(const mcor_context* context)
 
 /* ---- Bricks by their place ---- */
 
-/* The numbers of uniform cubes' bricks: those of leaves are known. */
-static mcor_status mcor_number_uniform(mcor_context* context)
+size_t mcor_count_places(const mcor_context* context)
 {
-  mcor_tree* tree = &context->tree;
-  MCOR_TRY(mcor_number_bricks(context, tree));
-  return mcor_write(context, &context->adaptive.rungs, tree->rungs, 2 * sizeof tree->rungs[0]);
+  const mcor_bricks* bricks = &context->bricks;
+  return mcor_is_adaptive(context) ? (size_t)bricks->now.count
+                                   : (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
 }
 
-/* Bricks with cells that may be used, and the bricks that they are parts of, by their keys. */
+/* With levels: bricks with cells that may be used, and the bricks that they are parts of, by their keys. */
 static mcor_status mcor_find_places(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -46,7 +45,6 @@ static mcor_status mcor_find_places(mcor_context* context)
     "%d "
     "levels. Use complete seeds, or a larger cube size.",
     MCOR_COUNT_LIMIT, count, top + 1);
-  MCOR_TRY(mcor_is_adaptive(context) ? MCOR_OK : mcor_number_uniform(context));
   MCOR_TRY(mcor_reserve(context, &pairs->keys, (size_t)keys * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_keys", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(top),
     MCOR_BUFFER(&context->adaptive.rungs), MCOR_BUFFER(&bricks->now.bricks),
@@ -65,9 +63,10 @@ static mcor_status mcor_find_places(mcor_context* context)
 }
 
 #define MCOR_PLACE_ARGS(c)                                                                         \
-  MCOR_INT((c)->pairs.place_count), MCOR_INT((c)->pairs.bucket_shift),                             \
-    MCOR_BUFFER(&(c)->pairs.place_keys), MCOR_BUFFER(&(c)->pairs.buckets),                         \
-    MCOR_BUFFER(&(c)->adaptive.rungs), MCOR_BUFFER(&(c)->pairs.place_slots)
+  MCOR_BLOCK_ARGS(c), MCOR_INT(mcor_is_adaptive(c)), MCOR_INT((c)->pairs.place_count),             \
+    MCOR_INT((c)->pairs.bucket_shift), MCOR_BUFFER(&(c)->pairs.place_keys),                        \
+    MCOR_BUFFER(&(c)->pairs.buckets), MCOR_BUFFER(&(c)->adaptive.rungs),                           \
+    MCOR_BUFFER(&(c)->pairs.place_slots)
 
 /* ---- Cells ---- */
 
@@ -75,12 +74,49 @@ static mcor_status mcor_find_places(mcor_context* context)
 static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 {
   mcor_pairs* pairs = &context->pairs;
-  MCOR_TRY(
-    mcor_fill(context, &pairs->reached, 0, (size_t)context->bricks.now.count * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, mcor_pair_items(context),
+  const size_t bytes = mcor_count_places(context) * sizeof(cl_ulong);
+  MCOR_TRY(mcor_fill(context, &pairs->reached, 0, bytes));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, mcor_pair_items(context),
     MCOR_GRID_ARGS(context), MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso),
     MCOR_REAL(context->run.options->h_scale), MCOR_PLACE_ARGS(context),
-    MCOR_INT(context->lattice.top), MCOR_BUFFER(&pairs->reached));
+    MCOR_INT(context->lattice.top), MCOR_BUFFER(&pairs->reached)));
+  MCOR_TRY(mcor_reserve(context, &pairs->marked, bytes));
+  MCOR_TRY(mcor_copy(context, &pairs->reached, &pairs->marked, 0, bytes));
+  return mcor_fill(context, &pairs->grown, 0, bytes);
+}
+
+/* Of uniform cubes: gives slots to the bricks that have nodes of reached cells, and evaluates these. first: no brick
+ * has been placed for this iso value. */
+static mcor_status mcor_place_reached(mcor_context* context, double iso, bool first)
+{
+  mcor_bricks* bricks = &context->bricks;
+  mcor_pairs* pairs = &context->pairs;
+  cl_int flag = 0;
+  MCOR_TRY(mcor_write(context, &pairs->found, &flag, sizeof flag));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request", MCOR_LIGHT, mcor_count_places(context),
+    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&bricks->bits),
+    MCOR_BUFFER(&pairs->found)));
+  MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
+  if (flag == 0 && !first)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_place_bricks(context));
+  MCOR_TRY(first ? mcor_sign_nodes(context, iso, &bricks->now.known) : MCOR_OK);
+  MCOR_TRY(mcor_evaluate_nodes(context));
+  MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
+  bricks->first_slot[0] = 0;
+  bricks->first_slot[1] = bricks->now.count;
+  return mcor_find_neighbours(context);
+}
+
+/* Growth stays where nodes have right values: in the box whose particles are on the device, and the ring
+ * around it. */
+static mcor_status mcor_limit_growth(mcor_context* context)
+{
+  mcor_buffer* domain = &context->pairs.domain;
+  MCOR_TRY(mcor_fill(context, domain, 0xff, (size_t)context->bricks.now.count * sizeof(cl_ulong)));
+  return mcor_clip_near(context, domain);
 }
 
 /* One round of growth; *grown is false when no cell was added. */
@@ -88,30 +124,18 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
 {
   const mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
-  cl_int flag;
-  MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
+  cl_int flag = 0;
+  MCOR_TRY(mcor_limit_growth(context));
+  MCOR_TRY(mcor_write(context, &pairs->found, &flag, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_LEAF_ARGS(context),
-    MCOR_PLAIN_ARGS(context), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->cells),
-    MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown),
-    MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
+    MCOR_BUFFER(&bricks->plain), MCOR_BUFFER(&bricks->leaf_of), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->cells), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->domain),
+    MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
   *grown = flag != 0;
   ++context->run.statistics->march_rounds;
   return MCOR_OK;
-}
-
-/* Growth stays where nodes have right values: in the box whose particles are on the device, and the ring
- * around it. */
-static mcor_status mcor_limit_growth(mcor_context* context)
-{
-  mcor_pairs* pairs = &context->pairs;
-  const int count = context->bricks.now.count;
-  const size_t bytes = (size_t)count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_reserve(context, &pairs->grown, bytes));
-  MCOR_TRY(mcor_fill(context, &pairs->domain, 0xff, bytes));
-  MCOR_TRY(mcor_clip_near(context, &pairs->domain));
-  return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
 mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh)
@@ -128,29 +152,36 @@ mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int co
   return MCOR_OK;
 }
 
-mcor_status mcor_keep_reached(mcor_context* context, double iso)
+mcor_status mcor_find_reached(mcor_context* context, double iso)
 {
+  mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
-  const int count = context->bricks.now.count;
-  const size_t bytes = (size_t)count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_find_places(context));
-  MCOR_TRY(mcor_mark_pairs(context, iso));
-  MCOR_TRY(mcor_reserve(context, &pairs->seeds, bytes));
-  MCOR_TRY(mcor_copy(context, &pairs->reached, &pairs->seeds, 0, bytes));
-  MCOR_TRY(mcor_limit_growth(context));
-  mcor_end_rounds(context);
-  for (bool grown = true; grown;)
+  const bool adaptive = mcor_is_adaptive(context);
+  if (mcor_count_places(context) == 0)
   {
+    return mcor_attend_growth(context);
+  }
+  MCOR_TRY(adaptive ? mcor_find_places(context) : MCOR_OK);
+  MCOR_TRY(mcor_mark_pairs(context, iso));
+  MCOR_TRY(adaptive ? mcor_find_neighbours(context) : MCOR_OK);
+  mcor_end_rounds(context);
+  for (bool first = true, grown = true; grown; first = false)
+  {
+    MCOR_TRY(adaptive ? MCOR_OK : mcor_place_reached(context, iso, first));
     MCOR_TRY(mcor_grow_reached(context, &grown));
     MCOR_TRY(grown ? MCOR_OK : mcor_exchange_cells(context, &grown));
   }
-  return MCOR_LAUNCH(context, "mcor_pair_keep", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&context->mesh.used));
+  const int count = bricks->now.count;
+  MCOR_TRY(mcor_reserve(context, &bricks->cells, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &pairs->seeds, (size_t)count * sizeof(cl_ulong)));
+  return MCOR_LAUNCH(context, "mcor_pair_fill", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->now.bricks), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->reached),
+    MCOR_BUFFER(&pairs->marked), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&pairs->seeds));
 }
 
 void mcor_release_pairs(mcor_context* context)
 {
   mcor_pairs* p = &context->pairs;
   MCOR_RELEASE(context, &p->keys, &p->index, &p->place_keys, &p->buckets, &p->place_slots,
-    &p->reached, &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
+    &p->reached, &p->marked, &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
 }

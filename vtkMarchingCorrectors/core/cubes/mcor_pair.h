@@ -7,8 +7,11 @@
 
 #include "mcor_internal.h"
 
-/* Leaves in mesh.used the cells that pairs reach; pairs.seeds: those that pairs mark. iso: relative to A0. */
-mcor_status mcor_keep_reached(mcor_context* context, double iso);
+/* Ends with the cells that pairs reach in bricks.cells, all of whose nodes are evaluated; pairs.seeds: those that pairs
+ * mark. iso: relative to A0. */
+mcor_status mcor_find_reached(mcor_context* context, double iso);
+/* Places of bricks, by which reached cells are noted, see MCOR_PLACE_PARAMS. */
+size_t mcor_count_places(const mcor_context* context);
 void mcor_release_pairs(mcor_context* context);
 
 /* mcor_pair_rounds.c: these cells grow from box to box. */

@@ -9,6 +9,7 @@
 
 #include "mcor_box.h"
 #include "mcor_pair.h"
+#include "mcor_adaptive.h"
 #include "mcor_ranks.h"
 
 #include <math.h>
@@ -80,36 +81,57 @@ static mcor_status mcor_list_brick(
   return MCOR_OK;
 }
 
-/* The cells that are new since the last round, of bricks in their slots. */
+/* Where a brick is: given by its slot, or by its number among the blocks' bricks. */
+static void mcor_locate_place(
+  const mcor_context* context, const void* bricks, size_t place, cl_int brick[4])
+{
+  if (mcor_is_adaptive(context))
+  {
+    memcpy(brick, (const cl_int*)bricks + 4 * place, 4 * sizeof *brick);
+    return;
+  }
+  uint64_t block = ((const cl_ulong*)bricks)[place / MCOR_BLOCK_BRICKS];
+  for (int a = 0; a < 3; ++a)
+  {
+    const uint64_t n = (uint64_t)context->lattice.blocks[a];
+    brick[a] = (int)(block % n) * 8 + (int)(place >> 3 * a & 7);
+    block /= n;
+  }
+  brick[3] = 0;
+}
+
+/* The cells that are new since the last round. */
 static mcor_status mcor_list_new_cells(mcor_context* context, mcor_cell_list* list)
 {
   mcor_box* box = &context->box;
-  const mcor_brick_data* now = &context->bricks.now;
-  const mcor_buffer* reached = &context->pairs.reached;
-  const size_t count = (size_t)now->count;
+  const bool adaptive = mcor_is_adaptive(context);
+  const size_t count = mcor_count_places(context);
+  const mcor_buffer *where = adaptive ? &context->bricks.now.bricks : &context->bricks.block_keys,
+                    *reached = &context->pairs.reached;
   void *bricks, *cells;
-  if (box->told_count < now->count)
-  {
-    cl_ulong* told = realloc(box->told, count * sizeof *told);
-    MCOR_TRY(mcor_allocated(context, told));
-    memset(told + box->told_count, 0, (count - (size_t)box->told_count) * sizeof *told);
-    box->told = told;
-    box->told_count = now->count;
-  }
   if (count == 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_map(context, &now->bricks, count * 4 * sizeof(cl_int), false, &bricks));
+  box->told = box->told ? box->told : calloc(count, sizeof *box->told);
+  MCOR_TRY(mcor_allocated(context, box->told));
+  const size_t bytes =
+    adaptive ? count * 4 * sizeof(cl_int) : count / MCOR_BLOCK_BRICKS * sizeof(cl_ulong);
+  MCOR_TRY(mcor_map(context, where, bytes, false, &bricks));
   mcor_status status = mcor_map(context, reached, count * sizeof(cl_ulong), false, &cells);
   for (size_t i = 0; i < count && status == MCOR_OK; ++i)
   {
     const cl_ulong mask = ((const cl_ulong*)cells)[i], fresh = mask & ~box->told[i];
-    status = fresh ? mcor_list_brick(context, (const cl_int*)bricks + 4 * i, fresh, list) : MCOR_OK;
-    box->told[i] = mask;
+    if (fresh)
+    {
+      cl_int brick[4];
+      mcor_locate_place(context, bricks, i, brick);
+      status = mcor_list_brick(context, brick, fresh, list);
+      box->told[i] = mask;
+    }
   }
   const mcor_status unmapped = mcor_unmap(context, reached, &cells);
-  const mcor_status last = mcor_unmap(context, &now->bricks, &bricks);
+  const mcor_status last = mcor_unmap(context, where, &bricks);
   return status != MCOR_OK ? status : unmapped != MCOR_OK ? unmapped : last;
 }
 
@@ -204,7 +226,7 @@ mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
   }
   mcor_status status = mcor_list_new_cells(context, &list);
   status = status == MCOR_OK ? mcor_tell_cells(context, &list, &all, &count) : status;
-  if (status == MCOR_OK && context->grid.count > 0 && context->bricks.now.count > 0)
+  if (status == MCOR_OK && context->grid.count > 0 && mcor_count_places(context) > 0)
   {
     bool some;
     status = mcor_hear_cells(context, all, count, &some);
@@ -222,7 +244,6 @@ void mcor_end_rounds(mcor_context* context)
 {
   free(context->box.told);
   context->box.told = NULL;
-  context->box.told_count = 0;
 }
 
 /* Of a box without cells, while others grow. */
@@ -240,6 +261,7 @@ mcor_status mcor_attend_rounds(mcor_context* context, int first)
 {
   const bool all = context->run.options->ranks && mcor_uses_pairs(context);
   context->bricks.now.count = all ? 0 : context->bricks.now.count;
+  context->bricks.block_count = all ? 0 : context->bricks.block_count;
   for (int i = first; i < context->run.options->iso_count && all; ++i)
   {
     MCOR_TRY(mcor_attend_growth(context));

@@ -4,6 +4,7 @@
 /* Seed cells [III-C]. */
 
 #include "mcor_box.h"
+#include "mcor_pair.h"
 #include "mcor_plane.h"
 
 /* Requests bricks beside those with `fresh` nodes, which these show to be needed. */
@@ -102,7 +103,7 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   mcor_buffer* list = &bricks->regions;
   int listed = 0;
   MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
-  MCOR_TRY(mcor_uses_pairs(context) ? MCOR_OK : mcor_count_seeds(context));
+  MCOR_TRY(mcor_count_seeds(context));
   MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
   MCOR_TRY(mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, iso, list, listed));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
@@ -118,6 +119,10 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
   mcor_bricks* bricks = &context->bricks;
   MCOR_TRY(mcor_find_side_flags(context, iso));
   MCOR_TRY(mcor_make_blocks(context, iso));
+  if (mcor_uses_pairs(context))
+  {
+    return mcor_find_reached(context, iso);
+  }
   MCOR_TRY(mcor_place_complete(context, iso));
   for (bool grown = true; grown;)
   {

@@ -7,19 +7,27 @@
  * found; those that may be used are marked. Of bricks where there is certainly no surface nothing is known: they have
  * no used cells. */
 
-/* Bricks by their sorted keys: those with cells that may be used, and those that such bricks are parts of. */
+/* Places of bricks, by which cells are noted. Without levels these are the numbers of the blocks' bricks, most of which
+ * have no slot. With levels they are slots, found by sorted keys: of bricks with cells that may be used, and of those
+ * that such bricks are parts of. */
 #define MCOR_PLACE_PARAMS                                                                          \
-  const int place_count, const int place_shift, __global const ulong *place_keys,                  \
-    __global const int *place_buckets, __global const mcor_rung *rungs,                            \
-    __global const int *place_slots
-#define MCOR_PLACE_ARGS place_count, place_shift, place_keys, place_buckets, rungs, place_slots
+  MCOR_BLOCK_PARAMS, const int by_level, const int place_count, const int place_shift,             \
+    __global const ulong *place_keys, __global const int *place_buckets,                           \
+    __global const mcor_rung *rungs, __global const int *place_slots
+#define MCOR_PLACE_ARGS                                                                            \
+  MCOR_BLOCK_ARGS, by_level, place_count, place_shift, place_keys, place_buckets, rungs, place_slots
 
-/* What such a brick is, if it has no cells that may be used. */
+/* What a brick is that has no cells which may be used. */
 #define MCOR_PLACE_SPLIT (-1)
 #define MCOR_PLACE_NONE (-2)
 
 int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
 {
+  if (!by_level)
+  {
+    const int number = mcor_brick_number(MCOR_BLOCK_ARGS, x, y, z);
+    return number < 0 ? MCOR_PLACE_NONE : number;
+  }
   __global const mcor_rung* rung = rungs + level;
   if (x < 0 || y < 0 || z < 0 || x >= rung->n[0] || y >= rung->n[1] || z >= rung->n[2])
   {
@@ -30,13 +38,19 @@ int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
   return at < 0 ? MCOR_PLACE_NONE : place_slots[at];
 }
 
+/* The place of a brick that has a slot. */
+int mcor_place_of_slot(MCOR_PLACE_PARAMS, int slot, int4 brick)
+{
+  return by_level ? slot : mcor_find_place(MCOR_PLACE_ARGS, 0, brick.x, brick.y, brick.z);
+}
+
 /* Adds a cell of a level to those of its brick, if that is one. flags: 1 where it is new. */
 void mcor_pair_reach(
   MCOR_PLACE_PARAMS, int level, int x, int y, int z, __global uint* reached, __global int* flags)
 {
-  const int slot = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
+  const int place = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
   const ulong cell = 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-  if (slot >= 0 && mcor_add_cells(reached, slot, cell))
+  if (place >= 0 && mcor_add_cells(reached, place, cell))
   {
     atomic_or(flags, 1);
   }
@@ -59,6 +73,25 @@ __kernel void mcor_pair_keys(const int count, const int top, __global const mcor
   }
 }
 
+/* One work-item = one brick of a block, without levels. Requests the bricks that have nodes of its reached cells; flags:
+ * 1 where one is new. */
+__kernel void mcor_pair_request(
+  MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
+{
+  MCOR_ITEM(own, own < block_count * MCOR_BLOCK_BRICKS && reached[own] != 0);
+  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, own);
+  for (int d = 0; d < 8; ++d)
+  {
+    const int m = mcor_cells_reach(reached[own], d)
+      ? mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2)
+      : -1;
+    if (m >= 0 && mcor_request_brick(brick_bits, m))
+    {
+      atomic_or(flags, 1);
+    }
+  }
+}
+
 /* One work-item = one brick. Enters its slot at its key, of which `index` has the place. */
 __kernel void mcor_pair_places(const int count, const int top, __global const int* index,
   __global const ulong* cells, __global int* place_slots)
@@ -78,12 +111,12 @@ __kernel void mcor_pair_places(const int count, const int top, __global const in
 /* Marks a cell of a level if it may be used; whether smaller ones may be there. */
 bool mcor_pair_seed_cell(MCOR_MARK_PARAMS, int level, int x, int y, int z)
 {
-  const int slot = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
-  if (slot >= 0)
+  const int place = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
+  if (place >= 0)
   {
-    mcor_add_cells(reached, slot, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
+    mcor_add_cells(reached, place, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
   }
-  return slot == MCOR_PLACE_SPLIT;
+  return place == MCOR_PLACE_SPLIT;
 }
 
 /* Where a line, of which 1 / gap is the extent along an axis, crosses the side by which it leaves the cell
@@ -386,12 +419,12 @@ void mcor_pair_reach_across(const mcor_leaf* leaf, int4 brick, ulong cells, int 
   const int by = side ? 1 : -1, shift = 3 << 2 * axis;
   const int4 to = brick + (int4)(axis == 0 ? by : 0, axis == 1 ? by : 0, axis == 2 ? by : 0, 0);
   const int other = mcor_find_place(MCOR_PLACE_ARGS, brick.w, to.x, to.y, to.z);
-  if (other >= 0)
+  if (other >= 0 && mcor_add_cells(reached, other, side ? cells >> shift : cells << shift))
   {
-    if (mcor_add_cells(reached, other, side ? cells >> shift : cells << shift))
-    {
-      atomic_or(flags, 1);
-    }
+    atomic_or(flags, 1);
+  }
+  if (other >= 0 || !by_level)
+  {
     return;
   }
   for (ulong rest = cells; rest; rest &= rest - 1)
@@ -409,24 +442,42 @@ void mcor_pair_reach_across(const mcor_leaf* leaf, int4 brick, ulong cells, int 
   }
 }
 
+/* Whether bricks that have nodes of a brick's cells have no slot yet. */
+bool mcor_pair_lacks(
+  MCOR_BLOCK_PARAMS, __global const int* neighbours, int slot, int own, int4 brick, ulong cells)
+{
+  bool lacks = false;
+  for (int d = 1; d < 8; ++d)
+  {
+    lacks = lacks ||
+      (mcor_cells_reach(cells, d) && neighbours[slot * 14L + d - 1] < 0 &&
+        mcor_number_beside(MCOR_BLOCK_ARGS, own, brick, d & 1, d >> 1 & 1, d >> 2) >= 0);
+  }
+  return lacks;
+}
+
 /* One work-item = one brick with cells that are new to this round. Reads its nodes' masks where its cells may be used.
  * Grows the cells reached by now through crossed faces of used cells, within the brick to the end, and one step
  * beyond its sides. domain: where nodes have right values. */
 __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbours,
-  MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS, __global const int4* bricks, __global const ulong* allowed,
+  const int leaf_count, const int plane, __global const uint* finer, __global const int* tables,
+  __global const ulong* above, __global const ulong* valid, __global const ulong* plain,
+  __global const int* leaf_of, __global const int4* bricks, __global const ulong* allowed,
   MCOR_PLACE_PARAMS, __global const ulong* domain, __global ulong* grown, __global uint* reached,
   __global int* flags)
 {
-  MCOR_ITEM(i, i < brick_count && allowed[i]);
-  const ulong before = grown[i];
+  MCOR_ITEM(i, i < brick_count && (!by_level || allowed[i]));
+  const int4 brick = bricks[i];
+  const int own = mcor_place_of_slot(MCOR_PLACE_ARGS, i, brick);
+  const ulong before = grown[own];
   /* Others add to them meanwhile: what is missed is there in the next round. */
-  const ulong first = atomic_or(reached + 2L * i, 0), rest = atomic_or(reached + 2L * i + 1, 0);
+  const ulong first = atomic_or(reached + 2L * own, 0), rest = atomic_or(reached + 2L * own + 1, 0);
   ulong cells = domain[i] & (rest << 32 | first);
   if (cells == before)
   {
     return;
   }
-  const ulong hanging = levels ? ~plain[i] : 0;
+  const ulong hanging = by_level ? ~plain[i] : 0;
   ulong m[8];
   mcor_leaf leaf;
   mcor_brick_masks(above, neighbours, i, 0, m);
@@ -438,8 +489,15 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   mcor_pair_faces faces =
     mcor_pair_plain_faces(m, mcor_cell_crossed(m, neighbours, valid, i), hanging);
   cells = mcor_pair_grow_within(&leaf, hanging, cells, domain[i], &faces);
-  grown[i] = cells;
-  mcor_add_cells(reached, i, cells);
+  mcor_add_cells(reached, own, cells);
+  if (!by_level && mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
+  {
+    atomic_or(flags, 1); /* again, when all its nodes are known */
+  }
+  else
+  {
+    grown[own] = cells;
+  }
   const ulong fresh = cells & ~before & faces.used;
   for (int face = 0; face < 6 && fresh; ++face)
   {
@@ -448,8 +506,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
     const ulong at = side ? faces.upper[axis] & low << (3 << 2 * axis) : faces.lower[axis] & low;
     if (fresh & at)
     {
-      mcor_pair_reach_across(
-        &leaf, bricks[i], fresh & at, axis, side, MCOR_PLACE_ARGS, reached, flags);
+      mcor_pair_reach_across(&leaf, brick, fresh & at, axis, side, MCOR_PLACE_ARGS, reached, flags);
     }
   }
 }
@@ -464,10 +521,14 @@ __kernel void mcor_pair_take(const int count, __global const int4* heard, MCOR_P
   mcor_pair_reach(MCOR_PLACE_ARGS, cell.w, cell.x, cell.y, cell.z, reached, flags);
 }
 
-/* One work-item = one brick. Leaves those of its cells that are reached. */
-__kernel void mcor_pair_keep(const int count, __global const ulong* reached, __global ulong* cells)
+/* One work-item = one brick. Writes to its slot those of its cells that are reached, and that pairs marked. */
+__kernel void mcor_pair_fill(const int brick_count, __global const int4* bricks, MCOR_PLACE_PARAMS,
+  __global const ulong* reached, __global const ulong* marked, __global ulong* cells,
+  __global ulong* seeds)
 {
-  MCOR_ITEM(i, i < count);
-  cells[i] &= reached[i];
+  MCOR_ITEM(i, i < brick_count);
+  const int own = mcor_place_of_slot(MCOR_PLACE_ARGS, i, bricks[i]);
+  cells[i] = reached[own];
+  seeds[i] = marked[own];
 }
 #endif

@@ -167,9 +167,9 @@ void vtkMarchingCorrectors::FinishDistributed(
   const vtkSmartPointer<vtkIdTypeArray> numbers = vtkSPHNumberPoints(ranks, surface, points);
   const vtkSmartPointer<vtkIdTypeArray> triangleNumbers =
     vtkSPHNumberTriangles(ranks, surface, triangles);
-  const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks,
-    { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
-      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
+  const std::vector<vtkSPHRanksShare> shares = ranks.Gather(vtkSPHRanksShare{ surface.statistics,
+    surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
+    run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
   const std::unique_ptr<vtkSPHRanksLines> lines = run.Plane.axis > 0
     ? std::make_unique<vtkSPHRanksLines>(ranks, surface,

@@ -18,13 +18,14 @@
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksRoute.h"
 #include "vtkSPHRanksStatistics.h"
+#include "vtkSPHRanksTuples.h"
 
 #include <algorithm>
 #include <memory>
 
 namespace
 {
-using Lists = std::vector<std::vector<vtkIdType>>;
+using Lists = vtkSPHRanksLists;
 
 /** Of particles that came, those from each rank that this one owns. */
 Lists ListOwned(
@@ -157,8 +158,7 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
   {
     return false;
   }
-  vtkSPHReturnArrays(ranks, found, near->GetNumberOfPoints(),
-    ListOwned(near, from, route, ranks.GetRank()),
+  vtkSPHReturnArrays(ranks, found, ListOwned(near, from, route, ranks.GetRank()),
     ListOwners(own, numbers, route, ranks.GetCount()), count, results);
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
   vtkSPHAddSampleShares(ranks, this->RunStatistics, route, route.OwnedParticles);

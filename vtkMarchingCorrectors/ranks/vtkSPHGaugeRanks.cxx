@@ -11,13 +11,12 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRanks.h"
-#include "vtkSPHRanksBytes.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksRoute.h"
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <set>
@@ -55,30 +54,26 @@ void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& glob
 std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   vtkSPHRanks& ranks, const std::vector<Gauge>& mine)
 {
-  vtkSPHRanks::Bytes bytes;
-  vtkSPHPutNumber(bytes, static_cast<std::int64_t>(mine.size()));
+  using Known =
+    std::pair<std::string, std::string>; // name, and bytes of ends, which may be no numbers
+  std::vector<Known> own;
   for (const Gauge& gauge : mine)
   {
-    vtkSPHPutText(bytes, gauge.Name);
-    vtkSPHPutBytes(bytes, gauge.Ends.data(), sizeof(gauge.Ends));
+    own.emplace_back(gauge.Name,
+      std::string(reinterpret_cast<const char*>(gauge.Ends.data()), sizeof(gauge.Ends)));
   }
   std::vector<Gauge> all;
-  std::set<std::pair<std::string, std::string>>
-    known; // names and bytes of ends, which may be no numbers
-  for (const vtkSPHRanks::Bytes& theirs : ranks.Gather(bytes))
+  std::set<Known> known;
+  for (const std::vector<Known>& theirs : ranks.Gather(own))
   {
-    std::set<std::pair<std::string, std::string>> before = known;
-    vtkSPHRanksReader reader(theirs);
-    for (std::int64_t count = reader.GetNumber(); count > 0; --count)
+    const std::set<Known> before = known; // two of one process are for CheckNames()
+    for (const Known& one : theirs)
     {
-      Gauge gauge;
-      gauge.Name = reader.GetText();
-      reader.GetBytes(gauge.Ends.data(), sizeof(gauge.Ends));
-      const std::string ends(reinterpret_cast<const char*>(gauge.Ends.data()), sizeof(gauge.Ends));
-      if (before.count({ gauge.Name, ends }) == 0) // two of one process are for CheckNames()
+      if (before.count(one) == 0)
       {
-        known.insert({ gauge.Name, ends });
-        all.push_back(gauge);
+        known.insert(one);
+        all.push_back({ one.first, {} });
+        std::memcpy(all.back().Ends.data(), one.second.data(), one.second.size());
       }
     }
   }

@@ -17,6 +17,7 @@
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksRoute.h"
 #include "vtkSPHRanksStatistics.h"
+#include "vtkSPHRanksTuples.h"
 #include "vtkSPHSamples.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@
 
 namespace
 {
-using Lists = std::vector<std::vector<vtkIdType>>;
+using Lists = vtkSPHRanksLists;
 
 /** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
 constexpr double MarginCubes = 4.0;
@@ -60,20 +61,21 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkDataSet* data, std::vector<vtkIdType>
 void FindBox(
   vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, double margin, double box[6])
 {
-  double sides[6];
-  std::fill_n(sides, 6, std::numeric_limits<double>::infinity());
-  for (const vtkSPHRanksPlace& place : places)
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
   {
-    for (int a = 0; a < 3; ++a)
+    box[2 * a] = infinity;
+    box[2 * a + 1] = -infinity;
+    for (const vtkSPHRanksPlace& place : places)
     {
-      sides[2 * a] = std::min(sides[2 * a], place.At[a]);
-      sides[2 * a + 1] = std::min(sides[2 * a + 1], -place.At[a]);
+      box[2 * a] = std::min(box[2 * a], place.At[a]);
+      box[2 * a + 1] = std::max(box[2 * a + 1], place.At[a]);
     }
   }
-  ranks.Reduce(vtkSPHRanks::LEAST, sides, 6);
+  ranks.ReduceRanges(box, 3);
   for (int side = 0; side < 6; ++side)
   {
-    box[side] = side % 2 == 0 ? sides[side] - margin : -sides[side] + margin;
+    box[side] += side % 2 == 0 ? -margin : margin;
   }
 }
 
@@ -243,7 +245,7 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   }
   vtkNew<vtkPointData> found, came;
   samples.AddTo(found);
-  vtkSPHReturnArrays(ranks, found, here->GetNumberOfPoints(), ListInTurn(from), ListAt(to, numbers),
+  vtkSPHReturnArrays(ranks, found, ListInTurn(from), ListAt(to, numbers),
     points ? points->GetNumberOfPoints() : 0, came);
   vtkSPHAddSampleShares(ranks, statistics, route, here->GetNumberOfPoints());
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))

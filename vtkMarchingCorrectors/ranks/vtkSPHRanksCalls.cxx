@@ -4,23 +4,13 @@
 
 #include <utility>
 
-namespace
-{
-vtkSPHRanks::Operation OperationOf(mcor_reduction reduction)
-{
-  return reduction == MCOR_LEAST ? vtkSPHRanks::LEAST
-    : reduction == MCOR_GREATEST ? vtkSPHRanks::GREATEST
-                                 : vtkSPHRanks::SUM;
-}
-}
-
 vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near)
   : Ranks(ranks)
   , Near(std::move(near))
 {
   this->Core.user = this;
-  this->Core.reduce_doubles = ReduceDoubles;
-  this->Core.reduce_counts = ReduceCounts;
+  this->Core.reduce_doubles = Reduce<double>;
+  this->Core.reduce_counts = Reduce<std::int64_t>;
   this->Core.gather = Gather;
   this->Core.pass = this->Near ? Pass : nullptr;
 }
@@ -43,26 +33,17 @@ void vtkSPHRanksCalls::End(bool failed)
   }
 }
 
-int vtkSPHRanksCalls::ReduceDoubles(void* user, mcor_reduction reduction, double* values, int count)
+template <typename T>
+int vtkSPHRanksCalls::Reduce(void* user, mcor_reduction reduction, T* values, int count)
 {
   auto* self = static_cast<vtkSPHRanksCalls*>(user);
   if (!self->AllGoOn(true))
   {
     return 1;
   }
-  self->Ranks.Reduce(OperationOf(reduction), values, count);
-  return 0;
-}
-
-int vtkSPHRanksCalls::ReduceCounts(
-  void* user, mcor_reduction reduction, std::int64_t* values, int count)
-{
-  auto* self = static_cast<vtkSPHRanksCalls*>(user);
-  if (!self->AllGoOn(true))
-  {
-    return 1;
-  }
-  self->Ranks.Reduce(OperationOf(reduction), values, count);
+  const vtkSPHRanks::Operation operations[] = { vtkSPHRanks::LEAST, vtkSPHRanks::GREATEST,
+    vtkSPHRanks::SUM };
+  self->Ranks.Reduce(operations[reduction], values, count);
   return 0;
 }
 
@@ -76,8 +57,8 @@ int vtkSPHRanksCalls::Gather(void* user, const void* records, std::int64_t count
   }
   const auto* first = static_cast<const char*>(records);
   const std::size_t size = static_cast<std::size_t>(count) * width;
-  return self->Deliver(self->Ranks.Gather(vtkSPHRanks::Bytes(first, first + (first ? size : 0))),
-    width, all, allCount);
+  return self->Deliver(
+    self->Ranks.Gather(Bytes(first, first + (first ? size : 0))), width, all, allCount);
 }
 
 int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, std::size_t width,
@@ -88,7 +69,7 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
   {
     return 1;
   }
-  std::vector<vtkSPHRanks::Bytes> messages(static_cast<std::size_t>(self->Ranks.GetCount()));
+  std::vector<Bytes> messages(static_cast<std::size_t>(self->Ranks.GetCount()));
   const auto* record = static_cast<const char*>(records);
   std::vector<int> found;
   for (std::int64_t i = 0; i < count; ++i, record += width)
@@ -99,7 +80,7 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
     {
       if (rank != self->Ranks.GetRank() || &rank == &found.back())
       {
-        vtkSPHRanks::Bytes& message = messages[static_cast<std::size_t>(rank)];
+        Bytes& message = messages[static_cast<std::size_t>(rank)];
         message.insert(message.end(), record, record + width);
       }
     }
@@ -107,11 +88,11 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
   return self->Deliver(self->Ranks.Exchange(std::move(messages)), width, all, allCount);
 }
 
-int vtkSPHRanksCalls::Deliver(const std::vector<vtkSPHRanks::Bytes>& received, std::size_t width,
-  const void** all, std::int64_t* allCount)
+int vtkSPHRanksCalls::Deliver(
+  const std::vector<Bytes>& received, std::size_t width, const void** all, std::int64_t* allCount)
 {
   this->Gathered.clear();
-  for (const vtkSPHRanks::Bytes& theirs : received)
+  for (const Bytes& theirs : received)
   {
     this->Gathered.insert(this->Gathered.end(), theirs.begin(), theirs.end());
   }

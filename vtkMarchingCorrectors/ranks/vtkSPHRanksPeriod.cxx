@@ -29,35 +29,14 @@ std::string Describe(const vtkSPHPeriod& found)
   return text.str();
 }
 
-vtkSPHRanks::Bytes Pack(const vtkSPHPeriod& found)
-{
-  const std::size_t size = found.Period.size() * sizeof(double);
-  vtkSPHRanks::Bytes bytes(1 + size + found.Array.size());
-  bytes[0] = static_cast<char>(found.Period.size());
-  const auto* period = reinterpret_cast<const char*>(found.Period.data());
-  std::copy(period, period + size, bytes.data() + 1); // of nothing, too
-  std::copy(found.Array.begin(), found.Array.end(), bytes.data() + 1 + size);
-  return bytes;
-}
-
-vtkSPHPeriod Unpack(const vtkSPHRanks::Bytes& bytes)
-{
-  vtkSPHPeriod found;
-  found.Period.resize(static_cast<std::size_t>(bytes.front()));
-  const std::size_t size = found.Period.size() * sizeof(double);
-  std::copy(
-    bytes.data() + 1, bytes.data() + 1 + size, reinterpret_cast<char*>(found.Period.data()));
-  found.Array.assign(bytes.data() + 1 + size, bytes.data() + bytes.size());
-  return found;
-}
-
 vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& problem)
 {
   vtkSPHPeriod first;
   int rank = 0, firstRank = 0;
-  for (const vtkSPHRanks::Bytes& bytes : ranks.Gather(Pack(vtkSPHFindPeriod(data))))
+  const vtkSPHPeriod mine = vtkSPHFindPeriod(data);
+  for (const auto& theirs : ranks.Gather(std::make_pair(mine.Period, mine.Array)))
   {
-    const vtkSPHPeriod found = Unpack(bytes);
+    const vtkSPHPeriod found = { theirs.first, theirs.second };
     if (first.Period.empty())
     {
       first = found;
@@ -78,21 +57,13 @@ vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& pro
 std::vector<double> BoundsOfPeriod(
   vtkSPHRanks& ranks, const std::vector<double>& period, vtkPointSet* particles)
 {
-  double ends[6];
-  std::fill_n(ends, 6, std::numeric_limits<double>::infinity());
+  const double infinity = std::numeric_limits<double>::infinity();
+  double ends[6] = { infinity, -infinity, infinity, -infinity, infinity, -infinity };
   if (particles->GetNumberOfPoints() > 0)
   {
     particles->GetBounds(ends);
-    for (int side = 1; side < 6; side += 2)
-    {
-      ends[side] = -ends[side];
-    }
   }
-  ranks.Reduce(vtkSPHRanks::LEAST, ends, 6);
-  for (int side = 1; side < 6; side += 2)
-  {
-    ends[side] = -ends[side];
-  }
+  ranks.ReduceRanges(ends, 3);
   return vtkSPHBoundsOfPeriod(period, ends);
 }
 }

@@ -7,14 +7,12 @@
 #define vtkSPHRanksRoute_h
 
 #include "mcor_parts.h"
+#include "vtkSPHRanks.h"
 #include "vtkSPHRanksPartition.h"
-#include "vtkType.h"
 
 #include <cstdint>
 #include <memory>
 #include <vector>
-
-class vtkSPHRanks;
 
 /** One period, as the core has it: it begins at a node of the lattice. */
 struct vtkSPHRanksPeriod
@@ -36,11 +34,11 @@ struct vtkSPHRanksRoute
   /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
   void FindReached(const double at[3], double reach, std::vector<int>& found) const;
 
-  std::vector<std::vector<vtkIdType>> To; ///< indices of the particles that each rank gets
-  double Box[6];                          ///< this rank's, as in mcor_options; may hold nothing
-  vtkSPHRanksBox Whole;                   ///< of all ranks' boxes
-  std::int64_t OwnedParticles;            ///< those in its box
-  std::int64_t Particles;                 ///< the same and copies
+  vtkSPHRanksLists To;         ///< indices of the particles that each rank gets
+  double Box[6];               ///< this rank's, as in mcor_options; may hold nothing
+  vtkSPHRanksBox Whole;        ///< of all ranks' boxes
+  std::int64_t OwnedParticles; ///< those in its box
+  std::int64_t Particles;      ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
   vtkSPHRanksPeriod Period;
   std::int64_t Work; ///< of all ranks' particles in its box, see vtkSPHRanksBalance

@@ -4,18 +4,28 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
-#include "vtkPolyData.h"
-#include "vtkSPHRanksBytes.h"
 #include "vtkVariant.h"
 
 #include <cstring>
+#include <numeric>
+#include <string>
 #include <utility>
 
 namespace
 {
-using Bytes = vtkSPHRanks::Bytes;
+vtkSmartPointer<vtkAbstractArray> MakeLike(vtkAbstractArray* array, vtkIdType count)
+{
+  auto made =
+    vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->SetNumberOfTuples(count);
+  return made;
+}
 
 std::size_t TupleSize(vtkAbstractArray* array)
 {
@@ -40,132 +50,163 @@ void CopyTuples(const char* values, const std::vector<vtkIdType>& ids, char* to)
   }
 }
 
-void PutTuples(Bytes& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
+void PutPlain(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
 {
-  if (IsPlain(array))
+  const std::size_t size = TupleSize(array);
+  bytes.buffer.resize(bytes.position + ids.size() * size);
+  char* to = bytes.buffer.data() + bytes.position;
+  bytes.position = bytes.buffer.size();
+  const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
+  switch (size)
   {
-    const std::size_t size = TupleSize(array), old = bytes.size();
-    bytes.resize(old + ids.size() * size);
-    char* to = bytes.data() + old;
-    const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
-    switch (size)
-    {
-      case 4:
-        return CopyTuples<4>(values, ids, to);
-      case 8:
-        return CopyTuples<8>(values, ids, to);
-      case 12:
-        return CopyTuples<12>(values, ids, to);
-      default:
-        break;
-    }
-    for (const vtkIdType id : ids)
-    {
-      std::memcpy(to, values + static_cast<std::size_t>(id) * size, size);
-      to += size;
-    }
-    return;
+    case 4:
+      return CopyTuples<4>(values, ids, to);
+    case 8:
+      return CopyTuples<8>(values, ids, to);
+    case 12:
+      return CopyTuples<12>(values, ids, to);
+    default:
+      break;
   }
+  for (const vtkIdType id : ids)
+  {
+    std::memcpy(to, values + static_cast<std::size_t>(id) * size, size);
+    to += size;
+  }
+}
+
+/** Values that are not plain, as texts. */
+void PutTexts(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
+{
   const int components = array->GetNumberOfComponents();
   for (const vtkIdType id : ids)
   {
     for (int c = 0; c < components; ++c)
     {
-      vtkSPHPutText(bytes, array->GetVariantValue(id * components + c).ToString());
+      diy::save(
+        bytes, static_cast<std::string>(array->GetVariantValue(id * components + c).ToString()));
     }
   }
 }
 
-void GetTuples(vtkSPHRanksReader& reader, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
+void GetTuples(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
 {
   if (IsPlain(array))
   {
     const std::size_t size = TupleSize(array);
-    auto* values = static_cast<char*>(array->GetVoidPointer(0));
-    reader.GetBytes(
-      values + static_cast<std::size_t>(first) * size, static_cast<std::size_t>(count) * size);
+    bytes.load_binary(
+      static_cast<char*>(array->GetVoidPointer(0)) + static_cast<std::size_t>(first) * size,
+      static_cast<std::size_t>(count) * size);
     return;
   }
   const int components = array->GetNumberOfComponents();
   for (vtkIdType i = first * components; i < (first + count) * components; ++i)
   {
-    array->SetVariantValue(i, vtkVariant(reader.GetText()));
+    std::string text;
+    diy::load(bytes, text);
+    array->SetVariantValue(i, vtkVariant(text));
   }
 }
 
-/** At least; of a message with so many tuples. */
-std::size_t CountBytes(const vtkSPHRanksArrays& arrays, std::size_t count)
+/** The message for a rank: how many tuples, and these; nothing where there are none. */
+std::vector<char> Pack(
+  const std::vector<vtkAbstractArray*>& arrays, const std::vector<vtkIdType>& ids)
 {
-  std::size_t bytes = sizeof(std::int64_t);
+  diy::MemoryBuffer bytes;
+  if (ids.empty())
+  {
+    return bytes.buffer;
+  }
+  std::size_t size = sizeof(vtkIdType); // at least
   for (vtkAbstractArray* array : arrays)
   {
-    bytes += IsPlain(array) ? count * TupleSize(array) : 0;
+    size += IsPlain(array) ? ids.size() * TupleSize(array) : 0;
   }
-  return bytes;
-}
-}
-
-vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
-{
-  vtkSPHRanksArrays arrays;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  bytes.reserve(size);
+  diy::save(bytes, static_cast<vtkIdType>(ids.size()));
+  for (vtkAbstractArray* array : arrays)
   {
-    arrays.push_back(data->GetAbstractArray(i));
+    IsPlain(array) ? PutPlain(bytes, array, ids) : PutTexts(bytes, array, ids);
   }
-  return arrays;
+  return std::move(bytes.buffer);
+}
 }
 
-vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* particles)
+std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHSendTuples(vtkSPHRanks& ranks,
+  const std::vector<vtkAbstractArray*>& arrays, const vtkSPHRanksLists& to,
+  std::vector<vtkIdType>* from)
 {
-  vtkSPHRanksArrays arrays = vtkSPHListArrays(particles->GetPointData());
-  arrays.insert(arrays.begin(), particles->GetPoints()->GetData());
-  return arrays;
-}
-
-std::vector<Bytes> vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
-  const std::vector<std::vector<vtkIdType>>& to)
-{
-  std::vector<Bytes> messages(to.size());
-  for (std::size_t rank = 0; rank < to.size(); ++rank)
+  std::vector<std::vector<char>> messages;
+  for (const std::vector<vtkIdType>& ids : to)
   {
-    if (!to[rank].empty())
+    messages.push_back(Pack(arrays, ids));
+  }
+  messages = ranks.Exchange(std::move(messages));
+  std::vector<vtkIdType> counts(messages.size(), 0);
+  std::vector<diy::MemoryBuffer> received(messages.size());
+  for (std::size_t rank = 0; rank < messages.size(); ++rank)
+  {
+    received[rank].buffer.swap(messages[rank]);
+    if (!received[rank].empty())
     {
-      messages[rank].reserve(CountBytes(arrays, to[rank].size()));
-      vtkSPHPutNumber(messages[rank], static_cast<std::int64_t>(to[rank].size()));
-      for (vtkAbstractArray* array : arrays)
+      diy::load(received[rank], counts[rank]);
+    }
+  }
+  const vtkIdType total = std::accumulate(counts.begin(), counts.end(), vtkIdType(0));
+  std::vector<vtkSmartPointer<vtkAbstractArray>> came;
+  for (vtkAbstractArray* array : arrays)
+  {
+    came.push_back(MakeLike(array, total));
+    vtkIdType first = 0;
+    for (std::size_t rank = 0; rank < received.size(); first += counts[rank++])
+    {
+      if (counts[rank] > 0)
       {
-        PutTuples(messages[rank], array, to[rank]);
+        GetTuples(received[rank], came.back(), first, counts[rank]);
       }
     }
   }
-  return ranks.Exchange(std::move(messages));
-}
-
-std::vector<vtkIdType> vtkSPHCountTuples(const std::vector<Bytes>& received)
-{
-  std::vector<vtkIdType> counts;
-  for (const Bytes& message : received)
+  if (from)
   {
-    counts.push_back(
-      message.empty() ? 0 : static_cast<vtkIdType>(vtkSPHRanksReader(message).GetNumber()));
+    from->swap(counts);
   }
-  return counts;
+  return came;
 }
 
-void vtkSPHReceiveTuples(const std::vector<Bytes>& received, const vtkSPHRanksArrays& arrays)
+void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, const vtkSPHRanksLists& back,
+  const vtkSPHRanksLists& home, vtkIdType homeCount, vtkPointData* to)
 {
-  vtkIdType first = 0;
-  for (const Bytes& message : received)
+  std::vector<vtkAbstractArray*> arrays;
+  for (int i = 0; i < results->GetNumberOfArrays(); ++i)
   {
-    if (!message.empty())
+    arrays.push_back(results->GetAbstractArray(i));
+  }
+  const auto came = vtkSPHSendTuples(ranks, arrays, back);
+  vtkNew<vtkIdList> places, order;
+  for (const std::vector<vtkIdType>& ids : home)
+  {
+    for (const vtkIdType id : ids)
     {
-      vtkSPHRanksReader reader(message);
-      const auto count = static_cast<vtkIdType>(reader.GetNumber());
-      for (vtkAbstractArray* array : arrays)
-      {
-        GetTuples(reader, array, first, count);
-      }
-      first += count;
+      order->InsertNextId(places->InsertNextId(id));
     }
+  }
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    const vtkSmartPointer<vtkAbstractArray> array = MakeLike(arrays[i], homeCount);
+    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(array.Get()))
+    {
+      numbers->Fill(0.0);
+    }
+    array->InsertTuples(places, order, came[i]);
+    vtkSPHAddAs(results, static_cast<int>(i), array, to);
+  }
+}
+
+void vtkSPHAddAs(vtkPointData* from, int i, vtkAbstractArray* array, vtkPointData* to)
+{
+  const int at = to->AddArray(array), attribute = from->IsArrayAnAttribute(i);
+  if (attribute >= 0)
+  {
+    to->SetActiveAttribute(at, attribute);
   }
 }

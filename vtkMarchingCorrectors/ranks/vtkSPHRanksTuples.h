@@ -7,30 +7,30 @@
 #define vtkSPHRanksTuples_h
 
 #include "vtkSPHRanks.h"
-#include "vtkType.h"
+#include "vtkSmartPointer.h"
 
 #include <vector>
 
 class vtkAbstractArray;
 class vtkPointData;
-class vtkPolyData;
 
-using vtkSPHRanksArrays = std::vector<vtkAbstractArray*>;
+/**
+ * To each rank the tuples listed for it, of arrays that have the same forms on all ranks and lie plain in memory.
+ * Returns such arrays of what came, in the order of ranks; `from`: how many tuples from each of them. Collective.
+ */
+std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHSendTuples(vtkSPHRanks& ranks,
+  const std::vector<vtkAbstractArray*>& arrays, const vtkSPHRanksLists& to,
+  std::vector<vtkIdType>* from = nullptr);
 
-vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data);
+/**
+ * Sends results back to where they are wanted: of the arrays of `results`, the tuples listed for each rank in
+ * `back`. What comes from a rank goes to the places listed for it in `home`, in arrays of `homeCount` tuples
+ * that are 0 elsewhere and are added to `to`. Collective.
+ */
+void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, const vtkSPHRanksLists& back,
+  const vtkSPHRanksLists& home, vtkIdType homeCount, vtkPointData* to);
 
-/** The positions, then the point arrays. */
-vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* particles);
-
-/** To each rank the tuples listed for it. Number i of the result came from rank i. Collective. */
-std::vector<vtkSPHRanks::Bytes> vtkSPHSendTuples(vtkSPHRanks& ranks,
-  const vtkSPHRanksArrays& arrays, const std::vector<std::vector<vtkIdType>>& to);
-
-/** How many tuples came from each rank. */
-std::vector<vtkIdType> vtkSPHCountTuples(const std::vector<vtkSPHRanks::Bytes>& received);
-
-/** To arrays that are as long as all of them together. */
-void vtkSPHReceiveTuples(
-  const std::vector<vtkSPHRanks::Bytes>& received, const vtkSPHRanksArrays& arrays);
+/** Adds an array as `from` has its number i: with what it is to be used for. */
+void vtkSPHAddAs(vtkPointData* from, int i, vtkAbstractArray* array, vtkPointData* to);
 
 #endif

@@ -62,7 +62,9 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 }
 
 // What is not a number, as an empty row of a panel's list, is none.
-std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrectorsInput& input)
+// `isFound`: false where a value was sought and there is none.
+std::vector<double> vtkMarchingCorrectors::ListIsoValues(
+  const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, bool& isFound)
 {
   vtkContourValues* values =
     input.Choice.FreeSurface ? this->FreeSurfaceValues : this->ContourValues;
@@ -71,14 +73,13 @@ std::vector<double> vtkMarchingCorrectors::ListIsoValues(const vtkMarchingCorrec
   list.erase(
     std::remove_if(list.begin(), list.end(), [](double value) { return std::isnan(value); }),
     list.end());
+  isFound = true;
   if (list.empty())
   {
     double range[2], value = 0.5;
-    if (!input.Choice.FreeSurface && !mcor_find_iso_value(&input.Core, nullptr, range, &value))
-    {
-      value = 0.0;
-    }
-    list.push_back(value);
+    isFound =
+      input.Choice.FreeSurface || mcor_find_iso_value(&input.Core, ranks, range, &value) != 0;
+    list.push_back(isFound ? value : 0.0);
   }
   return list;
 }
@@ -212,7 +213,8 @@ void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
 {
   const int precision = this->OutputPointsPrecision;
-  const std::vector<double> isoValues = this->ListIsoValues(input);
+  bool isFound;
+  const std::vector<double> isoValues = this->ListIsoValues(input, nullptr, isFound);
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.nearest_particle = input.FromNearest.empty() ? 0 : 1;

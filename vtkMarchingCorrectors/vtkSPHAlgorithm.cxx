@@ -191,14 +191,15 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
 }
 
 // Nobody has chosen the active scalars of a file.
-vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(vtkPointSet* particles)
+vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
+  vtkPointSet* particles, const std::function<void(double* ranges, int count)>& merge)
 {
   vtkSPHRequest request = this->FindRequest(0, particles);
   vtkPointData* data = particles->GetPointData();
   auto* active = vtkArrayDownCast<vtkDataArray>(request.Array);
-  if (request.Name.empty() && (!active || !vtkSPHIsFit(active)))
+  if (request.Name.empty() && (!active || !vtkSPHIsFit(active, merge)))
   {
-    const std::string best = vtkSPHChooseArray(data);
+    const std::string best = vtkSPHChooseArray(data, merge);
     if (!best.empty())
     {
       request.Array = data->GetAbstractArray(best.c_str());

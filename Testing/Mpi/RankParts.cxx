@@ -3,6 +3,7 @@
 #include "RankParts.h"
 
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -93,6 +94,7 @@ vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank
     }
   }
   own->SetPoints(points);
+  own->GetFieldData()->PassData(particles->GetFieldData());
   if (part == Duplicates)
   {
     marks->SetName(vtkDataSetAttributes::GhostArrayName());

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
+#include <vector>
 
 namespace
 {
@@ -178,37 +179,56 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
 
 namespace
 {
-void Consider(vtkDataArray* array, vtkSPHArrayChoice& choice)
+vtkSPHArrayChoice Consider(const std::vector<vtkDataArray*>& arrays, const vtkSPHMergeRanges& merge)
 {
-  bool varies = false;
-  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  std::vector<double> ranges; // of each component
+  for (vtkDataArray* array : arrays)
   {
-    double range[2];
-    array->GetRange(range, c);
-    varies = varies || range[0] < range[1];
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+    {
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (array->GetNumberOfTuples() > 0)
+      {
+        array->GetRange(range, c);
+      }
+      ranges.insert(ranges.end(), range, range + 2);
+    }
   }
-  const int type = array->GetDataType();
-  choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
-    type == VTK_FLOAT || type == VTK_DOUBLE, varies);
+  if (merge)
+  {
+    merge(ranges.data(), static_cast<int>(ranges.size() / 2));
+  }
+  vtkSPHArrayChoice choice;
+  const double* range = ranges.data();
+  for (vtkDataArray* array : arrays)
+  {
+    bool varies = false;
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c, range += 2)
+    {
+      varies = varies || range[0] < range[1];
+    }
+    const int type = array->GetDataType();
+    choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
+      type == VTK_FLOAT || type == VTK_DOUBLE, varies);
+  }
+  return choice;
 }
 }
 
-std::string vtkSPHChooseArray(vtkFieldData* data)
+std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge)
 {
-  vtkSPHArrayChoice choice;
+  std::vector<vtkDataArray*> arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     if (vtkDataArray* array = data->GetArray(i))
     {
-      Consider(array, choice);
+      arrays.push_back(array);
     }
   }
-  return choice.Best;
+  return Consider(arrays, merge).Best;
 }
 
-bool vtkSPHIsFit(vtkDataArray* array)
+bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge)
 {
-  vtkSPHArrayChoice choice;
-  Consider(array, choice);
-  return choice.Rank >= 0;
+  return Consider({ array }, merge).Rank >= 0;
 }

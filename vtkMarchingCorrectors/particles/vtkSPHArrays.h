@@ -12,6 +12,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <string>
 
@@ -57,10 +58,13 @@ struct vtkSPHArrayChoice
   int Rank = -1;
 };
 
+/** Makes ranges, each a least and a greatest value, those of all processes that share a run; empty: of one alone. */
+using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
+
 /** The same of all that it has. */
-std::string vtkSPHChooseArray(vtkFieldData* data);
+std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge = nullptr);
 /** Whether an array is fit. */
-bool vtkSPHIsFit(vtkDataArray* array);
+bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge = nullptr);
 
 /** A line "Name: values" for each array. */
 std::string vtkSPHDescribe(vtkFieldData* data);

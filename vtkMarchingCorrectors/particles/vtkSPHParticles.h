@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -115,14 +116,11 @@ public:
     const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
   /**
-   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such.
+   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such;
+   * by the ranges of arrays in `merge`, as of vtkSPHMergeRanges.
    */
-  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points);
-
-  /**
-   * Least and greatest value of an array of some whole numbers; false for any other, and an empty one.
-   */
-  static bool FindWholeRange(vtkPointSet* points, const std::string& name, double range[2]);
+  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
+    const std::function<void(double* ranges, int count)>& merge = nullptr);
 
   /**
    * "ParticleType = 0"; empty where all particles are fluid.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -58,33 +59,40 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
   return list;
 }
 
-void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points)
+namespace
 {
-  double range[2];
+/** Of an array of some whole numbers; of any other numbers one that tells of no fluid. */
+void FindWholeRange(vtkDataArray* array, double range[2])
+{
+  const double none = std::numeric_limits<double>::infinity();
+  const std::map<double, vtkIdType> counts =
+    vtkMarchingCorrectorsCountValues(array, MCOR_PARTICLE_TYPES);
+  const bool isWhole = !counts.empty() &&
+    std::all_of(counts.begin(), counts.end(),
+      [](const std::pair<const double, vtkIdType>& count)
+      { return count.first == std::floor(count.first); });
+  range[0] = isWhole ? counts.begin()->first : array->GetNumberOfTuples() > 0 ? -none : none;
+  range[1] = isWhole ? counts.rbegin()->first : -none;
+}
+}
+
+void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
+  const std::function<void(double* ranges, int count)>& merge)
+{
   for (const std::string& name : ListTypes(choice, points))
   {
-    if (FindWholeRange(points, name, range) &&
-      mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
+    double range[2];
+    FindWholeRange(points->GetPointData()->GetArray(name.c_str()), range);
+    if (merge)
+    {
+      merge(range, 1);
+    }
+    if (mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
     {
       choice.FluidArrayName = name;
       return;
     }
   }
-}
-
-bool vtkSPHParticles::FindWholeRange(vtkPointSet* points, const std::string& name, double range[2])
-{
-  const std::map<double, vtkIdType> counts = vtkMarchingCorrectorsCountValues(
-    points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
-  const bool whole = std::all_of(counts.begin(), counts.end(),
-    [](const std::pair<const double, vtkIdType>& count)
-    { return count.first == std::floor(count.first); });
-  if (whole && !counts.empty())
-  {
-    range[0] = counts.begin()->first;
-    range[1] = counts.rbegin()->first;
-  }
-  return whole && !counts.empty();
 }
 
 std::string vtkSPHParticles::DescribeFluid() const

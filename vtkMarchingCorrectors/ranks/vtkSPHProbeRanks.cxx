@@ -13,9 +13,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksRun.h"
 #include "vtkSPHRanksStatistics.h"
 #include "vtkSPHRanksTuples.h"
 #include "vtkSPHSamples.h"
@@ -23,12 +22,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace
 {
-using Lists = vtkSPHRanksLists;
-
 /** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
 constexpr double MarginCubes = 4.0;
 
@@ -92,36 +88,10 @@ std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points, const vtkSPHRanksP
   return places;
 }
 
-/** Of points, those that each rank owns. */
-Lists ListOwners(vtkPolyData* points, const vtkSPHRanksRoute& route, int ranks)
-{
-  Lists owners(static_cast<std::size_t>(ranks));
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-  {
-    double at[3];
-    points->GetPoint(i, at);
-    owners[static_cast<std::size_t>(route.FindOwner(at))].push_back(i);
-  }
-  return owners;
-}
-
-/** What stands at these places of the numbers. */
-Lists ListAt(Lists places, const std::vector<vtkIdType>& numbers)
-{
-  for (std::vector<vtkIdType>& list : places)
-  {
-    for (vtkIdType& place : list)
-    {
-      place = numbers[static_cast<std::size_t>(place)];
-    }
-  }
-  return places;
-}
-
 /** Numbers one after the other, so many for each rank. */
-Lists ListInTurn(const std::vector<vtkIdType>& counts)
+vtkSPHRanksLists ListInTurn(const std::vector<vtkIdType>& counts)
 {
-  Lists lists;
+  vtkSPHRanksLists lists;
   vtkIdType next = 0;
   for (const vtkIdType count : counts)
   {
@@ -151,24 +121,20 @@ std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
 {
-  vtkSPHRanks ranks(this->Controller);
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
-  std::int64_t counts[3] = { own->GetNumberOfPoints(), points ? points->GetNumberOfPoints() : 0,
-    this->IsAborted() ? 1 : 0 };
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 3);
-  if (counts[2] > 0)
+  vtkSPHRanksRun run(this->Controller);
+  if (!this->BeginDistributed(run, this->Particles))
   {
     return;
   }
+  std::int64_t pointCount = points ? points->GetNumberOfPoints() : 0;
+  run.Ranks.Reduce(vtkSPHRanks::SUM, &pointCount, 1);
   vtkSPHParticlesChoice choice;
   this->FillChoice(choice);
-  this->FindFluidDistributed(ranks, choice, own);
-  vtkSPHParticles mine(choice, own);
-  if (counts[0] > 0)
+  this->FindFluid(choice, run.Own, run.Ranks.MergeRanges());
+  vtkSPHParticles mine(choice, run.Own);
+  if (run.Particles > 0)
   {
-    const bool isUsable = mine.CollectParticles();
-    this->SetUsedNames(&mine);
-    if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
+    if (!this->AcceptDistributed(run, mine, mine.CollectParticles(), "no point is valid"))
     {
       return;
     }
@@ -177,11 +143,9 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
       mine.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
     }
   }
-  const bool hasFluid =
-    counts[0] > 0 && this->HasFluidDistributed(ranks, choice, mine, "no point is valid");
-  if (hasFluid && counts[1] > 0)
+  if (run.HasFluid && pointCount > 0)
   {
-    this->ProbeDistributed(ranks, own, mine, points, output);
+    this->ProbeDistributed(run, mine, points, output);
   }
   else if (points && output)
   {
@@ -194,63 +158,49 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
   }
 }
 
-bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-  vtkDataSet* points, vtkDataSet* output)
+void vtkSPHProbe::ProbeDistributed(
+  vtkSPHRanksRun& run, vtkSPHParticles& mine, vtkDataSet* points, vtkDataSet* output)
 {
-  mcor_options options;
+  mcor_options& options = run.Options;
   this->FillProbeOptions(options);
-  if (!this->SetPeriodDistributed(ranks, own, options))
+  if (!this->MeasureDistributed(run, mine, true))
   {
-    return false;
+    return;
   }
-  mcor_globals globals = {};
-  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
-    &globals, mcor_free_globals);
-  if (!this->MeasureGlobalsDistributed(ranks, mine, options, true, globals))
-  {
-    return false;
-  }
-  std::vector<vtkIdType> numbers;
+  std::vector<vtkIdType> numbers, from;
   const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
-  const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, globals });
-  FindBox(ranks, within, MarginCubes * globals.measured.cube, options.box);
-  const vtkSPHRanksRoute route =
-    vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, within });
-  const Lists to = ListOwners(places, route, ranks.GetCount());
-  const vtkSmartPointer<vtkPolyData> near =
-    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
-  std::vector<vtkIdType> from;
-  const vtkSmartPointer<vtkPolyData> here = vtkSPHSendParticles(ranks, places, to, &from);
-
-  vtkSPHParticles input(mine.Description, near);
-  if (!this->AgreeDistributed(ranks, input.CollectParticles() ? "" : input.Error))
+  const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, run.Globals });
+  FindBox(run.Ranks, within, MarginCubes * run.Globals.measured.cube, options.box);
+  this->ShareDistributed(run, mine.Core, vtkSPHKeepUsed(run.Own, mine), { {}, within });
+  const vtkSPHRanksLists to = run.Route.ListOwners(places);
+  const vtkSmartPointer<vtkPolyData> here = vtkSPHSendParticles(run.Ranks, places, to, &from);
+  vtkSPHParticles input(mine.Description, run.Near);
+  if (!this->AgreeDistributed(run.Ranks, input.CollectParticles() ? "" : input.Error))
   {
-    return false;
+    return;
   }
   if (this->InterpolateAttributes)
   {
     input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
   }
-  options.globals = &globals;
-  std::copy(route.Box, route.Box + 6, options.box);
   vtkSPHSamples samples(
     input, options, this->ValidPointMaskArrayName, here->GetNumberOfPoints(), this->GetNull());
-  samples.NotFinite = ListNotFinite(input, globals);
+  samples.NotFinite = ListNotFinite(input, run.Globals);
   vtkFieldData* statistics = this->RunStatistics;
-  if (!this->CallCoreDistributed(ranks, input, options,
+  if (!this->CallCoreDistributed(run, input,
         [&](mcor_context* context)
         { return EvaluateAt(here, context, input.Core, options, samples, statistics); }))
   {
-    return false;
+    return;
   }
   vtkNew<vtkPointData> found, came;
   samples.AddTo(found);
-  vtkSPHReturnArrays(ranks, found, ListInTurn(from), ListAt(to, numbers),
+  vtkSPHReturnArrays(run.Ranks, found, ListInTurn(from), vtkSPHListAt(to, numbers),
     points ? points->GetNumberOfPoints() : 0, came);
-  vtkSPHAddSampleShares(ranks, statistics, route, here->GetNumberOfPoints());
+  vtkSPHAddSampleShares(run.Ranks, statistics, run.Route, here->GetNumberOfPoints());
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
   {
-    if (ranks.GetRank() == 0)
+    if (run.Ranks.GetRank() == 0)
     {
       this->Warn(sentence);
     }
@@ -264,5 +214,4 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
     }
     this->FinishOutput(output);
   }
-  return true;
 }

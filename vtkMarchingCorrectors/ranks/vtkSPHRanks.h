@@ -59,6 +59,10 @@ public:
 
   /** Of ranges, each a least and a greatest value, which are infinite the wrong way where there is nothing. */
   void ReduceRanges(double* ranges, int count);
+  std::function<void(double* ranges, int count)> MergeRanges()
+  {
+    return [this](double* ranges, int count) { this->ReduceRanges(ranges, count); };
+  }
 
   /** What each rank gives, in the order of ranks. */
   template <typename T>

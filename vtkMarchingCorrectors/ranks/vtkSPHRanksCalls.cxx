@@ -2,17 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksCalls.h"
 
+#include "vtkSPHRanksRoute.h"
+
+#include <algorithm>
 #include <utility>
 
-vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near)
+vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route)
   : Ranks(ranks)
-  , Near(std::move(near))
+  , Route(route)
 {
   this->Core.user = this;
   this->Core.reduce_doubles = Reduce<double>;
   this->Core.reduce_counts = Reduce<std::int64_t>;
   this->Core.gather = Gather;
-  this->Core.pass = this->Near ? Pass : nullptr;
+  if (route)
+  {
+    this->Core.pass = Pass;
+    std::copy(route->Whole.begin(), route->Whole.end(), this->Core.whole_box);
+  }
 }
 
 // Every callback, and the end, begin with this one: so all ranks meet here the same number of times
@@ -74,7 +81,7 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
   std::vector<int> found;
   for (std::int64_t i = 0; i < count; ++i, record += width)
   {
-    self->Near(places + 3 * i, reach, found);
+    self->Route->FindReached(places + 3 * i, reach, found);
     found.push_back(self->Ranks.GetRank());
     for (const int rank : found)
     {

@@ -11,17 +11,15 @@
 #include "vtkSPHRanks.h"
 
 #include <cstdint>
-#include <functional>
 #include <vector>
+
+struct vtkSPHRanksRoute;
 
 class vtkSPHRanksCalls
 {
 public:
-  /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
-  using Finder = std::function<void(const double at[3], double reach, std::vector<int>& found)>;
-
-  /** `near`: empty where all are near. */
-  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near = nullptr);
+  /** `route`: null until space is divided. */
+  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route = nullptr);
 
   /** For mcor_options, during one call of the core. */
   const mcor_ranks* Get() const { return &this->Core; }
@@ -49,7 +47,7 @@ private:
     std::int64_t* allCount);
 
   vtkSPHRanks& Ranks;
-  const Finder Near;
+  const vtkSPHRanksRoute* Route;
   mcor_ranks Core = {};
   bool Stopped = false;
   Bytes Gathered;

@@ -193,7 +193,7 @@ vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
 }
 
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
-  vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken)
+  vtkSPHRanks& ranks, vtkPointSet* data, std::vector<vtkIdType>* taken)
 {
   vtkNew<vtkPolyData> view;
   if (data && data->GetNumberOfPoints() > 0)
@@ -209,7 +209,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   }
   if (taken)
   {
-    taken->DeepCopy(own);
+    taken->assign(own->begin(), own->end());
   }
   return particles;
 }

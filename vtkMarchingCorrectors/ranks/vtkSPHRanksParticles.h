@@ -11,7 +11,6 @@
 
 #include <vector>
 
-class vtkIdList;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
@@ -23,7 +22,7 @@ class vtkSPHParticles;
  * is wanted. Collective.
  */
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
-  vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken = nullptr);
+  vtkSPHRanks& ranks, vtkPointSet* data, std::vector<vtkIdType>* taken = nullptr);
 
 /**
  * The same with those arrays alone that describe the particles or are interpolated.

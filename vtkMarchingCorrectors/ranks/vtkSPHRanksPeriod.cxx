@@ -28,9 +28,12 @@ std::string Describe(const vtkSPHPeriod& found)
   }
   return text.str();
 }
+}
 
-vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& problem)
+vtkSPHPeriod vtkSPHFindPeriodDistributed(
+  vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
 {
+  vtkSPHRanks ranks(controller);
   vtkSPHPeriod first;
   int rank = 0, firstRank = 0;
   const vtkSPHPeriod mine = vtkSPHFindPeriod(data);
@@ -54,9 +57,10 @@ vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& pro
   return first;
 }
 
-std::vector<double> BoundsOfPeriod(
-  vtkSPHRanks& ranks, const std::vector<double>& period, vtkPointSet* particles)
+std::vector<double> vtkSPHBoundsOfPeriodDistributed(
+  vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles)
 {
+  vtkSPHRanks ranks(controller);
   const double infinity = std::numeric_limits<double>::infinity();
   double ends[6] = { infinity, -infinity, infinity, -infinity, infinity, -infinity };
   if (particles->GetNumberOfPoints() > 0)
@@ -66,36 +70,22 @@ std::vector<double> BoundsOfPeriod(
   ranks.ReduceRanges(ends, 3);
   return vtkSPHBoundsOfPeriod(period, ends);
 }
-}
 
-vtkSPHPeriod vtkSPHFindPeriodDistributed(
-  vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
-{
-  vtkSPHRanks ranks(controller);
-  return FindPeriod(ranks, data, problem);
-}
-
-std::vector<double> vtkSPHBoundsOfPeriodDistributed(
-  vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles)
-{
-  vtkSPHRanks ranks(controller);
-  return BoundsOfPeriod(ranks, period, particles);
-}
-
-bool vtkSPHAlgorithm::SetPeriodDistributed(
-  vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options)
+bool vtkSPHAlgorithm::SetPeriodDistributed(vtkPointSet* particles, mcor_options& options)
 {
   if (!this->DetectPeriod)
   {
     return true;
   }
   std::string problem;
-  const vtkSPHPeriod found = FindPeriod(ranks, particles->GetFieldData(), problem);
+  const vtkSPHPeriod found =
+    vtkSPHFindPeriodDistributed(this->Controller, particles->GetFieldData(), problem);
   if (!this->CheckPeriod(found, problem))
   {
     return false;
   }
-  const std::vector<double> bounds = BoundsOfPeriod(ranks, found.Period, particles);
+  const std::vector<double> bounds =
+    vtkSPHBoundsOfPeriodDistributed(this->Controller, found.Period, particles);
   std::copy(bounds.begin(), bounds.end(), options.periodic);
   return true;
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksRoute.h"
 
-#include "vtkSPHRanks.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,6 +99,10 @@ public:
       {
         low = std::min(std::max(low, options.box[2 * a]), high);
         high = std::max(std::min(high, options.box[2 * a + 1]), low);
+        // A flat box in the plane of particles holds them.
+        high = globals.measured.plane.axis == a + 1 && low == globals.measured.plane.at
+          ? std::max(high, std::nextafter(low, infinity))
+          : high;
       }
       this->Whole[Side(a)] = low;
       this->Whole[Side(a) + 1] = high;
@@ -240,7 +244,9 @@ vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_glo
   {
     const double edge = globals.measured.edge[a];
     const double first = options.periodic[2 * a];
-    this->Length[a] = std::max(0.0, options.periodic[2 * a + 1] - first);
+    // Across the plane of particles in two dimensions it means nothing.
+    const bool isAcross = globals.measured.plane.axis == a + 1;
+    this->Length[a] = isAcross ? 0.0 : std::max(0.0, options.periodic[2 * a + 1] - first);
     this->First[a] = this->Length[a] > 0.0 ? edge * std::ceil(first / edge - 0.5) : 0.0;
   }
 }
@@ -261,6 +267,28 @@ int vtkSPHRanksRoute::FindOwner(const double at[3]) const
   double place[3] = { at[0], at[1], at[2] };
   this->Period.Take(place);
   return this->Partition->FindOwner(place);
+}
+
+vtkSPHRanksLists vtkSPHRanksRoute::ListOwners(vtkPolyData* points) const
+{
+  vtkSPHRanksLists owners(this->To.size());
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    owners[static_cast<std::size_t>(this->FindOwner(points->GetPoint(i)))].push_back(i);
+  }
+  return owners;
+}
+
+vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers)
+{
+  for (std::vector<vtkIdType>& list : places)
+  {
+    for (vtkIdType& place : list)
+    {
+      place = numbers[static_cast<std::size_t>(place)];
+    }
+  }
+  return places;
 }
 
 void vtkSPHRanksRoute::FindReached(const double at[3], double reach, std::vector<int>& found) const

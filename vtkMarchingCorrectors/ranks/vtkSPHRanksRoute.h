@@ -14,15 +14,18 @@
 #include <memory>
 #include <vector>
 
+class vtkPolyData;
+
 /** One period, as the core has it: it begins at a node of the lattice. */
 struct vtkSPHRanksPeriod
 {
+  vtkSPHRanksPeriod() = default;
   vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals);
 
   /** Moves a place into it. */
   void Take(double at[3]) const;
 
-  double First[3], Length[3]; ///< 0: open
+  double First[3] = { 0.0, 0.0, 0.0 }, Length[3] = { 0.0, 0.0, 0.0 }; ///< 0: open
 };
 
 /** To whom this rank's particles go, and what this rank will have. */
@@ -30,6 +33,9 @@ struct vtkSPHRanksRoute
 {
   /** The rank whose box holds a place, or an image of it. */
   int FindOwner(const double at[3]) const;
+
+  /** Of this rank's points, those in the boxes of each. */
+  vtkSPHRanksLists ListOwners(vtkPolyData* points) const;
 
   /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
   void FindReached(const double at[3], double reach, std::vector<int>& found) const;
@@ -44,16 +50,18 @@ struct vtkSPHRanksRoute
   std::int64_t Work; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
 };
 
+/** What stands at these places of the numbers. */
+vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers);
+
 /** What is divided evenly. */
 struct vtkSPHRanksBalance
 {
-  bool HasWork = false;                 ///< on all ranks alike; else that of each particle is 1
-  std::vector<std::int64_t> Work;       ///< of each particle; 0: it is needed nowhere
+  std::vector<std::int64_t> Work; ///< of each particle, 0: it is needed nowhere; empty: 1 each
   std::vector<vtkSPHRanksPlace> Others; ///< of this rank's, beside the particles
 
   std::int64_t Of(std::int64_t particle) const
   {
-    return this->HasWork ? this->Work[static_cast<std::size_t>(particle)] : 1;
+    return this->Work.empty() ? 1 : this->Work[static_cast<std::size_t>(particle)];
   }
 };
 
@@ -62,7 +70,6 @@ struct vtkSPHRanksBalance
  * smoothing length. `input` are this rank's particles, `globals` those of all. Collective.
  */
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
-  const mcor_options& options, const mcor_globals& globals,
-  const vtkSPHRanksBalance& balance = vtkSPHRanksBalance());
+  const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance);
 
 #endif

@@ -9,6 +9,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkXMLPolyDataReader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +67,14 @@ constexpr int Duplicates = 5; // the part whose ranks have others' particles as 
 const char* PartName(int part)
 {
   return Parts[part].Name;
+}
+
+vtkSmartPointer<vtkPolyData> ReadParticles(const std::string& file)
+{
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
 }
 
 vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank, int count)

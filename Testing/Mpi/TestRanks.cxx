@@ -18,7 +18,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkXMLPolyDataReader.h"
 
 #include <array>
 #include <cmath>
@@ -304,17 +303,15 @@ vtkSmartPointer<vtkPolyData> MakeTwoSizes()
 /// With a period that matters only where it is asked for.
 vtkSmartPointer<vtkPolyData> Read(const std::string& file)
 {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
+  vtkSmartPointer<vtkPolyData> particles = ReadParticles(file);
   vtkNew<vtkDoubleArray> period;
   period->SetName("PeriodicBounds");
   for (const double side : { -1.0, 1.0, 0.0, 0.0, -1.0, 0.5 })
   {
     period->InsertNextValue(side);
   }
-  reader->GetOutput()->GetFieldData()->AddArray(period);
-  return reader->GetOutput();
+  particles->GetFieldData()->AddArray(period);
+  return particles;
 }
 
 void MoveIntoPlane(vtkPolyData* particles)

@@ -114,18 +114,13 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
 {
   vtkSPHRanks& ranks = run.Ranks;
   const mcor_plane& plane = run.Globals.measured.plane;
-  vtkIdType points = 0, triangles = 0;
-  const vtkSmartPointer<vtkIdTypeArray> numbers = vtkSPHNumberPoints(ranks, surface, points);
-  const vtkSmartPointer<vtkIdTypeArray> triangleNumbers =
-    vtkSPHNumberTriangles(ranks, surface, triangles);
+  const vtkSPHRanksNumbers numbers = vtkSPHNumber(ranks, surface);
   const std::vector<vtkSPHRanksShare> shares = ranks.Gather(vtkSPHRanksShare{ surface.statistics,
     surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
     run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
   const std::unique_ptr<vtkSPHRanksLines> lines = plane.axis > 0
-    ? std::make_unique<vtkSPHRanksLines>(ranks, surface,
-        vtkSPHRanksNumbers{ numbers, triangleNumbers, points, triangles }, plane,
-        options.filled != 0)
+    ? std::make_unique<vtkSPHRanksLines>(ranks, surface, numbers, plane, options.filled != 0)
     : nullptr;
   if (lines && lines->HasFailed())
   {
@@ -134,14 +129,14 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
   }
   if (!lines)
   {
-    vtkSPHMeasure(ranks, surface, numbers, surface.statistics);
+    vtkSPHMeasure(ranks, surface, numbers.OfPoints, surface.statistics);
   }
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
     all.statistics = surface.statistics;
-    all.point_count = points;
-    all.triangle_count = triangles;
+    all.point_count = numbers.Points;
+    all.triangle_count = numbers.Triangles;
     all.line_count = lines ? lines->GetCount() : 0;
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input core = input.Core;
@@ -155,8 +150,8 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
   builder.AddIsoValues(output->GetFieldData());
   builder.AddRun(this->RunStatistics);
   builder.AddMeasures(this->RunStatistics);
-  vtkSPHAddCount(this->RunStatistics, "Points", { points });
-  vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
+  vtkSPHAddCount(this->RunStatistics, "Points", { numbers.Points });
+  vtkSPHAddCount(this->RunStatistics, "Triangles", { numbers.Triangles });
   if (lines)
   {
     vtkSPHAddCount(this->RunStatistics, "Lines", { lines->GetCount() });
@@ -165,8 +160,8 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
   builder.BuildMesh(output, this->OutputPointsPrecision,
     [&ranks](std::vector<double>& ends)
     { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
-  output->GetPointData()->SetGlobalIds(numbers);
-  output->GetCellData()->SetGlobalIds(triangleNumbers);
+  output->GetPointData()->SetGlobalIds(numbers.OfPoints);
+  output->GetCellData()->SetGlobalIds(numbers.OfTriangles);
   vtkSPHMatchEmpty(ranks, output);
   if (lines)
   {

@@ -13,6 +13,7 @@
 #include "vtkSPHRanksWait.h"
 #include "vtkType.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -150,9 +151,11 @@ void vtkSPHPlaceOnFirst(
   for (std::size_t rank = 0; to && rank < all.size(); ++rank)
   {
     const std::size_t width = all[rank].empty() ? 0 : all[rank].size() / numbers[rank].size();
-    for (std::size_t i = 0; i < all[rank].size(); ++i)
+    const T* from = all[rank].data();
+    for (const vtkIdType number : numbers[rank])
     {
-      to[static_cast<std::size_t>(numbers[rank][i / width]) * width + i % width] = all[rank][i];
+      std::copy_n(from, width, to + static_cast<std::size_t>(number) * width);
+      from += width;
     }
   }
 }

@@ -10,18 +10,11 @@
 #include "mcor.h"
 #include "mcor_parts.h"
 #include "vtkSPHRanks.h"
+#include "vtkSPHRanksPoints.h"
 
 #include <array>
 
-class vtkIdTypeArray;
 class vtkPolyData;
-
-/** Of a rank's points and triangles, and how many there are on all ranks. */
-struct vtkSPHRanksNumbers
-{
-  vtkIdTypeArray *OfPoints, *OfTriangles;
-  vtkIdType Points, Triangles;
-};
 
 class vtkSPHRanksLines
 {

@@ -111,10 +111,11 @@ std::vector<Numbers> Number(
 }
 
 /**
- * Of each of this rank's keys, which ascend, the first of the numbers that it takes where all ranks'
- * distinct keys are numbered in order; `total` of all numbers. Each rank sorts a range of the keys.
+ * Of each of this rank's keys, which ascend, the numbers that it takes where all ranks' distinct keys are
+ * numbered in order; `total` of all numbers. Each rank sorts a range of the keys.
  */
-Numbers NumberKeys(vtkSPHRanks& ranks, const Keys& keys, Weight weight, vtkIdType& total)
+vtkSmartPointer<vtkIdTypeArray> NumberKeys(
+  vtkSPHRanks& ranks, const Keys& keys, Weight weight, const char* name, vtkIdType& total)
 {
   const Keys ends = FindEnds(ranks, keys);
   std::vector<Keys> sent(static_cast<std::size_t>(ranks.GetCount()));
@@ -141,44 +142,33 @@ Numbers NumberKeys(vtkSPHRanks& ranks, const Keys& keys, Weight weight, vtkIdTyp
   {
     number += before;
   }
-  Numbers numbers;
+  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
+  numbers->SetName(name);
+  auto key = keys.begin();
   for (const Numbers& found : ranks.Exchange(Number(sent, distinct, first)))
   {
-    numbers.insert(numbers.end(), found.begin(), found.end());
+    for (const std::int64_t number : found)
+    {
+      const std::int64_t count = weight(*key++);
+      for (std::int64_t i = 0; i < count; ++i)
+      {
+        numbers->InsertNextValue(static_cast<vtkIdType>(number + i));
+      }
+    }
   }
   return numbers;
 }
-
-vtkSmartPointer<vtkIdTypeArray> MakeNumbers(const char* name, vtkIdType count)
-{
-  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
-  numbers->SetName(name);
-  numbers->SetNumberOfTuples(count);
-  return numbers;
-}
-}
-
-vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
-  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
-{
-  const auto* first = reinterpret_cast<const Key*>(surface.point_keys);
-  const Keys keys(first, first + (first ? surface.point_count : 0));
-  const Numbers found = NumberKeys(
-    ranks, keys, [](const Key&) { return std::int64_t(1); }, total);
-  auto numbers = MakeNumbers("GlobalPointIds", static_cast<vtkIdType>(found.size()));
-  std::copy(found.begin(), found.end(), numbers->GetPointer(0));
-  return numbers;
 }
 
 // A cell's triangles are on one rank, beside each other: one key tells of all.
-vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
-  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total)
+vtkSPHRanksNumbers vtkSPHNumber(vtkSPHRanks& ranks, const mcor_surface& surface)
 {
   static_assert(MCOR_TRIANGLE_KEY + 1 == MCOR_POINT_KEY, "a key and how many have it");
-  const std::uint64_t* from = surface.triangle_keys;
-  const vtkIdType count = from ? surface.triangle_count : 0;
+  const auto* first = reinterpret_cast<const Key*>(surface.point_keys);
+  const Keys points(first, first + (first ? surface.point_count : 0));
   Keys cells;
-  for (vtkIdType i = 0; i < count; ++i, from += MCOR_TRIANGLE_KEY)
+  const std::uint64_t* from = surface.triangle_keys;
+  for (std::int64_t i = 0; from && i < surface.triangle_count; ++i, from += MCOR_TRIANGLE_KEY)
   {
     if (cells.empty() || cells.back()[0] != from[0] || cells.back()[1] != from[1])
     {
@@ -186,15 +176,12 @@ vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
     }
     ++cells.back()[2];
   }
-  const Numbers found = NumberKeys(
-    ranks, cells, [](const Key& cell) { return static_cast<std::int64_t>(cell[2]); }, total);
-  auto numbers = MakeNumbers("GlobalCellIds", count);
-  vtkIdType* to = numbers->GetPointer(0);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-  {
-    std::iota(to, to + cells[i][2], static_cast<vtkIdType>(found[i]));
-    to += cells[i][2];
-  }
+  vtkSPHRanksNumbers numbers;
+  numbers.OfPoints = NumberKeys(
+    ranks, points, [](const Key&) { return std::int64_t(1); }, "GlobalPointIds", numbers.Points);
+  numbers.OfTriangles = NumberKeys(
+    ranks, cells, [](const Key& cell) { return static_cast<std::int64_t>(cell[2]); },
+    "GlobalCellIds", numbers.Triangles);
   return numbers;
 }
 

@@ -40,14 +40,14 @@ struct vtkSPHRanksRoute
   /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
   void FindReached(const double at[3], double reach, std::vector<int>& found) const;
 
-  vtkSPHRanksLists To;         ///< indices of the particles that each rank gets
-  double Box[6];               ///< this rank's, as in mcor_options; may hold nothing
-  vtkSPHRanksBox Whole;        ///< of all ranks' boxes
-  std::int64_t OwnedParticles; ///< those in its box
-  std::int64_t Particles;      ///< the same and copies
+  vtkSPHRanksLists To;             ///< indices of the particles that each rank gets
+  double Box[6] = {};              ///< this rank's, as in mcor_options; may hold nothing
+  vtkSPHRanksBox Whole = {};       ///< of all ranks' boxes
+  std::int64_t OwnedParticles = 0; ///< those in its box
+  std::int64_t Particles = 0;      ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
   vtkSPHRanksPeriod Period;
-  std::int64_t Work; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
+  std::int64_t Work = 0; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
 };
 
 /** What stands at these places of the numbers. */

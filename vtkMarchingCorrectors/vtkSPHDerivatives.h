@@ -46,7 +46,6 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-class vtkPointData;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHDerivatives : public vtkSPHAlgorithm
 {
@@ -155,8 +154,8 @@ private:
   void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
   void FailNotFinite(const std::string& array, vtkIdType particle);
   void ProcessDistributed(vtkPointSet* particles, vtkPointSet* output);
-  bool DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
-    const std::vector<vtkIdType>& numbers, vtkIdType count, vtkPointData* results);
+  void DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
+    const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output);
 };
 
 #endif

@@ -65,21 +65,19 @@ void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* 
       return;
     }
   }
-  vtkNew<vtkPointData> found;
-  const vtkIdType count = particles ? particles->GetNumberOfPoints() : 0;
-  if ((!run.HasFluid || this->DeriveDistributed(run, mine, numbers, count, found)) && particles &&
-    output)
+  if (run.HasFluid)
+  {
+    this->DeriveDistributed(run, mine, numbers, particles, output);
+  }
+  else if (particles && output)
   {
     output->ShallowCopy(particles);
-    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
-    {
-      output->GetPointData()->AddArray(found->GetArray(i));
-    }
   }
 }
 
-bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
-  const std::vector<vtkIdType>& numbers, vtkIdType count, vtkPointData* results)
+// `numbers`: which of the particles the run has.
+void vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
+  const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output)
 {
   const vtkWanted wanted = this->ListWanted(run.Own);
   const mcor_gradient form =
@@ -87,13 +85,13 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& 
   this->FillOptions(run.Options);
   if (!this->MeasureDistributed(run, mine, true))
   {
-    return false;
+    return;
   }
   const std::string name = mine.Interpolated[0].Name;
   if (run.Globals.components[0].not_finite >= 0)
   {
     this->FailNotFinite(name, run.Globals.components[0].not_finite);
-    return false;
+    return;
   }
   this->ShareDistributed(run, mine.Core, vtkSPHKeepUsed(run.Own, mine), {});
   vtkSPHParticles input(mine.Description, run.Near);
@@ -102,7 +100,7 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& 
   const bool isUsable = input.CollectArray(request) && input.CollectParticles();
   if (!this->AgreeDistributed(run.Ranks, isUsable ? "" : input.Error))
   {
-    return false;
+    return;
   }
   mcor_derivatives derivatives = {};
   const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(
@@ -111,18 +109,26 @@ bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& 
         [&](mcor_context* context)
         { return mcor_derive(context, &input.Core, &run.Options, form, &derivatives); }))
   {
-    return false;
+    return;
   }
   vtkNew<vtkPointData> found;
   const bool hasRoom = wanted.AddTo(found, derivatives, input.Interpolated[0]);
   if (!this->AgreeDistributed(
         run.Ranks, hasRoom ? "" : vtkWanted::DescribeNoMemory(derivatives.count)))
   {
-    return false;
+    return;
   }
   const vtkSPHRanksLists home = vtkSPHListAt(run.Route.ListOwners(run.Own), numbers);
-  vtkSPHReturnArrays(run.Ranks, found, ListOwned(run), home, count, results);
+  const vtkSPHRanksArrays came = vtkSPHReturnTuples(run.Ranks, vtkSPHListArrays(found),
+    ListOwned(run), home, particles ? particles->GetNumberOfPoints() : 0);
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
   vtkSPHAddSampleShares(run.Ranks, this->RunStatistics, run.Route, run.Route.OwnedParticles);
-  return true;
+  if (particles && output)
+  {
+    output->ShallowCopy(particles);
+    for (const auto& array : came)
+    {
+      output->GetPointData()->AddArray(array);
+    }
+  }
 }

@@ -193,10 +193,10 @@ void vtkSPHProbe::ProbeDistributed(
   {
     return;
   }
-  vtkNew<vtkPointData> found, came;
+  vtkNew<vtkPointData> found;
   samples.AddTo(found);
-  vtkSPHReturnArrays(run.Ranks, found, ListInTurn(from), vtkSPHListAt(to, numbers),
-    points ? points->GetNumberOfPoints() : 0, came);
+  const vtkSPHRanksArrays came = vtkSPHReturnTuples(run.Ranks, vtkSPHListArrays(found),
+    ListInTurn(from), vtkSPHListAt(to, numbers), points ? points->GetNumberOfPoints() : 0);
   vtkSPHAddSampleShares(run.Ranks, statistics, run.Route, here->GetNumberOfPoints());
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
   {
@@ -208,9 +208,9 @@ void vtkSPHProbe::ProbeDistributed(
   if (points && output)
   {
     output->ShallowCopy(points);
-    for (int i = 0; i < came->GetNumberOfArrays(); ++i)
+    for (const auto& array : came)
     {
-      output->GetPointData()->AddArray(came->GetArray(i));
+      output->GetPointData()->AddArray(array);
     }
     this->FinishOutput(output);
   }

@@ -21,9 +21,6 @@
 
 namespace
 {
-/** Positions, as an array among the others on the way. */
-constexpr const char* Positions = "vtkSPHRanksLines positions";
-
 /** The values of an array that a surface may lack. */
 template <typename T>
 std::vector<T> List(const T* values, std::int64_t count)
@@ -123,23 +120,15 @@ vtkSPHRanksLines::~vtkSPHRanksLines()
 
 void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output)
 {
-  vtkPointData* arrays = output->GetPointData();
   vtkSPHRanksLists back(static_cast<std::size_t>(ranks.GetCount()));
   back[0].resize(static_cast<std::size_t>(output->GetNumberOfPoints()));
   std::iota(back[0].begin(), back[0].end(), vtkIdType(0));
-  vtkDataArray* positions = output->GetPoints()->GetData();
-  positions->SetName(Positions);
-  arrays->AddArray(positions);
-  vtkNew<vtkPointData> moved;
-  vtkSPHReturnArrays(
-    ranks, arrays, back, this->Numbers, static_cast<vtkIdType>(this->Whole.point_count), moved);
-  vtkNew<vtkPoints> points;
-  vtkSmartPointer<vtkDataArray> at = moved->GetArray(Positions);
-  moved->RemoveArray(Positions);
-  at->SetName("Points");
-  points->SetData(at);
-  output->SetPoints(points);
-  arrays->ShallowCopy(moved);
+  const auto count = static_cast<vtkIdType>(this->Whole.point_count);
+  const vtkSmartPointer<vtkPolyData> moved = vtkSPHMakePoints(
+    vtkSPHReturnTuples(ranks, vtkSPHListArrays(output), back, this->Numbers, count), output);
+  vtkPointData* arrays = output->GetPointData();
+  output->SetPoints(moved->GetPoints());
+  arrays->ShallowCopy(moved->GetPointData());
   const auto cells = static_cast<vtkIdType>(this->Whole.line_count + this->Whole.triangle_count);
   vtkMarchingCorrectorsOutput::BuildCells(this->Whole, output);
   arrays->SetGlobalIds(CountUp("GlobalPointIds", output->GetNumberOfPoints()));

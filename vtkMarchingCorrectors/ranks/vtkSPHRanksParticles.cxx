@@ -247,22 +247,8 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHPartic
 vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from)
 {
-  vtkPointData* data = particles->GetPointData();
-  std::vector<vtkAbstractArray*> arrays = { particles->GetPoints()->GetData() };
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    arrays.push_back(data->GetAbstractArray(i));
-  }
-  const auto came = vtkSPHSendTuples(ranks, arrays, to, from);
-  auto near = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetData(vtkDataArray::SafeDownCast(came[0]));
-  near->SetPoints(points);
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    vtkSPHAddAs(data, i, came[static_cast<std::size_t>(i) + 1], near->GetPointData());
-  }
-  return near;
+  return vtkSPHMakePoints(
+    vtkSPHSendTuples(ranks, vtkSPHListArrays(particles), to, from), particles);
 }
 
 void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)

@@ -7,6 +7,8 @@
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkVariant.h"
 
 #include <cstring>
@@ -109,8 +111,7 @@ void GetTuples(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType firs
 }
 
 /** The message for a rank: how many tuples, and these; nothing where there are none. */
-std::vector<char> Pack(
-  const std::vector<vtkAbstractArray*>& arrays, const std::vector<vtkIdType>& ids)
+std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdType>& ids)
 {
   diy::MemoryBuffer bytes;
   if (ids.empty())
@@ -118,13 +119,13 @@ std::vector<char> Pack(
     return bytes.buffer;
   }
   std::size_t size = sizeof(vtkIdType); // at least
-  for (vtkAbstractArray* array : arrays)
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
   {
     size += IsPlain(array) ? ids.size() * TupleSize(array) : 0;
   }
   bytes.reserve(size);
   diy::save(bytes, static_cast<vtkIdType>(ids.size()));
-  for (vtkAbstractArray* array : arrays)
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
   {
     IsPlain(array) ? PutPlain(bytes, array, ids) : PutTexts(bytes, array, ids);
   }
@@ -132,9 +133,43 @@ std::vector<char> Pack(
 }
 }
 
-std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHSendTuples(vtkSPHRanks& ranks,
-  const std::vector<vtkAbstractArray*>& arrays, const vtkSPHRanksLists& to,
-  std::vector<vtkIdType>* from)
+vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
+{
+  vtkSPHRanksArrays arrays;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    arrays.emplace_back(data->GetAbstractArray(i));
+  }
+  return arrays;
+}
+
+vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* points)
+{
+  vtkSPHRanksArrays arrays = vtkSPHListArrays(points->GetPointData());
+  arrays.emplace(arrays.begin(), points->GetPoints()->GetData());
+  return arrays;
+}
+
+vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPolyData* like)
+{
+  auto made = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(vtkDataArray::SafeDownCast(arrays[0]));
+  made->SetPoints(points);
+  for (int i = 0; i + 1 < static_cast<int>(arrays.size()); ++i)
+  {
+    const int at = made->GetPointData()->AddArray(arrays[static_cast<std::size_t>(i) + 1]);
+    const int attribute = like->GetPointData()->IsArrayAnAttribute(i);
+    if (attribute >= 0)
+    {
+      made->GetPointData()->SetActiveAttribute(at, attribute);
+    }
+  }
+  return made;
+}
+
+vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from)
 {
   std::vector<std::vector<char>> messages;
   for (const std::vector<vtkIdType>& ids : to)
@@ -153,8 +188,8 @@ std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHSendTuples(vtkSPHRanks& ran
     }
   }
   const vtkIdType total = std::accumulate(counts.begin(), counts.end(), vtkIdType(0));
-  std::vector<vtkSmartPointer<vtkAbstractArray>> came;
-  for (vtkAbstractArray* array : arrays)
+  vtkSPHRanksArrays came;
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
   {
     came.push_back(MakeLike(array, total));
     vtkIdType first = 0;
@@ -173,15 +208,9 @@ std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHSendTuples(vtkSPHRanks& ran
   return came;
 }
 
-void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, const vtkSPHRanksLists& back,
-  const vtkSPHRanksLists& home, vtkIdType homeCount, vtkPointData* to)
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount)
 {
-  std::vector<vtkAbstractArray*> arrays;
-  for (int i = 0; i < results->GetNumberOfArrays(); ++i)
-  {
-    arrays.push_back(results->GetAbstractArray(i));
-  }
-  const auto came = vtkSPHSendTuples(ranks, arrays, back);
   vtkNew<vtkIdList> places, order;
   for (const std::vector<vtkIdType>& ids : home)
   {
@@ -190,23 +219,15 @@ void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, const vtkSPHR
       order->InsertNextId(places->InsertNextId(id));
     }
   }
-  for (std::size_t i = 0; i < arrays.size(); ++i)
+  vtkSPHRanksArrays returned;
+  for (const vtkSmartPointer<vtkAbstractArray>& came : vtkSPHSendTuples(ranks, arrays, back))
   {
-    const vtkSmartPointer<vtkAbstractArray> array = MakeLike(arrays[i], homeCount);
-    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(array.Get()))
+    returned.push_back(MakeLike(came, homeCount));
+    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(returned.back().Get()))
     {
       numbers->Fill(0.0);
     }
-    array->InsertTuples(places, order, came[i]);
-    vtkSPHAddAs(results, static_cast<int>(i), array, to);
+    returned.back()->InsertTuples(places, order, came);
   }
-}
-
-void vtkSPHAddAs(vtkPointData* from, int i, vtkAbstractArray* array, vtkPointData* to)
-{
-  const int at = to->AddArray(array), attribute = from->IsArrayAnAttribute(i);
-  if (attribute >= 0)
-  {
-    to->SetActiveAttribute(at, attribute);
-  }
+  return returned;
 }

@@ -13,24 +13,29 @@
 
 class vtkAbstractArray;
 class vtkPointData;
+class vtkPolyData;
+
+using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
+
+vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data);
+/** The positions, then the point arrays. */
+vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* points);
+/** Points of such arrays, each of which is used as the one in `like` is. */
+vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPolyData* like);
 
 /**
  * To each rank the tuples listed for it, of arrays that have the same forms on all ranks and lie plain in memory.
  * Returns such arrays of what came, in the order of ranks; `from`: how many tuples from each of them. Collective.
  */
-std::vector<vtkSmartPointer<vtkAbstractArray>> vtkSPHSendTuples(vtkSPHRanks& ranks,
-  const std::vector<vtkAbstractArray*>& arrays, const vtkSPHRanksLists& to,
-  std::vector<vtkIdType>* from = nullptr);
+vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
 /**
- * Sends results back to where they are wanted: of the arrays of `results`, the tuples listed for each rank in
- * `back`. What comes from a rank goes to the places listed for it in `home`, in arrays of `homeCount` tuples
- * that are 0 elsewhere and are added to `to`. Collective.
+ * Sends results back to where they are wanted: of the arrays, the tuples listed for each rank in `back`. Returns
+ * arrays of `homeCount` tuples: what comes from a rank is at the places listed for it in `home`; elsewhere they
+ * are 0. Collective.
  */
-void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, const vtkSPHRanksLists& back,
-  const vtkSPHRanksLists& home, vtkIdType homeCount, vtkPointData* to);
-
-/** Adds an array as `from` has its number i: with what it is to be used for. */
-void vtkSPHAddAs(vtkPointData* from, int i, vtkAbstractArray* array, vtkPointData* to);
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount);
 
 #endif

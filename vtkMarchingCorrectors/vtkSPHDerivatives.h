@@ -46,7 +46,6 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHDerivatives : public vtkSPHAlgorithm
 {
 public:

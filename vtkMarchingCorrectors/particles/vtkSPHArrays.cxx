@@ -230,8 +230,8 @@ vtkSPHArrayChoice Consider(
   for (size_t i = 0; i < arrays.size(); ++i)
   {
     vtkDataArray* array = arrays[i].first;
-    choice.Consider(array->GetName() ? array->GetName() : "", arrays[i].second, vtkSPHIsReal(array),
-      varying[i]);
+    choice.Consider(
+      array->GetName() ? array->GetName() : "", arrays[i].second, vtkSPHIsReal(array), varying[i]);
   }
   return choice;
 }

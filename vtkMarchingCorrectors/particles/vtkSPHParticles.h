@@ -97,8 +97,8 @@ public:
   /**
    * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such.
    */
-  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
-    const vtkSPHMergeRanges& merge = nullptr);
+  static void FindFluid(
+    vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge = nullptr);
 
   /**
    * "ParticleType = 0"; empty where all particles are fluid.

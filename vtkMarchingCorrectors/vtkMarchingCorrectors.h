@@ -101,8 +101,6 @@ struct mcor_ranks;
 struct mcor_statistics;
 struct mcor_surface;
 struct vtkMarchingCorrectorsChoice;
-struct vtkMarchingCorrectorsRun;
-struct vtkSPHRanksRoute;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
@@ -535,10 +533,10 @@ private:
 
   void ProcessDistributed(vtkPointSet* particles, vtkPolyData* output);
   void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
-  void ExtractDistributed(vtkSPHRanks& ranks, vtkMarchingCorrectorsChoice& choice, vtkPolyData* own,
-    const vtkSPHRanksRoute& route, mcor_options options, std::int64_t count, vtkPolyData* output);
-  void FinishDistributed(
-    vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output);
+  void ExtractDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsChoice& choice,
+    const mcor_input& own, vtkPolyData* output);
+  void FinishDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& input,
+    mcor_options options, mcor_surface& surface, vtkPolyData* output);
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options);
   void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);

@@ -203,14 +203,14 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
 
 // Nobody has chosen the active scalars of a file.
 vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
-  vtkPointSet* particles, const std::function<void(std::vector<double>&)>& merge)
+  vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
   vtkSPHRequest request = this->FindRequest(0, particles);
-  if (request.Name.empty())
+  vtkPointData* data = particles->GetPointData();
+  auto* active = vtkArrayDownCast<vtkDataArray>(request.Array);
+  if (request.Name.empty() && (!active || !vtkSPHIsFit(active, merge)))
   {
-    vtkPointData* data = particles->GetPointData();
-    const std::string best =
-      vtkSPHChooseArray(data, vtkArrayDownCast<vtkDataArray>(request.Array), merge);
+    const std::string best = vtkSPHChooseArray(data, merge);
     if (!best.empty())
     {
       request.Array = data->GetAbstractArray(best.c_str());

@@ -47,10 +47,12 @@ class vtkDataObjectTree;
 class vtkFieldData;
 class vtkMultiProcessController;
 class vtkPointSet;
+class vtkPolyData;
 class vtkSPHParticles;
 class vtkSPHRanks;
+struct vtkSPHRanksBalance;
+struct vtkSPHRanksRun;
 struct mcor_context;
-struct mcor_globals;
 struct mcor_input;
 struct mcor_options;
 struct vtkSPHPeriod;
@@ -95,6 +97,9 @@ struct vtkSPHParticlesChoice
   int Kernel = 0;
   std::vector<std::string> ExcludedArrays;
 };
+
+/** Makes ranges, each a least and a greatest value, those of all processes that share a run; empty: of one alone. */
+using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
 #endif
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHAlgorithm
@@ -435,12 +440,9 @@ protected:
 
   /**
    * The first one. Where none was named, the active scalars if they are fit to be looked at, see
-   * mcor_view_priority(), else the array that is fittest. `merge` makes each number the least of all ranks.
+   * mcor_view_priority(), else the array that is fittest.
    */
-  vtkSPHRequest FindFirstRequest(
-    vtkPointSet* particles, const std::function<void(std::vector<double>&)>& merge = nullptr);
-  /** The same on all ranks together; these are one's own. */
-  vtkSPHRequest FindFirstRequestDistributed(vtkSPHRanks& ranks, vtkPointSet* particles);
+  vtkSPHRequest FindFirstRequest(vtkPointSet* particles, const vtkSPHMergeRanges& merge = nullptr);
 
   /**
    * Calls the core: `call` gets a context for the device and returns the core's status. False if
@@ -454,30 +456,32 @@ protected:
    */
   bool IsShared() const;
 
+  ///@{
   /**
-   * CallCore() on all ranks together: where it fails on one of them, all say so. `near` lists the
-   * ranks that have to do with what is within `reach` of a place; empty: all.
+   * The steps of a run that ranks share, in their order. All are collective, and return the same everywhere: false
+   * where one rank failed, which all report, or the run was cancelled.
    */
-  bool CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles, mcor_options& options,
-    const std::function<int(mcor_context*)>& call,
-    const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near =
-      nullptr);
-
-  /** Of all ranks: false where one has a problem, which is reported. */
+  /** Takes this rank's particles; `taken`: which of these. */
+  bool BeginDistributed(
+    vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken = nullptr);
+  /** Whether the particles, once collected, can be used on all ranks, and whether there is fluid on any. */
+  bool AcceptDistributed(
+    vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
+  /** What is global, for a surface, or for mcor_probe and mcor_derive; the period and the dimension. */
+  bool MeasureDistributed(vtkSPHRanksRun& run, vtkSPHParticles& particles, bool forSamples);
+  /** Sends particles, which the core has as `input`, to the ranks whose boxes need them; a call is for its box then. */
+  void ShareDistributed(vtkSPHRanksRun& run, const mcor_input& input, vtkPolyData* particles,
+    const vtkSPHRanksBalance& balance);
+  /** False where a rank has a problem. */
   bool AgreeDistributed(vtkSPHRanks& ranks, std::string problem);
-  /** Whether any rank has fluid; the first one says so if not. */
-  bool HasFluidDistributed(
-    vtkSPHRanks& ranks, vtkSPHParticles& particles, const std::string& consequence);
-  /** What is global, for a surface, or for mcor_probe and mcor_derive; what the dimension found means for the
-   * options. False if that failed. */
-  bool MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
-    mcor_options& options, bool forSamples, mcor_globals& globals);
+  /** CallCore() with the run's options, on all ranks together. */
+  bool CallCoreDistributed(
+    vtkSPHRanksRun& run, vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
+  ///@}
 
   /** Names the fluid in the choice, where it is to be found, and is. */
-  void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles);
-  /** The same on all ranks together; these are one's own. */
-  void FindFluidDistributed(
-    vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles);
+  void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
+    const vtkSPHMergeRanges& merge = nullptr);
   int FindDimensionDistributed(vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
@@ -487,7 +491,7 @@ protected:
    */
   bool SetPeriod(vtkPointSet* particles, mcor_options& options);
   /** The same on all ranks together; these are one's own. */
-  bool SetPeriodDistributed(vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options);
+  bool SetPeriodDistributed(vtkPointSet* particles, mcor_options& options);
   /** False, and reported, where none was found, or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles);

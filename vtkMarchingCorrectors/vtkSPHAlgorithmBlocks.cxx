@@ -29,11 +29,10 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
   static_cast<void>(blocks);
 #else
   vtkSPHRanks ranks(this->Controller);
-  const std::int64_t count =
-    blocks ? static_cast<std::int64_t>(vtkSPHNameBlocks(blocks).size()) : -1;
-  std::int64_t ends[2] = { count, -count };
-  ranks.Reduce(vtkSPHRanks::LEAST, ends, 2);
-  good = ends[0] == -ends[1];
+  const double count = blocks ? static_cast<double>(vtkSPHNameBlocks(blocks).size()) : -1.0;
+  double range[2] = { count, count };
+  ranks.ReduceRanges(range, 1);
+  good = range[0] == range[1];
 #endif
   if (!good)
   {
@@ -107,11 +106,12 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
   }
 }
 
-void vtkSPHAlgorithm::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles)
+void vtkSPHAlgorithm::FindFluid(
+  vtkSPHParticlesChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
   if (this->DetectFluid)
   {
-    vtkSPHParticles::FindFluid(choice, particles);
+    vtkSPHParticles::FindFluid(choice, particles, merge);
   }
 }
 

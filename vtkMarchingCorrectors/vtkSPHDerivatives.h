@@ -46,10 +46,6 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-class vtkIdList;
-class vtkPointData;
-class vtkPolyData;
-
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHDerivatives : public vtkSPHAlgorithm
 {
 public:
@@ -128,8 +124,8 @@ private:
   void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
   void FailNotFinite(const std::string& array, vtkIdType particle);
   void ProcessDistributed(vtkPointSet* particles, vtkPointSet* output);
-  bool DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-    vtkIdList* numbers, vtkIdType count, vtkPointData* results);
+  void DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
+    const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output);
 };
 
 #endif

@@ -47,7 +47,6 @@
 #include <vector> // For gauges
 
 class vtkDataSet;
-class vtkPolyData;
 class vtkTable;
 struct mcor_gauge_line;
 struct mcor_gauges;
@@ -144,8 +143,8 @@ private:
 
   // For many processes together.
   void ProcessDistributed(vtkPointSet* particles, vtkTable* output);
-  void MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-    const std::vector<Gauge>& gauges, vtkTable* output);
+  void GaugeDistributed(
+    vtkSPHRanksRun& run, vtkSPHParticles& mine, const std::vector<Gauge>& gauges, vtkTable* output);
   static std::vector<Gauge> Merge(vtkSPHRanks& ranks, const std::vector<Gauge>& mine);
 
   std::vector<Gauge> Gauges;

@@ -47,7 +47,6 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-class vtkPolyData;
 class vtkSPHSamples;
 
 class VTKMARCHINGCORRECTORS_EXPORT vtkSPHProbe : public vtkSPHAlgorithm
@@ -143,8 +142,8 @@ private:
   void FillProbeOptions(mcor_options& options) const;
   void Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output);
   void ProcessDistributed(vtkDataSet* points, vtkDataSet* output);
-  bool ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-    vtkDataSet* points, vtkDataSet* output);
+  void ProbeDistributed(
+    vtkSPHRanksRun& run, vtkSPHParticles& mine, vtkDataSet* points, vtkDataSet* output);
   /** A mcor_status: of the core, some points at a time. */
   static int EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
     mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics);

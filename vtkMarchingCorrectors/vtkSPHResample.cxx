@@ -113,7 +113,7 @@ bool vtkSPHResample::FindBounds(double bounds[6])
   {
     vtkSPHRanks ranks(this->Controller);
     const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
-    this->FindFluidDistributed(ranks, choice, own);
+    this->FindFluid(choice, own, ranks.MergeRanges());
     FindEnds(choice, own, ends);
     ranks.Reduce(vtkSPHRanks::LEAST, ends, 6);
   }

@@ -3,11 +3,13 @@
 #include "RankParts.h"
 
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkXMLPolyDataReader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +69,14 @@ const char* PartName(int part)
   return Parts[part].Name;
 }
 
+vtkSmartPointer<vtkPolyData> ReadParticles(const std::string& file)
+{
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+
 vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank, int count)
 {
   auto own = vtkSmartPointer<vtkPolyData>::New();
@@ -93,6 +103,7 @@ vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank
     }
   }
   own->SetPoints(points);
+  own->GetFieldData()->PassData(particles->GetFieldData());
   if (part == Duplicates)
   {
     marks->SetName(vtkDataSetAttributes::GhostArrayName());

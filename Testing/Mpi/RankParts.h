@@ -8,11 +8,16 @@
 
 #include "vtkSmartPointer.h"
 
+#include <string>
+
 class vtkPolyData;
 
 constexpr int PartCount = 6;
 
 const char* PartName(int part);
+
+/// What a .vtp file holds.
+vtkSmartPointer<vtkPolyData> ReadParticles(const std::string& file);
 
 /// A rank's share of the particles.
 vtkSmartPointer<vtkPolyData> TakePart(vtkPolyData* particles, int part, int rank, int count);

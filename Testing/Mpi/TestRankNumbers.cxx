@@ -20,7 +20,6 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
-#include "vtkXMLPolyDataReader.h"
 
 #include <cmath>
 #include <cstdio>
@@ -149,14 +148,6 @@ const std::vector<Case> Cases = {
     } },
 };
 
-Data Read(const std::string& file)
-{
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutput();
-}
-
 /// On rank 0 the same rows, bit for bit; on others none.
 std::string CompareTables(vtkTable* table, vtkTable* whole)
 {
@@ -280,7 +271,7 @@ std::string CompareShifted(vtkTable* table, vtkTable* other, vtkIdType row, cons
 /// Pieces have the numbers, wherever the period begins, and however many ranks share them.
 int CheckShifts(const std::string& folder, vtkMPIController* controller)
 {
-  const Data particles = Read(folder + "/double_dam_break_small.vtp");
+  const Data particles = ReadParticles(folder + "/double_dam_break_small.vtp");
   const int none[3] = { 0, 0, 0 }, shifts[3][3] = { { 7, 0, 0 }, { -19, 0, 11 }, { 0, 0, -14 } };
   const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
   const Table alone = SplitShifted(particles, none, nullptr).Rows;
@@ -309,7 +300,7 @@ int CheckShifts(const std::string& folder, vtkMPIController* controller)
 int Check(int number, bool some, const std::string& folder, vtkMPIController* controller)
 {
   const Case& tried = Cases[static_cast<std::size_t>(number)];
-  const Data particles = Read(folder + "/" + tried.File + ".vtp");
+  const Data particles = ReadParticles(folder + "/" + tried.File + ".vtp");
   const Result alone = tried.Do(particles, nullptr); // each
   int wet = 0;
   for (vtkIdType row = 0; row < alone.Rows->GetNumberOfRows(); ++row)

@@ -19,7 +19,6 @@
 #include "vtkSPHDerivatives.h"
 #include "vtkSPHProbe.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkXMLPolyDataReader.h"
 
 #include <cmath>
 #include <cstdio>
@@ -175,10 +174,7 @@ void AddIndex(vtkPolyData* data)
 /// constant: as of a case.
 Data Read(const std::string& file, int constant)
 {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  Data data = reader->GetOutput();
+  Data data = ReadParticles(file);
   AddIndex(data);
   for (vtkIdType i = 0; constant >= 0 && i < data->GetNumberOfPoints(); ++i)
   {

@@ -18,7 +18,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkXMLPolyDataReader.h"
 
 #include <array>
 #include <cmath>
@@ -87,6 +86,7 @@ const std::vector<Case> Cases = {
     [](vtkMarchingCorrectors* f)
     {
       f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Speed");
+      f->SetValue(0, std::nan("")); // no value
       f->SetBoundaryDetectionToEigenvalue();
       f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
     } },
@@ -143,6 +143,13 @@ const std::vector<Case> Cases = {
       f->FreeSurfaceOn();
       f->SetCubeSize(0.025);
       f->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
+    } },
+  { "periods that the particles tell of", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->SetCubeSize(0.025);
+      f->DetectPeriodOn();
     } },
   { "periods that no cube divides", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
@@ -293,12 +300,18 @@ vtkSmartPointer<vtkPolyData> MakeTwoSizes()
   return particles;
 }
 
+/// With a period that matters only where it is asked for.
 vtkSmartPointer<vtkPolyData> Read(const std::string& file)
 {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutput();
+  vtkSmartPointer<vtkPolyData> particles = ReadParticles(file);
+  vtkNew<vtkDoubleArray> period;
+  period->SetName("PeriodicBounds");
+  for (const double side : { -1.0, 1.0, 0.0, 0.0, -1.0, 0.5 })
+  {
+    period->InsertNextValue(side);
+  }
+  particles->GetFieldData()->AddArray(period);
+  return particles;
 }
 
 void MoveIntoPlane(vtkPolyData* particles)

@@ -46,6 +46,10 @@ class Program(unittest.TestCase):
         return subprocess.run([MPIRUN, "-n", RANKS, PROGRAM, *arguments], capture_output=True, text=True,
                               timeout=BOUND, check=False)
 
+    def good(self, done):
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
     def sentences(self, done):
         return [line for line in done.stderr.splitlines() if line.startswith("marching-correctors:")]
 
@@ -56,21 +60,23 @@ class Program(unittest.TestCase):
         for word in words:
             self.assertIn(word, sentences[0])
 
+    def check_point_data(self, alone, ranks):
+        for i in range(alone.GetPointData().GetNumberOfArrays()):
+            array = alone.GetPointData().GetArray(i)
+            np.testing.assert_array_equal(vtk_to_numpy(array), vtk_to_numpy(ranks.GetPointData().GetArray(array.GetName())),
+                                          array.GetName())
+
     def test_one_file(self):
         """One file, written as one: the points, and what they carry, are those of one process."""
         how = ["--scalar", "Speed", "--iso", "2"]
-        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), *how).returncode, 0)
-        done = self.run_ranks(PARTICLES, self.path("ranks.vtp"), *how, "--stats", self.path("s.json"))
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), *how))
+        done = self.good(self.run_ranks(PARTICLES, self.path("ranks.vtp"), *how, "--stats", self.path("s.json")))
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
         self.assertGreater(alone.GetNumberOfPolys(), 1000)
         np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()),
                                       vtk_to_numpy(ranks.GetPoints().GetData()))
         np.testing.assert_array_equal(corners(alone), corners(ranks))
-        names = [alone.GetPointData().GetArrayName(i) for i in range(alone.GetPointData().GetNumberOfArrays())]
-        for name in names:
-            np.testing.assert_array_equal(vtk_to_numpy(alone.GetPointData().GetArray(name)),
-                                          vtk_to_numpy(ranks.GetPointData().GetArray(name)), name)
+        self.check_point_data(alone, ranks)
         with open(self.path("s.json"), encoding="utf-8") as stream:
             self.assertIn("rank_particles", stream.read())
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
@@ -103,22 +109,18 @@ class Program(unittest.TestCase):
         for cubes in "uniform", "adaptive":
             how = ["--scalar", "Speed", "--iso", "1,2", "--smoothing-length", "PlaneLength", "--volume", "PlaneArea",
                    "--cubes", cubes, "--quiet"]
-            self.assertEqual(self.run_alone(plane, self.path("alone.vtp"), *how, "--stats", self.path("a.json")).returncode, 0)
+            self.good(self.run_alone(plane, self.path("alone.vtp"), *how, "--stats", self.path("a.json")))
             alone = read(self.path("alone.vtp"))
             self.assertGreater(alone.GetNumberOfLines(), 5)
             for out in "ranks.vtp", "ranks.pvtp":
-                done = self.run_ranks(pieces, self.path(out), *how, "--stats", self.path("s.json"))
-                self.assertEqual(done.returncode, 0, done.stderr)
+                self.good(self.run_ranks(pieces, self.path(out), *how, "--stats", self.path("s.json")))
                 ranks = read(self.path(out))
                 for get in (lambda p: p.GetPoints().GetData(), lambda p: p.GetLines().GetConnectivityArray(),
                             lambda p: p.GetLines().GetOffsetsArray()):
                     np.testing.assert_array_equal(vtk_to_numpy(get(alone)), vtk_to_numpy(get(ranks)))
                 self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
-                names = [alone.GetPointData().GetArrayName(i) for i in range(alone.GetPointData().GetNumberOfArrays())]
-                self.assertIn("Normals", names)
-                for name in names:
-                    np.testing.assert_array_equal(vtk_to_numpy(alone.GetPointData().GetArray(name)),
-                                                  vtk_to_numpy(ranks.GetPointData().GetArray(name)), name)
+                self.assertIsNotNone(alone.GetPointData().GetArray("Normals"))
+                self.check_point_data(alone, ranks)
 
     def test_warnings(self):
         """What the core finds strange is said once, as by one process."""
@@ -149,8 +151,7 @@ class Program(unittest.TestCase):
         write(plane, self.path("wall.vtp"))
         for file, how, dimension in ((pieces, [], 3),
                                      (self.path("wall.vtp"), ["--fluid", "Wall=0", "--solids", "ignore"], 2)):
-            done = self.run_ranks(file, self.path("s.vtp"), "--free-surface", "--dp", "0.03", "--stats", self.path("s.json"), *how)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(self.run_ranks(file, self.path("s.vtp"), "--free-surface", "--dp", "0.03", "--stats", self.path("s.json"), *how))
             with open(self.path("s.json"), encoding="utf-8") as stream:
                 length = json.load(stream)["statistics"]["smoothing_length_range"]
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
@@ -163,15 +164,12 @@ class Program(unittest.TestCase):
         speed = ["--scalar", "Speed", "--iso", "1,2"]
         for how in (["--free-surface", "--cubes", "adaptive"], [*speed, "--weight-sum", "--gradients"],
                     [*speed, "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0", "--topology", "field"]):
-            done = self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json"))
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json")))
             self.assertGreater(read(self.path("alone.vtp")).GetNumberOfPolys(), 1000)
-            done = self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json"))
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json")))
             self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False), how)
             self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
-        done = self.run_ranks(pieces, self.path("ranks.pvtp"), *size, *how)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_ranks(pieces, self.path("ranks.pvtp"), *size, *how))
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.pvtp"))
         np.testing.assert_array_equal(corners(ranks), corners(alone))
         np.testing.assert_array_equal(vtk_to_numpy(ranks.GetCellData().GetArray("BandValue")),
@@ -184,10 +182,8 @@ class Program(unittest.TestCase):
         size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea", "--capping", "--quiet"]
         for how in (["--free-surface", "--box=-1,0.6,-inf,0.3,-inf,inf", "--weight-sum"],
                     ["--scalar", "Speed", "--iso", "1,2", "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0"]):
-            done = self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json"))
-            self.assertEqual(done.returncode, 0, done.stderr)
-            done = self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json"))
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json")))
+            self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json")))
             self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False), how)
             self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
         with open(self.path("s.json"), encoding="utf-8") as stream:
@@ -202,10 +198,8 @@ class Program(unittest.TestCase):
         for name, how in (("line.vtp", ["--line=-1.5,0.1,0.5,1.5,0.4,0.5", "--derive", "Velocity", "--gradients"]),
                           ("derived.vtp", ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "5"]),
                           ("gauges.csv", wet), ("gauges.csv", [*wet, "--periodic", "3,0,0"])):
-            alone = self.run_alone(plane, self.path("alone_" + name), *size, *how)
-            self.assertEqual(alone.returncode, 0, alone.stderr)
-            done = self.run_ranks(pieces, self.path(name), *size, *how)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(self.run_alone(plane, self.path("alone_" + name), *size, *how))
+            self.good(self.run_ranks(pieces, self.path(name), *size, *how))
             self.assertTrue(filecmp.cmp(self.path("alone_" + name), self.path(name), shallow=False), name)
         line = read(self.path("line.vtp")).GetPointData()
         self.assertGreater(vtk_to_numpy(line.GetArray("vtkValidPointMask")).sum(), 100)
@@ -216,10 +210,8 @@ class Program(unittest.TestCase):
 
     def check_same_file(self, *how):
         """A file that the first process merges is, byte for byte, that of one process."""
-        alone = self.run_alone(PARTICLES, self.path("alone.ply"), *how)
-        self.assertEqual(alone.returncode, 0, alone.stderr)
-        done = self.run_ranks(PARTICLES, self.path("ranks.ply"), *how)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_alone(PARTICLES, self.path("alone.ply"), *how))
+        self.good(self.run_ranks(PARTICLES, self.path("ranks.ply"), *how))
         self.assertGreater(os.path.getsize(self.path("alone.ply")), 50000)
         self.assertTrue(filecmp.cmp(self.path("alone.ply"), self.path("ranks.ply"), shallow=False), how)
 
@@ -246,8 +238,7 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
         self.set_box_size("piece_1.vtp", 0, 0, 3.1)
         for output, run, period in ("alone.ply", self.run_alone, "0,0,3.1"), ("ranks.ply", self.run_ranks, "auto"):
-            done = run(PARTICLES if run == self.run_alone else pieces, self.path(output), *how, period)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(run(PARTICLES if run == self.run_alone else pieces, self.path(output), *how, period))
         self.assertTrue(filecmp.cmp(self.path("alone.ply"), self.path("ranks.ply"), shallow=False))
         self.set_box_size("piece_0.vtp", 0, 0, 3.2)
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "different periods: BoxSize 0,0,3.2 on rank 0, "
@@ -265,9 +256,8 @@ class Program(unittest.TestCase):
     def test_pieces(self):
         """Pieces in, pieces out: more of them than processes."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
-        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface").returncode, 0)
-        done = self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), "--free-surface"))
+        self.good(self.run_ranks(pieces, self.path("out.pvtp"), "--free-surface"))
         alone, ranks = read(self.path("alone.vtp")), read(self.path("out.pvtp"))
         self.assertEqual(difference(ranks, alone), "")
         self.assertEqual(ranks.GetPointData().GetNormals().GetName(), "Normals")
@@ -286,10 +276,8 @@ class Program(unittest.TestCase):
         writer.SetInputData(image)
         writer.Write()
         how = ["--probe", self.path("points.vti"), "--derive", "Velocity", "--gradients"]
-        alone = self.run_alone(PARTICLES, self.path("alone.vti"), *how)
-        self.assertEqual(alone.returncode, 0, alone.stderr)
-        done = self.run_ranks(write_pieces(PARTICLES, self.folder.name, 5), self.path("ranks.vti"), *how)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        alone = self.good(self.run_alone(PARTICLES, self.path("alone.vti"), *how))
+        done = self.good(self.run_ranks(write_pieces(PARTICLES, self.folder.name, 5), self.path("ranks.vti"), *how))
         self.assertEqual(done.stdout.count("points "), 1, done.stdout)
         self.assertEqual(done.stdout.splitlines()[0], alone.stdout.splitlines()[0])
         alone, ranks = (self.image_arrays(self.path(name)) for name in ("alone.vti", "ranks.vti"))
@@ -305,10 +293,8 @@ class Program(unittest.TestCase):
         """Two steps, one of them in pieces: the table, and an image of levels, are those of one process, byte for byte."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
         how = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1", "--periodic", "0,0,3.1"]
-        alone = self.run_alone(PARTICLES, PARTICLES, self.path("alone.csv"), *how)
-        self.assertEqual(alone.returncode, 0, alone.stderr)
-        done = self.run_ranks(pieces, PARTICLES, self.path("ranks.csv"), *how)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        alone = self.good(self.run_alone(PARTICLES, PARTICLES, self.path("alone.csv"), *how))
+        done = self.good(self.run_ranks(pieces, PARTICLES, self.path("ranks.csv"), *how))
         self.assertEqual(done.stdout, alone.stdout)
         with open(self.path("alone.csv"), encoding="utf-8") as stream:
             rows = stream.read().splitlines()
@@ -316,8 +302,8 @@ class Program(unittest.TestCase):
         self.assertIn(",wet,", rows[1])
         self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
         how = ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]
-        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vti"), *how).returncode, 0)
-        self.assertEqual(self.run_ranks(pieces, self.path("ranks.vti"), *how).returncode, 0)
+        self.good(self.run_alone(PARTICLES, self.path("alone.vti"), *how))
+        self.good(self.run_ranks(pieces, self.path("ranks.vti"), *how))
         self.assertTrue(filecmp.cmp(self.path("alone.vti"), self.path("ranks.vti"), shallow=False))
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.csv"), "--gauge", "a=0,0,0:0,0,1", "--smoothing-length",
                                         "Nope"), "Nope")
@@ -359,14 +345,12 @@ class Program(unittest.TestCase):
             os.mkdir(self.path(name))
             how = ["--free-surface", *gauges, "--components", self.path(name + "/pieces.csv"), "--least-particles", "2",
                    "--numbers", self.path(name + "/numbers.csv"), "--periodic", "0,0,3.1"]
-            done = run(steps, self.path(name + "/film_%04d.ply"), *how, "--times", "0,0.007,0.02")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.good(run(steps, self.path(name + "/film_%04d.ply"), *how, "--times", "0,0.007,0.02"))
             self.assertEqual(done.stdout.count(" triangles, "), 3, done.stdout)
             done = run(steps, self.path(name + "/list.pvd"), "--free-surface")
             self.check_fails(done, "third.vtp", "list_0002.vtp")
             self.assertEqual(done.stdout.count(" triangles, "), 2, done.stdout)
-            done = run(steps, self.path(name + "/levels.csv"), *gauges, "--times", "0.007,0.02")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(run(steps, self.path(name + "/levels.csv"), *gauges, "--times", "0.007,0.02"))
         self.check_same_files(["film_0000.ply", "film_0001.ply", "film_0002.ply", "pieces.csv", "numbers.csv", "list.pvd",
                                "levels.csv"])
         alone, ranks = (read(self.path(name + "/list_0001.vtp")) for name in ("alone", "ranks"))
@@ -380,17 +364,14 @@ class Program(unittest.TestCase):
         """The table of pieces, and the numbers that points have, are those of one process, byte for byte."""
         how = ["--free-surface", "--components"]
         least = ["--least-particles", "3"]
-        alone = self.run_alone(PARTICLES, self.path("alone.vtp"), *how, self.path("alone.csv"), *least)
-        self.assertEqual(alone.returncode, 0, alone.stderr)
+        alone = self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), *how, self.path("alone.csv"), *least))
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
-        done = self.run_ranks(pieces, self.path("ranks.vtp"), *how, self.path("ranks.csv"), *least)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how, self.path("ranks.csv"), *least))
         self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
         line = next(line for line in alone.stdout.splitlines() if line.startswith("surface"))
         self.assertIn(line, done.stdout.splitlines())
         self.assertRegex(line, "pieces? of area .*, volume ")
-        done = self.run_ranks(pieces, self.path("out.pvtp"), *how, self.path("ranks.csv"), *least)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_ranks(pieces, self.path("out.pvtp"), *how, self.path("ranks.csv"), *least))
         self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
         whole = read(self.path("alone.vtp"))
         self.assertGreater(whole.GetPointData().GetArray("ComponentId").GetRange()[1], 1)
@@ -413,9 +394,8 @@ class Program(unittest.TestCase):
     def test_derive(self):
         """A surface of what is derived from another array."""
         how = ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "20", "--no-attributes"]
-        self.assertEqual(self.run_alone(PARTICLES, self.path("alone.vtp"), *how).returncode, 0)
-        done = self.run_ranks(write_pieces(PARTICLES, self.folder.name, 2), self.path("ranks.vtp"), *how)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), *how))
+        self.good(self.run_ranks(write_pieces(PARTICLES, self.folder.name, 2), self.path("ranks.vtp"), *how))
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
         self.assertGreater(alone.GetNumberOfPolys(), 1000)
         np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()),
@@ -443,8 +423,7 @@ class Program(unittest.TestCase):
         """Where one process cannot write its piece, all files are as they were, and nothing is left behind."""
         how = [PARTICLES, self.path("out.pvtp"), "--free-surface", "--stats", self.path("s.json")]
         names = ["out.pvtp", "s.json", *(f"out_{i}.vtp" for i in range(int(RANKS)))]
-        done = self.run_ranks(*how)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.good(self.run_ranks(*how))
         self.assertEqual(sorted(os.listdir(self.folder.name)), sorted(names))
         for old in (True, False):
             for name in names:
@@ -480,8 +459,7 @@ class Program(unittest.TestCase):
         """Fitted to the particles of all processes."""
         for output, run in (("alone.vti", self.run_alone), ("ranks.vti", self.run_ranks)):
             pieces = PARTICLES if run == self.run_alone else write_pieces(PARTICLES, self.folder.name, 3)
-            done = run(pieces, self.path(output), "--slice", "y=0.1", "--resolution", "100")
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.good(run(pieces, self.path(output), "--slice", "y=0.1", "--resolution", "100"))
         alone, ranks = (self.image_arrays(self.path(name)) for name in ("alone.vti", "ranks.vti"))
         self.assertEqual(set(alone), set(ranks))
         for name, values in alone.items():

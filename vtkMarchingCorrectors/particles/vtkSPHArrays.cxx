@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
+#include <vector>
 
 namespace
 {
@@ -186,9 +187,9 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
 }
 
 std::vector<bool> vtkSPHFindVarying(
-  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMerge& merge)
+  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMergeRanges& merge)
 {
-  std::vector<double> ends; // least value, and minus the greatest, of each component
+  std::vector<double> ranges; // of each component
   for (const auto& each : arrays)
   {
     for (int c = 0; c < each.second; ++c)
@@ -198,44 +199,46 @@ std::vector<bool> vtkSPHFindVarying(
       {
         each.first->GetRange(range, c);
       }
-      ends.insert(ends.end(), { range[0], -range[1] });
+      ranges.insert(ranges.end(), range, range + 2);
     }
   }
   if (merge)
   {
-    merge(ends);
+    merge(ranges.data(), static_cast<int>(ranges.size() / 2));
   }
   std::vector<bool> varying;
-  const double* end = ends.data();
+  const double* range = ranges.data();
   for (const auto& each : arrays)
   {
     bool varies = false;
-    for (int c = 0; c < each.second; ++c, end += 2)
+    for (int c = 0; c < each.second; ++c, range += 2)
     {
-      varies = varies || end[0] < -end[1];
+      varies = varies || range[0] < range[1];
     }
     varying.push_back(varies);
   }
   return varying;
 }
 
-std::string vtkSPHChooseArray(vtkFieldData* data, vtkDataArray* preferred, const vtkSPHMerge& merge)
+namespace
 {
-  vtkSPHArrayChoice first, other;
-  const auto consider = [](vtkSPHArrayChoice& choice, vtkDataArray* array, bool varies)
+vtkSPHArrayChoice Consider(
+  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMergeRanges& merge)
+{
+  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
+  vtkSPHArrayChoice choice;
+  for (size_t i = 0; i < arrays.size(); ++i)
   {
-    choice.Consider(array->GetName() ? array->GetName() : "", array->GetNumberOfComponents(),
-      vtkSPHIsReal(array), varies);
-  };
-  if (preferred && !merge) // without a look at all values of others
-  {
-    consider(first, preferred,
-      vtkSPHFindVarying({ { preferred, preferred->GetNumberOfComponents() } }).front());
-    if (first.Rank >= 0)
-    {
-      return first.Best;
-    }
+    vtkDataArray* array = arrays[i].first;
+    choice.Consider(
+      array->GetName() ? array->GetName() : "", arrays[i].second, vtkSPHIsReal(array), varying[i]);
   }
+  return choice;
+}
+}
+
+std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge)
+{
   std::vector<std::pair<vtkDataArray*, int>> arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
@@ -245,10 +248,10 @@ std::string vtkSPHChooseArray(vtkFieldData* data, vtkDataArray* preferred, const
       arrays.emplace_back(array, array->GetNumberOfComponents());
     }
   }
-  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
-  for (size_t i = 0; i < arrays.size(); ++i)
-  {
-    consider(arrays[i].first == preferred ? first : other, arrays[i].first, varying[i]);
-  }
-  return first.Rank >= 0 ? first.Best : other.Best;
+  return Consider(arrays, merge).Best;
+}
+
+bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge)
+{
+  return Consider({ { array, array->GetNumberOfComponents() } }, merge).Rank >= 0;
 }

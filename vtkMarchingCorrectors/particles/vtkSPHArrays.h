@@ -9,11 +9,11 @@
 #include "mcor.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkSPHAlgorithm.h"
 #include "vtkSmartPointer.h"
 #include "vtkTypeTraits.h"
 
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -65,16 +65,14 @@ struct vtkSPHArrayChoice
   int Rank = -1;
 };
 
-/** Makes each number the least of all processes that share the arrays, which all call this. */
-using vtkSPHMerge = std::function<void(std::vector<double>&)>;
-
 /** Which of the arrays, of so many components, have two different values in one. Null: there is none here. */
-std::vector<bool> vtkSPHFindVarying(
-  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMerge& merge = nullptr);
+std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
+  const vtkSPHMergeRanges& merge = nullptr);
 
-/** The name of an array to be looked at: of `preferred` if it is fit, else the fittest; empty where none is. */
-std::string vtkSPHChooseArray(
-  vtkFieldData* data, vtkDataArray* preferred = nullptr, const vtkSPHMerge& merge = nullptr);
+/** The name of the fittest array to be looked at; empty where none is. */
+std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge = nullptr);
+/** Whether an array is fit. */
+bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge = nullptr);
 
 /** A line "Name: values" for each array. */
 std::string vtkSPHDescribe(vtkFieldData* data);

@@ -96,10 +96,9 @@ public:
 
   /**
    * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such.
-   * `reduce` makes both ends the least of all processes that share the particles, for each array in turn.
    */
-  static void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
-    const std::function<void(double ends[2])>& reduce = nullptr);
+  static void FindFluid(
+    vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge = nullptr);
 
   /**
    * "ParticleType = 0"; empty where all particles are fluid.

@@ -58,33 +58,34 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
   return list;
 }
 
-void vtkSPHParticles::FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* points,
-  const std::function<void(double ends[2])>& reduce)
+namespace
+{
+/** Of an array of some whole numbers; of any other numbers one that tells of no fluid. */
+void FindWholeRange(vtkDataArray* array, double range[2])
 {
   const double none = std::numeric_limits<double>::infinity();
+  const std::map<double, vtkIdType> counts = vtkSPHCountValues(array, MCOR_PARTICLE_TYPES);
+  const bool isWhole = !counts.empty() &&
+    std::all_of(counts.begin(), counts.end(),
+      [](const std::pair<const double, vtkIdType>& count)
+      { return count.first == std::floor(count.first); });
+  range[0] = isWhole ? counts.begin()->first : array->GetNumberOfTuples() > 0 ? -none : none;
+  range[1] = isWhole ? counts.rbegin()->first : -none;
+}
+}
+
+void vtkSPHParticles::FindFluid(
+  vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge)
+{
   for (const std::string& name : ListTypes(choice, points))
   {
-    const std::map<double, vtkIdType> counts =
-      vtkSPHCountValues(points->GetPointData()->GetArray(name.c_str()), MCOR_PARTICLE_TYPES);
-    const bool areWhole = !counts.empty() &&
-      std::all_of(counts.begin(), counts.end(),
-        [](const std::pair<const double, vtkIdType>& count)
-        { return count.first == std::floor(count.first); });
-    double ends[2] = { none, none };
-    if (areWhole)
+    double range[2];
+    FindWholeRange(points->GetPointData()->GetArray(name.c_str()), range);
+    if (merge)
     {
-      ends[0] = counts.begin()->first;
-      ends[1] = -counts.rbegin()->first;
+      merge(range, 1);
     }
-    else if (points->GetNumberOfPoints() > 0)
-    {
-      ends[0] = -none;
-    }
-    if (reduce)
-    {
-      reduce(ends);
-    }
-    if (mcor_find_fluid_value(name.c_str(), ends[0], -ends[1], &choice.FluidValue))
+    if (mcor_find_fluid_value(name.c_str(), range[0], range[1], &choice.FluidValue))
     {
       choice.FluidArrayName = name;
       return;

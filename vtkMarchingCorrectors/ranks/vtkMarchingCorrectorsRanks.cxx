@@ -13,31 +13,15 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
 #include "vtkSPHRanksLines.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksPoints.h"
-#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksRun.h"
 #include "vtkSPHRanksStatistics.h"
 #include "vtkSPHRanksWork.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
 #include <memory>
-
-/** What one rank has made, before the ranks put it together. */
-struct vtkMarchingCorrectorsRun
-{
-  vtkMarchingCorrectorsInput& Input; ///< the particles that reach this rank's box
-  mcor_options& Options;             ///< with the user's box
-  const vtkSPHRanksRoute& Route;
-  mcor_surface& Surface;
-  std::int64_t Particles; ///< of all ranks
-  const mcor_plane& Plane;
-};
 
 void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
@@ -55,114 +39,86 @@ void vtkMarchingCorrectors::EstimateDistributed(
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyData* output)
 {
-  vtkSPHRanks ranks(this->Controller);
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
-  std::int64_t counts[2] = { own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
-  if (counts[0] == 0 || counts[1] > 0)
+  vtkSPHRanksRun run(this->Controller);
+  if (!this->BeginDistributed(run, particles) || run.Particles == 0)
   {
     this->SetUsedNames(nullptr);
     return;
   }
-  mcor_options options;
+  const auto merge = run.Ranks.MergeRanges();
+  mcor_options& options = run.Options;
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(options);
-  this->FillChoice(choice, own);
-  this->FindFluidDistributed(ranks, choice, own);
-  choice.Scalar = this->FindFirstRequestDistributed(ranks, own);
+  this->FillChoice(choice, run.Own);
+  this->FindFluid(choice, run.Own, merge);
+  choice.Scalar = this->FindFirstRequest(run.Own, merge);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
-  vtkMarchingCorrectorsInput mine(choice, own);
-  const bool isUsable = mine.Collect();
-  this->SetUsedNames(&mine);
-  if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error) ||
-    !this->HasFluidDistributed(ranks, mine, "no surface") ||
-    !this->SetPeriodDistributed(ranks, own, options))
+  vtkMarchingCorrectorsInput mine(choice, run.Own);
+  if (!this->AcceptDistributed(run, mine, mine.Collect(), "no surface") || !run.HasFluid)
   {
     return;
   }
   std::vector<double> isoValues;
-  vtkSPHRanksCalls calls(ranks);
+  vtkSPHRanksCalls calls(run.Ranks);
   calls.End(!this->ListIsoValues(mine, calls.Get(), isoValues));
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
-  options.outputs |= mine.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
   options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
-
-  mcor_globals globals = {};
-  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
-    &globals, mcor_free_globals);
-  if (!this->MeasureGlobalsDistributed(ranks, mine, options, false, globals))
+  options.outputs |= mine.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
+  if (this->MeasureDistributed(run, mine, false))
   {
-    return;
+    this->EstimateDistributed(run.Ranks, mine.Core, options);
+    this->ExtractDistributed(run, choice, mine.Core, output);
   }
-  this->EstimateDistributed(ranks, mine.Core, options);
-  vtkSPHRanksBalance balance;
-  balance.HasWork = true;
-  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(ranks, mine.Core, options, globals)
-                                            : vtkSPHCountWork(mine.Core, options);
-  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals, balance);
-  options.globals = &globals;
-  this->ExtractDistributed(ranks, choice, own, route, options, counts[0], output);
 }
 
-// Of the particles that this rank has, `count` on all, to those that are near its box.
-void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanks& ranks,
-  vtkMarchingCorrectorsChoice& choice, vtkPolyData* own, const vtkSPHRanksRoute& route,
-  mcor_options options, std::int64_t count, vtkPolyData* output)
+// From the particles that are near this rank's box.
+void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanksRun& run,
+  vtkMarchingCorrectorsChoice& choice, const mcor_input& own, vtkPolyData* output)
 {
-  const vtkSmartPointer<vtkPolyData> near = vtkSPHSendParticles(ranks, own, route.To);
+  mcor_options& options = run.Options;
+  const mcor_options whole = options;
+  vtkSPHRanksBalance balance;
+  balance.Work = this->Partition == BY_WORK ? vtkSPHExpectWork(run.Ranks, own, options, run.Globals)
+                                            : vtkSPHCountWork(own, options);
+  this->ShareDistributed(run, own, run.Own, balance);
   const bool isNamed =
     choice.Scalar.Name.empty() && choice.Scalar.Array && choice.Scalar.Array->GetName();
   const std::string scalarName = isNamed ? choice.Scalar.Array->GetName() : "";
-  this->FillRequests(choice, near);
+  this->FillRequests(choice, run.Near);
   if (isNamed)
   {
-    choice.Scalar.Array = near->GetPointData()->GetAbstractArray(scalarName.c_str());
+    choice.Scalar.Array = run.Near->GetPointData()->GetAbstractArray(scalarName.c_str());
   }
-  vtkMarchingCorrectorsInput input(choice, near);
-  if (!this->AgreeDistributed(ranks, input.Collect() ? "" : input.Error))
+  vtkMarchingCorrectorsInput input(choice, run.Near);
+  if (!this->AgreeDistributed(run.Ranks, input.Collect() ? "" : input.Error))
   {
     return;
   }
-  mcor_options boxed = options;
-  std::copy(route.Box, route.Box + 6, boxed.box);
   mcor_surface surface = {};
   const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
     &surface, mcor_free_surface);
-  if (this->CallCoreDistributed(
-        ranks, input, boxed,
+  if (this->CallCoreDistributed(run, input,
         [&](mcor_context* context)
-        {
-          mcor_options shared = boxed;
-          mcor_ranks all = *boxed.ranks;
-          std::copy(route.Whole.begin(), route.Whole.end(), all.whole_box);
-          shared.ranks = &all;
-          return mcor_extract(context, &input.Core, &shared, &surface);
-        },
-        [&route](const double at[3], double reach, std::vector<int>& found)
-        { route.FindReached(at, reach, found); }))
+        { return mcor_extract(context, &input.Core, &options, &surface); }))
   {
-    this->FinishDistributed(
-      ranks, { input, options, route, surface, count, options.globals->measured.plane }, output);
+    this->FinishDistributed(run, input, whole, surface, output);
   }
 }
 
-void vtkMarchingCorrectors::FinishDistributed(
-  vtkSPHRanks& ranks, const vtkMarchingCorrectorsRun& run, vtkPolyData* output)
+void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
+  vtkMarchingCorrectorsInput& input, mcor_options options, mcor_surface& surface,
+  vtkPolyData* output)
 {
-  mcor_surface& surface = run.Surface;
-  vtkIdType points = 0, triangles = 0;
-  const vtkSmartPointer<vtkIdTypeArray> numbers = vtkSPHNumberPoints(ranks, surface, points);
-  const vtkSmartPointer<vtkIdTypeArray> triangleNumbers =
-    vtkSPHNumberTriangles(ranks, surface, triangles);
-  const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks,
-    { surface.statistics, surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
-      run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
+  vtkSPHRanks& ranks = run.Ranks;
+  const mcor_plane& plane = run.Globals.measured.plane;
+  const vtkSPHRanksNumbers numbers = vtkSPHNumber(ranks, surface);
+  const std::vector<vtkSPHRanksShare> shares = ranks.Gather(vtkSPHRanksShare{ surface.statistics,
+    surface.point_count, surface.triangle_count, run.Route.OwnedParticles,
+    run.Route.Particles - run.Route.OwnedParticles, ranks.GetBytesSent(), run.Route.Work });
   surface.statistics = vtkSPHMergeShares(shares);
-  const std::unique_ptr<vtkSPHRanksLines> lines = run.Plane.axis > 0
-    ? std::make_unique<vtkSPHRanksLines>(ranks, surface,
-        vtkSPHRanksNumbers{ numbers, triangleNumbers, points, triangles }, run.Plane,
-        run.Options.filled != 0)
+  const std::unique_ptr<vtkSPHRanksLines> lines = plane.axis > 0
+    ? std::make_unique<vtkSPHRanksLines>(ranks, surface, numbers, plane, options.filled != 0)
     : nullptr;
   if (lines && lines->HasFailed())
   {
@@ -171,38 +127,35 @@ void vtkMarchingCorrectors::FinishDistributed(
   }
   if (!lines)
   {
-    vtkSPHMeasure(ranks, surface, numbers, surface.statistics);
+    vtkSPHMeasure(ranks, surface, numbers.OfPoints, surface.statistics);
   }
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
     all.statistics = surface.statistics;
-    all.point_count = points;
-    all.triangle_count = triangles;
+    all.point_count = numbers.Points;
+    all.triangle_count = numbers.Triangles;
     all.line_count = lines ? lines->GetCount() : 0;
     all.attribute_not_finite = surface.attribute_not_finite;
-    mcor_input input = run.Input.Core;
-    input.count = run.Particles;
-    mcor_options whole = run.Options; // with globals, the core takes all of this for a part
-    whole.globals = nullptr;
-    whole.dimension = this->Dimension; // as asked for, not as found
-    this->WarnOf(run.Input, all, input, whole);
+    mcor_input core = input.Core;
+    core.count = run.Particles;
+    mcor_options asked = options;
+    asked.dimension = this->Dimension; // not as found
+    this->WarnOf(input, all, core, asked);
   }
-  this->Summarize(run.Input, run.Options, surface.statistics);
-  vtkMarchingCorrectorsOutput builder(run.Input, run.Options, surface);
+  this->Summarize(input, options, surface.statistics);
+  vtkMarchingCorrectorsOutput builder(input, options, surface);
   builder.AddRun(this->RunStatistics);
-  vtkSPHAddCount(this->RunStatistics, "Points", { points });
-  vtkSPHAddCount(this->RunStatistics, "Triangles", { triangles });
+  vtkSPHAddCount(this->RunStatistics, "Points", { numbers.Points });
+  vtkSPHAddCount(this->RunStatistics, "Triangles", { numbers.Triangles });
   if (lines)
   {
     vtkSPHAddCount(this->RunStatistics, "Lines", { lines->GetCount() });
   }
   vtkSPHAddShares(this->RunStatistics, shares);
-  builder.BuildMesh(output, this->OutputPointsPrecision,
-    [&ranks](std::vector<double>& ends)
-    { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
-  output->GetPointData()->SetGlobalIds(numbers);
-  output->GetCellData()->SetGlobalIds(triangleNumbers);
+  builder.BuildMesh(output, this->OutputPointsPrecision, ranks.MergeRanges());
+  output->GetPointData()->SetGlobalIds(numbers.OfPoints);
+  output->GetCellData()->SetGlobalIds(numbers.OfTriangles);
   vtkSPHMatchEmpty(ranks, output);
   if (lines)
   {

@@ -7,36 +7,64 @@
 #include "mcor.h"
 #include "mcor_parts.h"
 #include "vtkPointSet.h"
-#include "vtkPolyData.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHRanks.h"
 #include "vtkSPHRanksCalls.h"
 #include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksRun.h"
 
-#include <limits>
+#include <algorithm>
 #include <string>
-#include <vector>
 
-bool vtkSPHAlgorithm::CallCoreDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
-  mcor_options& options, const std::function<int(mcor_context*)>& call,
-  const std::function<void(const double at[3], double reach, std::vector<int>& found)>& near)
+bool vtkSPHAlgorithm::BeginDistributed(
+  vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken)
 {
-  int place, count;
-  ranks.FindNeighbors(place, count);
-  vtkSPHRanksCalls calls(ranks, near);
-  options.ranks = calls.Get();
-  std::string message;
-  const int status = this->RunCore(particles, options, call, message, place, count);
-  options.ranks = nullptr;
-  calls.End(status != MCOR_OK);
-  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
-  ranks.Reduce(vtkSPHRanks::GREATEST, &cancelled, 1);
-  const bool good = ranks.Agree(message);
-  if (!good)
+  run.Own = vtkSPHTakeParticles(run.Ranks, particles, taken);
+  std::int64_t counts[2] = { run.Own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
+  run.Ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
+  run.Particles = counts[0];
+  return counts[1] == 0;
+}
+
+bool vtkSPHAlgorithm::AcceptDistributed(
+  vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
+{
+  this->SetUsedNames(&particles);
+  if (!this->AgreeDistributed(run.Ranks, isUsable ? "" : particles.Error))
   {
-    this->Fail(message);
+    return false;
   }
-  return good && cancelled == 0;
+  std::int64_t fluid = particles.FluidCount;
+  run.Ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
+  run.HasFluid = fluid > 0;
+  if (run.Ranks.GetRank() == 0)
+  {
+    this->WarnOfFluid(particles, fluid, consequence);
+  }
+  return true;
+}
+
+bool vtkSPHAlgorithm::MeasureDistributed(
+  vtkSPHRanksRun& run, vtkSPHParticles& particles, bool forSamples)
+{
+  const auto measure = forSamples ? mcor_measure_probe_globals : mcor_measure_globals;
+  if (!this->SetPeriodDistributed(run.Own, run.Options) ||
+    !this->CallCoreDistributed(run, particles,
+      [&](mcor_context* context)
+      { return measure(context, &particles.Core, &run.Options, &run.Globals); }))
+  {
+    return false;
+  }
+  run.Options.dimension = run.Globals.measured.plane.axis > 0 ? 2 : 3;
+  return true;
+}
+
+void vtkSPHAlgorithm::ShareDistributed(vtkSPHRanksRun& run, const mcor_input& input,
+  vtkPolyData* particles, const vtkSPHRanksBalance& balance)
+{
+  run.Route = vtkSPHFindRoute(run.Ranks, input, run.Options, run.Globals, balance);
+  run.Near = vtkSPHSendParticles(run.Ranks, particles, run.Route.To, &run.From);
+  run.Options.globals = &run.Globals;
+  std::copy(run.Route.Box, run.Route.Box + 6, run.Options.box);
 }
 
 bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
@@ -49,61 +77,20 @@ bool vtkSPHAlgorithm::AgreeDistributed(vtkSPHRanks& ranks, std::string problem)
   return good;
 }
 
-bool vtkSPHAlgorithm::HasFluidDistributed(
-  vtkSPHRanks& ranks, vtkSPHParticles& particles, const std::string& consequence)
+bool vtkSPHAlgorithm::CallCoreDistributed(
+  vtkSPHRanksRun& run, vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call)
 {
-  std::int64_t fluid = particles.FluidCount;
-  ranks.Reduce(vtkSPHRanks::SUM, &fluid, 1);
-  if (ranks.GetRank() == 0)
-  {
-    this->WarnOfFluid(particles, fluid, consequence);
-  }
-  return fluid > 0;
-}
-
-bool vtkSPHAlgorithm::MeasureGlobalsDistributed(vtkSPHRanks& ranks, vtkSPHParticles& particles,
-  mcor_options& options, bool forSamples, mcor_globals& globals)
-{
-  const auto measure = forSamples ? mcor_measure_probe_globals : mcor_measure_globals;
-  if (!this->CallCoreDistributed(ranks, particles, options,
-        [&](mcor_context* context)
-        { return measure(context, &particles.Core, &options, &globals); }))
-  {
-    return false;
-  }
-  const int axis = globals.measured.plane.axis - 1;
-  options.dimension = axis >= 0 ? 2 : 3;
-  if (axis >= 0)
-  { // a period across the plane means nothing
-    options.periodic[2 * axis] = options.periodic[2 * axis + 1] = 0.0;
-    double* box = options.box + 2 * axis;
-    if (mcor_has_box(&options) && box[0] == box[1] && box[0] == globals.measured.plane.at)
-    {
-      box[0] = -std::numeric_limits<double>::infinity(); // flat boxes cannot be divided
-      box[1] = -box[0];
-    }
-  }
-  return true;
-}
-
-// All have the same arrays; what varies on one of them varies.
-vtkSPHRequest vtkSPHAlgorithm::FindFirstRequestDistributed(
-  vtkSPHRanks& ranks, vtkPointSet* particles)
-{
-  return this->FindFirstRequest(particles,
-    [&ranks](std::vector<double>& ends)
-    { ranks.Reduce(vtkSPHRanks::LEAST, ends.data(), static_cast<int>(ends.size())); });
-}
-
-// All have the same arrays, or no particles.
-void vtkSPHAlgorithm::FindFluidDistributed(
-  vtkSPHRanks& ranks, vtkSPHParticlesChoice& choice, vtkPointSet* particles)
-{
-  if (this->DetectFluid)
-  {
-    vtkSPHParticles::FindFluid(
-      choice, particles, [&ranks](double ends[2]) { ranks.Reduce(vtkSPHRanks::LEAST, ends, 2); });
-  }
+  int place, count;
+  run.Ranks.FindNeighbors(place, count);
+  vtkSPHRanksCalls calls(run.Ranks, run.Route.Partition ? &run.Route : nullptr);
+  run.Options.ranks = calls.Get();
+  std::string message;
+  const int status = this->RunCore(particles, run.Options, call, message, place, count);
+  run.Options.ranks = nullptr;
+  calls.End(status != MCOR_OK);
+  std::int64_t cancelled = status == MCOR_CANCELLED && !calls.WasStopped() ? 1 : 0;
+  run.Ranks.Reduce(vtkSPHRanks::GREATEST, &cancelled, 1);
+  return this->AgreeDistributed(run.Ranks, message) && cancelled == 0;
 }
 
 int vtkSPHAlgorithm::FindDimensionDistributed(vtkPointSet* particles)
@@ -111,7 +98,7 @@ int vtkSPHAlgorithm::FindDimensionDistributed(vtkPointSet* particles)
   vtkSPHParticlesChoice choice(*this);
   vtkSPHRanks ranks(this->Controller);
   const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
-  this->FindFluidDistributed(ranks, choice, own);
+  this->FindFluid(choice, own, ranks.MergeRanges());
   vtkSPHRanksCalls calls(ranks);
   const int found = vtkSPHParticles(choice, own).FindDimension(calls.Get(), this->Dimension);
   calls.End(false);

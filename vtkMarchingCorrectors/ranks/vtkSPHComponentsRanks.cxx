@@ -9,7 +9,6 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
@@ -19,154 +18,98 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksTuples.h"
 #include "vtkTable.h"
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace
 {
-using Lists = std::vector<std::vector<vtkIdType>>;
+using Ids = std::vector<vtkIdType>;
 
-/** All of so many tuples, to the first rank. */
-Lists ToFirst(vtkSPHRanks& ranks, vtkIdType count)
+/** Numbers as ids, whatever type they have. */
+Ids NumbersOf(vtkDataSetAttributes* data, vtkIdType count)
 {
-  Lists to(static_cast<std::size_t>(ranks.GetCount()));
-  to[0].resize(static_cast<std::size_t>(count));
-  std::iota(to[0].begin(), to[0].end(), vtkIdType(0));
-  return to;
+  Ids numbers;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    numbers.push_back(static_cast<vtkIdType>(data->GetGlobalIds()->GetComponent(i, 0)));
+  }
+  return numbers;
 }
 
-/** What was sent to the first rank: arrays of all, numbers of the tuples in the whole, and how many came from
- * each. */
-struct Sent
+std::vector<double> ListPlaces(vtkPolyData* mesh)
 {
-  vtkNew<vtkDoubleArray> Values;
-  vtkNew<vtkIdTypeArray> Numbers, Corners;
-  std::vector<vtkIdType> From;
-
-  void Receive(
-    vtkSPHRanks& ranks, const vtkSPHRanksArrays& own, vtkIdType count, const vtkSPHRanksArrays& all)
+  std::vector<double> places(3 * static_cast<std::size_t>(mesh->GetNumberOfPoints()));
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
   {
-    const std::vector<vtkSPHRanks::Bytes> received =
-      vtkSPHSendTuples(ranks, own, ToFirst(ranks, count));
-    this->From = vtkSPHCountTuples(received);
-    const vtkIdType total = std::accumulate(this->From.begin(), this->From.end(), vtkIdType(0));
-    for (vtkAbstractArray* array : all)
-    {
-      array->SetNumberOfTuples(total);
-    }
-    vtkSPHReceiveTuples(received, all);
+    mesh->GetPoint(i, &places[3 * static_cast<std::size_t>(i)]);
   }
-};
+  return places;
+}
 
-/** The corners of this rank's triangles by the points' numbers in the whole. */
-vtkSmartPointer<vtkIdTypeArray> ListCorners(vtkPolyData* mesh, vtkIdTypeArray* numbers)
+/** The corners of triangles by the points' numbers in the whole. */
+Ids ListCorners(vtkPolyData* mesh, const Ids& numbers)
 {
-  auto corners = vtkSmartPointer<vtkIdTypeArray>::New();
+  Ids corners;
   vtkNew<vtkIdList> triangle;
-  corners->SetNumberOfComponents(3);
-  corners->SetNumberOfTuples(mesh->GetNumberOfPolys());
   for (vtkIdType t = 0; t < mesh->GetNumberOfPolys(); ++t)
   {
     mesh->GetPolys()->GetCellAtId(t, triangle);
     for (int i = 0; i < 3; ++i)
     {
-      corners->SetTypedComponent(t, i, numbers->GetValue(triangle->GetId(i)));
+      corners.push_back(numbers[static_cast<std::size_t>(triangle->GetId(i))]);
     }
   }
   return corners;
 }
 
-/** Numbers as ids, whatever type they have. */
-vtkSmartPointer<vtkIdTypeArray> NumbersOf(vtkDataSetAttributes* data, vtkIdType count)
-{
-  auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
-  numbers->SetNumberOfTuples(count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    numbers->SetValue(i, static_cast<vtkIdType>(data->GetGlobalIds()->GetComponent(i, 0)));
-  }
-  return numbers;
-}
-
-vtkIdType CountOf(vtkIdTypeArray* numbers)
+/** How many there are in the whole. */
+vtkIdType CountOf(const vtkSPHRanksLists& numbers)
 {
   vtkIdType count = 0;
-  for (vtkIdType i = 0; i < numbers->GetNumberOfTuples(); ++i)
+  for (const Ids& theirs : numbers)
   {
-    count = std::max(count, numbers->GetValue(i) + 1);
+    count =
+      theirs.empty() ? count : std::max(count, 1 + *std::max_element(theirs.begin(), theirs.end()));
   }
   return count;
 }
 
-/** The whole surface, in the order of its numbers. */
-vtkSmartPointer<vtkPolyData> PutTogether(const Sent& points, const Sent& triangles)
+/**
+ * Sends what the first rank knows of the whole back: pieces, and numbers among those that stay. Returns the
+ * pieces of this rank's; `numbers` become the new ones, of those that stay.
+ */
+Ids Return(
+  vtkSPHRanks& ranks, const vtkSPHRanksLists& sent, const Ids& pieces, vtkIdTypeArray* numbers)
 {
-  auto whole = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> places;
-  places->SetDataTypeToDouble();
-  places->SetNumberOfPoints(CountOf(points.Numbers));
-  for (vtkIdType i = 0; i < points.Numbers->GetNumberOfTuples(); ++i)
-  {
-    places->SetPoint(points.Numbers->GetValue(i), points.Values->GetPointer(3 * i));
-  }
-  vtkNew<vtkIdTypeArray> corners;
-  corners->SetNumberOfValues(3 * CountOf(triangles.Numbers));
-  for (vtkIdType t = 0; t < triangles.Numbers->GetNumberOfTuples(); ++t)
-  {
-    std::copy_n(triangles.Corners->GetPointer(3 * t), 3,
-      corners->GetPointer(3 * triangles.Numbers->GetValue(t)));
-  }
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(3, corners);
-  whole->SetPoints(places);
-  whole->SetPolys(cells);
-  return whole;
-}
-
-/** Sends what the first rank knows of the whole back: pieces, and numbers among those that stay. Returns the
- * pieces of this rank's; `numbers` become the new ones, of those that stay. */
-std::vector<vtkIdType> Return(vtkSPHRanks& ranks, const Sent& sent,
-  const std::vector<vtkIdType>& pieces, vtkIdType count, vtkIdTypeArray* numbers)
-{
-  std::vector<vtkIdType> place(pieces.size());
+  using Answer = std::array<vtkIdType, 2>;
+  std::vector<Answer> whole;
   vtkIdType next = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i)
+  for (const vtkIdType piece : pieces)
   {
-    place[i] = pieces[i] >= 0 ? next++ : -1;
+    whole.push_back({ piece, piece >= 0 ? next++ : -1 });
   }
-  vtkNew<vtkPointData> results, came;
-  vtkNew<vtkIdTypeArray> both;
-  both->SetName("Numbers");
-  both->SetNumberOfComponents(2);
-  Lists back;
-  vtkIdType at = 0;
-  for (const vtkIdType from : sent.From)
+  std::vector<std::vector<Answer>> answers;
+  for (const Ids& theirs : sent)
   {
-    back.emplace_back();
-    for (const vtkIdType end = at + from; at < end; ++at)
+    answers.emplace_back();
+    for (const vtkIdType number : theirs)
     {
-      const auto number = static_cast<std::size_t>(sent.Numbers->GetValue(at));
-      both->InsertNextTypedTuple(
-        std::array<vtkIdType, 2>{ { pieces[number], place[number] } }.data());
-      back.back().push_back(at);
+      answers.back().push_back(whole[static_cast<std::size_t>(number)]);
     }
   }
-  results->AddArray(both);
-  vtkSPHReturnArrays(ranks, results, at, back, ToFirst(ranks, count), count, came);
-  std::vector<vtkIdType> own(static_cast<std::size_t>(count));
-  vtkDataArray* answer = came->GetArray("Numbers");
-  numbers->Reset();
-  for (vtkIdType i = 0; i < count; ++i)
+  answers = ranks.Exchange(std::move(answers));
+  Ids own;
+  for (const Answer& answer : answers[0])
   {
-    own[static_cast<std::size_t>(i)] = static_cast<vtkIdType>(answer->GetComponent(i, 0));
-    if (own[static_cast<std::size_t>(i)] >= 0)
+    own.push_back(answer[0]);
+    if (answer[0] >= 0)
     {
-      numbers->InsertNextValue(static_cast<vtkIdType>(answer->GetComponent(i, 1)));
+      numbers->InsertNextValue(answer[1]);
     }
   }
   return own;
@@ -201,7 +144,10 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
       fluid->GetPointData()->AddArray(array);
     }
   }
-  return vtkSPHSendParticles(ranks, fluid, ToFirst(ranks, own->GetNumberOfPoints())).Get();
+  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount()));
+  to[0].resize(static_cast<std::size_t>(own->GetNumberOfPoints()));
+  std::iota(to[0].begin(), to[0].end(), vtkIdType(0));
+  return vtkSPHSendParticles(ranks, fluid, to).Get();
 }
 
 // Returns what is wrong, on all ranks alike; nothing here may return on one of them and go on on another.
@@ -226,26 +172,29 @@ std::string vtkSPHComponents::SplitDistributed(
   ranks.Reduce(vtkSPHRanks::GREATEST, &given, 1);
   const vtkSmartPointer<vtkPointSet> all =
     given > 0 ? this->GatherParticles(ranks, particles) : nullptr;
-  const vtkSmartPointer<vtkIdTypeArray> pointNumbers = NumbersOf(mesh->GetPointData(), pointCount);
-  const vtkSmartPointer<vtkIdTypeArray> triangleNumbers =
-    NumbersOf(mesh->GetCellData(), triangleCount);
-  vtkNew<vtkDoubleArray> places;
-  places->SetNumberOfComponents(3);
-  if (mesh->GetPoints())
-  {
-    places->DeepCopy(mesh->GetPoints()->GetData());
-  }
-  Sent points, triangles;
-  points.Values->SetNumberOfComponents(3);
-  triangles.Corners->SetNumberOfComponents(3);
-  points.Receive(ranks, { places, pointNumbers }, pointCount, { points.Values, points.Numbers });
-  triangles.Receive(ranks, { ListCorners(mesh, pointNumbers), triangleNumbers }, triangleCount,
-    { triangles.Corners, triangles.Numbers });
-  const Numbers whole = this->Split(PutTogether(points, triangles), all, table);
-  const Numbers own = { Return(ranks, points, whole.OfPoint, pointCount, pointNumbers),
-    Return(ranks, triangles, whole.OfTriangle, triangleCount, triangleNumbers) };
+  const Ids pointNumbers = NumbersOf(mesh->GetPointData(), pointCount);
+  const vtkSPHRanksLists points = ranks.GatherOnFirst(pointNumbers),
+                         triangles =
+                           ranks.GatherOnFirst(NumbersOf(mesh->GetCellData(), triangleCount));
+  vtkNew<vtkPoints> places;
+  vtkNew<vtkIdTypeArray> corners;
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkPolyData> whole;
+  places->SetDataTypeToDouble();
+  places->SetNumberOfPoints(CountOf(points));
+  corners->SetNumberOfValues(3 * CountOf(triangles));
+  vtkSPHPlaceOnFirst(
+    ranks, points, ListPlaces(mesh), static_cast<double*>(places->GetVoidPointer(0)));
+  vtkSPHPlaceOnFirst(ranks, triangles, ListCorners(mesh, pointNumbers), corners->GetPointer(0));
+  cells->SetData(3, corners);
+  whole->SetPoints(places);
+  whole->SetPolys(cells);
+  const Numbers found = this->Split(whole, all, table);
+  vtkNew<vtkIdTypeArray> newPoints, newTriangles;
+  const Numbers own = { Return(ranks, points, found.OfPoint, newPoints),
+    Return(ranks, triangles, found.OfTriangle, newTriangles) };
   Keep(mesh, own, output);
-  Renumber(output->GetPointData(), pointNumbers);
-  Renumber(output->GetCellData(), triangleNumbers);
+  Renumber(output->GetPointData(), newPoints);
+  Renumber(output->GetCellData(), newTriangles);
   return "";
 }

@@ -6,7 +6,6 @@
 #include "vtkSPHDerivatives.h"
 
 #include "mcor.h"
-#include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -14,32 +13,26 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHDerivativesWanted.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksRun.h"
 #include "vtkSPHRanksStatistics.h"
+#include "vtkSPHRanksTuples.h"
 
-#include <algorithm>
 #include <memory>
 
 namespace
 {
-using Lists = std::vector<std::vector<vtkIdType>>;
-
-/** Of particles that came, those from each rank that this one owns. */
-Lists ListOwned(
-  vtkPolyData* near, const std::vector<vtkIdType>& from, const vtkSPHRanksRoute& route, int self)
+/** Of the particles that came, those from each rank that this one owns. */
+vtkSPHRanksLists ListOwned(const vtkSPHRanksRun& run)
 {
-  Lists owned;
+  vtkSPHRanksLists owned;
   vtkIdType next = 0;
-  for (const vtkIdType count : from)
+  for (const vtkIdType count : run.From)
   {
     owned.emplace_back();
     for (const vtkIdType end = next + count; next < end; ++next)
     {
-      double at[3];
-      near->GetPoint(next, at);
-      if (route.FindOwner(at) == self)
+      if (run.Route.FindOwner(run.Near->GetPoint(next)) == run.Ranks.GetRank())
       {
         owned.back().push_back(next);
       }
@@ -47,119 +40,94 @@ Lists ListOwned(
   }
   return owned;
 }
-
-/** Of this rank's particles, the numbers of those that each rank owns. */
-Lists ListOwners(vtkPolyData* own, vtkIdList* numbers, const vtkSPHRanksRoute& route, int ranks)
-{
-  Lists owners(static_cast<std::size_t>(ranks));
-  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
-  {
-    double at[3];
-    own->GetPoint(i, at);
-    owners[static_cast<std::size_t>(route.FindOwner(at))].push_back(numbers->GetId(i));
-  }
-  return owners;
-}
 }
 
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* output)
 {
-  vtkSPHRanks ranks(this->Controller);
-  vtkNew<vtkIdList> numbers;
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles, numbers);
-  std::int64_t counts[2] = { own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
-  if (counts[1] > 0)
+  vtkSPHRanksRun run(this->Controller);
+  std::vector<vtkIdType> numbers;
+  if (!this->BeginDistributed(run, particles, &numbers))
   {
     return;
   }
-  bool hasFluid = false;
+  const auto merge = run.Ranks.MergeRanges();
   vtkSPHParticlesChoice choice(*this);
-  this->FindFluidDistributed(ranks, choice, own);
-  vtkSPHParticles mine(choice, own);
-  if (counts[0] > 0)
+  this->FindFluid(choice, run.Own, merge);
+  vtkSPHParticles mine(choice, run.Own);
+  if (run.Particles > 0)
   {
     const bool isUsable =
-      mine.CollectArray(this->FindFirstRequestDistributed(ranks, own)) && mine.CollectParticles();
-    this->SetUsedNames(&mine);
-    if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
+      mine.CollectArray(this->FindFirstRequest(run.Own, merge)) && mine.CollectParticles();
+    if (!this->AcceptDistributed(run, mine, isUsable, "there are no derivatives"))
     {
       return;
     }
-    hasFluid = this->HasFluidDistributed(ranks, mine, "there are no derivatives");
   }
-  vtkNew<vtkPointData> found;
-  const vtkIdType count = particles ? particles->GetNumberOfPoints() : 0;
-  if ((!hasFluid || this->DeriveDistributed(ranks, own, mine, numbers, count, found)) &&
-    particles && output)
+  if (run.HasFluid)
+  {
+    this->DeriveDistributed(run, mine, numbers, particles, output);
+  }
+  else if (particles && output)
   {
     output->ShallowCopy(particles);
-    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
-    {
-      output->GetPointData()->AddArray(found->GetArray(i));
-    }
   }
 }
 
-bool vtkSPHDerivatives::DeriveDistributed(vtkSPHRanks& ranks, vtkPolyData* own,
-  vtkSPHParticles& mine, vtkIdList* numbers, vtkIdType count, vtkPointData* results)
+// `numbers`: which of the particles the run has.
+void vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
+  const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output)
 {
-  const vtkWanted wanted = this->ListWanted(own);
+  const vtkWanted wanted = this->ListWanted(run.Own);
   const mcor_gradient form =
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
-  mcor_options options;
-  this->FillOptions(options);
-  if (!this->SetPeriodDistributed(ranks, own, options))
+  this->FillOptions(run.Options);
+  if (!this->MeasureDistributed(run, mine, true))
   {
-    return false;
-  }
-  mcor_globals globals = {};
-  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
-    &globals, mcor_free_globals);
-  if (!this->MeasureGlobalsDistributed(ranks, mine, options, true, globals))
-  {
-    return false;
+    return;
   }
   const std::string name = mine.Interpolated[0].Name;
-  if (globals.components[0].not_finite >= 0)
+  if (run.Globals.components[0].not_finite >= 0)
   {
-    this->FailNotFinite(name, globals.components[0].not_finite);
-    return false;
+    this->FailNotFinite(name, run.Globals.components[0].not_finite);
+    return;
   }
-  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals);
-  std::vector<vtkIdType> from;
-  const vtkSmartPointer<vtkPolyData> near =
-    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To, &from);
-  vtkSPHParticles input(mine.Description, near);
-  const vtkSPHRequest request = { near->GetPointData()->GetAbstractArray(name.c_str()), name,
+  this->ShareDistributed(run, mine.Core, vtkSPHKeepUsed(run.Own, mine), {});
+  vtkSPHParticles input(mine.Description, run.Near);
+  const vtkSPHRequest request = { run.Near->GetPointData()->GetAbstractArray(name.c_str()), name,
     true };
   const bool isUsable = input.CollectArray(request) && input.CollectParticles();
-  if (!this->AgreeDistributed(ranks, isUsable ? "" : input.Error))
+  if (!this->AgreeDistributed(run.Ranks, isUsable ? "" : input.Error))
   {
-    return false;
+    return;
   }
-  options.globals = &globals;
-  std::copy(route.Box, route.Box + 6, options.box);
   mcor_derivatives derivatives = {};
   const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(
     &derivatives, mcor_free_derivatives);
-  if (!this->CallCoreDistributed(ranks, input, options,
+  if (!this->CallCoreDistributed(run, input,
         [&](mcor_context* context)
-        { return mcor_derive(context, &input.Core, &options, form, &derivatives); }))
+        { return mcor_derive(context, &input.Core, &run.Options, form, &derivatives); }))
   {
-    return false;
+    return;
   }
   vtkNew<vtkPointData> found;
   const bool hasRoom = wanted.AddTo(found, derivatives, input.Interpolated[0]);
-  if (!this->AgreeDistributed(ranks, hasRoom ? "" : vtkWanted::DescribeNoMemory(derivatives.count)))
+  if (!this->AgreeDistributed(
+        run.Ranks, hasRoom ? "" : vtkWanted::DescribeNoMemory(derivatives.count)))
   {
-    return false;
+    return;
   }
-  vtkSPHReturnArrays(ranks, found, near->GetNumberOfPoints(),
-    ListOwned(near, from, route, ranks.GetRank()),
-    ListOwners(own, numbers, route, ranks.GetCount()), count, results);
+  const vtkSPHRanksLists home = vtkSPHListAt(run.Route.ListOwners(run.Own), numbers);
+  const vtkSPHRanksArrays came = vtkSPHReturnTuples(run.Ranks, vtkSPHListArrays(found),
+    ListOwned(run), home, particles ? particles->GetNumberOfPoints() : 0);
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
-  vtkSPHAddSampleShares(ranks, this->RunStatistics, route, route.OwnedParticles);
-  return true;
+  vtkSPHAddSampleShares(run.Ranks, this->RunStatistics, run.Route, run.Route.OwnedParticles);
+  if (particles && output)
+  {
+    output->ShallowCopy(particles);
+    for (const auto& array : came)
+    {
+      output->GetPointData()->AddArray(array);
+    }
+  }
 }

@@ -10,14 +10,12 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHRanks.h"
-#include "vtkSPHRanksBytes.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksRun.h"
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <set>
@@ -29,9 +27,10 @@ namespace
 constexpr double MarginCubes = 4.0;
 
 /** Around the lines, as far as there are particles; along periods, everywhere. */
-void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& globals,
-  const double periodic[6], double box[6])
+void FindBox(
+  const std::vector<mcor_gauge_line>& lines, const mcor_globals& globals, mcor_options& options)
 {
+  const vtkSPHRanksPeriod period(options, globals);
   const double infinity = std::numeric_limits<double>::infinity();
   for (int a = 0; a < 3; ++a)
   {
@@ -43,10 +42,10 @@ void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& glob
     }
     const auto clamp = [&](double x)
     { return std::min(std::max(x, globals.measured.low[a]), globals.measured.high[a]); };
-    const bool isPeriodic = periodic[2 * a] < periodic[2 * a + 1];
+    const bool isPeriodic = period.Length[a] > 0.0;
     const double margin = MarginCubes * globals.measured.cube;
-    box[2 * a] = isPeriodic ? -infinity : clamp(low) - margin;
-    box[2 * a + 1] = isPeriodic ? infinity : clamp(high) + margin;
+    options.box[2 * a] = isPeriodic ? -infinity : clamp(low) - margin;
+    options.box[2 * a + 1] = isPeriodic ? infinity : clamp(high) + margin;
   }
 }
 }
@@ -55,30 +54,26 @@ void FindBox(const std::vector<mcor_gauge_line>& lines, const mcor_globals& glob
 std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   vtkSPHRanks& ranks, const std::vector<Gauge>& mine)
 {
-  vtkSPHRanks::Bytes bytes;
-  vtkSPHPutNumber(bytes, static_cast<std::int64_t>(mine.size()));
+  using Known =
+    std::pair<std::string, std::string>; // name, and bytes of ends, which may be no numbers
+  std::vector<Known> own;
   for (const Gauge& gauge : mine)
   {
-    vtkSPHPutText(bytes, gauge.Name);
-    vtkSPHPutBytes(bytes, gauge.Ends.data(), sizeof(gauge.Ends));
+    own.emplace_back(gauge.Name,
+      std::string(reinterpret_cast<const char*>(gauge.Ends.data()), sizeof(gauge.Ends)));
   }
   std::vector<Gauge> all;
-  std::set<std::pair<std::string, std::string>>
-    known; // names and bytes of ends, which may be no numbers
-  for (const vtkSPHRanks::Bytes& theirs : ranks.Gather(bytes))
+  std::set<Known> known;
+  for (const std::vector<Known>& theirs : ranks.Gather(own))
   {
-    std::set<std::pair<std::string, std::string>> before = known;
-    vtkSPHRanksReader reader(theirs);
-    for (std::int64_t count = reader.GetNumber(); count > 0; --count)
+    const std::set<Known> before = known; // two of one process are for CheckNames()
+    for (const Known& one : theirs)
     {
-      Gauge gauge;
-      gauge.Name = reader.GetText();
-      reader.GetBytes(gauge.Ends.data(), sizeof(gauge.Ends));
-      const std::string ends(reinterpret_cast<const char*>(gauge.Ends.data()), sizeof(gauge.Ends));
-      if (before.count({ gauge.Name, ends }) == 0) // two of one process are for CheckNames()
+      if (before.count(one) == 0)
       {
-        known.insert({ gauge.Name, ends });
-        all.push_back(gauge);
+        known.insert(one);
+        all.push_back({ one.first, {} });
+        std::memcpy(all.back().Ends.data(), one.second.data(), one.second.size());
       }
     }
   }
@@ -88,82 +83,67 @@ std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
 {
-  vtkSPHRanks ranks(this->Controller);
-  const std::vector<Gauge> gauges = Merge(ranks, this->ListGauges());
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
-  std::int64_t counts[2] = { own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
-  if (counts[1] > 0 || !this->CheckNames(gauges))
+  vtkSPHRanksRun run(this->Controller);
+  const std::vector<Gauge> gauges = Merge(run.Ranks, this->ListGauges());
+  if (!this->BeginDistributed(run, particles) || !this->CheckNames(gauges))
   {
     return;
   }
   vtkSPHParticlesChoice choice(*this);
-  this->FindFluidDistributed(ranks, choice, own);
-  vtkSPHParticles mine(choice, own);
-  const bool isUsable = counts[0] == 0 || mine.CollectParticles();
-  this->SetUsedNames(counts[0] > 0 ? &mine : nullptr);
-  if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
+  this->FindFluid(choice, run.Own, run.Ranks.MergeRanges());
+  vtkSPHParticles mine(choice, run.Own);
+  if (run.Particles > 0 &&
+    !this->AcceptDistributed(run, mine, mine.CollectParticles(), "all gauges are dry"))
   {
     return;
   }
-  if (counts[0] > 0 && this->HasFluidDistributed(ranks, mine, "all gauges are dry"))
+  if (run.HasFluid)
   {
-    this->MeasureDistributed(ranks, own, mine, gauges, output);
+    this->GaugeDistributed(run, mine, gauges, output);
   }
   else
   {
-    this->Measure(mine, own, gauges, output); // nothing, on all of them
+    this->Measure(mine, run.Own, gauges, output); // nothing, on all of them
   }
-  if (ranks.GetRank() > 0)
+  if (run.Ranks.GetRank() > 0)
   {
     output->SetNumberOfRows(0);
   }
 }
 
-void vtkSPHGauge::MeasureDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-  const std::vector<Gauge>& gauges, vtkTable* output)
+void vtkSPHGauge::GaugeDistributed(
+  vtkSPHRanksRun& run, vtkSPHParticles& mine, const std::vector<Gauge>& gauges, vtkTable* output)
 {
-  mcor_options options;
+  mcor_options& options = run.Options;
   this->FillOptions(options);
-  if (!this->SetPeriodDistributed(ranks, own, options))
-  {
-    return;
-  }
   options.field = MCOR_WEIGHT_SUM;
   options.level_limit = 0;
   options.iso_values = &this->Level;
   options.iso_count = 1;
-  mcor_globals globals = {};
-  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
-    &globals, mcor_free_globals);
-  if (!this->MeasureGlobalsDistributed(ranks, mine, options, false, globals))
+  if (!this->MeasureDistributed(run, mine, false))
   {
     return;
   }
   const std::vector<mcor_gauge_line> lines = ListLines(gauges);
-  FindBox(lines, globals, options.periodic, options.box);
-  const vtkSPHRanksRoute route = vtkSPHFindRoute(ranks, mine.Core, options, globals);
-  const vtkSmartPointer<vtkPolyData> near =
-    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
-  vtkSPHParticles input(mine.Description, near);
-  if (!this->AgreeDistributed(ranks, input.CollectParticles() ? "" : input.Error))
+  FindBox(lines, run.Globals, options);
+  this->ShareDistributed(run, mine.Core, vtkSPHKeepUsed(run.Own, mine), {});
+  vtkSPHParticles input(mine.Description, run.Near);
+  if (!this->AgreeDistributed(run.Ranks, input.CollectParticles() ? "" : input.Error))
   {
     return;
   }
-  options.globals = &globals;
-  std::copy(route.Box, route.Box + 6, options.box);
   mcor_gauges found = {};
   const std::unique_ptr<mcor_gauges, decltype(&mcor_free_gauges)> freeGauges(
     &found, mcor_free_gauges);
   const auto count = static_cast<std::int64_t>(lines.size());
-  if (!this->CallCoreDistributed(ranks, input, options,
+  if (!this->CallCoreDistributed(run, input,
         [&](mcor_context* context)
         { return mcor_gauge(context, &input.Core, &options, lines.data(), count, &found); }))
   {
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
-  if (ranks.GetRank() > 0)
+  if (run.Ranks.GetRank() > 0)
   {
     mcor_free_gauges(&found); // the first one has the table, and says what there is to say
   }

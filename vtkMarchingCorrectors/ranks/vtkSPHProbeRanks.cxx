@@ -13,21 +13,18 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
-#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRanksRun.h"
 #include "vtkSPHRanksStatistics.h"
+#include "vtkSPHRanksTuples.h"
 #include "vtkSPHSamples.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 namespace
 {
-using Lists = std::vector<std::vector<vtkIdType>>;
-
 /** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
 constexpr double MarginCubes = 4.0;
 
@@ -60,20 +57,21 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkDataSet* data, std::vector<vtkIdType>
 void FindBox(
   vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, double margin, double box[6])
 {
-  double sides[6];
-  std::fill_n(sides, 6, std::numeric_limits<double>::infinity());
-  for (const vtkSPHRanksPlace& place : places)
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
   {
-    for (int a = 0; a < 3; ++a)
+    box[2 * a] = infinity;
+    box[2 * a + 1] = -infinity;
+    for (const vtkSPHRanksPlace& place : places)
     {
-      sides[2 * a] = std::min(sides[2 * a], place.At[a]);
-      sides[2 * a + 1] = std::min(sides[2 * a + 1], -place.At[a]);
+      box[2 * a] = std::min(box[2 * a], place.At[a]);
+      box[2 * a + 1] = std::max(box[2 * a + 1], place.At[a]);
     }
   }
-  ranks.Reduce(vtkSPHRanks::LEAST, sides, 6);
+  ranks.ReduceRanges(box, 3);
   for (int side = 0; side < 6; ++side)
   {
-    box[side] = side % 2 == 0 ? sides[side] - margin : -sides[side] + margin;
+    box[side] += side % 2 == 0 ? -margin : margin;
   }
 }
 
@@ -90,36 +88,10 @@ std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points, const vtkSPHRanksP
   return places;
 }
 
-/** Of points, those that each rank owns. */
-Lists ListOwners(vtkPolyData* points, const vtkSPHRanksRoute& route, int ranks)
-{
-  Lists owners(static_cast<std::size_t>(ranks));
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-  {
-    double at[3];
-    points->GetPoint(i, at);
-    owners[static_cast<std::size_t>(route.FindOwner(at))].push_back(i);
-  }
-  return owners;
-}
-
-/** What stands at these places of the numbers. */
-Lists ListAt(Lists places, const std::vector<vtkIdType>& numbers)
-{
-  for (std::vector<vtkIdType>& list : places)
-  {
-    for (vtkIdType& place : list)
-    {
-      place = numbers[static_cast<std::size_t>(place)];
-    }
-  }
-  return places;
-}
-
 /** Numbers one after the other, so many for each rank. */
-Lists ListInTurn(const std::vector<vtkIdType>& counts)
+vtkSPHRanksLists ListInTurn(const std::vector<vtkIdType>& counts)
 {
-  Lists lists;
+  vtkSPHRanksLists lists;
   vtkIdType next = 0;
   for (const vtkIdType count : counts)
   {
@@ -149,23 +121,19 @@ std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor
 // Nothing here may return on one rank and go on on another: what one finds, all agree on first.
 void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
 {
-  vtkSPHRanks ranks(this->Controller);
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
-  std::int64_t counts[3] = { own->GetNumberOfPoints(), points ? points->GetNumberOfPoints() : 0,
-    this->IsAborted() ? 1 : 0 };
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 3);
-  if (counts[2] > 0)
+  vtkSPHRanksRun run(this->Controller);
+  if (!this->BeginDistributed(run, this->Particles))
   {
     return;
   }
+  std::int64_t pointCount = points ? points->GetNumberOfPoints() : 0;
+  run.Ranks.Reduce(vtkSPHRanks::SUM, &pointCount, 1);
   vtkSPHParticlesChoice choice(*this);
-  this->FindFluidDistributed(ranks, choice, own);
-  vtkSPHParticles mine(choice, own);
-  if (counts[0] > 0)
+  this->FindFluid(choice, run.Own, run.Ranks.MergeRanges());
+  vtkSPHParticles mine(choice, run.Own);
+  if (run.Particles > 0)
   {
-    const bool isUsable = mine.CollectParticles();
-    this->SetUsedNames(&mine);
-    if (!this->AgreeDistributed(ranks, isUsable ? "" : mine.Error))
+    if (!this->AcceptDistributed(run, mine, mine.CollectParticles(), "no point is valid"))
     {
       return;
     }
@@ -174,11 +142,9 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
       mine.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
     }
   }
-  const bool hasFluid =
-    counts[0] > 0 && this->HasFluidDistributed(ranks, mine, "no point is valid");
-  if (hasFluid && counts[1] > 0)
+  if (run.HasFluid && pointCount > 0)
   {
-    this->ProbeDistributed(ranks, own, mine, points, output);
+    this->ProbeDistributed(run, mine, points, output);
   }
   else if (points && output)
   {
@@ -191,63 +157,49 @@ void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
   }
 }
 
-bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHParticles& mine,
-  vtkDataSet* points, vtkDataSet* output)
+void vtkSPHProbe::ProbeDistributed(
+  vtkSPHRanksRun& run, vtkSPHParticles& mine, vtkDataSet* points, vtkDataSet* output)
 {
-  mcor_options options;
+  mcor_options& options = run.Options;
   this->FillProbeOptions(options);
-  if (!this->SetPeriodDistributed(ranks, own, options))
+  if (!this->MeasureDistributed(run, mine, true))
   {
-    return false;
+    return;
   }
-  mcor_globals globals = {};
-  const std::unique_ptr<mcor_globals, decltype(&mcor_free_globals)> freeGlobals(
-    &globals, mcor_free_globals);
-  if (!this->MeasureGlobalsDistributed(ranks, mine, options, true, globals))
-  {
-    return false;
-  }
-  std::vector<vtkIdType> numbers;
+  std::vector<vtkIdType> numbers, from;
   const vtkSmartPointer<vtkPolyData> places = TakePoints(points, numbers);
-  const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, globals });
-  FindBox(ranks, within, MarginCubes * globals.measured.cube, options.box);
-  const vtkSPHRanksRoute route =
-    vtkSPHFindRoute(ranks, mine.Core, options, globals, { false, {}, within });
-  const Lists to = ListOwners(places, route, ranks.GetCount());
-  const vtkSmartPointer<vtkPolyData> near =
-    vtkSPHSendParticles(ranks, vtkSPHKeepUsed(own, mine), route.To);
-  std::vector<vtkIdType> from;
-  const vtkSmartPointer<vtkPolyData> here = vtkSPHSendParticles(ranks, places, to, &from);
-
-  vtkSPHParticles input(mine.Description, near);
-  if (!this->AgreeDistributed(ranks, input.CollectParticles() ? "" : input.Error))
+  const std::vector<vtkSPHRanksPlace> within = ListPlaces(places, { options, run.Globals });
+  FindBox(run.Ranks, within, MarginCubes * run.Globals.measured.cube, options.box);
+  this->ShareDistributed(run, mine.Core, vtkSPHKeepUsed(run.Own, mine), { {}, within });
+  const vtkSPHRanksLists to = run.Route.ListOwners(places);
+  const vtkSmartPointer<vtkPolyData> here = vtkSPHSendParticles(run.Ranks, places, to, &from);
+  vtkSPHParticles input(mine.Description, run.Near);
+  if (!this->AgreeDistributed(run.Ranks, input.CollectParticles() ? "" : input.Error))
   {
-    return false;
+    return;
   }
   if (this->InterpolateAttributes)
   {
     input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
   }
-  options.globals = &globals;
-  std::copy(route.Box, route.Box + 6, options.box);
   vtkSPHSamples samples(
     input, options, this->ValidPointMaskArrayName, here->GetNumberOfPoints(), this->GetNull());
-  samples.NotFinite = ListNotFinite(input, globals);
+  samples.NotFinite = ListNotFinite(input, run.Globals);
   vtkFieldData* statistics = this->RunStatistics;
-  if (!this->CallCoreDistributed(ranks, input, options,
+  if (!this->CallCoreDistributed(run, input,
         [&](mcor_context* context)
         { return EvaluateAt(here, context, input.Core, options, samples, statistics); }))
   {
-    return false;
+    return;
   }
-  vtkNew<vtkPointData> found, came;
+  vtkNew<vtkPointData> found;
   samples.AddTo(found);
-  vtkSPHReturnArrays(ranks, found, here->GetNumberOfPoints(), ListInTurn(from), ListAt(to, numbers),
-    points ? points->GetNumberOfPoints() : 0, came);
-  vtkSPHAddSampleShares(ranks, statistics, route, here->GetNumberOfPoints());
+  const vtkSPHRanksArrays came = vtkSPHReturnTuples(run.Ranks, vtkSPHListArrays(found),
+    ListInTurn(from), vtkSPHListAt(to, numbers), points ? points->GetNumberOfPoints() : 0);
+  vtkSPHAddSampleShares(run.Ranks, statistics, run.Route, here->GetNumberOfPoints());
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
   {
-    if (ranks.GetRank() == 0)
+    if (run.Ranks.GetRank() == 0)
     {
       this->Warn(sentence);
     }
@@ -255,11 +207,10 @@ bool vtkSPHProbe::ProbeDistributed(vtkSPHRanks& ranks, vtkPolyData* own, vtkSPHP
   if (points && output)
   {
     output->ShallowCopy(points);
-    for (int i = 0; i < came->GetNumberOfArrays(); ++i)
+    for (const auto& array : came)
     {
-      output->GetPointData()->AddArray(came->GetArray(i));
+      output->GetPointData()->AddArray(array);
     }
     this->FinishOutput(output);
   }
-  return true;
 }

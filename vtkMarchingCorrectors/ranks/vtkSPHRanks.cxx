@@ -2,149 +2,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanks.h"
 
-#include "vtkDIYUtilities.h"
-#include "vtkMPIController.h"
-#include "vtkSPHRanksWait.h"
-
-#include "vtk_diy2.h"
-
-// clang-format off
-#include VTK_DIY2(diy/master.hpp)
-#include VTK_DIY2(diy/mpi.hpp)
-// clang-format on
-
 #include <algorithm>
-#include <utility>
-
-class vtkSPHRanks::vtkInternals
-{
-public:
-  explicit vtkInternals(vtkMultiProcessController* controller)
-    : Communicator(vtkDIYUtilities::GetCommunicator(controller))
-  {
-  }
-
-  template <typename T>
-  void Reduce(Operation operation, T* values, int count)
-  {
-    const std::vector<T> in(values, values + count);
-    std::vector<T> out(in.size());
-    switch (operation)
-    {
-      case LEAST:
-        diy::mpi::all_reduce(this->Communicator, in, out, diy::mpi::minimum<T>());
-        break;
-      case GREATEST:
-        diy::mpi::all_reduce(this->Communicator, in, out, diy::mpi::maximum<T>());
-        break;
-      case SUM:
-        diy::mpi::all_reduce(this->Communicator, in, out, std::plus<T>());
-        break;
-    }
-    std::copy(out.begin(), out.end(), values);
-  }
-
-  diy::mpi::communicator Communicator;
-};
 
 vtkSPHRanks::vtkSPHRanks(vtkMultiProcessController* controller)
-  : Internals(new vtkInternals(controller))
-  , Controller(vtkMPIController::SafeDownCast(controller))
-  , Rank(controller->GetLocalProcessId())
-  , Count(controller->GetNumberOfProcesses())
+  : Controller(vtkMPIController::SafeDownCast(controller))
+  , Communicator(vtkDIYUtilities::GetCommunicator(controller))
 {
 }
 
-vtkSPHRanks::~vtkSPHRanks() = default;
-
 bool vtkSPHRanks::Agree(std::string& sentence)
 {
-  std::int64_t failed = sentence.empty() ? 0 : 1;
-  this->Reduce(SUM, &failed, 1);
-  if (failed == 0)
+  const std::vector<std::string> all = this->Gather(sentence);
+  const auto first =
+    std::find_if(all.begin(), all.end(), [](const std::string& text) { return !text.empty(); });
+  if (first == all.end())
   {
     return true;
   }
-  const std::vector<Bytes> all = this->Gather(Bytes(sentence.begin(), sentence.end()));
-  const auto first =
-    std::find_if(all.begin(), all.end(), [](const Bytes& text) { return !text.empty(); });
-  const bool isSame =
-    std::all_of(all.begin(), all.end(), [first](const Bytes& text) { return text == *first; });
-  sentence = isSame ? "" : "Rank " + std::to_string(first - all.begin()) + ": ";
-  sentence.append(first->begin(), first->end());
+  const bool isSame = std::count(all.begin(), all.end(), *first) == this->GetCount();
+  sentence = (isSame ? "" : "Rank " + std::to_string(first - all.begin()) + ": ") + *first;
   return false;
 }
 
 void vtkSPHRanks::FindNeighbors(int& place, int& count)
 {
-  const std::string name = vtkMPIController::GetProcessorName();
-  const Bytes mine(name.begin(), name.end());
-  const std::vector<Bytes> all = this->Gather(mine);
-  place = static_cast<int>(std::count(all.begin(), all.begin() + this->Rank, mine));
+  const std::string mine = vtkMPIController::GetProcessorName();
+  const std::vector<std::string> all = this->Gather(mine);
+  place = static_cast<int>(std::count(all.begin(), all.begin() + this->GetRank(), mine));
   count = static_cast<int>(std::count(all.begin(), all.end(), mine));
 }
 
-void vtkSPHRanks::Reduce(Operation operation, double* values, int count)
+void vtkSPHRanks::ReduceRanges(double* ranges, int count)
 {
-  vtkSPHAwaitRanks(this->Controller);
-  this->Internals->Reduce(operation, values, count);
+  std::vector<double> ends(ranges, ranges + 2 * count); // the greatest negated: one message
+  for (std::size_t i = 1; i < ends.size(); i += 2)
+  {
+    ends[i] = -ends[i];
+  }
+  this->Reduce(LEAST, ends.data(), 2 * count);
+  for (std::size_t i = 0; i < ends.size(); ++i)
+  {
+    ranges[i] = i % 2 == 0 ? ends[i] : -ends[i];
+  }
 }
 
-void vtkSPHRanks::Reduce(Operation operation, std::int64_t* values, int count)
+std::vector<std::vector<char>> vtkSPHRanks::GatherBytes(const std::vector<char>& mine)
 {
+  std::vector<std::vector<char>> all;
   vtkSPHAwaitRanks(this->Controller);
-  std::vector<long long> same(values, values + count); // MPI's types have no name for the other
-  this->Internals->Reduce(operation, same.data(), count);
-  std::copy(same.begin(), same.end(), values);
-}
-
-std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Gather(const Bytes& mine)
-{
-  std::vector<Bytes> all;
-  vtkSPHAwaitRanks(this->Controller);
-  diy::mpi::all_gather(this->Internals->Communicator, mine, all);
+  diy::mpi::all_gather(this->Communicator, mine, all);
   return all;
 }
 
-std::vector<vtkSPHRanks::Bytes> vtkSPHRanks::Exchange(std::vector<Bytes> messages)
+void vtkSPHRanks::ExchangeBlocks(const Visit& send, const Visit& receive)
 {
-  struct Block
-  {
-  };
+  char block = 0; // each rank is one, without data of its own
   vtkSPHAwaitRanks(this->Controller);
-  using Proxy = diy::Master::ProxyWithLink;
-  std::vector<Bytes> received(messages.size());
-  const auto self = static_cast<std::size_t>(this->Rank);
-  received[self].swap(messages[self]);
-  Block block;
-  diy::Master master(this->Internals->Communicator, 1);
-  master.add(this->Rank, &block, new diy::Link);
-  master.foreach (
-    [&](Block*, const Proxy& proxy)
-    {
-      for (int rank = 0; rank < this->Count; ++rank)
-      {
-        const Bytes& message = messages[static_cast<std::size_t>(rank)];
-        if (!message.empty())
-        {
-          proxy.enqueue(diy::BlockID{ rank, rank }, message);
-          this->BytesSent += static_cast<std::int64_t>(message.size());
-        }
-      }
-    });
+  diy::Master master(this->Communicator, 1);
+  master.add(this->GetRank(), &block, new diy::Link);
+  master.foreach (send);
   master.exchange(true); // to whom there is something to say, no neighbours being known
-  master.foreach (
-    [&](Block*, const Proxy& proxy)
-    {
-      std::vector<int> from;
-      proxy.incoming(from);
-      for (const int rank : from)
-      {
-        if (proxy.incoming(rank).size() > 0)
-        {
-          proxy.dequeue(rank, received[static_cast<std::size_t>(rank)]);
-        }
-      }
-    });
-  return received;
+  master.foreach (receive);
 }

@@ -3,30 +3,35 @@
 /**
  * Private to the module: the processes (ranks) that share one run, and what they tell each other.
  * Every function but the getters is collective: all ranks call it, in the same order. Built where VTK
- * has MPI and DIY.
+ * has MPI and DIY, whose serialization says how values become bytes (diy::Serialization).
  */
 #ifndef vtkSPHRanks_h
 #define vtkSPHRanks_h
 
+#include "vtkDIYUtilities.h"
+#include "vtkMPIController.h"
+#include "vtkSPHAlgorithm.h"
+#include "vtkSPHRanksWait.h"
 #include "vtkType.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
-class vtkMPIController;
-class vtkMultiProcessController;
+/** For each rank, or from each. */
+using vtkSPHRanksLists = std::vector<std::vector<vtkIdType>>;
 
 class vtkSPHRanks
 {
 public:
   /** `controller` is one of MPI's. */
   explicit vtkSPHRanks(vtkMultiProcessController* controller);
-  ~vtkSPHRanks();
 
-  int GetRank() const { return this->Rank; }
-  int GetCount() const { return this->Count; }
+  int GetRank() const { return this->Controller->GetLocalProcessId(); }
+  int GetCount() const { return this->Controller->GetNumberOfProcesses(); }
 
   /** Bytes that this rank has handed to others by Exchange(). */
   std::int64_t GetBytesSent() const { return this->BytesSent; }
@@ -42,30 +47,118 @@ public:
 
   enum Operation
   {
-    LEAST,
-    GREATEST,
-    SUM
+    LEAST = vtkCommunicator::MIN_OP,
+    GREATEST = vtkCommunicator::MAX_OP,
+    SUM = vtkCommunicator::SUM_OP
   };
-  void Reduce(Operation operation, double* values, int count);
-  void Reduce(Operation operation, std::int64_t* values, int count);
+  template <typename T>
+  void Reduce(Operation operation, T* values, int count)
+  {
+    const std::vector<T> own(values, values + count);
+    vtkSPHAwaitRanks(this->Controller);
+    this->Controller->AllReduce(own.data(), values, count, operation);
+  }
 
-  using Bytes = std::vector<char>;
+  /** Of ranges, each a least and a greatest value, which are infinite the wrong way where there is nothing. */
+  void ReduceRanges(double* ranges, int count);
+  vtkSPHMergeRanges MergeRanges()
+  {
+    return [this](double* ranges, int count) { this->ReduceRanges(ranges, count); };
+  }
 
   /** What each rank gives, in the order of ranks. */
-  std::vector<Bytes> Gather(const Bytes& mine);
+  template <typename T>
+  std::vector<T> Gather(const T& mine)
+  {
+    diy::MemoryBuffer buffer;
+    diy::save(buffer, mine);
+    std::vector<T> values;
+    for (std::vector<char>& theirs : this->GatherBytes(buffer.buffer))
+    {
+      buffer.buffer.swap(theirs);
+      buffer.reset();
+      values.emplace_back();
+      diy::load(buffer, values.back());
+    }
+    return values;
+  }
 
   /** Number i of `messages` goes to rank i; number i of the result came from rank i. */
-  std::vector<Bytes> Exchange(std::vector<Bytes> messages);
+  template <typename T>
+  std::vector<std::vector<T>> Exchange(std::vector<std::vector<T>> messages)
+  {
+    const auto self = static_cast<std::size_t>(this->GetRank());
+    std::vector<std::vector<T>> received(messages.size());
+    received[self].swap(messages[self]);
+    const auto send = [&](char*, const diy::Master::ProxyWithLink& proxy)
+    {
+      for (std::size_t rank = 0; rank < messages.size(); ++rank)
+      {
+        if (!messages[rank].empty())
+        {
+          const int to = static_cast<int>(rank);
+          proxy.enqueue(diy::BlockID{ to, to }, messages[rank]);
+          this->BytesSent += static_cast<std::int64_t>(messages[rank].size() * sizeof(T));
+        }
+      }
+    };
+    const auto receive = [&](char*, const diy::Master::ProxyWithLink& proxy)
+    {
+      std::vector<int> from;
+      proxy.incoming(from);
+      for (const int rank : from)
+      {
+        if (proxy.incoming(rank).size() > 0)
+        {
+          proxy.dequeue(rank, received[static_cast<std::size_t>(rank)]);
+        }
+      }
+    };
+    this->ExchangeBlocks(send, receive);
+    return received;
+  }
+
+  /** The same to the first rank alone: there what each rank gives, on the others nothing. */
+  template <typename T>
+  std::vector<std::vector<T>> GatherOnFirst(std::vector<T> mine)
+  {
+    std::vector<std::vector<T>> messages(static_cast<std::size_t>(this->GetCount()));
+    messages[0] = std::move(mine);
+    return this->Exchange(std::move(messages));
+  }
 
 private:
   vtkSPHRanks(const vtkSPHRanks&) = delete;
   void operator=(const vtkSPHRanks&) = delete;
 
-  class vtkInternals;
-  std::unique_ptr<vtkInternals> Internals;
+  std::vector<std::vector<char>> GatherBytes(const std::vector<char>& mine);
+  using Visit = std::function<void(char* block, const diy::Master::ProxyWithLink& proxy)>;
+  void ExchangeBlocks(const Visit& send, const Visit& receive);
+
   vtkMPIController* Controller;
-  int Rank, Count;
+  diy::mpi::communicator Communicator;
   std::int64_t BytesSent = 0;
 };
+
+/**
+ * Moves the values of all ranks, as many for each number as for any other, to the first rank, to the places that
+ * the numbers, of GatherOnFirst(), say; `to` may be null. Collective.
+ */
+template <typename T>
+void vtkSPHPlaceOnFirst(
+  vtkSPHRanks& ranks, const vtkSPHRanksLists& numbers, std::vector<T> values, T* to)
+{
+  const std::vector<std::vector<T>> all = ranks.GatherOnFirst(std::move(values));
+  for (std::size_t rank = 0; to && rank < all.size(); ++rank)
+  {
+    const std::size_t width = all[rank].empty() ? 0 : all[rank].size() / numbers[rank].size();
+    const T* from = all[rank].data();
+    for (const vtkIdType number : numbers[rank])
+    {
+      std::copy_n(from, width, to + static_cast<std::size_t>(number) * width);
+      from += width;
+    }
+  }
+}
 
 #endif

@@ -2,27 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksCalls.h"
 
+#include "vtkSPHRanksRoute.h"
+
+#include <algorithm>
 #include <utility>
 
-namespace
-{
-vtkSPHRanks::Operation OperationOf(mcor_reduction reduction)
-{
-  return reduction == MCOR_LEAST ? vtkSPHRanks::LEAST
-    : reduction == MCOR_GREATEST ? vtkSPHRanks::GREATEST
-                                 : vtkSPHRanks::SUM;
-}
-}
-
-vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near)
+vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route)
   : Ranks(ranks)
-  , Near(std::move(near))
+  , Route(route)
 {
   this->Core.user = this;
-  this->Core.reduce_doubles = ReduceDoubles;
-  this->Core.reduce_counts = ReduceCounts;
+  this->Core.reduce_doubles = Reduce<double>;
+  this->Core.reduce_counts = Reduce<std::int64_t>;
   this->Core.gather = Gather;
-  this->Core.pass = this->Near ? Pass : nullptr;
+  if (route)
+  {
+    this->Core.pass = Pass;
+    std::copy(route->Whole.begin(), route->Whole.end(), this->Core.whole_box);
+  }
 }
 
 // Every callback, and the end, begin with this one: so all ranks meet here the same number of times
@@ -43,26 +40,17 @@ void vtkSPHRanksCalls::End(bool failed)
   }
 }
 
-int vtkSPHRanksCalls::ReduceDoubles(void* user, mcor_reduction reduction, double* values, int count)
+template <typename T>
+int vtkSPHRanksCalls::Reduce(void* user, mcor_reduction reduction, T* values, int count)
 {
   auto* self = static_cast<vtkSPHRanksCalls*>(user);
   if (!self->AllGoOn(true))
   {
     return 1;
   }
-  self->Ranks.Reduce(OperationOf(reduction), values, count);
-  return 0;
-}
-
-int vtkSPHRanksCalls::ReduceCounts(
-  void* user, mcor_reduction reduction, std::int64_t* values, int count)
-{
-  auto* self = static_cast<vtkSPHRanksCalls*>(user);
-  if (!self->AllGoOn(true))
-  {
-    return 1;
-  }
-  self->Ranks.Reduce(OperationOf(reduction), values, count);
+  const vtkSPHRanks::Operation operations[] = { vtkSPHRanks::LEAST, vtkSPHRanks::GREATEST,
+    vtkSPHRanks::SUM };
+  self->Ranks.Reduce(operations[reduction], values, count);
   return 0;
 }
 
@@ -76,8 +64,8 @@ int vtkSPHRanksCalls::Gather(void* user, const void* records, std::int64_t count
   }
   const auto* first = static_cast<const char*>(records);
   const std::size_t size = static_cast<std::size_t>(count) * width;
-  return self->Deliver(self->Ranks.Gather(vtkSPHRanks::Bytes(first, first + (first ? size : 0))),
-    width, all, allCount);
+  return self->Deliver(
+    self->Ranks.Gather(Bytes(first, first + (first ? size : 0))), width, all, allCount);
 }
 
 int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, std::size_t width,
@@ -88,18 +76,18 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
   {
     return 1;
   }
-  std::vector<vtkSPHRanks::Bytes> messages(static_cast<std::size_t>(self->Ranks.GetCount()));
+  std::vector<Bytes> messages(static_cast<std::size_t>(self->Ranks.GetCount()));
   const auto* record = static_cast<const char*>(records);
   std::vector<int> found;
   for (std::int64_t i = 0; i < count; ++i, record += width)
   {
-    self->Near(places + 3 * i, reach, found);
+    self->Route->FindReached(places + 3 * i, reach, found);
     found.push_back(self->Ranks.GetRank());
     for (const int rank : found)
     {
       if (rank != self->Ranks.GetRank() || &rank == &found.back())
       {
-        vtkSPHRanks::Bytes& message = messages[static_cast<std::size_t>(rank)];
+        Bytes& message = messages[static_cast<std::size_t>(rank)];
         message.insert(message.end(), record, record + width);
       }
     }
@@ -107,11 +95,11 @@ int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, 
   return self->Deliver(self->Ranks.Exchange(std::move(messages)), width, all, allCount);
 }
 
-int vtkSPHRanksCalls::Deliver(const std::vector<vtkSPHRanks::Bytes>& received, std::size_t width,
-  const void** all, std::int64_t* allCount)
+int vtkSPHRanksCalls::Deliver(
+  const std::vector<Bytes>& received, std::size_t width, const void** all, std::int64_t* allCount)
 {
   this->Gathered.clear();
-  for (const vtkSPHRanks::Bytes& theirs : received)
+  for (const Bytes& theirs : received)
   {
     this->Gathered.insert(this->Gathered.end(), theirs.begin(), theirs.end());
   }

@@ -11,17 +11,15 @@
 #include "vtkSPHRanks.h"
 
 #include <cstdint>
-#include <functional>
 #include <vector>
+
+struct vtkSPHRanksRoute;
 
 class vtkSPHRanksCalls
 {
 public:
-  /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
-  using Finder = std::function<void(const double at[3], double reach, std::vector<int>& found)>;
-
-  /** `near`: empty where all are near. */
-  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, Finder near = nullptr);
+  /** `route`: null until space is divided. */
+  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route = nullptr);
 
   /** For mcor_options, during one call of the core. */
   const mcor_ranks* Get() const { return &this->Core; }
@@ -37,21 +35,22 @@ private:
   void operator=(const vtkSPHRanksCalls&) = delete;
 
   bool AllGoOn(bool self);
-  static int ReduceDoubles(void* user, mcor_reduction reduction, double* values, int count);
-  static int ReduceCounts(void* user, mcor_reduction reduction, std::int64_t* values, int count);
+  template <typename T>
+  static int Reduce(void* user, mcor_reduction reduction, T* values, int count);
   static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
     const void** all, std::int64_t* allCount);
 
   static int Pass(void* user, const void* records, std::int64_t count, std::size_t width,
     const double* places, double reach, const void** all, std::int64_t* allCount);
-  int Deliver(const std::vector<vtkSPHRanks::Bytes>& received, std::size_t width, const void** all,
+  using Bytes = std::vector<char>;
+  int Deliver(const std::vector<Bytes>& received, std::size_t width, const void** all,
     std::int64_t* allCount);
 
   vtkSPHRanks& Ranks;
-  const Finder Near;
+  const vtkSPHRanksRoute* Route;
   mcor_ranks Core = {};
   bool Stopped = false;
-  vtkSPHRanks::Bytes Gathered;
+  Bytes Gathered;
 };
 
 #endif

@@ -11,98 +11,21 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSPHRanks.h"
-#include "vtkSPHRanksBytes.h"
-#include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksTuples.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
-#include <string>
 
 namespace
 {
-using Piece = std::array<std::int32_t, 2>;
-
-/** Positions, as an array among the others on the way. */
-constexpr const char* Positions = "vtkSPHRanksLines positions";
-
-/** How many there are of an array that a surface may lack. */
-std::int64_t CountOf(const void* array, std::int64_t count)
-{
-  return array ? count : 0;
-}
-
-/** Of one rank: numbers, positions and iso values of points, pieces of lines between them, triangles. */
-vtkSPHRanks::Bytes Pack(const mcor_surface& surface, const vtkSPHRanksNumbers& numbers)
-{
-  vtkSPHRanks::Bytes bytes;
-  std::vector<Piece> pieces;
-  for (std::int64_t line = 0; line < surface.line_count; ++line)
-  {
-    for (std::int64_t i = surface.line_offsets[line]; i + 1 < surface.line_offsets[line + 1]; ++i)
-    {
-      pieces.push_back({ surface.line_points[i], surface.line_points[i + 1] });
-    }
-  }
-  const auto put = [&bytes](const auto* data, std::int64_t count)
-  {
-    vtkSPHPutNumber(bytes, count);
-    vtkSPHPutBytes(bytes, data, static_cast<std::size_t>(count) * sizeof(*data));
-  };
-  put(numbers.OfPoints->GetPointer(0), surface.point_count);
-  put(surface.points, 3 * surface.point_count);
-  put(surface.iso_value, CountOf(surface.iso_value, surface.point_count));
-  put(pieces.data(), static_cast<std::int64_t>(pieces.size()));
-  const std::int64_t triangles = CountOf(surface.band_value, surface.triangle_count);
-  put(numbers.OfTriangles->GetPointer(0), triangles);
-  put(surface.triangles, 3 * triangles);
-  put(surface.band_value, triangles);
-  return bytes;
-}
-
+/** The values of an array that a surface may lack. */
 template <typename T>
-std::vector<T> GetArray(vtkSPHRanksReader& reader)
+std::vector<T> List(const T* values, std::int64_t count)
 {
-  std::vector<T> values(static_cast<std::size_t>(reader.GetNumber()));
-  reader.GetBytes(values.data(), values.size() * sizeof(T));
-  return values;
-}
-
-/** Moves tuples to the places that numbers say, where they are given. */
-template <typename T>
-void Place(const std::vector<T>& values, const std::vector<vtkIdType>& numbers, T* to)
-{
-  const std::size_t width = values.empty() ? 0 : values.size() / numbers.size();
-  for (std::size_t i = 0; i < values.size() && to; ++i)
-  {
-    to[static_cast<std::size_t>(numbers[i / width]) * width + i % width] = values[i];
-  }
-}
-
-/** Adds a rank's points, pieces and triangles to the whole; returns the numbers of its points. */
-std::vector<vtkIdType> Unpack(
-  const vtkSPHRanks::Bytes& bytes, mcor_surface& whole, std::vector<Piece>& pieces)
-{
-  vtkSPHRanksReader reader(bytes);
-  std::vector<vtkIdType> numbers = GetArray<vtkIdType>(reader);
-  const auto numberOf = [&numbers](std::int32_t point)
-  { return static_cast<std::int32_t>(numbers[static_cast<std::size_t>(point)]); };
-  Place(GetArray<double>(reader), numbers, whole.points);
-  Place(GetArray<double>(reader), numbers, whole.iso_value);
-  for (const Piece& piece : GetArray<Piece>(reader))
-  {
-    pieces.push_back({ numberOf(piece[0]), numberOf(piece[1]) });
-  }
-  const std::vector<vtkIdType> triangles = GetArray<vtkIdType>(reader);
-  std::vector<std::int32_t> corners = GetArray<std::int32_t>(reader);
-  std::transform(corners.begin(), corners.end(), corners.begin(), numberOf);
-  Place(corners, triangles, whole.triangles);
-  Place(GetArray<double>(reader), triangles, whole.band_value);
-  return numbers;
+  return std::vector<T>(values, values + (values ? count : 0));
 }
 
 /** Uninitialized; not null where there are none. */
@@ -127,9 +50,6 @@ vtkSmartPointer<vtkIdTypeArray> CountUp(const char* name, vtkIdType count)
 vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   const vtkSPHRanksNumbers& numbers, const mcor_plane& plane, bool isFilled)
 {
-  std::vector<vtkSPHRanks::Bytes> messages(static_cast<std::size_t>(ranks.GetCount()));
-  messages[0] = Pack(surface, numbers);
-  const std::vector<vtkSPHRanks::Bytes> received = ranks.Exchange(std::move(messages));
   const bool isFirst = ranks.GetRank() == 0;
   mcor_surface& whole = this->Whole;
   whole.point_count = isFirst ? numbers.Points : 0;
@@ -140,9 +60,12 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
       (!Allocate(whole.iso_value, whole.point_count) ||
         !Allocate(whole.triangles, 3 * whole.triangle_count) ||
         !Allocate(whole.band_value, whole.triangle_count)));
+  const std::vector<Piece> pieces = this->Gather(ranks, surface, numbers);
   if (isFirst && !this->Failed)
   {
-    this->Take(received, plane);
+    this->Failed =
+      mcor_join_lines(&plane, reinterpret_cast<const std::int32_t(*)[2]>(pieces.data()),
+        static_cast<std::int64_t>(pieces.size()), &whole) != MCOR_OK;
   }
   const mcor_statistics& s = whole.statistics;
   std::int64_t counts[2] = { whole.line_count, this->Failed ? 1 : 0 };
@@ -156,17 +79,38 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   surface.statistics.is_closed = measures[2] > 0.0;
 }
 
-// What all ranks have sent, on the first one.
-void vtkSPHRanksLines::Take(
-  const std::vector<vtkSPHRanks::Bytes>& received, const mcor_plane& plane)
+// Points and triangles into the whole; returns the pieces that lines are made of, between points of the whole.
+std::vector<vtkSPHRanksLines::Piece> vtkSPHRanksLines::Gather(
+  vtkSPHRanks& ranks, const mcor_surface& surface, const vtkSPHRanksNumbers& numbers)
 {
-  std::vector<Piece> pieces;
-  for (const vtkSPHRanks::Bytes& bytes : received)
+  const std::int64_t points = surface.point_count,
+                     triangles = surface.band_value ? surface.triangle_count : 0;
+  const vtkIdType* number = numbers.OfPoints->GetPointer(0);
+  const auto numberOf = [number](std::int32_t point)
+  { return static_cast<std::int32_t>(number[point]); };
+  this->Numbers = ranks.GatherOnFirst(List(number, points));
+  vtkSPHPlaceOnFirst(ranks, this->Numbers, List(surface.points, 3 * points), this->Whole.points);
+  vtkSPHPlaceOnFirst(ranks, this->Numbers, List(surface.iso_value, points), this->Whole.iso_value);
+  const vtkSPHRanksLists ofTriangles =
+    ranks.GatherOnFirst(List(numbers.OfTriangles->GetPointer(0), triangles));
+  std::vector<std::int32_t> corners = List(surface.triangles, 3 * triangles);
+  std::transform(corners.begin(), corners.end(), corners.begin(), numberOf);
+  vtkSPHPlaceOnFirst(ranks, ofTriangles, std::move(corners), this->Whole.triangles);
+  vtkSPHPlaceOnFirst(
+    ranks, ofTriangles, List(surface.band_value, triangles), this->Whole.band_value);
+  std::vector<Piece> own, all;
+  for (std::int64_t line = 0; line < surface.line_count; ++line)
   {
-    this->Numbers.push_back(Unpack(bytes, this->Whole, pieces));
+    for (std::int64_t i = surface.line_offsets[line]; i + 1 < surface.line_offsets[line + 1]; ++i)
+    {
+      own.push_back({ numberOf(surface.line_points[i]), numberOf(surface.line_points[i + 1]) });
+    }
   }
-  this->Failed = mcor_join_lines(&plane, reinterpret_cast<const std::int32_t(*)[2]>(pieces.data()),
-                   static_cast<std::int64_t>(pieces.size()), &this->Whole) != MCOR_OK;
+  for (const std::vector<Piece>& pieces : ranks.GatherOnFirst(std::move(own)))
+  {
+    all.insert(all.end(), pieces.begin(), pieces.end());
+  }
+  return all;
 }
 
 vtkSPHRanksLines::~vtkSPHRanksLines()
@@ -176,33 +120,15 @@ vtkSPHRanksLines::~vtkSPHRanksLines()
 
 void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output)
 {
-  vtkPointData* arrays = output->GetPointData();
-  const auto count = static_cast<std::size_t>(ranks.GetCount());
-  std::vector<std::vector<vtkIdType>> back(count), home = this->Numbers;
-  home.resize(count);
+  vtkSPHRanksLists back(static_cast<std::size_t>(ranks.GetCount()));
   back[0].resize(static_cast<std::size_t>(output->GetNumberOfPoints()));
   std::iota(back[0].begin(), back[0].end(), vtkIdType(0));
-  const std::string normals = arrays->GetNormals() ? arrays->GetNormals()->GetName() : "";
-  const std::string scalars = arrays->GetScalars() ? arrays->GetScalars()->GetName() : "";
-  vtkDataArray* positions = output->GetPoints()->GetData();
-  positions->SetName(Positions);
-  arrays->AddArray(positions);
-  vtkNew<vtkPointData> moved;
-  vtkSPHReturnArrays(ranks, arrays, output->GetNumberOfPoints(), back, home,
-    static_cast<vtkIdType>(this->Whole.point_count), moved);
-  vtkNew<vtkPoints> points;
-  vtkSmartPointer<vtkDataArray> at = moved->GetArray(Positions);
-  moved->RemoveArray(Positions);
-  at->SetName("Points");
-  points->SetData(at);
-  output->SetPoints(points);
-  arrays->Initialize();
-  for (int i = 0; i < moved->GetNumberOfArrays(); ++i)
-  {
-    arrays->AddArray(moved->GetAbstractArray(i));
-  }
-  arrays->SetActiveNormals(normals.empty() ? nullptr : normals.c_str());
-  arrays->SetActiveScalars(scalars.empty() ? nullptr : scalars.c_str());
+  const auto count = static_cast<vtkIdType>(this->Whole.point_count);
+  const vtkSmartPointer<vtkPolyData> moved = vtkSPHMakePoints(
+    vtkSPHReturnTuples(ranks, vtkSPHListArrays(output), back, this->Numbers, count), output);
+  vtkPointData* arrays = output->GetPointData();
+  output->SetPoints(moved->GetPoints());
+  arrays->ShallowCopy(moved->GetPointData());
   const auto cells = static_cast<vtkIdType>(this->Whole.line_count + this->Whole.triangle_count);
   vtkMarchingCorrectorsOutput::BuildCells(this->Whole, output);
   arrays->SetGlobalIds(CountUp("GlobalPointIds", output->GetNumberOfPoints()));

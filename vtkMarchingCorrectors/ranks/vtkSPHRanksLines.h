@@ -9,20 +9,12 @@
 
 #include "mcor.h"
 #include "mcor_parts.h"
-#include "vtkType.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksPoints.h"
 
-#include <vector>
+#include <array>
 
-class vtkIdTypeArray;
 class vtkPolyData;
-class vtkSPHRanks;
-
-/** Of a rank's points and triangles, and how many there are on all ranks. */
-struct vtkSPHRanksNumbers
-{
-  vtkIdTypeArray *OfPoints, *OfTriangles;
-  vtkIdType Points, Triangles;
-};
 
 class vtkSPHRanksLines
 {
@@ -47,10 +39,12 @@ private:
   vtkSPHRanksLines(const vtkSPHRanksLines&) = delete;
   void operator=(const vtkSPHRanksLines&) = delete;
 
-  void Take(const std::vector<std::vector<char>>& received, const mcor_plane& plane);
+  using Piece = std::array<std::int32_t, 2>;
+  std::vector<Piece> Gather(
+    vtkSPHRanks& ranks, const mcor_surface& surface, const vtkSPHRanksNumbers& numbers);
 
-  mcor_surface Whole = {};                     ///< points, lines and triangles, on the first rank
-  std::vector<std::vector<vtkIdType>> Numbers; ///< on the first rank, of the points of each
+  mcor_surface Whole = {};  ///< points, lines and triangles, on the first rank
+  vtkSPHRanksLists Numbers; ///< on the first rank, of the points of each
   vtkIdType Count = 0;
   bool Failed = false;
 };

@@ -6,17 +6,14 @@
 #ifndef vtkSPHRanksParticles_h
 #define vtkSPHRanksParticles_h
 
+#include "vtkSPHRanks.h"
 #include "vtkSmartPointer.h"
-#include "vtkType.h"
 
 #include <vector>
 
-class vtkIdList;
-class vtkPointData;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
-class vtkSPHRanks;
 
 /**
  * This rank's particles (`data` may be null), without those that vtkGhostType marks as another
@@ -25,7 +22,7 @@ class vtkSPHRanks;
  * is wanted. Collective.
  */
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
-  vtkSPHRanks& ranks, vtkPointSet* data, vtkIdList* taken = nullptr);
+  vtkSPHRanks& ranks, vtkPointSet* data, std::vector<vtkIdType>* taken = nullptr);
 
 /**
  * The same with those arrays alone that describe the particles or are interpolated.
@@ -38,16 +35,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHPartic
  * Collective.
  */
 vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
-  const std::vector<std::vector<vtkIdType>>& to, std::vector<vtkIdType>* from = nullptr);
-
-/**
- * Sends results back to where they are wanted: of `results`, which have `count` tuples, those listed
- * for each rank. What comes from a rank goes to the places listed for it in `home`, in arrays of
- * `homeCount` tuples that are 0 elsewhere and are added to `to`. Collective.
- */
-void vtkSPHReturnArrays(vtkSPHRanks& ranks, vtkPointData* results, vtkIdType count,
-  const std::vector<std::vector<vtkIdType>>& back, const std::vector<std::vector<vtkIdType>>& home,
-  vtkIdType homeCount, vtkPointData* to);
+  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
 /**
  * Gives a result without points the arrays that it has on other ranks, as writers of pieces want.

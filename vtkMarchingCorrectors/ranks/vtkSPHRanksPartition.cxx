@@ -24,11 +24,12 @@ std::size_t Index(int i)
 vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
   std::vector<vtkSPHRanksPlace> places, double brick)
   : Places(std::move(places))
-  , NodeOf(this->Places.size(), 0)
 {
   Node root;
   root.FirstRank = 0;
   root.Ranks = ranks.GetCount();
+  root.First = 0;
+  root.Last = this->Places.size();
   root.Box = whole;
   this->Nodes.push_back(root);
   this->Divide(ranks, brick);
@@ -41,7 +42,6 @@ vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanks
     }
   }
   this->Places = std::vector<vtkSPHRanksPlace>();
-  this->NodeOf = std::vector<int>();
 }
 
 // All nodes of a depth at once: one message for them.
@@ -72,28 +72,25 @@ void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
 std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
   vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick)
 {
-  std::vector<int> number(this->Nodes.size(), -1);
-  std::vector<double> bounds(nodes.size() * 6, Infinity); // low sides, and high ones negated
-  std::vector<std::int64_t> work(nodes.size(), 0);
-  for (std::size_t i = 0; i < nodes.size(); ++i)
+  std::vector<double> bounds; // low and high sides of x, y, z
+  std::vector<std::int64_t> work;
+  for (const int n : nodes)
   {
-    number[Index(nodes[i])] = static_cast<int>(i);
-  }
-  for (std::size_t p = 0; p < this->Places.size(); ++p)
-  {
-    const int i = number[Index(this->NodeOf[p])];
-    for (int a = 0; i >= 0 && a < 3; ++a)
+    const Node& node = this->Nodes[Index(n)];
+    double ends[6] = { Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity };
+    work.push_back(0);
+    for (std::size_t p = node.First; p < node.Last; ++p)
     {
-      double* side = &bounds[Index(6 * i + 2 * a)];
-      side[0] = std::min(side[0], this->Places[p].At[a]);
-      side[1] = std::min(side[1], -this->Places[p].At[a]);
+      work.back() += this->Places[p].Work;
+      for (int a = 0; a < 3; ++a)
+      {
+        ends[2 * a] = std::min(ends[2 * a], this->Places[p].At[a]);
+        ends[2 * a + 1] = std::max(ends[2 * a + 1], this->Places[p].At[a]);
+      }
     }
-    if (i >= 0)
-    {
-      work[Index(i)] += this->Places[p].Work;
-    }
+    bounds.insert(bounds.end(), ends, ends + 6);
   }
-  ranks.Reduce(vtkSPHRanks::LEAST, bounds.data(), static_cast<int>(bounds.size()));
+  ranks.ReduceRanges(bounds.data(), static_cast<int>(3 * nodes.size()));
   ranks.Reduce(vtkSPHRanks::SUM, work.data(), static_cast<int>(work.size()));
   std::vector<Cut> cuts;
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -102,12 +99,12 @@ std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
     const double* side = &bounds[6 * i];
     for (int a = 1; a < 3; ++a)
     {
-      const double length = -side[2 * a + 1] - side[2 * a];
-      node.Axis = length > -side[2 * node.Axis + 1] - side[2 * node.Axis] ? a : node.Axis;
+      const double length = side[2 * a + 1] - side[2 * a];
+      node.Axis = length > side[2 * node.Axis + 1] - side[2 * node.Axis] ? a : node.Axis;
     }
     const bool isEmpty = work[i] == 0;
     const double low = isEmpty ? 0.0 : std::floor(side[2 * node.Axis] / brick);
-    const double high = isEmpty ? 0.0 : std::floor(-side[2 * node.Axis + 1] / brick) + 1.0;
+    const double high = isEmpty ? 0.0 : std::floor(side[2 * node.Axis + 1] / brick) + 1.0;
     cuts.push_back({ nodes[i], low, 0.0, high - low,
       work[i] / node.Ranks * (node.Ranks / 2) +
         work[i] % node.Ranks * (node.Ranks / 2) / node.Ranks,
@@ -119,43 +116,37 @@ std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
 // One histogram of each node between the numbers that are left; false when no more than one is.
 bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick)
 {
-  std::vector<int> number(this->Nodes.size(), -1);
-  std::vector<std::int64_t> work(cuts.size() * Bins, 0);
-  bool isDone = true;
-  for (std::size_t i = 0; i < cuts.size(); ++i)
-  {
-    number[Index(cuts[i].Node)] = static_cast<int>(i);
-    isDone = isDone && cuts[i].Most - cuts[i].Least <= 0.5;
-  }
-  if (isDone)
+  const auto isSought = [](const Cut& cut) { return cut.Most - cut.Least > 0.5; };
+  if (std::none_of(cuts.begin(), cuts.end(), isSought))
   {
     return false;
   }
   const auto step = [&](const Cut& cut)
   { return std::max(1.0, std::ceil((cut.Most - cut.Least) / Bins)); };
-  for (std::size_t p = 0; p < this->Places.size(); ++p)
+  std::vector<std::int64_t> work(cuts.size() * Bins, 0);
+  for (std::size_t i = 0; i < cuts.size(); ++i)
   {
-    const int i = number[Index(this->NodeOf[p])];
-    if (i >= 0)
+    const Cut& cut = cuts[i];
+    const Node& node = this->Nodes[Index(cut.Node)];
+    for (std::size_t p = node.First; p < node.Last && isSought(cut); ++p)
     {
-      const Cut& cut = cuts[Index(i)];
-      const double at = std::floor(this->Places[p].At[this->Nodes[Index(cut.Node)].Axis] / brick);
+      const double at = std::floor(this->Places[p].At[node.Axis] / brick);
       const double bin = std::floor((at - cut.First - cut.Least) / step(cut));
       if (bin >= 0.0 && bin < Bins)
       {
-        work[Index(i * Bins + static_cast<int>(bin))] += this->Places[p].Work;
+        work[i * Bins + Index(static_cast<int>(bin))] += this->Places[p].Work;
       }
     }
   }
   ranks.Reduce(vtkSPHRanks::SUM, work.data(), static_cast<int>(work.size()));
   for (std::size_t i = 0; i < cuts.size(); ++i)
   {
-    if (cuts[i].Most - cuts[i].Least <= 0.5)
+    Cut& cut = cuts[i];
+    if (!isSought(cut))
     {
       continue;
     }
     // Among single bricks, the plane after which the work below is nearest to the goal.
-    Cut& cut = cuts[i];
     const double width = step(cut), least = cut.Least, most = cut.Most;
     int bin = 0;
     std::int64_t below = cut.Before;
@@ -187,19 +178,16 @@ void vtkSPHRanksPartition::Apply(const std::vector<Cut>& cuts, double brick)
     high.Ranks -= low.Ranks;
     low.Axis = high.Axis = 0;
     Node& node = this->Nodes[Index(cut.Node)];
+    const auto places = this->Places.begin();
+    const auto middle = std::partition(places + static_cast<std::ptrdiff_t>(node.First),
+      places + static_cast<std::ptrdiff_t>(node.Last),
+      [axis, plane](const vtkSPHRanksPlace& place) { return place.At[axis] < plane; });
+    low.Last = high.First = static_cast<std::size_t>(middle - places);
     node.Plane = plane;
     node.Low = static_cast<int>(this->Nodes.size());
     node.High = node.Low + 1;
     this->Nodes.push_back(low);
     this->Nodes.push_back(high);
-  }
-  for (std::size_t p = 0; p < this->Places.size(); ++p)
-  {
-    const Node& node = this->Nodes[Index(this->NodeOf[p])];
-    if (node.Low >= 0)
-    {
-      this->NodeOf[p] = this->Places[p].At[node.Axis] < node.Plane ? node.Low : node.High;
-    }
   }
 }
 

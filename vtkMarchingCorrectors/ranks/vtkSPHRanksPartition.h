@@ -8,6 +8,7 @@
 #define vtkSPHRanksPartition_h
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -46,7 +47,8 @@ public:
 private:
   struct Node
   {
-    int FirstRank, Ranks; ///< that share it
+    int FirstRank, Ranks;    ///< that share it
+    std::size_t First, Last; ///< its places, [First, Last)
     int Axis = 0;
     double Plane = 0.0;
     int Low = -1, High = -1; ///< children
@@ -68,8 +70,7 @@ private:
 
   std::vector<Node> Nodes;
   std::vector<vtkSPHRanksBox> Boxes;
-  std::vector<vtkSPHRanksPlace> Places;
-  std::vector<int> NodeOf; // of each place
+  std::vector<vtkSPHRanksPlace> Places; // while space is divided
 };
 
 #endif

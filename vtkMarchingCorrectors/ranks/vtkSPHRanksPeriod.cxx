@@ -28,36 +28,18 @@ std::string Describe(const vtkSPHPeriod& found)
   }
   return text.str();
 }
-
-vtkSPHRanks::Bytes Pack(const vtkSPHPeriod& found)
-{
-  const std::size_t size = found.Period.size() * sizeof(double);
-  vtkSPHRanks::Bytes bytes(1 + size + found.Array.size());
-  bytes[0] = static_cast<char>(found.Period.size());
-  const auto* period = reinterpret_cast<const char*>(found.Period.data());
-  std::copy(period, period + size, bytes.data() + 1); // of nothing, too
-  std::copy(found.Array.begin(), found.Array.end(), bytes.data() + 1 + size);
-  return bytes;
 }
 
-vtkSPHPeriod Unpack(const vtkSPHRanks::Bytes& bytes)
+vtkSPHPeriod vtkSPHFindPeriodDistributed(
+  vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
 {
-  vtkSPHPeriod found;
-  found.Period.resize(static_cast<std::size_t>(bytes.front()));
-  const std::size_t size = found.Period.size() * sizeof(double);
-  std::copy(
-    bytes.data() + 1, bytes.data() + 1 + size, reinterpret_cast<char*>(found.Period.data()));
-  found.Array.assign(bytes.data() + 1 + size, bytes.data() + bytes.size());
-  return found;
-}
-
-vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& problem)
-{
+  vtkSPHRanks ranks(controller);
   vtkSPHPeriod first;
   int rank = 0, firstRank = 0;
-  for (const vtkSPHRanks::Bytes& bytes : ranks.Gather(Pack(vtkSPHFindPeriod(data))))
+  const vtkSPHPeriod mine = vtkSPHFindPeriod(data);
+  for (const auto& theirs : ranks.Gather(std::make_pair(mine.Period, mine.Array)))
   {
-    const vtkSPHPeriod found = Unpack(bytes);
+    const vtkSPHPeriod found = { theirs.first, theirs.second };
     if (first.Period.empty())
     {
       first = found;
@@ -75,56 +57,35 @@ vtkSPHPeriod FindPeriod(vtkSPHRanks& ranks, vtkFieldData* data, std::string& pro
   return first;
 }
 
-std::vector<double> BoundsOfPeriod(
-  vtkSPHRanks& ranks, const std::vector<double>& period, vtkPointSet* particles)
-{
-  double ends[6];
-  std::fill_n(ends, 6, std::numeric_limits<double>::infinity());
-  if (particles->GetNumberOfPoints() > 0)
-  {
-    particles->GetBounds(ends);
-    for (int side = 1; side < 6; side += 2)
-    {
-      ends[side] = -ends[side];
-    }
-  }
-  ranks.Reduce(vtkSPHRanks::LEAST, ends, 6);
-  for (int side = 1; side < 6; side += 2)
-  {
-    ends[side] = -ends[side];
-  }
-  return vtkSPHBoundsOfPeriod(period, ends);
-}
-}
-
-vtkSPHPeriod vtkSPHFindPeriodDistributed(
-  vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem)
-{
-  vtkSPHRanks ranks(controller);
-  return FindPeriod(ranks, data, problem);
-}
-
 std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles)
 {
   vtkSPHRanks ranks(controller);
-  return BoundsOfPeriod(ranks, period, particles);
+  const double infinity = std::numeric_limits<double>::infinity();
+  double ends[6] = { infinity, -infinity, infinity, -infinity, infinity, -infinity };
+  if (particles->GetNumberOfPoints() > 0)
+  {
+    particles->GetBounds(ends);
+  }
+  ranks.ReduceRanges(ends, 3);
+  return vtkSPHBoundsOfPeriod(period, ends);
 }
 
-bool vtkSPHAlgorithm::SetPeriodDistributed(
-  vtkSPHRanks& ranks, vtkPointSet* particles, mcor_options& options)
+bool vtkSPHAlgorithm::SetPeriodDistributed(vtkPointSet* particles, mcor_options& options)
 {
   if (!this->DetectPeriod)
   {
     return true;
   }
   std::string problem;
-  const vtkSPHPeriod found = FindPeriod(ranks, particles->GetFieldData(), problem);
+  const vtkSPHPeriod found =
+    vtkSPHFindPeriodDistributed(this->Controller, particles->GetFieldData(), problem);
   if (!this->CheckPeriod(found, problem))
   {
     return false;
   }
-  const std::vector<double> bounds = BoundsOfPeriod(ranks, found.Period, particles);
+  const std::vector<double> bounds =
+    vtkSPHBoundsOfPeriodDistributed(this->Controller, found.Period, particles);
   std::copy(bounds.begin(), bounds.end(), options.periodic);
   return true;
 }

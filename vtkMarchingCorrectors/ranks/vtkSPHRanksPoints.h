@@ -12,20 +12,22 @@
 
 class vtkSPHRanks;
 
+/** Of a rank's points and triangles, and how many there are on all ranks. */
+struct vtkSPHRanksNumbers
+{
+  vtkSmartPointer<vtkIdTypeArray> OfPoints, OfTriangles;
+  vtkIdType Points, Triangles;
+};
+
 /**
  * The number of each of this rank's points among the points of all ranks, those with the same key
- * being one: the index that it has where one process makes the whole surface. `total`: how many there
- * are. Collective.
+ * being one: the index that it has where one process makes the whole surface. The same of this rank's
+ * triangles, which ascend. Collective.
  */
-vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberPoints(
-  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);
+vtkSPHRanksNumbers vtkSPHNumber(vtkSPHRanks& ranks, const mcor_surface& surface);
 
 /** Area and volume of all ranks' surface, into `statistics`; numbers: of this rank's points. Collective. */
 void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
   mcor_statistics& statistics);
-
-/** The same of this rank's triangles, which ascend. Collective. */
-vtkSmartPointer<vtkIdTypeArray> vtkSPHNumberTriangles(
-  vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdType& total);
 
 #endif

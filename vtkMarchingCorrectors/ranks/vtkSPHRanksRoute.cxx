@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksRoute.h"
 
-#include "vtkSPHRanks.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace
 {
 /** Along an edge; cuts need not lie on bricks, but those that do cost least. */
 constexpr double BrickCubes = 4.0;
+
+constexpr double Infinity = std::numeric_limits<double>::infinity();
 
 double ValueOf(const mcor_array& array, std::int64_t i)
 {
@@ -28,38 +31,6 @@ std::size_t Side(int axis)
   return static_cast<std::size_t>(2 * axis);
 }
 
-/** The ranks whose boxes are within `reach` of a place or an image of it. */
-void FindBoxes(const vtkSPHRanksPartition& partition, const double period[3], const double at[3],
-  double reach, std::vector<int>& found)
-{
-  int last[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    // The core refuses supports of more than two periods.
-    const double periods = period[a] > 0.0 ? std::ceil(reach / period[a]) : 0.0;
-    last[a] = static_cast<int>(std::min(periods, 3.0));
-  }
-  found.clear();
-  for (int z = -last[2]; z <= last[2]; ++z)
-  {
-    for (int y = -last[1]; y <= last[1]; ++y)
-    {
-      for (int x = -last[0]; x <= last[0]; ++x)
-      {
-        const int image[3] = { x, y, z };
-        vtkSPHRanksBox box;
-        for (int a = 0; a < 3; ++a)
-        {
-          const double place = at[a] + image[a] * period[a];
-          box[Side(a)] = place - reach;
-          box[Side(a) + 1] = place + reach;
-        }
-        partition.FindOverlaps(box, found);
-      }
-    }
-  }
-}
-
 /** Whether all within `reach` of a place is. */
 bool IsWithin(const vtkSPHRanksBox& box, const double at[3], double reach)
 {
@@ -71,14 +42,16 @@ bool IsWithin(const vtkSPHRanksBox& box, const double at[3], double reach)
   return isWithin;
 }
 
+/** Makes a route, step by step. */
 class Router
 {
 public:
-  Router(const mcor_input& input, const mcor_options& options, const mcor_globals& globals)
+  Router(const mcor_input& input, const mcor_options& options, const mcor_globals& globals,
+    const vtkSPHRanksBalance& balance)
     : Input(input)
     , Options(options)
     , Globals(globals)
-    , Period(options, globals)
+    , Balance(balance)
   {
     const double factor = mcor_support_factor(options.sph_kernel);
     this->Factor = options.h_scale * factor;
@@ -88,32 +61,69 @@ public:
       mcor_reach_margin(&options, &globals, globals.measured.h_max) > this->LeastMargin;
     this->ComputesVolumes = !mcor_is_given(&input.volume) &&
       !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
+    this->Route.Period = vtkSPHRanksPeriod(options, globals);
+  }
+
+  vtkSPHRanksRoute Find(vtkSPHRanks& ranks)
+  {
+    this->FindWhole();
+    this->Divide(ranks);
+    this->Send(ranks, this->FindRadii(ranks));
+    const vtkSPHRanksBox& box = this->Route.Partition->GetBox(ranks.GetRank());
+    std::copy(box.begin(), box.end(), this->Route.Box);
+    if (box[0] >= box[1] || box[2] >= box[3] || box[4] >= box[5])
+    {
+      // More ranks than bricks: to the core, which wants a box, one where there is nothing.
+      const double nowhere[6] = { 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 };
+      std::copy(nowhere, nowhere + 6, this->Route.Box);
+    }
+    return std::move(this->Route);
+  }
+
+private:
+  void FindWhole()
+  {
+    const vtkSPHRanksPeriod& period = this->Route.Period;
+    const mcor_plane& plane = this->Globals.measured.plane;
+    const double* box = this->Options.box;
     for (int a = 0; a < 3; ++a)
     {
-      const double first = this->Period.First[a];
-      const bool isPeriodic = this->Period.Length[a] > 0.0;
-      const double infinity = std::numeric_limits<double>::infinity();
-      double low = isPeriodic ? first : -infinity;
-      double high = isPeriodic ? first + this->Period.Length[a] : infinity;
-      if (mcor_has_box(&options))
+      const bool isPeriodic = period.Length[a] > 0.0;
+      double low = isPeriodic ? period.First[a] : -Infinity;
+      double high = isPeriodic ? period.First[a] + period.Length[a] : Infinity;
+      if (mcor_has_box(&this->Options))
       {
-        low = std::min(std::max(low, options.box[2 * a]), high);
-        high = std::max(std::min(high, options.box[2 * a + 1]), low);
+        low = std::min(std::max(low, box[2 * a]), high);
+        high = std::max(std::min(high, box[2 * a + 1]), low);
+        // A flat box in the plane of particles holds them.
+        high = plane.axis == a + 1 && low == plane.at
+          ? std::max(high, std::nextafter(low, Infinity))
+          : high;
       }
-      this->Whole[Side(a)] = low;
-      this->Whole[Side(a) + 1] = high;
+      this->Route.Whole[Side(a)] = low;
+      this->Route.Whole[Side(a) + 1] = high;
     }
   }
 
-  /** Where a particle is, within the first period. */
-  void Place(std::int64_t i, double at[3]) const
+  /** Calls visit(i, at, owner) for each particle that is needed: where it is within the first period, and the rank that
+   * owns it, -1 beyond all boxes and until space is divided. */
+  template <typename Visit>
+  void ForEach(const Visit& visit) const
   {
-    mcor_array positions = this->Input.positions;
-    for (int a = 0; a < 3; ++a)
+    for (std::int64_t i = 0; i < this->Input.count; ++i)
     {
-      at[a] = ValueOf(positions, 3 * i + a);
+      if (this->Balance.Of(i) > 0)
+      {
+        double at[3];
+        for (int a = 0; a < 3; ++a)
+        {
+          at[a] = ValueOf(this->Input.positions, 3 * i + a);
+        }
+        this->Route.Period.Take(at);
+        const bool isOwned = this->Route.Partition && this->IsInWhole(at);
+        visit(i, at, isOwned ? this->Route.Partition->FindOwner(at) : -1);
+      }
     }
-    this->Period.Take(at);
   }
 
   bool IsInWhole(const double at[3]) const
@@ -121,89 +131,73 @@ public:
     bool isIn = true;
     for (int a = 0; a < 3; ++a)
     {
-      isIn = isIn && at[a] >= this->Whole[Side(a)] && at[a] < this->Whole[Side(a) + 1];
+      isIn = isIn && at[a] >= this->Route.Whole[Side(a)] && at[a] < this->Route.Whole[Side(a) + 1];
     }
     return isIn;
   }
 
-  std::shared_ptr<const vtkSPHRanksPartition> Divide(
-    vtkSPHRanks& ranks, const vtkSPHRanksBalance& balance) const
+  void Divide(vtkSPHRanks& ranks)
   {
     std::vector<vtkSPHRanksPlace> places;
-    places.reserve(balance.Others.size() + static_cast<std::size_t>(this->Input.count));
-    places = balance.Others;
-    for (std::int64_t i = 0; i < this->Input.count; ++i)
-    {
-      vtkSPHRanksPlace place = { { 0.0, 0.0, 0.0 }, balance.Of(i) };
-      this->Place(i, place.At);
-      if (place.Work > 0 && this->IsInWhole(place.At))
+    places.reserve(this->Balance.Others.size() + static_cast<std::size_t>(this->Input.count));
+    places = this->Balance.Others;
+    this->ForEach(
+      [&](std::int64_t i, const double at[3], int)
       {
-        places.push_back(place);
-      }
-    }
-    return std::make_shared<vtkSPHRanksPartition>(
-      ranks, this->Whole, std::move(places), BrickCubes * this->Globals.measured.cube);
-  }
-
-  /** Scaled support radius. */
-  double SupportOf(std::int64_t i) const
-  {
-    return this->Input.estimate_smoothing_length
-      ? this->Globals.measured.h_estimate * this->Factor
-      : ValueOf(this->Input.smoothing_length, i) * this->Support;
+        if (this->IsInWhole(at))
+        {
+          places.push_back({ { at[0], at[1], at[2] }, this->Balance.Of(i) });
+        }
+      });
+    this->Route.Partition = std::make_shared<vtkSPHRanksPartition>(
+      ranks, this->Route.Whole, std::move(places), BrickCubes * this->Globals.measured.cube);
   }
 
   /** The scaled support radius, and by how much more a large particle matters than a small one. */
   double ReachOf(std::int64_t i) const
   {
-    const double support = this->SupportOf(i);
+    const double support = this->Input.estimate_smoothing_length
+      ? this->Globals.measured.h_estimate * this->Factor
+      : ValueOf(this->Input.smoothing_length, i) * this->Support;
     return !this->HasLevels ? support
                             : support - this->LeastMargin +
         mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
   }
 
   /** The ranks that a particle at this place, or an image of it, reaches by `radius`. */
-  void FindReached(const vtkSPHRanksPartition& partition, const double at[3], double radius,
-    std::vector<int>& found) const
+  void FindReached(const double at[3], int owner, double radius, std::vector<int>& found) const
   {
     const double reach = radius + this->LeastMargin;
-    const int owner = this->IsInWhole(at) ? partition.FindOwner(at) : -1;
-    if (owner >= 0 && IsWithin(partition.GetBox(owner), at, reach))
+    if (owner >= 0 && IsWithin(this->Route.Partition->GetBox(owner), at, reach))
     {
       found.assign(1, owner); // as most are
       return;
     }
-    FindBoxes(partition, this->Period.Length, at, reach, found);
+    this->Route.FindReached(at, reach, found);
   }
 
   /**
    * How far around its box each rank needs all particles, whatever their supports are: for volumes
    * that are computed, nearest particles and pairs.
    */
-  std::vector<double> FindRadii(vtkSPHRanks& ranks, const vtkSPHRanksPartition& partition,
-    const vtkSPHRanksBalance& balance) const
+  std::vector<double> FindRadii(vtkSPHRanks& ranks) const
   {
     std::vector<double> radii(static_cast<std::size_t>(ranks.GetCount()), 0.0);
     const mcor_options& o = this->Options;
     if (this->ComputesVolumes || (o.outputs & MCOR_OUT_NEAREST_PARTICLE))
     {
       std::vector<int> found;
-      for (std::int64_t i = 0; i < this->Input.count; ++i)
-      {
-        if (balance.Of(i) == 0)
+      this->ForEach(
+        [&](std::int64_t i, const double at[3], int owner)
         {
-          continue;
-        }
-        double at[3];
-        this->Place(i, at);
-        const double reach = this->ReachOf(i);
-        this->FindReached(partition, at, reach, found);
-        for (const int rank : found)
-        {
-          double& radius = radii[static_cast<std::size_t>(rank)];
-          radius = std::max(radius, reach);
-        }
-      }
+          const double reach = this->ReachOf(i);
+          this->FindReached(at, owner, reach, found);
+          for (const int rank : found)
+          {
+            double& radius = radii[static_cast<std::size_t>(rank)];
+            radius = std::max(radius, reach);
+          }
+        });
       ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
     }
     const double h = this->Globals.measured.h_max;
@@ -221,16 +215,56 @@ public:
     return radii;
   }
 
+  /** Lists particles for the ranks that they reach, or that need all particles so near. */
+  void Send(vtkSPHRanks& ranks, const std::vector<double>& radii)
+  {
+    const double widest = *std::max_element(radii.begin(), radii.end());
+    const std::size_t count = radii.size();
+    std::vector<std::int64_t> totals(3 * count, 0);
+    std::vector<int> found, own;
+    this->Route.To.resize(count);
+    this->ForEach(
+      [&](std::int64_t i, const double at[3], int owner)
+      {
+        if (owner >= 0)
+        {
+          ++totals[static_cast<std::size_t>(owner)];
+          totals[2 * count + static_cast<std::size_t>(owner)] += this->Balance.Of(i);
+        }
+        const double reach = this->ReachOf(i);
+        this->FindReached(at, owner, std::max(reach, widest), found);
+        for (const int rank : found)
+        {
+          const auto to = static_cast<std::size_t>(rank);
+          if (rank != owner && radii[to] < widest && reach < widest)
+          {
+            this->FindReached(at, owner, std::max(reach, radii[to]), own);
+            if (std::find(own.begin(), own.end(), rank) == own.end())
+            {
+              continue;
+            }
+          }
+          this->Route.To[to].push_back(static_cast<vtkIdType>(i));
+          ++totals[count + to];
+        }
+      });
+    ranks.Reduce(vtkSPHRanks::SUM, totals.data(), static_cast<int>(totals.size()));
+    const auto self = static_cast<std::size_t>(ranks.GetRank());
+    this->Route.OwnedParticles = totals[self];
+    this->Route.Particles = totals[count + self];
+    this->Route.Work = totals[2 * count + self];
+  }
+
   const mcor_input& Input;
   const mcor_options& Options;
   const mcor_globals& Globals;
+  const vtkSPHRanksBalance& Balance;
   double Support; ///< scaled support radius / what the input's array holds
   double Factor;  ///< scaled support radius / smoothing length
   double LeastMargin;
   bool HasLevels; ///< margins differ
   bool ComputesVolumes;
-  vtkSPHRanksPeriod Period;
-  vtkSPHRanksBox Whole;
+  vtkSPHRanksRoute Route;
 };
 }
 
@@ -240,7 +274,9 @@ vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_glo
   {
     const double edge = globals.measured.edge[a];
     const double first = options.periodic[2 * a];
-    this->Length[a] = std::max(0.0, options.periodic[2 * a + 1] - first);
+    // Across the plane of particles in two dimensions it means nothing.
+    const bool isAcross = globals.measured.plane.axis == a + 1;
+    this->Length[a] = isAcross ? 0.0 : std::max(0.0, options.periodic[2 * a + 1] - first);
     this->First[a] = this->Length[a] > 0.0 ? edge * std::ceil(first / edge - 0.5) : 0.0;
   }
 }
@@ -263,68 +299,61 @@ int vtkSPHRanksRoute::FindOwner(const double at[3]) const
   return this->Partition->FindOwner(place);
 }
 
+vtkSPHRanksLists vtkSPHRanksRoute::ListOwners(vtkPolyData* points) const
+{
+  vtkSPHRanksLists owners(this->To.size());
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    owners[static_cast<std::size_t>(this->FindOwner(points->GetPoint(i)))].push_back(i);
+  }
+  return owners;
+}
+
+vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers)
+{
+  for (std::vector<vtkIdType>& list : places)
+  {
+    for (vtkIdType& place : list)
+    {
+      place = numbers[static_cast<std::size_t>(place)];
+    }
+  }
+  return places;
+}
+
 void vtkSPHRanksRoute::FindReached(const double at[3], double reach, std::vector<int>& found) const
 {
-  FindBoxes(*this->Partition, this->Period.Length, at, reach, found);
+  int last[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    // The core refuses supports of more than two periods.
+    const double periods =
+      this->Period.Length[a] > 0.0 ? std::ceil(reach / this->Period.Length[a]) : 0.0;
+    last[a] = static_cast<int>(std::min(periods, 3.0));
+  }
+  found.clear();
+  for (int z = -last[2]; z <= last[2]; ++z)
+  {
+    for (int y = -last[1]; y <= last[1]; ++y)
+    {
+      for (int x = -last[0]; x <= last[0]; ++x)
+      {
+        const int image[3] = { x, y, z };
+        vtkSPHRanksBox box;
+        for (int a = 0; a < 3; ++a)
+        {
+          const double place = at[a] + image[a] * this->Period.Length[a];
+          box[Side(a)] = place - reach;
+          box[Side(a) + 1] = place + reach;
+        }
+        this->Partition->FindOverlaps(box, found);
+      }
+    }
+  }
 }
 
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance)
 {
-  const Router router(input, options, globals);
-  vtkSPHRanksRoute route = { {}, {}, router.Whole, 0, 0, nullptr, router.Period, 0 };
-  route.Partition = router.Divide(ranks, balance);
-  const vtkSPHRanksPartition& partition = *route.Partition;
-  const std::vector<double> radii = router.FindRadii(ranks, partition, balance);
-  const double widest = *std::max_element(radii.begin(), radii.end());
-  const auto count = static_cast<std::size_t>(ranks.GetCount());
-  route.To.resize(count);
-  std::vector<std::int64_t> totals(3 * count, 0);
-  std::vector<int> found;
-  for (std::int64_t i = 0; i < input.count; ++i)
-  {
-    if (balance.Of(i) == 0)
-    {
-      continue;
-    }
-    double at[3];
-    router.Place(i, at);
-    const int owner = router.IsInWhole(at) ? partition.FindOwner(at) : -1;
-    if (owner >= 0)
-    {
-      ++totals[static_cast<std::size_t>(owner)];
-      totals[2 * count + static_cast<std::size_t>(owner)] += balance.Of(i);
-    }
-    const double reach = router.ReachOf(i);
-    router.FindReached(partition, at, std::max(reach, widest), found);
-    for (const int rank : found)
-    {
-      const auto to = static_cast<std::size_t>(rank);
-      std::vector<int> own;
-      if (rank != owner && radii[to] < widest && reach < widest)
-      {
-        router.FindReached(partition, at, std::max(reach, radii[to]), own);
-        if (std::find(own.begin(), own.end(), rank) == own.end())
-        {
-          continue;
-        }
-      }
-      route.To[to].push_back(static_cast<vtkIdType>(i));
-      ++totals[count + to];
-    }
-  }
-  ranks.Reduce(vtkSPHRanks::SUM, totals.data(), static_cast<int>(totals.size()));
-  const auto self = static_cast<std::size_t>(ranks.GetRank());
-  const vtkSPHRanksBox& box = partition.GetBox(ranks.GetRank());
-  std::copy(box.begin(), box.end(), route.Box);
-  if (box[0] >= box[1] || box[2] >= box[3] || box[4] >= box[5])
-  {
-    // More ranks than bricks: to the core, which wants a box, one where there is nothing.
-    const double nowhere[6] = { 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 };
-    std::copy(nowhere, nowhere + 6, route.Box);
-  }
-  route.OwnedParticles = totals[self];
-  route.Particles = totals[count + self];
-  route.Work = totals[2 * count + self];
-  return route;
+  return Router(input, options, globals, balance).Find(ranks);
 }

@@ -7,24 +7,25 @@
 #define vtkSPHRanksRoute_h
 
 #include "mcor_parts.h"
+#include "vtkSPHRanks.h"
 #include "vtkSPHRanksPartition.h"
-#include "vtkType.h"
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-class vtkSPHRanks;
+class vtkPolyData;
 
 /** One period, as the core has it: it begins at a node of the lattice. */
 struct vtkSPHRanksPeriod
 {
+  vtkSPHRanksPeriod() = default;
   vtkSPHRanksPeriod(const mcor_options& options, const mcor_globals& globals);
 
   /** Moves a place into it. */
   void Take(double at[3]) const;
 
-  double First[3], Length[3]; ///< 0: open
+  double First[3] = { 0.0, 0.0, 0.0 }, Length[3] = { 0.0, 0.0, 0.0 }; ///< 0: open
 };
 
 /** To whom this rank's particles go, and what this rank will have. */
@@ -33,29 +34,34 @@ struct vtkSPHRanksRoute
   /** The rank whose box holds a place, or an image of it. */
   int FindOwner(const double at[3]) const;
 
+  /** Of this rank's points, those in the boxes of each. */
+  vtkSPHRanksLists ListOwners(vtkPolyData* points) const;
+
   /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
   void FindReached(const double at[3], double reach, std::vector<int>& found) const;
 
-  std::vector<std::vector<vtkIdType>> To; ///< indices of the particles that each rank gets
-  double Box[6];                          ///< this rank's, as in mcor_options; may hold nothing
-  vtkSPHRanksBox Whole;                   ///< of all ranks' boxes
-  std::int64_t OwnedParticles;            ///< those in its box
-  std::int64_t Particles;                 ///< the same and copies
+  vtkSPHRanksLists To;             ///< indices of the particles that each rank gets
+  double Box[6] = {};              ///< this rank's, as in mcor_options; may hold nothing
+  vtkSPHRanksBox Whole = {};       ///< of all ranks' boxes
+  std::int64_t OwnedParticles = 0; ///< those in its box
+  std::int64_t Particles = 0;      ///< the same and copies
   std::shared_ptr<const vtkSPHRanksPartition> Partition;
   vtkSPHRanksPeriod Period;
-  std::int64_t Work; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
+  std::int64_t Work = 0; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
 };
+
+/** What stands at these places of the numbers. */
+vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers);
 
 /** What is divided evenly. */
 struct vtkSPHRanksBalance
 {
-  bool HasWork = false;                 ///< on all ranks alike; else that of each particle is 1
-  std::vector<std::int64_t> Work;       ///< of each particle; 0: it is needed nowhere
+  std::vector<std::int64_t> Work; ///< of each particle, 0: it is needed nowhere; empty: 1 each
   std::vector<vtkSPHRanksPlace> Others; ///< of this rank's, beside the particles
 
   std::int64_t Of(std::int64_t particle) const
   {
-    return this->HasWork ? this->Work[static_cast<std::size_t>(particle)] : 1;
+    return this->Work.empty() ? 1 : this->Work[static_cast<std::size_t>(particle)];
   }
 };
 
@@ -64,7 +70,6 @@ struct vtkSPHRanksBalance
  * smoothing length. `input` are this rank's particles, `globals` those of all. Collective.
  */
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
-  const mcor_options& options, const mcor_globals& globals,
-  const vtkSPHRanksBalance& balance = vtkSPHRanksBalance());
+  const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance);
 
 #endif

@@ -11,8 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
+#include <numeric>
 
 namespace
 {
@@ -104,54 +104,41 @@ struct Sums
   }
 };
 
-void AddCount(vtkFieldData* run, const char* name, const std::vector<vtkSPHRanksShare>& shares,
-  const std::function<std::int64_t(const vtkSPHRanksShare&)>& count)
+using Share = vtkSPHRanksShare;
+
+/** One component for each rank. */
+template <typename ArrayT, typename ValueOf>
+void Add(vtkFieldData* run, const char* name, const std::vector<Share>& shares, ValueOf valueOf)
 {
-  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  auto array = vtkSmartPointer<ArrayT>::New();
   array->SetNumberOfComponents(static_cast<int>(shares.size()));
   array->SetNumberOfTuples(1);
-  std::transform(shares.begin(), shares.end(), array->GetPointer(0), count);
+  std::transform(shares.begin(), shares.end(), array->GetPointer(0), valueOf);
   vtkSPHAddArray(run, name, array);
 }
 
-double SecondsOf(const vtkSPHRanksShare& share)
+void AddCount(
+  vtkFieldData* run, const char* name, const std::vector<Share>& shares, std::int64_t Share::*count)
 {
-  double seconds = 0.0;
-  for (const double phase : share.Statistics.seconds)
-  {
-    seconds += phase;
-  }
-  return seconds;
+  Add<vtkTypeInt64Array>(run, name, shares, std::mem_fn(count));
 }
 
-void AddExchange(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
+void AddExchange(vtkFieldData* run, const std::vector<Share>& shares)
 {
-  using Share = vtkSPHRanksShare;
-  AddCount(run, "RankParticles", shares, [](const Share& s) { return s.OwnedParticles; });
-  AddCount(run, "RankCopies", shares, [](const Share& s) { return s.CopiedParticles; });
-  AddCount(run, "RankBytesSent", shares, [](const Share& s) { return s.BytesSent; });
+  AddCount(run, "RankParticles", shares, &Share::OwnedParticles);
+  AddCount(run, "RankCopies", shares, &Share::CopiedParticles);
+  AddCount(run, "RankBytesSent", shares, &Share::BytesSent);
 }
 
-void AddSeconds(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
+void AddSeconds(vtkFieldData* run, const std::vector<Share>& shares)
 {
-  auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
-  seconds->SetNumberOfComponents(static_cast<int>(shares.size()));
-  seconds->SetNumberOfTuples(1);
-  std::transform(shares.begin(), shares.end(), seconds->GetPointer(0), SecondsOf);
-  vtkSPHAddArray(run, "RankSeconds", seconds);
+  Add<vtkDoubleArray>(run, "RankSeconds", shares,
+    [](const Share& share)
+    {
+      const double* seconds = share.Statistics.seconds;
+      return std::accumulate(seconds, seconds + MCOR_PHASE_COUNT, 0.0);
+    });
 }
-}
-
-std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSPHRanksShare& mine)
-{
-  const auto* first = reinterpret_cast<const char*>(&mine);
-  std::vector<vtkSPHRanksShare> shares;
-  for (const auto& bytes : ranks.Gather(vtkSPHRanks::Bytes(first, first + sizeof(mine))))
-  {
-    shares.emplace_back();
-    std::memcpy(&shares.back(), bytes.data(), sizeof(mine));
-  }
-  return shares;
 }
 
 mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
@@ -175,12 +162,11 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
 
 void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares)
 {
-  using Share = vtkSPHRanksShare;
   AddExchange(run, shares);
-  AddCount(run, "RankWork", shares, [](const Share& s) { return s.Work; });
-  AddCount(
-    run, "RankNodesEvaluated", shares, [](const Share& s) { return s.Statistics.nodes_evaluated; });
-  AddCount(run, "RankTriangles", shares, [](const Share& s) { return s.Triangles; });
+  AddCount(run, "RankWork", shares, &Share::Work);
+  Add<vtkTypeInt64Array>(run, "RankNodesEvaluated", shares,
+    [](const Share& share) { return share.Statistics.nodes_evaluated; });
+  AddCount(run, "RankTriangles", shares, &Share::Triangles);
   AddSeconds(run, shares);
 }
 
@@ -188,15 +174,15 @@ void vtkSPHAddSampleShares(
   vtkSPHRanks& ranks, vtkFieldData* run, const vtkSPHRanksRoute& route, std::int64_t points)
 {
   vtkDataArray* seconds = run->GetArray("Seconds");
-  vtkSPHRanksShare mine = {};
+  Share mine = {};
   mine.Points = points;
   mine.OwnedParticles = route.OwnedParticles;
   mine.CopiedParticles = route.Particles - route.OwnedParticles;
   mine.BytesSent = ranks.GetBytesSent();
   mine.Statistics.seconds[0] =
     seconds ? seconds->GetComponent(0, seconds->GetNumberOfComponents() - 1) : 0.0;
-  const std::vector<vtkSPHRanksShare> shares = vtkSPHGatherShares(ranks, mine);
+  const std::vector<Share> shares = ranks.Gather(mine);
   AddExchange(run, shares);
-  AddCount(run, "RankPoints", shares, [](const vtkSPHRanksShare& s) { return s.Points; });
+  AddCount(run, "RankPoints", shares, &Share::Points);
   AddSeconds(run, shares);
 }

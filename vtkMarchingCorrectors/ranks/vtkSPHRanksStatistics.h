@@ -25,9 +25,6 @@ struct vtkSPHRanksShare
   std::int64_t Work; ///< as in vtkSPHRanksRoute
 };
 
-/** All ranks' parts, in their order. Collective. */
-std::vector<vtkSPHRanksShare> vtkSPHGatherShares(vtkSPHRanks& ranks, const vtkSPHRanksShare& mine);
-
 /**
  * Sums of counts, the longest seconds, means over all points, of which each was counted by one rank. What
  * is evaluated on both sides of a seam is in the counts of bricks, nodes and evaluations twice.

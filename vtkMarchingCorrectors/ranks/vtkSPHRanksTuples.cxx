@@ -4,18 +4,30 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSPHRanksBytes.h"
 #include "vtkVariant.h"
 
 #include <cstring>
+#include <numeric>
+#include <string>
 #include <utility>
 
 namespace
 {
-using Bytes = vtkSPHRanks::Bytes;
+vtkSmartPointer<vtkAbstractArray> MakeLike(vtkAbstractArray* array, vtkIdType count)
+{
+  auto made =
+    vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->SetNumberOfTuples(count);
+  return made;
+}
 
 std::size_t TupleSize(vtkAbstractArray* array)
 {
@@ -40,68 +52,84 @@ void CopyTuples(const char* values, const std::vector<vtkIdType>& ids, char* to)
   }
 }
 
-void PutTuples(Bytes& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
+void PutPlain(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
 {
-  if (IsPlain(array))
+  const std::size_t size = TupleSize(array);
+  bytes.buffer.resize(bytes.position + ids.size() * size);
+  char* to = bytes.buffer.data() + bytes.position;
+  bytes.position = bytes.buffer.size();
+  const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
+  switch (size)
   {
-    const std::size_t size = TupleSize(array), old = bytes.size();
-    bytes.resize(old + ids.size() * size);
-    char* to = bytes.data() + old;
-    const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
-    switch (size)
-    {
-      case 4:
-        return CopyTuples<4>(values, ids, to);
-      case 8:
-        return CopyTuples<8>(values, ids, to);
-      case 12:
-        return CopyTuples<12>(values, ids, to);
-      default:
-        break;
-    }
-    for (const vtkIdType id : ids)
-    {
-      std::memcpy(to, values + static_cast<std::size_t>(id) * size, size);
-      to += size;
-    }
-    return;
+    case 4:
+      return CopyTuples<4>(values, ids, to);
+    case 8:
+      return CopyTuples<8>(values, ids, to);
+    case 12:
+      return CopyTuples<12>(values, ids, to);
+    default:
+      break;
   }
+  for (const vtkIdType id : ids)
+  {
+    std::memcpy(to, values + static_cast<std::size_t>(id) * size, size);
+    to += size;
+  }
+}
+
+/** Values that are not plain, as texts. */
+void PutTexts(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
+{
   const int components = array->GetNumberOfComponents();
   for (const vtkIdType id : ids)
   {
     for (int c = 0; c < components; ++c)
     {
-      vtkSPHPutText(bytes, array->GetVariantValue(id * components + c).ToString());
+      diy::save(
+        bytes, static_cast<std::string>(array->GetVariantValue(id * components + c).ToString()));
     }
   }
 }
 
-void GetTuples(vtkSPHRanksReader& reader, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
+void GetTuples(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
 {
   if (IsPlain(array))
   {
     const std::size_t size = TupleSize(array);
-    auto* values = static_cast<char*>(array->GetVoidPointer(0));
-    reader.GetBytes(
-      values + static_cast<std::size_t>(first) * size, static_cast<std::size_t>(count) * size);
+    bytes.load_binary(
+      static_cast<char*>(array->GetVoidPointer(0)) + static_cast<std::size_t>(first) * size,
+      static_cast<std::size_t>(count) * size);
     return;
   }
   const int components = array->GetNumberOfComponents();
   for (vtkIdType i = first * components; i < (first + count) * components; ++i)
   {
-    array->SetVariantValue(i, vtkVariant(reader.GetText()));
+    std::string text;
+    diy::load(bytes, text);
+    array->SetVariantValue(i, vtkVariant(text));
   }
 }
 
-/** At least; of a message with so many tuples. */
-std::size_t CountBytes(const vtkSPHRanksArrays& arrays, std::size_t count)
+/** The message for a rank: how many tuples, and these; nothing where there are none. */
+std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdType>& ids)
 {
-  std::size_t bytes = sizeof(std::int64_t);
-  for (vtkAbstractArray* array : arrays)
+  diy::MemoryBuffer bytes;
+  if (ids.empty())
   {
-    bytes += IsPlain(array) ? count * TupleSize(array) : 0;
+    return bytes.buffer;
   }
-  return bytes;
+  std::size_t size = sizeof(vtkIdType); // at least
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
+  {
+    size += IsPlain(array) ? ids.size() * TupleSize(array) : 0;
+  }
+  bytes.reserve(size);
+  diy::save(bytes, static_cast<vtkIdType>(ids.size()));
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
+  {
+    IsPlain(array) ? PutPlain(bytes, array, ids) : PutTexts(bytes, array, ids);
+  }
+  return std::move(bytes.buffer);
 }
 }
 
@@ -110,62 +138,96 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
   vtkSPHRanksArrays arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
-    arrays.push_back(data->GetAbstractArray(i));
+    arrays.emplace_back(data->GetAbstractArray(i));
   }
   return arrays;
 }
 
-vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* particles)
+vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* points)
 {
-  vtkSPHRanksArrays arrays = vtkSPHListArrays(particles->GetPointData());
-  arrays.insert(arrays.begin(), particles->GetPoints()->GetData());
+  vtkSPHRanksArrays arrays = vtkSPHListArrays(points->GetPointData());
+  arrays.emplace(arrays.begin(), points->GetPoints()->GetData());
   return arrays;
 }
 
-std::vector<Bytes> vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
-  const std::vector<std::vector<vtkIdType>>& to)
+vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPolyData* like)
 {
-  std::vector<Bytes> messages(to.size());
-  for (std::size_t rank = 0; rank < to.size(); ++rank)
+  auto made = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(vtkDataArray::SafeDownCast(arrays[0]));
+  made->SetPoints(points);
+  for (int i = 0; i + 1 < static_cast<int>(arrays.size()); ++i)
   {
-    if (!to[rank].empty())
+    const int at = made->GetPointData()->AddArray(arrays[static_cast<std::size_t>(i) + 1]);
+    const int attribute = like->GetPointData()->IsArrayAnAttribute(i);
+    if (attribute >= 0)
     {
-      messages[rank].reserve(CountBytes(arrays, to[rank].size()));
-      vtkSPHPutNumber(messages[rank], static_cast<std::int64_t>(to[rank].size()));
-      for (vtkAbstractArray* array : arrays)
+      made->GetPointData()->SetActiveAttribute(at, attribute);
+    }
+  }
+  return made;
+}
+
+vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from)
+{
+  std::vector<std::vector<char>> messages;
+  for (const std::vector<vtkIdType>& ids : to)
+  {
+    messages.push_back(Pack(arrays, ids));
+  }
+  messages = ranks.Exchange(std::move(messages));
+  std::vector<vtkIdType> counts(messages.size(), 0);
+  std::vector<diy::MemoryBuffer> received(messages.size());
+  for (std::size_t rank = 0; rank < messages.size(); ++rank)
+  {
+    received[rank].buffer.swap(messages[rank]);
+    if (!received[rank].empty())
+    {
+      diy::load(received[rank], counts[rank]);
+    }
+  }
+  const vtkIdType total = std::accumulate(counts.begin(), counts.end(), vtkIdType(0));
+  vtkSPHRanksArrays came;
+  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
+  {
+    came.push_back(MakeLike(array, total));
+    vtkIdType first = 0;
+    for (std::size_t rank = 0; rank < received.size(); first += counts[rank++])
+    {
+      if (counts[rank] > 0)
       {
-        PutTuples(messages[rank], array, to[rank]);
+        GetTuples(received[rank], came.back(), first, counts[rank]);
       }
     }
   }
-  return ranks.Exchange(std::move(messages));
-}
-
-std::vector<vtkIdType> vtkSPHCountTuples(const std::vector<Bytes>& received)
-{
-  std::vector<vtkIdType> counts;
-  for (const Bytes& message : received)
+  if (from)
   {
-    counts.push_back(
-      message.empty() ? 0 : static_cast<vtkIdType>(vtkSPHRanksReader(message).GetNumber()));
+    from->swap(counts);
   }
-  return counts;
+  return came;
 }
 
-void vtkSPHReceiveTuples(const std::vector<Bytes>& received, const vtkSPHRanksArrays& arrays)
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount)
 {
-  vtkIdType first = 0;
-  for (const Bytes& message : received)
+  vtkNew<vtkIdList> places, order;
+  for (const std::vector<vtkIdType>& ids : home)
   {
-    if (!message.empty())
+    for (const vtkIdType id : ids)
     {
-      vtkSPHRanksReader reader(message);
-      const auto count = static_cast<vtkIdType>(reader.GetNumber());
-      for (vtkAbstractArray* array : arrays)
-      {
-        GetTuples(reader, array, first, count);
-      }
-      first += count;
+      order->InsertNextId(places->InsertNextId(id));
     }
   }
+  vtkSPHRanksArrays returned;
+  for (const vtkSmartPointer<vtkAbstractArray>& came : vtkSPHSendTuples(ranks, arrays, back))
+  {
+    returned.push_back(MakeLike(came, homeCount));
+    if (auto* numbers = vtkArrayDownCast<vtkDataArray>(returned.back().Get()))
+    {
+      numbers->Fill(0.0);
+    }
+    returned.back()->InsertTuples(places, order, came);
+  }
+  return returned;
 }

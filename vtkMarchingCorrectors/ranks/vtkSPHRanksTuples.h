@@ -7,7 +7,7 @@
 #define vtkSPHRanksTuples_h
 
 #include "vtkSPHRanks.h"
-#include "vtkType.h"
+#include "vtkSmartPointer.h"
 
 #include <vector>
 
@@ -15,22 +15,27 @@ class vtkAbstractArray;
 class vtkPointData;
 class vtkPolyData;
 
-using vtkSPHRanksArrays = std::vector<vtkAbstractArray*>;
+using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
 
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data);
-
 /** The positions, then the point arrays. */
-vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* particles);
+vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* points);
+/** Points of such arrays, each of which is used as the one in `like` is. */
+vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPolyData* like);
 
-/** To each rank the tuples listed for it. Number i of the result came from rank i. Collective. */
-std::vector<vtkSPHRanks::Bytes> vtkSPHSendTuples(vtkSPHRanks& ranks,
-  const vtkSPHRanksArrays& arrays, const std::vector<std::vector<vtkIdType>>& to);
+/**
+ * To each rank the tuples listed for it, of arrays that have the same forms on all ranks and lie plain in memory.
+ * Returns such arrays of what came, in the order of ranks; `from`: how many tuples from each of them. Collective.
+ */
+vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
-/** How many tuples came from each rank. */
-std::vector<vtkIdType> vtkSPHCountTuples(const std::vector<vtkSPHRanks::Bytes>& received);
-
-/** To arrays that are as long as all of them together. */
-void vtkSPHReceiveTuples(
-  const std::vector<vtkSPHRanks::Bytes>& received, const vtkSPHRanksArrays& arrays);
+/**
+ * Sends results back to where they are wanted: of the arrays, the tuples listed for each rank in `back`. Returns
+ * arrays of `homeCount` tuples: what comes from a rank is at the places listed for it in `home`; elsewhere they
+ * are 0. Collective.
+ */
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount);
 
 #endif

@@ -33,25 +33,20 @@ public:
     , Options(options)
     , Globals(globals)
   {
-    this->Edge = CellLengths * globals.measured.h_median;
-    double cells = 0.0;
-    for (this->Edge = std::max(this->Edge, globals.measured.cube);
-         cells == 0.0 || cells > CellLimit; this->Edge *= cells > CellLimit ? 1.25 : 1.0)
+    const mcor_measure& m = globals.measured;
+    const auto cellsAlong = [&](int a)
+    { return std::floor((m.x_high[a] - m.x_low[a]) / this->Edge) + 1.0; };
+    this->Edge = std::max(CellLengths * m.h_median, m.cube);
+    while (cellsAlong(0) * cellsAlong(1) * cellsAlong(2) > CellLimit)
     {
-      cells = 1.0;
-      for (int a = 0; a < 3; ++a)
-      {
-        cells *=
-          std::floor((globals.measured.x_high[a] - globals.measured.x_low[a]) / this->Edge) + 1.0;
-      }
+      this->Edge *= 1.25;
     }
+    std::size_t count = 1;
     for (int a = 0; a < 3; ++a)
     {
-      this->Size[a] =
-        static_cast<int>((globals.measured.x_high[a] - globals.measured.x_low[a]) / this->Edge) + 1;
+      this->Size[a] = static_cast<int>(cellsAlong(a));
+      count *= static_cast<std::size_t>(this->Size[a]);
     }
-    const auto count = static_cast<std::size_t>(this->Size[0]) *
-      static_cast<std::size_t>(this->Size[1]) * static_cast<std::size_t>(this->Size[2]);
     this->Counts.assign(count, 0);
     this->Low.assign(count, Infinity);
     this->High.assign(count, Infinity); // negated
@@ -88,21 +83,13 @@ public:
   {
     const double across = this->Edge / this->Globals.measured.cube;
     std::vector<std::int64_t> shares(this->Counts.size(), 1);
-    std::size_t cell = 0;
-    for (int z = 0; z < this->Size[2]; ++z)
+    for (std::size_t cell = 0; cell < shares.size(); ++cell)
     {
-      for (int y = 0; y < this->Size[1]; ++y)
+      if (this->Counts[cell] > 0)
       {
-        for (int x = 0; x < this->Size[0]; ++x, ++cell)
-        {
-          if (this->Counts[cell] > 0)
-          {
-            const int at[3] = { x, y, z };
-            const double work = this->CountSurfaces(cell, at) * CubeWork * across * across;
-            shares[cell] += static_cast<std::int64_t>(
-              std::min(work / static_cast<double>(this->Counts[cell]), 1e9));
-          }
-        }
+        const double work = this->CountSurfaces(cell) * CubeWork * across * across;
+        shares[cell] +=
+          static_cast<std::int64_t>(std::min(work / static_cast<double>(this->Counts[cell]), 1e9));
       }
     }
     return shares;
@@ -130,16 +117,17 @@ private:
    * How many surfaces pass through a cell, each as large as a side of it, as far as it and the six around
    * it tell.
    */
-  int CountSurfaces(std::size_t cell, const int at[3]) const
+  int CountSurfaces(std::size_t cell) const
   {
     double low = this->Low[cell], high = -this->High[cell];
     int ends = 0; // sides at which the fluid does
     std::size_t stride = 1;
     for (int a = 0; a < 3; ++a)
     {
+      const int at = static_cast<int>(cell / stride % static_cast<std::size_t>(this->Size[a]));
       for (int step = -1; step <= 1; step += 2)
       {
-        const bool isIn = at[a] + step >= 0 && at[a] + step < this->Size[a];
+        const bool isIn = at + step >= 0 && at + step < this->Size[a];
         const std::size_t other = step < 0 ? cell - stride : cell + stride;
         ends += !isIn || FarFewer * this->Counts[other] < this->Counts[cell] ? 1 : 0;
         low = isIn ? std::min(low, this->Low[other]) : low;

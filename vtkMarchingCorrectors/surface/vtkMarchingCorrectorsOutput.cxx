@@ -69,7 +69,7 @@ std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_
 }
 
 void vtkMarchingCorrectorsOutput::BuildMesh(
-  vtkPolyData* output, int precision, const std::function<void(std::vector<double>&)>& merge)
+  vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge)
 {
   const bool asFloat = precision == vtkAlgorithm::SINGLE_PRECISION ||
     (precision == vtkAlgorithm::DEFAULT_PRECISION &&
@@ -234,7 +234,7 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
 
 // Of what the particles carry, or the iso value where there are several; which is on all surfaces, too.
 void vtkMarchingCorrectorsOutput::ChooseActive(
-  vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const
+  vtkPolyData* output, const vtkSPHMergeRanges& merge) const
 {
   vtkPointData* data = output->GetPointData();
   const std::vector<vtkSPHAttribute>& attributes = this->Input.Interpolated;

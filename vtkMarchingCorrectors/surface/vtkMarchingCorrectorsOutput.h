@@ -7,8 +7,8 @@
 #define vtkMarchingCorrectorsOutput_h
 
 #include "mcor.h"
+#include "vtkSPHAlgorithm.h"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,9 +29,8 @@ public:
    */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
-  /** The surface, and its iso values. precision: of the points, as vtkAlgorithm has it. merge: makes each number the least over ranks. */
-  void BuildMesh(vtkPolyData* output, int precision,
-    const std::function<void(std::vector<double>&)>& merge = nullptr);
+  /** The surface, and its iso values. precision: of the points, as vtkAlgorithm has it. */
+  void BuildMesh(vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge = nullptr);
   /** Statistics and parameters: but for what it cost a function of the input and the options alone. */
   void AddRun(vtkFieldData* run) const;
 
@@ -42,8 +41,7 @@ private:
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);
-  void ChooseActive(
-    vtkPolyData* output, const std::function<void(std::vector<double>&)>& merge) const;
+  void ChooseActive(vtkPolyData* output, const vtkSPHMergeRanges& merge) const;
   void AddIsoValues(vtkFieldData* fieldData) const;
   void AddStatistics(vtkFieldData* fieldData) const;
   void AddMeasures(vtkFieldData* fieldData) const;

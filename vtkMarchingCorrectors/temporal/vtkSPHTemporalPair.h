@@ -61,8 +61,10 @@ private:
   void CheckVelocities();
   void WarnOfLostArrays();
   bool IsInBoth(vtkAbstractArray* array) const;
-  void InterpolatePositions(double s, double time, vtkPolyData* output) const;
-  void InterpolateArrays(double s, vtkPolyData* output) const;
+  void InterpolatePositions(
+    const Step& near, const Step& far, double share, double time, vtkPolyData* output) const;
+  void InterpolateArrays(
+    const Step& near, const Step& far, double share, vtkPolyData* output) const;
   std::string NameOfStep(int step) const;
 
   Step Steps[2];

@@ -23,9 +23,8 @@ vtkSmartPointer<vtkDataArray> MakeArray(
   vtkDataArray* a, vtkDataArray* b, vtkIdType count, const ValueT& value)
 {
   const bool isFloat = a->GetDataType() == VTK_FLOAT && b->GetDataType() == VTK_FLOAT;
-  vtkSmartPointer<vtkDataArray> array;
-  array.TakeReference(isFloat ? static_cast<vtkDataArray*>(vtkFloatArray::New())
-                              : static_cast<vtkDataArray*>(vtkDoubleArray::New()));
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
   const int components = a->GetNumberOfComponents();
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(count);
@@ -58,42 +57,28 @@ vtkSmartPointer<vtkDataArray> MakeArray(
   return array;
 }
 
-/** The two cubic polynomials of Hermite for positions, and the two for tangents. */
-struct HermiteWeights
-{
-  explicit HermiteWeights(double s)
-    : Second(s * s * (3.0 - 2.0 * s))
-    , FirstTangent(s * (1.0 - s) * (1.0 - s))
-    , SecondTangent(s * s * (s - 1.0))
-  {
-  }
-
-  const double Second; // that of the first position is 1 - Second
-  const double FirstTangent;
-  const double SecondTangent;
-};
 }
 
 void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
 {
   const double s = (time - this->Steps[0].Time) / (this->Steps[1].Time - this->Steps[0].Time);
-  const Step& near = this->Steps[s < 0.5 ? 0 : 1];
+  const bool early = s < 0.5;
+  const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
+  const double share = early ? s : 1.0 - s; // of the way to the other step
   vtkSPHTemporalCopy(near.Particles, output);
   output->GetFieldData()->RemoveArray("TimeValue"); // that of the step
   if (!near.Ids)
   {
     return; // one step has no particles, and the other nothing to interpolate with
   }
-  this->InterpolatePositions(s, time, output);
-  this->InterpolateArrays(s, output);
+  this->InterpolatePositions(near, far, share, time, output);
+  this->InterpolateArrays(near, far, share, output);
 }
 
 // In double, from the step that is nearer, so that a particle at rest stays where it is.
-void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData* output) const
+void vtkSPHTemporalPair::InterpolatePositions(
+  const Step& near, const Step& far, double share, double time, vtkPolyData* output) const
 {
-  const bool early = s < 0.5;
-  const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
-  const double share = early ? s : 1.0 - s;
   const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 for the later half
   const double toTime = this->TimeScale * (time - near.Time);
   const auto x0 = vtkSPHAsReal(near.Particles->GetPoints()->GetData()),
@@ -102,7 +87,10 @@ void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData
   const auto v0 = curved ? vtkSPHAsReal(near.Velocities) : x0,
              v1 = curved ? vtkSPHAsReal(far.Velocities) : x1;
   const vtkSPHReals from(x0), to(x1), begun(v0), ended(v1);
-  const HermiteWeights weight(share);
+  // Hermite's cubic polynomials, of the far position and of both tangents.
+  const double ofFar = share * share * (3.0 - 2.0 * share),
+               ofBegun = share * (1.0 - share) * (1.0 - share),
+               ofEnded = share * share * (share - 1.0);
   const auto position = [&](vtkIdType i, int c)
   {
     const vtkIdType j = near.Partners[static_cast<size_t>(i)];
@@ -112,8 +100,7 @@ void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData
       return curved ? x + toTime * begun(i, c) : x;
     }
     const double way = to(j, c) - x;
-    return curved ? x + weight.Second * way +
-        toFar * (weight.FirstTangent * begun(i, c) + weight.SecondTangent * ended(j, c))
+    return curved ? x + ofFar * way + toFar * (ofBegun * begun(i, c) + ofEnded * ended(j, c))
                   : x + share * way;
   };
   vtkNew<vtkPoints> points;
@@ -122,11 +109,9 @@ void vtkSPHTemporalPair::InterpolatePositions(double s, double time, vtkPolyData
 }
 
 // What the output has is that of the nearer step already.
-void vtkSPHTemporalPair::InterpolateArrays(double s, vtkPolyData* output) const
+void vtkSPHTemporalPair::InterpolateArrays(
+  const Step& near, const Step& far, double share, vtkPolyData* output) const
 {
-  const bool early = s < 0.5;
-  const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
-  const double share = early ? s : 1.0 - s;
   vtkPointData* own = near.Particles->GetPointData();
   for (int k = 0; k < own->GetNumberOfArrays(); ++k)
   {

@@ -29,14 +29,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-int mcor_has_box(const mcor_options* options)
+/* All zeros are no box. */
+static bool mcor_is_box(const double sides[6])
 {
-  int has = 0;
+  bool is_box = false;
   for (int i = 0; i < 6; ++i)
   {
-    has = has || options->box[i] != 0;
+    is_box = is_box || sides[i] != 0;
   }
-  return has;
+  return is_box;
+}
+
+int mcor_has_box(const mcor_options* options)
+{
+  return mcor_is_box(options->box);
 }
 
 /* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
@@ -104,20 +110,16 @@ static void mcor_place_whole(
   mcor_context* context, const mcor_options* options, int axis, double first, double last)
 {
   mcor_box* box = &context->box;
-  const double* whole = options->ranks ? options->ranks->whole_box : NULL;
-  bool is_given = false;
-  for (int i = 0; i < 6 && whole; ++i)
-  {
-    is_given = is_given || whole[i] != 0;
-  }
+  const double* whole =
+    options->ranks && mcor_is_box(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
   double side[2] = { first, last };
-  if (is_given)
+  if (whole)
   {
     mcor_place_sides(&context->lattice, axis, whole, side);
   }
   box->whole_first[axis] = (int)side[0];
   box->whole_last[axis] = (int)side[1];
-  mcor_place_halves(&context->lattice, axis, is_given ? whole : NULL, (int)side[0], (int)side[1],
+  mcor_place_halves(&context->lattice, axis, whole, box->whole_first[axis], box->whole_last[axis],
     box->whole_halves);
 }
 

@@ -79,7 +79,7 @@ static mcor_status mcor_cap_node_corner(
     job, &job->nodes, mcor_cap_key(node), corner->at, MCOR_CAP_FLAG, &corner->vertex);
 }
 
-/* The surface's vertex on side k: see mcor_march_emit for pinched ones. */
+/* The surface's vertex on side k: see mcor_cell_emit for pinched ones. */
 static mcor_status mcor_cap_edge_corner(
   mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {

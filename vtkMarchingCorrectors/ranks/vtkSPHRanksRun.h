@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: what one rank has of a run that ranks share. vtkSPHAlgorithm fills it, step by step.
+ */
+#ifndef vtkSPHRanksRun_h
+#define vtkSPHRanksRun_h
+
+#include "mcor.h"
+#include "mcor_parts.h"
+#include "vtkPolyData.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksRoute.h"
+#include "vtkSmartPointer.h"
+
+struct vtkSPHRanksRun
+{
+  explicit vtkSPHRanksRun(vtkMultiProcessController* controller)
+    : Ranks(controller)
+  {
+  }
+  ~vtkSPHRanksRun() { mcor_free_globals(&this->Globals); }
+  vtkSPHRanksRun(const vtkSPHRanksRun&) = delete;
+  void operator=(const vtkSPHRanksRun&) = delete;
+
+  vtkSPHRanks Ranks;
+  vtkSmartPointer<vtkPolyData> Own; ///< the particles that it was given, of vtkSPHTakeParticles()
+  std::int64_t Particles = 0;       ///< of all ranks
+  bool HasFluid = false;            ///< any of these
+  mcor_options Options = {};
+  mcor_globals Globals = {};
+  vtkSPHRanksRoute Route;
+  vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
+  std::vector<vtkIdType> From;       ///< how many of these from each rank
+};
+
+#endif

@@ -165,7 +165,7 @@ static void test_all_phases_ask(void** state)
   const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 4,
     [MCOR_PHASE_SEARCH_GRID] = 25,
     [MCOR_PHASE_SEEDS] = built_in ? 40 : 36,
-    [MCOR_PHASE_EXTRACTION] = 18,
+    [MCOR_PHASE_EXTRACTION] = 14,
     [MCOR_PHASE_CORRECTION] = 5,
     [MCOR_PHASE_TRIMMING] = 30,
     [MCOR_PHASE_OUTPUT] = 11 };

@@ -161,7 +161,7 @@ typedef struct mcor_pairs
   mcor_buffer keys, index;                      /* while places are found */
   mcor_buffer place_keys, buckets, place_slots; /* ulong, sorted; int */
   mcor_buffer marked, reached, grown; /* ulong, by place: by pairs; by now; when last looked at */
-  mcor_buffer seeds;                  /* ulong, by slot: those that are marked */
+  mcor_buffer cells, seeds;           /* ulong, by slot: those that are reached; that are marked */
   mcor_buffer domain;                 /* ulong, by slot: where growth may go */
   mcor_buffer heard;                  /* int4: cells that other boxes have reached */
   mcor_buffer found;                  /* int: what a kernel found in any brick */

@@ -23,7 +23,9 @@ static mcor_status mcor_find_cells(mcor_context* context)
   mcor_mesh* mesh = &context->mesh;
   const size_t bytes = (size_t)context->bricks.now.count * sizeof(cl_ulong);
   MCOR_TRY(mcor_reserve(context, &mesh->used, bytes));
-  MCOR_TRY(mcor_copy(context, &context->bricks.cells, &mesh->used, 0, bytes));
+  const mcor_buffer* cells =
+    mcor_uses_pairs(context) ? &context->pairs.cells : &context->bricks.cells;
+  MCOR_TRY(mcor_copy(context, cells, &mesh->used, 0, bytes));
   MCOR_TRY(mcor_keep_squares(context, &mesh->used));
   return mcor_clip_used(context);
 }

@@ -172,16 +172,16 @@ mcor_status mcor_find_reached(mcor_context* context, double iso)
     MCOR_TRY(grown ? MCOR_OK : mcor_exchange_cells(context, &grown));
   }
   const int count = bricks->now.count;
-  MCOR_TRY(mcor_reserve(context, &bricks->cells, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &pairs->cells, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &pairs->seeds, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_pair_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_PLACE_ARGS(context), MCOR_BUFFER(&pairs->reached),
-    MCOR_BUFFER(&pairs->marked), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&pairs->seeds));
+    MCOR_BUFFER(&pairs->marked), MCOR_BUFFER(&pairs->cells), MCOR_BUFFER(&pairs->seeds));
 }
 
 void mcor_release_pairs(mcor_context* context)
 {
   mcor_pairs* p = &context->pairs;
   MCOR_RELEASE(context, &p->keys, &p->index, &p->place_keys, &p->buckets, &p->place_slots,
-    &p->reached, &p->marked, &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
+    &p->reached, &p->marked, &p->cells, &p->seeds, &p->domain, &p->grown, &p->heard, &p->found);
 }

@@ -7,7 +7,7 @@
 
 #include "mcor_internal.h"
 
-/* Ends with the cells that pairs reach in bricks.cells, all of whose nodes are evaluated; pairs.seeds: those that pairs
+/* Ends with the cells that pairs reach in pairs.cells, all of whose nodes are evaluated; pairs.seeds: those that pairs
  * mark. iso: relative to A0. */
 mcor_status mcor_find_reached(mcor_context* context, double iso);
 /* Places of bricks, by which reached cells are noted, see MCOR_PLACE_PARAMS. */

@@ -85,9 +85,9 @@ static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
-/* Of uniform cubes: gives slots to the bricks that have nodes of reached cells, and evaluates these. first: no brick
- * has been placed for this iso value. */
-static mcor_status mcor_place_reached(mcor_context* context, double iso, bool first)
+/* Of uniform cubes: gives slots to the bricks that have nodes of reached cells, and evaluates these. *placed: whether
+ * some had none. */
+static mcor_status mcor_place_reached(mcor_context* context, double iso, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
@@ -97,7 +97,8 @@ static mcor_status mcor_place_reached(mcor_context* context, double iso, bool fi
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&bricks->bits),
     MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
-  if (flag == 0 && !first)
+  *placed = flag != 0 || first;
+  if (!*placed)
   {
     return MCOR_OK;
   }
@@ -165,11 +166,16 @@ mcor_status mcor_find_reached(mcor_context* context, double iso)
   MCOR_TRY(mcor_mark_pairs(context, iso));
   MCOR_TRY(adaptive ? mcor_find_neighbours(context) : MCOR_OK);
   mcor_end_rounds(context);
-  for (bool first = true, grown = true; grown; first = false)
+  for (bool first = true, more = true; more; first = false)
   {
-    MCOR_TRY(adaptive ? MCOR_OK : mcor_place_reached(context, iso, first));
-    MCOR_TRY(mcor_grow_reached(context, &grown));
-    MCOR_TRY(grown ? MCOR_OK : mcor_exchange_cells(context, &grown));
+    bool placed = false;
+    MCOR_TRY(adaptive ? MCOR_OK : mcor_place_reached(context, iso, first, &placed));
+    for (bool grown = true; grown;)
+    {
+      MCOR_TRY(mcor_grow_reached(context, &grown));
+    }
+    more = placed;
+    MCOR_TRY(more ? MCOR_OK : mcor_exchange_cells(context, &more));
   }
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &pairs->cells, (size_t)count * sizeof(cl_ulong)));

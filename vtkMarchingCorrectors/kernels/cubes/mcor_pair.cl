@@ -490,13 +490,9 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
     mcor_pair_plain_faces(m, mcor_cell_crossed(m, neighbours, valid, i), hanging);
   cells = mcor_pair_grow_within(&leaf, hanging, cells, domain[i], &faces);
   mcor_add_cells(reached, own, cells);
-  if (!by_level && mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
+  if (by_level || !mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
   {
-    atomic_or(flags, 1); /* again, when all its nodes are known */
-  }
-  else
-  {
-    grown[own] = cells;
+    grown[own] = cells; /* else again, when all its nodes are known */
   }
   const ulong fresh = cells & ~before & faces.used;
   for (int face = 0; face < 6 && fresh; ++face)

@@ -81,7 +81,10 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
 /* Takes over to the slots what was found. */
 mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found);
 
-/* mcor_march.c. The used cells that no finer ones touch. */
-const mcor_buffer* mcor_plain_used(const mcor_context* context);
+/* The used cells that no finer ones touch. */
+static inline const mcor_buffer* mcor_plain_used(const mcor_context* context)
+{
+  return mcor_is_adaptive(context) ? &context->mesh.plain_used : &context->mesh.used;
+}
 
 #endif

@@ -9,12 +9,6 @@
 
 #include <string.h>
 
-/* The used cells that no finer ones touch. */
-const mcor_buffer* mcor_plain_used(const mcor_context* context)
-{
-  return mcor_is_adaptive(context) ? &context->mesh.plain_used : &context->mesh.used;
-}
-
 /* ---- Cells ---- */
 
 /* The cells to examine, of the box and its ring, as `used`. */

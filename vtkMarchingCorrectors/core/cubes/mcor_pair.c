@@ -12,7 +12,6 @@
  * there may be surface are, as for complete seeds; others have no cell that could be used. */
 
 #include "mcor_pair.h"
-#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
@@ -25,13 +24,6 @@ static size_t mcor_pair_items(const mcor_context* context)
 }
 
 /* ---- Bricks by their place ---- */
-
-size_t mcor_count_places(const mcor_context* context)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  return mcor_is_adaptive(context) ? (size_t)bricks->now.count
-                                   : (size_t)bricks->block_count * MCOR_BLOCK_BRICKS;
-}
 
 /* With levels: bricks with cells that may be used, and the bricks that they are parts of, by their keys. */
 static mcor_status mcor_find_places(mcor_context* context)
@@ -139,7 +131,9 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
   return MCOR_OK;
 }
 
-mcor_status mcor_take_reached(mcor_context* context, const cl_int* cells, int count, bool* fresh)
+/* Of mcor_exchange_cells. */
+static mcor_status mcor_take_reached(
+  mcor_context* context, const cl_int* cells, int count, bool* fresh)
 {
   mcor_pairs* pairs = &context->pairs;
   cl_int flag;
@@ -175,7 +169,7 @@ mcor_status mcor_find_reached(mcor_context* context, double iso)
       MCOR_TRY(mcor_grow_reached(context, &grown));
     }
     more = placed;
-    MCOR_TRY(more ? MCOR_OK : mcor_exchange_cells(context, &more));
+    MCOR_TRY(more ? MCOR_OK : mcor_exchange_cells(context, mcor_take_reached, &more));
   }
   const int count = bricks->now.count;
   MCOR_TRY(mcor_reserve(context, &pairs->cells, (size_t)count * sizeof(cl_ulong)));

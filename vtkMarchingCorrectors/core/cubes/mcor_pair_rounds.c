@@ -9,7 +9,6 @@
 
 #include "mcor_box.h"
 #include "mcor_pair.h"
-#include "mcor_adaptive.h"
 #include "mcor_ranks.h"
 
 #include <math.h>
@@ -169,7 +168,7 @@ static int mcor_place_cell(const mcor_context* context, const mcor_world_cell* c
 
 /* Takes what is in this box of what all boxes tell. */
 static mcor_status mcor_hear_cells(
-  mcor_context* context, const mcor_world_cell* told, int64_t count, bool* fresh)
+  mcor_context* context, const mcor_world_cell* told, int64_t count, mcor_take take, bool* fresh)
 {
   cl_int* places = NULL;
   int64_t found = 0, room = 0;
@@ -189,8 +188,7 @@ static mcor_status mcor_hear_cells(
     }
     found += mcor_place_cell(context, told + i, places + 4 * found);
   }
-  const mcor_status status =
-    found > 0 ? mcor_take_reached(context, places, (int)found, fresh) : MCOR_OK;
+  const mcor_status status = found > 0 ? take(context, places, (int)found, fresh) : MCOR_OK;
   free(places);
   return status;
 }
@@ -214,7 +212,7 @@ static mcor_status mcor_tell_cells(
   return status;
 }
 
-mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
+mcor_status mcor_exchange_cells(mcor_context* context, mcor_take take, bool* grown)
 {
   mcor_cell_list list = { 0 };
   const void* all;
@@ -226,10 +224,10 @@ mcor_status mcor_exchange_cells(mcor_context* context, bool* grown)
   }
   mcor_status status = mcor_list_new_cells(context, &list);
   status = status == MCOR_OK ? mcor_tell_cells(context, &list, &all, &count) : status;
-  if (status == MCOR_OK && context->grid.count > 0 && mcor_count_places(context) > 0)
+  if (status == MCOR_OK && context->grid.count > 0 && take)
   {
     bool some;
-    status = mcor_hear_cells(context, all, count, &some);
+    status = mcor_hear_cells(context, all, count, take, &some);
     fresh = some;
   }
   free(list.cells);
@@ -251,7 +249,7 @@ mcor_status mcor_attend_growth(mcor_context* context)
 {
   for (bool grown = true; grown;)
   {
-    MCOR_TRY(mcor_exchange_cells(context, &grown));
+    MCOR_TRY(mcor_exchange_cells(context, NULL, &grown));
   }
   return MCOR_OK;
 }

@@ -41,8 +41,8 @@ constexpr double HUGE_CELLS = 1e9;
 const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComponent",
   "DotProductWith", "SmoothingLengthArray", "SmoothingLength", "EstimateSmoothingLength",
   "SmoothingLengthIsSupportRadius", "FluidArray", "FluidValue", "DetectFluid", "Blocks", "Kernel",
-  "CubeSizeMode", "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox", "BoxPosition",
-  "BoxLength" };
+  "Dimension", "CubeSizeMode", "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox",
+  "BoxPosition", "BoxLength" };
 
 // What the next update would find, and the panel shows elsewhere, or begins with.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",

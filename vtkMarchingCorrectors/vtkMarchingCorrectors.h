@@ -285,16 +285,17 @@ public:
 
   /**
    * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines: by lines) where
-   * values are above the iso value; they share the points of its border. With SOLIDS_WALL the free surface is
-   * closed at walls, too; lines are not. Trimming may leave it open. Off by default. An error with PAIRS or Filled.
+   * values are above the iso value; they share the points of its border. With SOLIDS_WALL a free surface is
+   * closed at walls, too; lines that end at walls stay open. Trimming may leave it open. Off by default. An error
+   * with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping);
 
   /**
-   * Of particles in a plane, fill the region above the least iso value, off by default: by triangles beside the lines,
-   * whose points they share, inside of what trimming leaves. The other values divide it into bands. The cell array
-   * "BandValue" has the iso value with which a triangle's band begins, and that of a line. In three dimensions it is
-   * an error.
+   * For particles in a plane: also fill the region above the lowest iso value, within the trimmed fluid, with
+   * triangles that share the points of the lines. The other values divide it into bands. The cell array "BandValue"
+   * has the iso value at which a triangle's band begins, and that of a line. Off by default. An error in three
+   * dimensions.
    */
   vtkSPHFlagMacro(Filled);
 

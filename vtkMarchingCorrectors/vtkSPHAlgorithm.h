@@ -8,13 +8,9 @@
  * kernel, which of them are fluid), the OpenCL device that does the work, and what is reported of a run.
  *
  * Smoothing lengths, volumes, masses and densities are point arrays. Unless they are named or given as a
- * constant, or DetectArrays is off, they are found by their usual names (in this order; case, blanks, "_"
- * and "-" do not matter):
- *
- *     smoothing length   SmoothingLength SmoothingLengths hsml h
- *     volume             Volume Volumes ParticleVolume vol VolumetricMeasure
- *     mass               Mass Masses ParticleMass m
- *     density            Density Densities ParticleDensity rho
+ * constant, or DetectArrays is off, they are found by their usual names (case, blanks, "_" and "-" do not
+ * matter), the most usual first: SmoothingLength, hsml, h; Volume, vol; Mass, m; Density, rho, Rhop; and
+ * others that mcor_name_priority in mcor.h knows.
  *
  * The volume of a particle is taken from the volume array; else it is mass / density; else, with masses
  * alone, m_j / sum_k m_k W(x_j - x_k, h_j); else 1 / sum_k W(x_j - x_k, h_j). As an array name,

@@ -343,13 +343,13 @@ std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
 {
   if (mesh->GetNumberOfLines() > 0 && mesh->GetNumberOfPolys() == 0)
   {
-    return "The input has lines, as particles in a plane give, and no surface with pieces. "
-           "With Filled, there are triangles between them; put vtkTriangleFilter, with PassLines "
-           "off, behind it.";
+    return "The input has lines, as from particles in a plane, and no triangles, so it has no "
+           "pieces. Turn Filled on to get triangles, and put vtkTriangleFilter with PassLines off "
+           "before this filter.";
   }
   const bool hasOthers = mesh->GetNumberOfCells() != mesh->GetNumberOfPolys() ||
     (mesh->GetNumberOfPolys() > 0 && mesh->GetPolys()->IsHomogeneous() != 3);
-  return hasOthers ? "The surface has cells that are no triangles. Put vtkTriangleFilter, with "
+  return hasOthers ? "The surface has cells that are not triangles. Put vtkTriangleFilter, with "
                      "PassLines and PassVerts off, before this filter."
                    : "";
 }

@@ -4,33 +4,33 @@
  * @class   vtkSPHComponents
  * @brief   the pieces of a surface: drops, bubbles, their volumes and particles
  *
- * vtkSPHComponents takes a surface of vtkMarchingCorrectors apart: triangles that share points are one
- * piece, across the sides of a period, too. Its first output is the surface with the point and cell array
- * "ComponentId": 0 is the piece of the largest area, and so on. The second output is a vtkTable with a row
- * for each piece:
+ * vtkSPHComponents divides a surface of vtkMarchingCorrectors into connected pieces: triangles that share
+ * points are one piece, also across the sides of a period. Its first output is the surface with the point and
+ * cell array "ComponentId": 0 is the piece of the largest area, and so on. The second output is a vtkTable
+ * with a row for each piece:
  *
  *     component            its number
  *     parent               of a cavity, the piece around it; else NaN
  *     closed               1 or 0: each edge has triangles on either side
- *     area, volume         volume of closed pieces alone, below 0 of a cavity
+ *     area, volume         volume only of closed pieces; negative for a cavity
  *     x, y, z              centre, of the volume; of open pieces, of the area
- *     xmin, xmax, ...      bounds; of a piece across a period's sides, those of it in one
+ *     xmin, xmax, ...      bounds; a piece that crosses the side of a period is joined first
  *     diameter             of the sphere of this volume
- *     particles            fluid particles that it encloses and no piece inside of it does
- *     mass                 of these
+ *     particles            fluid particles inside it, without those in pieces inside it
+ *     mass                 their mass
  *     vx, vy, vz           their mean velocity, weighted by the mass
  *
  * NaN where it does not apply. The last five need the particles, the second input; a row is then filled for
  * each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are left out, with the cavities in
  * them; open pieces, which have neither, stay.
  *
- * The surface may have been cut: what matters are its triangles. That of a period with caps is closed by
- * them: leave PeriodicBounds alone then, so that pieces end there.
+ * The surface may have been cut; only its triangles matter. Do not set PeriodicBounds for a surface with caps,
+ * which end pieces at the sides of the period.
  *
- * Processes that share a run (SetController()) find the pieces of the surface that vtkMarchingCorrectors made of their
- * particles together: each has its part, with ComponentId; the table, as of one process, is the first one's, the
- * others' have no rows. The first one takes the points and triangles of all, and the places, masses and velocities of
- * the particles: as much memory as one process needs without the other arrays.
+ * If the controller has several processes, they find the pieces of the surface that they share: each gets its
+ * part with ComponentId, and the first one gets the table, the same as from one process; the others get one
+ * without rows. The first process collects all points and triangles, and the positions, masses and velocities
+ * of all particles, which takes as much memory as one process needs without the other arrays.
  *
  * @sa
  * vtkMarchingCorrectors vtkConnectivityFilter vtkMassProperties

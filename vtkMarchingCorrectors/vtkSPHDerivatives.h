@@ -33,8 +33,8 @@
  * the same to the last bit as from one process. Particles that vtkGhostType marks as duplicates get zeros.
  *
  * @warning
- * At a cut, a block that is taken by itself, see SetBlocks(), has gradients as at an end of the fluid; so
- * has a piece that no processes share.
+ * A block that is processed by itself (see SetBlocks()), or a piece that is not shared by processes, has
+ * gradients at its cut as at the end of the fluid.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe vtkGradientFilter

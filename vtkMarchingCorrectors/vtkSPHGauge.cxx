@@ -271,8 +271,8 @@ void vtkSPHGauge::Fill(
     if (reading.outside && hasFluid)
     {
       this->Warn("Gauge '" + name +
-        "' is outside of all fluid: no particle reaches its line. If it is "
-        "always so, check its ends.");
+        "' is outside of all fluid: no particle reaches its line. If this is so at all times, "
+        "check its ends.");
     }
   }
 }

@@ -9,9 +9,9 @@
  * of vtkMarchingCorrectors; every crossing of that level is found and solved for, see mcor_gauge in
  * mcor.h. Solids do not count, and do not end the fluid.
  *
- * Lines are those of AddGauge(), and the line cells of the data set at the second input, each from its first
- * point to its last; without any of both, the line from Point1 to Point2. Gauges of the second input have
- * the names of its cell array "Name", if there is one.
+ * The lines are those of AddGauge() and the line cells of the second input, each from its first point to its
+ * last. If there are none, it is the line from Point1 to Point2. Gauges of the second input have the names of
+ * its cell array "Name", if there is one.
  *
  * The output is a vtkTable with a row for each gauge:
  *
@@ -19,18 +19,19 @@
  *     gauge       the name
  *     state       dry: no fluid on the line; full: fluid at its end; wet: else
  *     first       distance from the line's beginning to where fluid first ends
- *     last        the same of where it last ends; of a full gauge, the line's length
+ *     last        distance to where it ends last; for a full gauge, the length of the line
  *     depth       length of the line that is in fluid
  *     crossings   how often the line goes through the surface
  *     x, y, z     the place of `last`
  *
- * NaN where dry, but depth and crossings, which are 0. Lengths have the unit of the positions.
+ * For a dry gauge, first, last, x, y and z are NaN, and depth and crossings are 0. Lengths have the unit of the
+ * positions.
  *
  * Blocks of composite data are one set of particles, always.
  *
- * Processes that share a run measure together, see vtkSPHAlgorithm::SetController(): each has some of the
- * particles, all have the same gauges; lines that only some have count, too. The table, bit for bit that of one process, is the
- * first one's; the others' have no rows.
+ * If the controller has several processes, they share the work: each has some of the particles, and the lines
+ * of all processes are measured. The first process gets the table, the same to the last bit as from one process;
+ * the others get one without rows.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe
@@ -59,7 +60,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * Leave solid particles out of the sums that volumes are computed from, too. Off by default.
+   * Also leave solid particles out when volumes are computed from positions. Off by default.
    */
   vtkSPHFlagMacro(IgnoreSolids);
 
@@ -86,7 +87,7 @@ public:
 
   ///@{
   /**
-   * The one line that there is without others. (0, 0, 0) and (0, 0, 1) by default.
+   * The line that is used if there are no others. (0, 0, 0) and (0, 0, 1) by default.
    */
   vtkSetVector3Macro(Point1, double);
   vtkGetVector3Macro(Point1, double);
@@ -100,7 +101,7 @@ public:
   vtkSPHValueMacro(Level, double);
 
   /**
-   * The time in the table where the input does not tell. 0 by default.
+   * The time in the table if the input has none. 0 by default.
    */
   vtkSPHValueMacro(Time, double);
 

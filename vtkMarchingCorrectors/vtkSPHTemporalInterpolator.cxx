@@ -318,7 +318,7 @@ void vtkSPHTemporalInterpolator::Fill(
   vtkPointSet* sets[2] = { vtkPointSet::SafeDownCast(first), vtkPointSet::SafeDownCast(second) };
   if (!output || !sets[0] || !sets[1])
   {
-    this->Fail("It does not hold points in all steps.");
+    this->Fail("Not all steps hold points.");
     return;
   }
   const std::vector<double>& times = this->Internals->Times;

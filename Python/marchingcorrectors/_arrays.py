@@ -42,7 +42,7 @@ def as_array(values, role):
         return np.asarray(values)
     except (TypeError, ValueError, RuntimeError, BufferError) as error:
         raise InvalidArgument(
-            f"The {role} is no array in this computer's memory that NumPy can take: {error}") from None
+            f"The {role} is not an array in this computer's memory that NumPy can take: {error}") from None
 
 
 def contiguous(values, role):
@@ -135,7 +135,7 @@ class Arguments:
             return
         marks = as_array(solid, "array of solid particles' marks")
         if marks.dtype.kind not in "fiub":
-            raise InvalidArgument(f"The marks of solid particles are no numbers, but {marks.dtype}.")
+            raise InvalidArgument(f"The marks of solid particles are not numbers but {marks.dtype}.")
         if marks.shape != (self.count,):
             raise InvalidArgument(f"The marks of solid particles have the shape {marks.shape}; for "
                                   f"{self.count} particles it is ({self.count},).")
@@ -215,9 +215,9 @@ def convert(to, name, value):
     try:
         result = to(value)
     except (TypeError, ValueError, OverflowError):
-        raise InvalidArgument(f"The {name} is {value!r}, which is no {WORDS[to]}.") from None
+        raise InvalidArgument(f"The {name} is {value!r}, which is not a {WORDS[to]}.") from None
     if to is int and result != value:
-        raise InvalidArgument(f"The {name} is {value!r}, which is no {WORDS[to]}.")
+        raise InvalidArgument(f"The {name} is {value!r}, which is not a {WORDS[to]}.")
     return result
 
 

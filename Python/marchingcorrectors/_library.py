@@ -106,7 +106,8 @@ def start():
             _ready_in = os.getpid()
         elif _ready_in != os.getpid():
             raise DeviceError("OpenCL was started before this process was forked, and drivers do not survive "
-                              'that: use the "spawn" method of multiprocessing, or extract here first.')
+                              'that: use the "spawn" method of multiprocessing, or do not call this package '
+                              "before the fork.")
 
 
 def _list():

@@ -26,7 +26,7 @@ def find_walls(names):
     if not walls or len(walls) == len(names):
         return ""
     return (f"{walls[0]} of {len(names)} seems to hold walls. Each block is taken by itself, so its particles do "
-            "not affect the surfaces of the others. Take the blocks together.")
+            "not affect the surfaces of the others. Set Blocks to Together.")
 
 
 def walk(tree, empty=False):

@@ -151,7 +151,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--color-by", "Radius"], r"or a .ply file there are no colours; leave out --color-by"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
-            ([*good, *ISO, "--resolution", "9"], "without --slice or --line there is no resolution; leave out --resolution"),
+            ([*good, *ISO, "--resolution", "9"], "--resolution is for --slice and --line; leave out --resolution"),
             ([*good, "--slice", "0.1"], "--slice needs an axis and a position, such as z=0.1"),
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),
@@ -198,7 +198,7 @@ class BadData(CommandLineTest):
                             {"SmoothingLength": None})
 
     def test_missing_attribute(self):
-        self.refuse_with("no point array 'Colour' to carry", *ISO, "--attributes", "Kind,Colour")
+        self.refuse_with("no point array 'Colour' to interpolate", *ISO, "--attributes", "Kind,Colour")
 
     def test_mistyped_arrays(self):
         names = files.string_array("Names", ["a"] * len(self.points))
@@ -334,7 +334,7 @@ class Options(CommandLineTest):
         self.assertRegex(result.stdout, r"(?m)^surface     \d+ points, \d+ triangles; area 0\.98\d*, volume -0\.09\d*$")
         trimmed = self.extract("--scalar", "Radius", "--iso", "0.55")
         self.assertRegex(trimmed.stdout,
-                         r"(?m)^surface     .* triangles \(trimmed from \d+, some of which it cut in two\); area [\d.]+$")
+                         r"(?m)^surface     .* triangles \(\d+ before trimming, which cuts some in two\); area [\d.]+$")
         self.assertRegex(result.stdout, r"(?m)^cells       \d+ of the virtual grid, .* with surface$")
         self.assertRegex(result.stdout, r"(?m)^seconds     .*search grid.*total \d")
 
@@ -738,8 +738,8 @@ class Options(CommandLineTest):
                            f'{" ".join(map(repr, values))}</DataArray>' for name, values in arrays.items())
             self.input.write_text(plain.replace("<PolyData>", f"<PolyData><FieldData>{data}</FieldData>"))
             hint = self.extract(*free)
-            self.assertRegex(hint.stderr, f"warning: the field data array {next(iter(arrays))} may be a period, .*"
-                             "which was not used; --periodic auto takes it")
+            self.assertRegex(hint.stderr, f"warning: the field data array {next(iter(arrays))} may be a period [(].*[)], "
+                             "but was not used; --periodic auto uses it")
             self.assertNotIn("may be a period", self.extract(*free, "--periodic", "0,0,0").stderr)
             found = self.succeed(*free, "--periodic", "auto")
             if bounds:

@@ -237,7 +237,7 @@ class Plane(CommandLineTest):
     def test_what_has_no_lines(self):
         stl = self.directory / "surface.stl"
         self.refuse(self.run_program(self.input, stl, "--free-surface", "--no-attributes"), 1, "cannot hold lines")
-        self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "have lines")
+        self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "give lines")
 
     def test_particle_distance(self):
         """Of DualSPHysics, whose smoothing length is that of the dimension."""
@@ -257,7 +257,7 @@ class Plane(CommandLineTest):
         self.assertIn("Q-criterion", self.output.read_text())
         self.output.unlink()
         self.refuse(self.extract("--derive", "Velocity", "--scalar", "Lambda2", "--iso", "-1"), 1,
-                    "not in two dimensions; use Q-criterion")
+                    "There is no Lambda2 in two dimensions.*use Q-criterion")
 
 
 if __name__ == "__main__":

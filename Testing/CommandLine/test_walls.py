@@ -101,12 +101,12 @@ class Walls(CommandLineTest):
             path.unlink()
         cases = ((1, "late.pvd has no walls at the time of .*Fluid_0000", [films["fluid"], film], films["late"]),
                  (1, "paddle.pvd lists 2 times, and there are 1 steps", [self.fluid, film], films["paddle"]),
-                 (1, "wants the number of each step, and the name .*none", [self.write("Fluid.vtp", lambda kind, point: True), film],
+                 (1, "needs the number of each step, but the name .*none", [self.write("Fluid.vtp", lambda kind, point: True), film],
                   numbered),
                  (1, "Paddle_3.vtp cannot be read", [self.fluid, film], numbered),
                  (2, "0.25 is between two steps, where walls", [films["fluid"], film, "--times", "0,0.25"], numbered),
                  (2, "Paddle_0.vtp would overwrite the input", [*fluids, self.directory / "Paddle_%d.vtp"], films["paddle"]),
-                 (2, "has walls of each step", [self.fluid, self.output], numbered))
+                 (2, "has walls for each step", [self.fluid, self.output], numbered))
         for status, sentence, places, walls in cases:
             self.refuse(self.run_program(*places, *HOW, "--walls", walls), status, sentence)
 

@@ -450,11 +450,11 @@ class TestTemporal(unittest.TestCase):
                 steps = [rotating(0.0), rotating(0.2)]
                 steps[step].GetPointData().GetArray("Idp").SetValue(200, 17)
                 self.refuse(interpolator({0.0: steps[0], 0.2: steps[1]}), 0.1,
-                            "Particles 17 and 200", "the same number, 17")
+                            "Particles 17 and 200", "the same number 17")
         steps = [rotating(0.0), rotating(0.2)]
         for particles in steps:
             particles.GetPointData().GetArray("Idp").Fill(0)
-        self.refuse(interpolator({0.0: steps[0], 0.2: steps[1]}), 0.1, "the same number, 0")
+        self.refuse(interpolator({0.0: steps[0], 0.2: steps[1]}), 0.1, "the same number 0")
 
     def test_velocity(self):
         film = interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)})

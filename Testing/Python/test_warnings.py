@@ -65,8 +65,8 @@ class TestWarnings(unittest.TestCase):
 
     def test_walls_in_a_block(self):
         fluid = self.particles
-        for apart, words in ((1, "Block 'PartBound', index 2 of 2 seems to hold walls.*together"),
-                             (0, "Some blocks have names of walls.*'WallBlock'")):
+        for apart, words in ((1, "Block 'PartBound', index 2 of 2 seems to hold walls.*Set Blocks to Together"),
+                             (0, "The names of some blocks suggest walls.*'WallBlock'")):
             extract = test_filter.make_filter(blocks_of(PartFluid=fluid, PartBound=fluid))
             extract.SetBlocks(apart)
             found = warnings_of(extract)

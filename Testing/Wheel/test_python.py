@@ -204,7 +204,7 @@ class Inputs(unittest.TestCase):
 
         found = mc.isosurface(Tensor(POSITIONS), Tensor(DISTANCE), 0.4, smoothing_length=H, volume=V)
         self.assertEqual(found, sphere())
-        with self.assertRaisesRegex(mc.InvalidArgument, "scalar is no array in this computer's memory"):
+        with self.assertRaisesRegex(mc.InvalidArgument, "scalar is not an array in this computer's memory"):
             mc.isosurface(POSITIONS, Elsewhere(DISTANCE), 0.4, smoothing_length=H)
 
     def test_units(self):

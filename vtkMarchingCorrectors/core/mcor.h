@@ -99,9 +99,9 @@ extern "C"
 /* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks of 4^3
  * where all particles that reach the brick have at least 2^L times the smallest smoothing length; bricks
  * that touch differ by one level at most. The surface is closed across levels. With one smoothing length
- * for all particles, all cubes have level 0. With MCOR_TOPOLOGY_FIELD the field only decides in cubes, and
- * on faces between two cubes, that no finer cube touches. A period is a whole number of the largest bricks,
- * which may allow fewer levels: see mcor_statistics.highest_level. */
+ * for all particles, all cubes have level 0. With MCOR_TOPOLOGY_FIELD, the field decides only in cubes and on
+ * faces that no finer cube touches. A period is a whole number of the largest bricks, which may allow fewer
+ * levels: see mcor_statistics.highest_level. */
 #define MCOR_CUBE_LEVELS 25
 
   /* Which sides caps close, see mcor_options.capping. */
@@ -198,7 +198,8 @@ extern "C"
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
-  /* What a surface carries beside points and triangles: the array of mcor_surface of that name, or of mcor_samples. */
+  /* What a surface or samples carry besides points and triangles: the array of that name in mcor_surface, or in
+   * mcor_samples. */
   typedef enum mcor_output
   {
     MCOR_OUT_NORMALS = 1,
@@ -247,10 +248,11 @@ extern "C"
      * MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED. */
     double wall_share;
     int preview; /* nonzero: vertices by linear interpolation, no correction */
-    /* Two dimensions, nonzero: triangles fill the region above the least iso value, inside of what trimming
-     * leaves, divided by the lines of the other values: see mcor_surface.band_value. They share the points of
-     * lines; their other points are nodes of the virtual grid, and where trimming cuts its edges. iso_value is
-     * given, too. Seeds are complete, and all squares have the smallest size. Three dimensions are refused. */
+    /* In two dimensions, nonzero: triangles fill the region above the lowest iso value within the trimmed fluid;
+     * the lines of the other values divide it into bands, see mcor_surface.band_value. The triangles share the
+     * points of the lines; their other points are nodes of the virtual grid and points where trimming cuts its
+     * edges. The array iso_value is returned even without MCOR_OUT_ISO_VALUE. Seeds are complete, and all squares
+     * have the smallest size. In three dimensions this is an error. */
     int filled;
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit; /* of the correction, per vertex; 1 to 255, default 30 */
@@ -261,10 +263,10 @@ extern "C"
 
     /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the surface is that of the cells whose centres are in the box,
      * box[2 a] <= x < box[2 a + 1] along axis a, to the last bit; boxes side by side make up the whole surface.
-     * Sides may be infinite; flat (y0 = y1) only around particles in that plane. Lattice, ranges and smallest h are measured over all particles; only those that reach
-     * the box are evaluated. With MCOR_PAIRS and no ranks, the whole surface is evaluated up to the
-     * correction, because cells grow from wherever pairs are. mcor_probe and mcor_derive read the box only
-     * with globals. */
+     * Sides may be infinite. A box may be flat (y0 = y1) only around particles in that plane. Lattice, ranges and
+     * smallest h are measured over all particles; only those that reach the box are evaluated. With MCOR_PAIRS and
+     * no ranks, the whole surface is evaluated up to the correction, because cells grow from wherever pairs are.
+     * mcor_probe and mcor_derive read the box only with globals. */
     double box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
@@ -278,11 +280,12 @@ extern "C"
      * iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of whole_box). These caps
      * share the points of the surface's border; their other points are nodes, with normals pointing out of the
      * period, boundary flag 8, and a meaningless residual. Trimming also cuts caps, and leaves its own border
-     * open. But where MCOR_WEIGHT_SUM ends at solids, see wall_share, caps with either value close that border,
-     * by points on lattice edges with the normals of triangles. All cubes then have the smallest size. With a
-     * box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box that no particle
-     * reaches gets no caps, even where the iso value of a sum is 0. Not with MCOR_PAIRS. In two dimensions lines
-     * along these sides, with exact cuts, close lines; not at walls, and not with `filled`. */
+     * open. Where MCOR_WEIGHT_SUM ends at solids (see wall_share), both values also close that border; the points
+     * of these caps lie on lattice edges, and their normals are those of triangles. With caps, all cubes have the
+     * smallest size. With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box
+     * that no particle reaches gets no caps, even where the iso value of a sum is 0. Cannot be combined with
+     * MCOR_PAIRS. In two dimensions, lines along these sides, cut exactly, close the lines; lines that end at
+     * walls stay open. Cannot be combined with `filled` either. */
     int capping; /* mcor_capping */
 
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, of
@@ -382,8 +385,8 @@ extern "C"
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what position_error may add. Not of
-     * caps, nor of the trim_vertices_linear. */
+    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what position_error may add. Without
+     * caps and the trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices,
@@ -412,19 +415,18 @@ extern "C"
     double* points;          /* [point_count][3], unit L */
     int32_t* triangles;      /* [triangle_count][3], point indices */
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
-    /* Two dimensions: polylines, and triangles only of what is filled. Line l runs through the points line_points[
-     * line_offsets[l]] to before line_offsets[l + 1], greater values on its left as seen against the constant
-     * axis; a closed one ends with its first point. Open ones come first. Normals lie in the plane, but along
-     * the constant axis, as those of triangles, where these are filled. Counts of triangles in the statistics
-     * are those of lines between two points; lines have no triangle_keys. */
+    /* Two dimensions: polylines, and triangles only of the filled region. Line l has the points
+     * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on its left, seen
+     * against the constant axis. A closed line ends with its first point. Open lines come first. Normals lie in
+     * the plane; with `filled`, all are those of the triangles, along the constant axis. Counts of triangles in the
+     * statistics are those of lines between two points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
-    /* [triangle_count]; NULL unless filled: the greatest iso value that is not above the field there, with which
-     * the band begins. The last band has no end. At points inside, iso_value is this, and residual what the field
-     * is above it. */
+    /* [triangle_count]; NULL unless filled: the iso value at which the triangle's band begins; the last band has
+     * no upper end. At interior points, iso_value is this value, and residual is the field minus it. */
     double* band_value;
-    /* Optional arrays, NULL where not asked for. */
+    /* Optional arrays, see mcor_output; NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
     double* gradients;          /* [point_count][3], gradient of the field, scalar unit / L */
     float* weight_sum;          /* [point_count], the trimming weight */
@@ -606,7 +608,7 @@ extern "C"
   } mcor_samples;
 
   /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The scalar of
-   * the input is not read. These options apply: sph_kernel, field, h_scale, gradients, node_threshold,
+   * the input is not read. These options apply: sph_kernel, field, h_scale, outputs, node_threshold,
    * precision, memory_limit, periodic and progress; cube_size and cube_size_factor only set the unit of
    * length on the device. The bits of a point do not depend on the other points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
@@ -684,7 +686,7 @@ extern "C"
   } mcor_derivatives;
 
   /* Gradients of the attributes of the input, from sums over fluid particles. The options of mcor_probe apply,
-   * except field, gradients and node_threshold. A gradient too large for a double is infinite. *derivatives
+   * except field, outputs and node_threshold. A gradient too large for a double is infinite. *derivatives
    * is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);

@@ -20,9 +20,11 @@ static mcor_status mcor_extract_iso(
   const double value = options->iso_values[i], iso = value - context->value_shift;
   context->run.iso_number = i;
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
+  /* [III-B, III-C] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
   MCOR_TRY(mcor_is_adaptive(context) ? mcor_select_leaves(context, input, iso)
                                      : mcor_select_seeds(context, iso));
+  /* [III-D.1] */
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
   MCOR_TRY(mcor_march(context, iso));
@@ -30,6 +32,7 @@ static mcor_status mcor_extract_iso(
   {
     mcor_release_nodes(context);
   }
+  /* [III-D.2] */
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_CORRECTION, begin + 0.5 * step, begin + 0.7 * step));
   if (context->mesh.march_count > 0 || mcor_makes_caps(context))
@@ -37,10 +40,12 @@ static mcor_status mcor_extract_iso(
     MCOR_TRY(mcor_load_attributes(context, input, 0));
   }
   MCOR_TRY(mcor_correct(context, iso));
+  /* [III-D.3] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context, iso));
   MCOR_TRY(mcor_cap(context, iso));
   MCOR_TRY(mcor_take_lines(context));
+  /* [III-D.4] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
   mcor_release(context, &context->attributes.sorted);
   if (last && input->particles_version == 0 && !mcor_output_evaluates(context) && !options->filled)
@@ -64,12 +69,10 @@ static mcor_status mcor_extract_all(
   {
     return mcor_attend_rounds(context, 0);
   }
-  MCOR_TRY(mcor_prepare(context, input, options));
+  MCOR_TRY(mcor_prepare(context, input, options)); /* [III-A] */
   MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
   MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
-    "Filling is for two dimensions, but these particles do not lie in a plane: they have a "
-    "surface, "
-    "which encloses what would be filled. Turn it off.");
+    "Filling is for two dimensions, but these particles do not lie in a plane. Turn filling off.");
   MCOR_TRY(context->grid.count > 0 ? mcor_begin_fill(context) : MCOR_OK);
   for (int i = 0; i < options->iso_count && context->grid.count > 0; ++i)
   {
@@ -97,7 +100,8 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     return MCOR_INVALID_ARGUMENT;
   }
   *surface = (mcor_surface){ 0 };
-  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
+  MCOR_RETURN_IF(
+    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
   const mcor_status status = mcor_run_call(context, input, options,
     mcor_uses_solids(input, options), &surface->statistics, mcor_extract_all, surface);
   if (status != MCOR_OK)

@@ -121,16 +121,16 @@ extern "C"
     int64_t open;                  /* by the sum, which may overflow and start over; 0: closed */
   } mcor_measures;
 
-  /* Before the second pass, all parts' numbers of the first one are to be reduced. numbers: [point_count], of the points
-   * in the whole surface; NULL: as they are. */
+  /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call mcor_measure_sums, and
+   * reduce those marked 2. numbers: [point_count], of the points in the whole surface; NULL: as they are. */
   void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures);
   void mcor_measure_sums(
     const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures);
   void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics);
 
-  /* Lines in the plane of several parts, from their pieces, each from one point to the next, as mcor_extract joins
-   * them: into the surface's lines, and their measures. Of the surface the points are read, all of them, in the order
-   * of their keys, each once, and where band_value is set the triangles. MCOR_OUT_OF_CAPACITY: memory ran out. */
+  /* Joins the pieces of lines of several parts, each from one point to the next, as mcor_extract does, into the
+   * surface's lines, and measures them. The surface must have all points, each once, in the order of their keys;
+   * where band_value is set, its triangles are read, too. MCOR_OUT_OF_CAPACITY: memory ran out. */
   mcor_status mcor_join_lines(
     const mcor_plane* plane, const int32_t (*pieces)[2], int64_t count, mcor_surface* surface);
 

@@ -15,7 +15,7 @@
 /* Highest level of adaptive cubes. */
 #define MCOR_TREE_LEVEL_LIMIT 24
 
-/* The virtual grid: world position = (origin + fixed / step) * edge, along each axis. Lengths on the device
+/* [III-B] The virtual grid: world position = (origin + fixed / step) * edge, along each axis. Lengths on the device
  * are in cubes, 2^fix_bits fixed-point units. An edge is a cube long, but where no cube divides all periods:
  * then a cube, as a length, is a little longer than any edge, see mcor_fit_steps. */
 typedef struct mcor_lattice

@@ -307,5 +307,5 @@ std::string vtkSPHFindWalls(const std::vector<std::string>& names)
   return *std::find_if(names.begin(), names.end(), TellsOfWalls) + " of " +
     std::to_string(names.size()) +
     " seems to hold walls. Each block is taken by itself, so its particles do not affect the "
-    "surfaces of the others. Take the blocks together.";
+    "surfaces of the others. Set Blocks to Together.";
 }

@@ -70,8 +70,8 @@ std::string TellTwins(
   vtkDataArray* array, const std::string& set, vtkIdType one, vtkIdType other, std::int64_t number)
 {
   return "Particles " + std::to_string(one) + " and " + std::to_string(other) + " in " + set +
-    " have the same number, " + std::to_string(number) + ", so that they cannot be told apart: '" +
-    NameOf(array) + "' does not number the particles.";
+    " have the same number " + std::to_string(number) + ", so they cannot be told apart: '" +
+    NameOf(array) + "' is not an array of particle ids.";
 }
 
 using Entry = std::pair<std::int64_t, vtkIdType>;

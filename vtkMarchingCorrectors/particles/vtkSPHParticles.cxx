@@ -300,8 +300,8 @@ vtkDataArray* vtkSPHParticles::Check(
   {
     const bool isPlane = name == "Lambda2" && this->Points->GetPointData()->HasArray("Q-criterion");
     this->Error = "There is no point array " + Quote(name) + " for the " + role + ". " +
-      (isPlane ? "Lambda2 is the middle one of three eigenvalues, which there are not in two "
-                 "dimensions; use Q-criterion. "
+      (isPlane ? "There is no Lambda2 in two dimensions, because it is the middle one of three "
+                 "eigenvalues; use Q-criterion. "
                : "") +
       this->ListPointArrays();
     return nullptr;

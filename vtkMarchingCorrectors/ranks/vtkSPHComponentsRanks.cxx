@@ -160,9 +160,9 @@ std::string vtkSPHComponents::SplitDistributed(
   if ((pointCount > 0 && !mesh->GetPointData()->GetGlobalIds()) ||
     (triangleCount > 0 && !mesh->GetCellData()->GetGlobalIds()))
   {
-    problem =
-      "The parts of the surface have no GlobalPointIds and GlobalCellIds, by which pieces are "
-      "put together. Take the surface as the filter of several processes makes it.";
+    problem = "The parts of the surface have no GlobalPointIds and GlobalCellIds, which are needed "
+              "to join pieces across processes. Use the surface as vtkMarchingCorrectors makes it "
+              "with several processes.";
   }
   if (!ranks.Agree(problem))
   {

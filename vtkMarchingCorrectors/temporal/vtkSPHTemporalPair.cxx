@@ -299,8 +299,8 @@ void vtkSPHTemporalPair::CheckVelocities()
   {
     this->Warnings.push_back("From time " + Text(first.Time) + " to " + Text(second.Time) +
       " the particles moved " + Text(moved / expected) + " times as far as '" + this->VelocityName +
-      "' says, so their positions are linear in time here: the times have another unit than the "
-      "velocities (set the time scale), or the steps are too far apart.");
+      "' says; positions are therefore linear in time between these steps. Either the times are in "
+      "another unit than the velocities (set the time scale), or the steps are too far apart.");
     this->FollowsVelocities = false;
   }
 }

@@ -143,11 +143,12 @@ void CheckFilm(const Job& job)
   }
   if (job.Inputs.size() > 1 && std::any_of(job.Inputs.begin(), job.Inputs.end(), IsCollectionFile))
   {
-    throw UsageError("a .pvd file is the only input; it lists the steps");
+    throw UsageError("a .pvd file must be the only INPUT, because it lists the steps");
   }
   if (isListed && job.TimeStep != 1.0)
   {
-    throw UsageError("--time-step is for a list of particle files; a .pvd file has times");
+    throw UsageError(
+      "--time-step is for a list of particle files; a .pvd file has times of its own");
   }
   if (job.Repeat > 1)
   {
@@ -204,12 +205,12 @@ void Check(const Job& job)
   {
     if (!job.IsFilm() && (IsCollectionFile(walls) || HasStepNumber(walls)))
     {
-      throw UsageError(
-        "--walls " + walls + " has walls of each step, of a film or gauges; give one file");
+      throw UsageError("--walls " + walls +
+        " has walls for each step, which only films and gauges can use; give one file");
     }
   }
   CheckPicture(job);
-  Exclude("without --slice or --line there is no resolution; leave out ",
+  Exclude("--resolution is for --slice and --line; leave out ",
     { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
       "--resolution" } });
   CheckComponents(job);

@@ -257,7 +257,8 @@ const Options TheMethod = {
     "adaptive cubes are at most 2^N times the cube size, N from 0 to 24 (default 24)",
     [](Job& j, Text n, Text v) { j.Surface->SetCubeLevelLimit(ToCount(n, v, 0, 24)); } },
   { "--box", "X0,X1,Y0,Y1,Z0,Z1",
-    "extract only the cells in this box; a side may be inf or -inf, and a box around a plane flat",
+    "extract only the cells in this box, whose sides may be inf or -inf; around particles in a "
+    "plane it may be flat",
     [](Job& j, Text n, Text v)
     {
       j.Surface->SetBox(ToBox(n, v).data());

@@ -77,7 +77,7 @@ void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, Message
     std::size_t number = 0;
     if (HasStepNumber(file) && !FindStepNumber(step.Files.front(), number))
     {
-      throw std::runtime_error("--walls " + file + " wants the number of each step, and the name " +
+      throw std::runtime_error("--walls " + file + " needs the number of each step, but the name " +
         step.Files.front() + " has none");
     }
     step.Walls.push_back(HasStepNumber(file) ? NameOfStep(file, number) : file);

@@ -47,11 +47,11 @@ std::string HintOfPeriod(vtkDataObject* particles)
   std::ostringstream hint;
   for (std::size_t i = 0; i < found.Period.size(); ++i)
   {
-    hint << (i == 0 ? "the field data array " + Printable(found.Array) + " may be a period, " : ",")
+    hint << (i == 0 ? "the field data array " + Printable(found.Array) + " may be a period (" : ",")
          << found.Period[i];
   }
   hint << (found.Period.empty() ? ""
-                                : ", which was not used; --periodic auto takes it, --periodic "
-                                  "0,0,0 says that there is none");
+                                : "), but was not used; --periodic auto uses it, --periodic 0,0,0 "
+                                  "confirms that there is none");
   return hint.str();
 }

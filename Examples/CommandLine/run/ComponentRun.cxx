@@ -62,8 +62,8 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   }
   if (run.Surface->GetNumberOfLines() > 0)
   {
-    throw std::runtime_error("--components measures pieces of a surface, and particles in a plane "
-                             "have lines. Leave it out");
+    throw std::runtime_error(
+      "--components is for surfaces, but particles in a plane give lines; leave it out");
   }
   vtkMarchingCorrectors* surface = this->Options->Surface;
   vtkNew<vtkSPHComponents> split;

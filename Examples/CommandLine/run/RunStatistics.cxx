@@ -149,8 +149,7 @@ std::string DescribeTrimming(vtkFieldData* run)
   if (!run->HasArray("Lines") &&
     Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
   {
-    text =
-      "trimmed from " + Format(run, "TrianglesBeforeTrimming") + ", some of which it cut in two";
+    text = Format(run, "TrianglesBeforeTrimming") + " before trimming, which cuts some in two";
   }
   if (caps > 0.0)
   {

@@ -125,7 +125,8 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   {
     if (!data->HasArray(name.c_str()))
     {
-      throw std::runtime_error("there is no point array '" + name + "' to carry");
+      throw std::runtime_error(
+        "there is no point array '" + name + "' to interpolate (--attributes)");
     }
   }
   for (int i = 0; !names.empty() && i < data->GetNumberOfArrays(); ++i)

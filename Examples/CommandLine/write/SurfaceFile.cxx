@@ -284,14 +284,14 @@ std::string SurfaceBytes(
   if (lines > 0 && triangles == 0 && !isTable && !EndsWith(file, ".vtp"))
   {
     throw std::runtime_error(file +
-      " could not be written: such a file cannot hold lines, which two dimensions give. "
-      "Write a .vtp file, or a .csv file of their points");
+      " could not be written: this format cannot hold lines, which particles in a plane give; "
+      "write a .vtp file, or a .csv file of their points");
   }
   if (isTable && lines == 0 && triangles > 0)
   {
     throw std::runtime_error(file +
-      " could not be written: such a file holds the points of lines, which two dimensions give, "
-      "but this is a surface. Write a .vtp file");
+      " could not be written: this format holds the points of lines, which particles in a plane "
+      "give, but this is a surface; write a .vtp file");
   }
   if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
   {

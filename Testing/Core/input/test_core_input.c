@@ -122,8 +122,8 @@ static void test_options(void** state)
   ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);
   ARGUMENT("iso_count is -1", call.options.iso_count = -1);
   ARGUMENT("iso_count is 1", call.options.iso_values = NULL);
-  ARGUMENT("-1 attributes", call.input.attribute_count = -1);
-  ARGUMENT("2 attributes|NULL", call.input.attribute_count = 2);
+  ARGUMENT("attribute_count is -1", call.input.attribute_count = -1);
+  ARGUMENT("attribute_count is 2|NULL", call.input.attribute_count = 2);
   ARGUMENT("so value 1|finite", call.options.iso_count = 2; call.iso[1] = NAN);
   ARGUMENT("so value 0|finite", call.iso[0] = -INFINITY);
   ARGUMENT("free surface|above 0|0.5", call.options.field = MCOR_WEIGHT_SUM);

@@ -131,10 +131,10 @@ static void tilt(core_set* set, double height, int off)
 
 static void test_tilted_plane(void** state)
 {
-  WARNED(MCOR_WARN_PLANE, "tilted in space|(0.6, -0.8, |turn them|else set the dimension to 3",
+  WARNED(MCOR_WARN_PLANE, "tilted in space|(0.6, -0.8, |turn them|otherwise set the dimension to 3",
          tilt(&call.set, 0, 0);
          call.options.vertex_threshold = 0);
-  WARNED(MCOR_WARN_PLANE, "tilted in space|they go 0.0", tilt(&call.set, 0.003, 0);
+  WARNED(MCOR_WARN_PLANE, "tilted in space|extent along it is 0.0", tilt(&call.set, 0.003, 0);
          call.options.vertex_threshold = 0);
   SILENT(tilt(&call.set, 0, 0); call.options.vertex_threshold = 0; call.options.dimension = 3);
   SILENT(tilt(&call.set, 0.2, 0); call.options.vertex_threshold = 0);
@@ -298,7 +298,7 @@ static void test_unused_type(void** state)
     strstr(text, "select it together with the value of the fluid, which seems to be 3."));
   free(text);
   text = mcor_describe_unused_type(MCOR_WALL_BLOCK, values, counts, 2);
-  assert_non_null(strstr(text, "Some blocks have names of walls"));
+  assert_non_null(strstr(text, "The names of some blocks suggest walls"));
   free(text);
   assert_null(mcor_describe_unused_type("Type", values, counts, 1));
   assert_null(mcor_describe_unused_type("Type", values, counts, MCOR_PARTICLE_TYPES + 1));

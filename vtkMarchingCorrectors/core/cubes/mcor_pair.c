@@ -33,9 +33,8 @@ static mcor_status mcor_find_places(mcor_context* context)
   const int count = bricks->now.count, top = context->lattice.top;
   const int64_t keys = (int64_t)count * (top + 1);
   MCOR_RETURN_IF(keys > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "Pairs as seeds are limited to %d bricks times levels of adaptive cubes; here are %d bricks on "
-    "%d "
-    "levels. Use complete seeds, or a larger cube size.",
+    "Pair seeds need bricks times levels of adaptive cubes to be at most %d; here there are %d "
+    "bricks on %d levels. Use complete seeds, or a larger cube size.",
     MCOR_COUNT_LIMIT, count, top + 1);
   MCOR_TRY(mcor_reserve(context, &pairs->keys, (size_t)keys * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_keys", MCOR_LIGHT, count, MCOR_INT(count), MCOR_INT(top),

@@ -84,7 +84,8 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
     const double margin = MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, h);
     MCOR_RETURN_IF(margin > mcor_reach_margin(options, options->globals, 0), context,
       MCOR_INVALID_ARGUMENT,
-      "With cubes of %g a box does not have the particles that gauges need. Leave the cube size.",
+      "The cube size %g is too small for gauges over ranks: a box would lack particles that the "
+      "gauges need. Leave the cube size at its default.",
       options->globals->measured.cube);
     for (int side = 0; side < 6; ++side)
     {
@@ -229,7 +230,8 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   }
   *gauges = (mcor_gauges){ 0 };
   MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
-    MCOR_INVALID_ARGUMENT, "Input, options or lines are missing.");
+    MCOR_INVALID_ARGUMENT,
+    "input, options and lines must not be NULL, and count must not be negative.");
   const double level =
     options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
   MCOR_RETURN_IF(options->iso_count > 1 || !(level > 0) || !isfinite(level), context,

@@ -181,8 +181,8 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
   MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !(steps < 4e15), context, MCOR_OUT_OF_CAPACITY,
-    "Gauge number %lld is to be sampled at %.3g points, a quarter of the smallest smoothing "
-    "length, %g, apart; at most %d are possible. Shorten it.",
+    "Gauge number %lld needs %.3g sample points, one every quarter of the smallest smoothing "
+    "length %g; the limit is %d. Shorten the gauge.",
     (long long)number, last - first + 1, context->measure.h_min, MCOR_GAUGE_MOST);
   mcor_gauge_samples whole = {
     .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last

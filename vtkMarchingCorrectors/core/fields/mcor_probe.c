@@ -429,7 +429,8 @@ mcor_status mcor_probe(mcor_context* context, const mcor_input* input, const mco
   }
   *samples = (mcor_samples){ 0 };
   MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && (!points || !points->data)),
-    context, MCOR_INVALID_ARGUMENT, "Input, options or points are NULL.");
+    context, MCOR_INVALID_ARGUMENT,
+    "input, options and points must not be NULL, and count must not be negative.");
   mcor_options own = *options;
   const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
   mcor_probe_run run = { .context = context,

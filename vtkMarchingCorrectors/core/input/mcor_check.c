@@ -220,9 +220,10 @@ mcor_status mcor_check_input(
 {
   MCOR_TRY(mcor_check_options(context, options));
   MCOR_TRY(mcor_check_period(context, options));
-  MCOR_RETURN_IF(input->attribute_count < 0 || (input->attribute_count > 0 && !input->attributes),
-    context, MCOR_INVALID_ARGUMENT, "There are %d attributes%s.", input->attribute_count,
-    input->attributes ? "" : ", but their list is NULL");
+  MCOR_RETURN_IF(input->attribute_count < 0, context, MCOR_INVALID_ARGUMENT,
+    "attribute_count is %d; it must not be negative.", input->attribute_count);
+  MCOR_RETURN_IF(input->attribute_count > 0 && !input->attributes, context, MCOR_INVALID_ARGUMENT,
+    "attribute_count is %d, but attributes is NULL.", input->attribute_count);
   MCOR_RETURN_IF(input->count < 0 || input->count > MCOR_PARTICLE_LIMIT, context,
     MCOR_OUT_OF_CAPACITY, "There are %lld particles; the limit is %d.", (long long)input->count,
     MCOR_PARTICLE_LIMIT);

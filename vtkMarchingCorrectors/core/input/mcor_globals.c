@@ -98,12 +98,13 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
     return MCOR_INVALID_ARGUMENT;
   }
   *globals = (mcor_globals){ 0 };
-  MCOR_RETURN_IF(!input || !options, context, MCOR_INVALID_ARGUMENT, "Input or options are NULL.");
+  MCOR_RETURN_IF(
+    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
   mcor_options own = *options;
   own.globals = NULL;
   const bool uses_solids =
     surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
-  own.ranks = options->ranks;
+  own.ranks = options->ranks; /* which mcor_evaluate_without_scalar leaves out */
   mcor_statistics statistics = { 0 };
   const mcor_status status =
     mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);

@@ -373,7 +373,7 @@ void mcor_blame_outlier(mcor_context* context, const mcor_input* input)
   {
     const size_t length = strlen(context->error);
     snprintf(context->error + length, sizeof context->error - length,
-      " Particle %lld has a smoothing length of %g, where the median is %g.", (long long)particle,
+      " Particle %lld has a smoothing length of %g; the median is %g.", (long long)particle,
       outlier, m->h_median);
   }
 }

@@ -149,9 +149,10 @@ static bool mcor_warn_plane(mcor_suspicion* s)
   return tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES &&
     mcor_say(s,
       "The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, %.4g), and "
-      "they go %.3g along it, %.2g times the smoothing length. They count as three-dimensional, so "
-      "the weights in the fluid are not about 1. In a two-dimensional simulation, turn them into a "
-      "plane of constant x, y or z that all share exactly; else set the dimension to 3.",
+      "their extent along it is %.3g, %.2g times the smoothing length. They count as "
+      "three-dimensional, so the weights in the fluid are not about 1. In a two-dimensional "
+      "simulation, turn them into a plane of constant x, y or z that all share exactly; otherwise "
+      "set the dimension to 3.",
       normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
 }
 
@@ -343,8 +344,9 @@ char* mcor_describe_unused_type(
   if (strcmp(name, MCOR_WALL_BLOCK) == 0)
   {
     return mcor_copy_text(
-      "Some blocks have names of walls, but all particles count as fluid. Have the fluid detected, "
-      "or select '" MCOR_WALL_BLOCK "' as the array that marks the fluid, with the value 0.");
+      "The names of some blocks suggest walls, but all particles count as fluid. Let the fluid be "
+      "detected, or select '" MCOR_WALL_BLOCK
+      "' as the array that marks the fluid, with the value 0.");
   }
   mcor_suggest_fluid(name, values, count, seems, sizeof seems);
   end += snprintf(end, MCOR_SENTENCE / 2,

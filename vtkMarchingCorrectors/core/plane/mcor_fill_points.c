@@ -186,11 +186,11 @@ static mcor_status mcor_make_fill_points(
   const int64_t base = surface->point_count, nodes = mcor_mark_nodes(fill),
                 count = nodes + fill->cut_count;
   MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "What is filled has %lld points; the limit is %d. Use a larger cube size.", (long long)count,
-    MCOR_COUNT_LIMIT);
+    "The filled region would have %lld points; the limit is %d. Use a larger cube size.",
+    (long long)count, MCOR_COUNT_LIMIT);
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
-    (long long)(base + count));
+    "The surface would have %lld points; the limit is %d. Use a larger cube size.",
+    (long long)(base + count), INT32_MAX);
   if (count == 0)
   {
     return MCOR_OK;

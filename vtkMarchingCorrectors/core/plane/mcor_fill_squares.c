@@ -49,7 +49,7 @@ typedef struct mcor_fill_job
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
 {
   return mcor_fail(context, MCOR_DEVICE_ERROR,
-    "What is filled does not fit the lines at node %d %d. Please report it.", at->node[0],
+    "The filled region does not match the lines at node %d %d. Please report this.", at->node[0],
     at->node[1]);
 }
 

@@ -148,8 +148,8 @@ int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int di
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_spread* spread)
 {
-  const char* const rule =
-    "in two dimensions all lie in one plane. Correct these positions, or use three dimensions";
+  const char* const rule = "in two dimensions all particles must lie in one plane. Correct these "
+                           "positions, or use three dimensions";
   mcor_array positions = input->positions;
   positions.components = 3;
   if (mcor_find_not_finite(&positions, NULL, input->count) >= 0)
@@ -173,9 +173,8 @@ static mcor_status mcor_refuse_plane(
       (long long)i, mcor_array_at(&positions, i, a), rule);
   }
   return mcor_fail(context, MCOR_INVALID_DATA,
-    "The particles do not share one coordinate exactly, as two dimensions need: neither x, y nor z "
-    "is the same for all. Turn or move them into a plane of constant x, y or z, or use three "
-    "dimensions.");
+    "The particles do not share one coordinate exactly, but two dimensions need that. Turn or move "
+    "the particles into a plane of constant x, y or z, or use three dimensions.");
 }
 
 /* Fluid in one plane, solids in another one beside it: meant as two dimensions. */
@@ -312,7 +311,7 @@ mcor_status mcor_flatten(
   mcor_options* o = &flat->options;
   *flat = (mcor_flat){ .input = *input, .options = *options };
   MCOR_RETURN_IF(options->dimension != 0 && options->dimension != 2 && options->dimension != 3,
-    context, MCOR_INVALID_ARGUMENT, "The dimension is %d; it must be 2, 3, or 0 to be found.",
+    context, MCOR_INVALID_ARGUMENT, "The dimension is %d; it must be 2, 3, or 0 (automatic).",
     options->dimension);
   MCOR_TRY(mcor_find_plane(context, input, options));
   o->dimension = mcor_is_plane(context) ? 2 : 3;

@@ -36,8 +36,7 @@ static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, c
   }
   MCOR_RETURN_IF(next >= MCOR_WALL_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. Use "
-    "a "
-    "larger cube size, or no caps.",
+    "a larger cube size, or turn capping off.",
     MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
   MCOR_TRY(
     mcor_make_room(context, (void**)&wall->bricks, wall->count, &wall->room, sizeof *wall->bricks));

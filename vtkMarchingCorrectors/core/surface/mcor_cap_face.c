@@ -127,11 +127,11 @@ static mcor_status mcor_note_tiles(
   const bool is_much = face->tile_count > limit;
   MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
-    "Use a larger cube size, or do not fill.",
+    "Use a larger cube size, or turn filling off.",
     nodes, context->lattice.cube);
   MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes of a side along %c are within reach of particles, with cube size "
-    "%g: too many for a cap. Use a larger cube size, or no caps.",
+    "%g: too many for a cap. Use a larger cube size, or turn capping off.",
     nodes, mcor_axis_letter(context, face->axis), context->lattice.cube);
   return MCOR_OK;
 }

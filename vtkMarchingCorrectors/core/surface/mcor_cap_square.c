@@ -89,7 +89,7 @@ static mcor_status mcor_cap_edge_corner(
   mcor_square_node(job, square, k == 1, k == 2, node);
   int32_t vertex = mcor_find_number(&job->edges[axis], mcor_cap_key(node));
   MCOR_RETURN_IF(vertex < 0, context, MCOR_DEVICE_ERROR,
-    "A cap does not fit the surface at node %d %d %d. Please report it.", node[0], node[1],
+    "A cap does not fit the surface at node %d %d %d. Please report this.", node[0], node[1],
     node[2]);
   const cl_int* nodes = job->node;
   const bool pinched = vertex + 1 < context->mesh.march_count &&
@@ -172,7 +172,7 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
 {
   mcor_cap_border* border = job->border;
   MCOR_RETURN_IF(border->count == MCOR_CAP_BORDER, job->context, MCOR_DEVICE_ERROR,
-    "A cell of a cap has more than %d edges. Please report it.", MCOR_CAP_BORDER);
+    "A cell of a cap has more than %d edges. Please report this.", MCOR_CAP_BORDER);
   border->ends[border->count][0] = from;
   border->ends[border->count++][1] = to;
   return MCOR_OK;

@@ -271,7 +271,7 @@ static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* 
         --next;
       }
       MCOR_RETURN_IF(next < 0 && to != loop[0], job->context, MCOR_DEVICE_ERROR,
-        "A cap at a wall does not fit the surface in cell %d %d %d. Please report it.",
+        "A cap at a wall does not fit the surface in cell %d %d %d. Please report this.",
         cell->node[0], cell->node[1], cell->node[2]);
     }
     MCOR_TRY(count > 2 ? mcor_fill_wall_loop(job, loop, count) : MCOR_OK);

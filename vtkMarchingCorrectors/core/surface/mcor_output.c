@@ -354,8 +354,8 @@ static mcor_status mcor_append_mesh(
   int count;
   MCOR_TRY(all ? mcor_count_all(context, &count) : mcor_count_used(context, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; the limit is 2147483647. Use a larger cube size.",
-    (long long)(base + count));
+    "The surface would have %lld points; the limit is %d. Use a larger cube size.",
+    (long long)(base + count), INT32_MAX);
   if (count > 0)
   {
     mcor_mapping mappings[MCOR_DOWNLOADS];

@@ -169,8 +169,8 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   const int vertices = mesh->march_count;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_RETURN_IF(cut_count > MCOR_COUNT_LIMIT - vertices, context, MCOR_OUT_OF_CAPACITY,
-    "The surface is too large: with the trim boundary it would have %lld vertices; the limit is "
-    "%d. Use a larger cube size.",
+    "The surface with its trim boundary would have %lld vertices; the limit is %d. Use a larger "
+    "cube size.",
     (long long)vertices + cut_count, MCOR_COUNT_LIMIT);
   MCOR_TRY(mcor_extend_vertices(context, vertices, vertices + cut_count));
   mesh->vertex_count = vertices + cut_count;

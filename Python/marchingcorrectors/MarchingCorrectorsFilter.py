@@ -9,6 +9,7 @@ import sys
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import SimpleNamespace
+from xml.etree import ElementTree
 
 if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
     # Loaded by ParaView, which knows no package. What else lies beside it must not be found with it.
@@ -39,70 +40,66 @@ from marchingcorrectors._warnings import describe_warnings, take_text
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
-# name: (default, type, lowest, highest). "flag" has NameOn() and NameOff().
-PROPERTIES = {
-    "ScalarComponent": (-1, "int", -BIG, BIG), "ShepardNormalization": (1, "flag"), "FreeSurface": (0, "flag"),
-    "SmoothingLengthArrayName": ("", "text"), "SmoothingLength": (0.0, "real"),
-    "EstimateSmoothingLength": (0, "flag"), "SmoothingLengthIsSupportRadius": (0, "flag"),
-    "VolumeArrayName": ("", "text"), "MassArrayName": ("", "text"), "DensityArrayName": ("", "text"),
-    "Mass": (0.0, "real"), "Density": (0.0, "real"), "DetectArrays": (1, "flag"),
-    "Kernel": (0, "int", 0, len(KERNELS) - 1), "HScaleFactor": (1.0, "real"), "Dimension": (0, "int", 0, 3),
-    "CubeSizeFactor": (0.5, "real"), "CubeSize": (0.0, "real"),
-    "CubeSizeMode": (1, "int", 0, 1), "CubeLevelLimit": (24, "int", 0, 24),
-    "SeedMode": (0, "int", 0, 1), "Topology": (0, "int", 0, 1), "Preview": (0, "flag"),
-    "NodeThreshold": (0.1, "real"), "BoundaryDetection": (0, "int", 0, 1), "VertexThreshold": (0.5, "real"),
-    "FluidArrayName": ("", "text"), "FluidValue": (0.0, "real"),
-    "DetectFluid": (0, "flag"), "Blocks": (0, "int", 0, 1),
-    "WallShare": (-1.0, "real"), "UseBox": (0, "flag"), "DetectPeriod": (0, "flag"), "Capping": (0, "flag"), "Filled": (0, "flag"),
-    "Trim": (1, "flag"),
-    "ComputeNormals": (1, "flag"), "ComputeGradients": (0, "flag"), "ComputeScalars": (1, "flag"),
-    "ComputeWeightSum": (0, "flag"), "ComputeBoundaryEigenvalue": (0, "flag"),
-    "ComputeCorrectionLength": (0, "flag"), "ComputeResidual": (0, "flag"), "ComputeBoundaryFlag": (0, "flag"),
-    "InterpolateAttributes": (1, "flag"), "OutputPointsPrecision": (vtkAlgorithm.DEFAULT_PRECISION, "int", 0, 2),
-    "Precision": (0, "int", 0, 1), "Device": ("", "text"), "Tolerance": (1e-6, "real"),
-    "IterationLimit": (30, "int", 1, 255), "DeviceMemoryLimit": (0, "int", 0, BIG), "KeepDeviceData": (1, "flag"),
-}
-CONVERT = {"int": int, "flag": int, "real": float, "text": lambda text: text or ""}
+CONVERT = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": lambda text: text or ""}
+# Of the panel: two that the class sets by methods of its own, and one that means nothing in one process.
+OTHERS = "PanelComponent", "FreeSurfaceValue", "Partition"
+
+
+def read_panel():
+    return ElementTree.parse(Path(__file__).resolve().with_name("MarchingCorrectors.xml")).getroot()
+
+
+def read_properties():
+    """The panel's properties of one value. name: (default, conversion, whether it has NameOn and NameOff, limits)"""
+    found = {"ScalarComponent": (-1, int, False, (-BIG, BIG)), "DetectArrays": (1, int, True, ())}  # not in the panel
+    for each in read_panel().find(".//SourceProxy[@class='vtkMarchingCorrectors']"):
+        name = each.get("command", "")[len("Set"):]
+        if each.get("number_of_elements") != "1" or each.get("information_only") or name in OTHERS:
+            continue
+        # Ranges of real numbers are those of sliders: other values are for the core to refuse.
+        limits = [int(entry.get("value")) for entry in each.findall("EnumerationDomain/Entry")]
+        for domain in each.findall("IntRangeDomain"):
+            limits = int(domain.get("min", -BIG)), int(domain.get("max", BIG))
+        convert, text = CONVERT[each.tag], each.get("default_values").replace("(automatic)", "")
+        found[name] = convert(text), convert, each.find("BooleanDomain") is not None, limits
+    return {**found, "DetectFluid": (0, int, True, ())}  # the panel alone begins with 1
+
+
+PROPERTIES = read_properties()
 
 
 def with_properties(kind):
     """SetX, GetX, XOn, XOff."""
-    for name, (_, sort, *limits) in PROPERTIES.items():
-        def set_it(self, value, name=name, sort=sort, limits=limits):
-            value = CONVERT[sort](value)
+    for name, (_, convert, is_flag, limits) in PROPERTIES.items():
+        def set_it(self, value, name=name, convert=convert, limits=limits):
+            value = convert(value)
             if limits:
-                value = min(max(value, limits[0]), limits[1])
+                value = min(max(value, min(limits)), max(limits))
             if getattr(self, name) != value:
                 setattr(self, name, value)
                 self.Modified()
 
         setattr(kind, "Set" + name, set_it)
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
-        if sort == "flag":
+        if is_flag:
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
     for name in ("FluidScalarRange", "UsedIsoValues", "IsoValueArrayName", "UsedSmoothingLength", "UsedVolume",
-                 "UsedCubeSize", "SurfaceMeasures", "EstimatedCells", "Box", "PeriodicBounds", "Solids", "ErrorMessage",
+                 "UsedCubeSize", "SurfaceMeasures", "EstimatedCells", "Box", "PeriodicBounds", "ErrorMessage",
                  "RunStatistics", "UsedFluid"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Cells", "Fluid", "Array"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
     for quantity in ("SmoothingLength", "Volume", "Mass", "Density"):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
-    kernels = {"KernelTo" + "".join(part.capitalize() for part in name.split("_")): ("Kernel", number)
-               for number, name in enumerate(KERNELS)}
     for number, name in enumerate(KERNELS):
         setattr(kind, name, number)
-    for method, (name, value) in {**kernels, "SeedModeToComplete": ("SeedMode", 0),
-                                  "SeedModeToPairs": ("SeedMode", 1), "TopologyToTable": ("Topology", 0),
-                                  "TopologyToField": ("Topology", 1),
-                                  "CubeSizeModeToUniform": ("CubeSizeMode", 0),
-                                  "CubeSizeModeToAdaptive": ("CubeSizeMode", 1),
-                                  "BoundaryDetectionToWeightSum": ("BoundaryDetection", 0),
-                                  "BoundaryDetectionToEigenvalue": ("BoundaryDetection", 1),
-                                  "BlocksToTogether": ("Blocks", 0), "BlocksToApart": ("Blocks", 1),
-                                  "ScalarComponentToMagnitude": ("ScalarComponent", -1)}.items():
-        setattr(kind, "Set" + method, lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
+    values = {"Kernel": ["".join(part.capitalize() for part in name.split("_")) for name in KERNELS],
+              "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"), "Blocks": ("Together", "Apart"),
+              "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
+    for name, words in values.items():
+        for value, word in enumerate(words):
+            setattr(kind, f"Set{name}To{word}", lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
     return kind
 
 
@@ -125,7 +122,6 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
-        self.Solids = self.SOLIDS_AUTO
         self._joined = None, None, 0
         self.clear_summary()
         self.ExcludedArrays, self.UsedNames, self.UsedFluid = [], {}, ""
@@ -208,15 +204,12 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         if before != (self.ContourValues.GetMTime(), self.FreeSurfaceValues.GetMTime()):
             self.Modified()
 
+    def SetScalarComponentToMagnitude(self):
+        self.SetScalarComponent(self.MAGNITUDE)
+
     def SetPanelComponent(self, component):
         """ScalarComponent for ParaView's panel, where 3 stands for the magnitude."""
         self.SetScalarComponent(-1 if component >= 3 else component)
-
-    def SetSolids(self, solids):
-        legal = min(max(int(solids), self.SOLIDS_WEIGHT), self.SOLIDS_AUTO)
-        if legal != self.GetSolids():
-            self.Solids = legal
-            self.Modified()
 
     def SetKernelByName(self, name):
         kernel = lib.mcor_find_sph_kernel((name or "").encode())
@@ -257,7 +250,6 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         for name in PROPERTIES:
             words = "".join(" " + letter if letter.isupper() else letter for letter in name).strip()
             lines.append(f"  {words}: {getattr(self, name)}")
-        lines.append(f"  Solids: {self.GetSolids()}")
         return "\n".join(lines) + "\n"
 
     # -- a run --
@@ -332,7 +324,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         self._extract(particles, options, output)
 
     def _choice(self):
-        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Solids=self.Solids, Box=self.Box,
+        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Box=self.Box,
                                PeriodicBounds=self.PeriodicBounds,
                                IgnoreSolids=int(self.Solids == self.SOLIDS_IGNORE),
                                **{name: getattr(self, name) for name in PROPERTIES})
@@ -466,12 +458,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
 
 def paraview_plugin(kind):
     """The panel is that of the C++ plugin: its XML, with the class put in place."""
-    from xml.etree import ElementTree
-
-    import marchingcorrectors
-
-    file = Path(marchingcorrectors.__file__).with_name("MarchingCorrectors.xml")
-    root = ElementTree.parse(file).getroot()
+    root = read_panel()
     group = root.find("ProxyGroup[@name='filters']")
     for other in list(root):
         if other is not group:

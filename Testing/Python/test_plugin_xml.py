@@ -183,14 +183,18 @@ class TestPluginXml(unittest.TestCase):
                 self.assertEqual(get(extract, command), kind(text))
         self.for_each_scalar(check)
 
-    def test_enumerations_are_complete(self):
+    def test_limits(self):
+        """Enumerations and ranges end where the filter clamps; the filter in Python has its limits from here."""
         def check(command, kind, element):
-            entries = element.findall("EnumerationDomain/Entry")
-            if entries:
-                last = max(int(entry.get("value")) for entry in entries)
+            if kind is not int or element.find("BooleanDomain") is not None:
+                return
+            ends = [int(text) for text in domain_values(element)]
+            beyond = [(min(ends) - 1, min(ends))] if command != "SetPanelComponent" else []
+            beyond += [(max(ends) + 1, max(ends))] if len(ends) > 1 else []  # or all greater ones are legal
+            for value, legal in beyond:
                 extract = vtkMarchingCorrectors()
-                getattr(extract, command)(last + 1)
-                self.assertEqual(get(extract, command), last)
+                getattr(extract, command)(value)
+                self.assertEqual(get(extract, command), legal)
         self.for_each_scalar(check)
 
 

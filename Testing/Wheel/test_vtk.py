@@ -159,7 +159,7 @@ class Test(unittest.TestCase):
         self.assertGreater(len(names), 100)
         names -= {"SetPartition", "GetPartition"}  # the wheel's filter runs in one process
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
-        self.assertEqual(lacking, [], "add them to PROPERTIES of MarchingCorrectorsFilter.py")
+        self.assertEqual(lacking, [], "add them to the plugin's XML, or to MarchingCorrectorsFilter.py")
         for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):
             if name == "NextIsoValue":  # no number where there is no input, in both
                 continue

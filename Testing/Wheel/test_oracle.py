@@ -22,7 +22,7 @@ if WHOLE:
 
 import marchingcorrectors as mc
 from marchingcorrectors import _structs as c
-from marchingcorrectors._options import ISOSURFACE
+from marchingcorrectors._options import ISOSURFACE, OUTPUTS
 
 TYPES = {0: ctypes.c_float, 1: ctypes.c_double}
 libc = ctypes.CDLL(None)
@@ -42,8 +42,8 @@ def array_of(view, count):
 def keywords(given, options):
     """Everything that the structures say, as a user would write it."""
     words, count = {}, given.count
-    for name, kind in c.KINDS["mcor_options"].items():
-        if name in ISOSURFACE and "[" not in kind:
+    for name, kind in [*c.KINDS["mcor_options"].items(), *OUTPUTS.items()]:
+        if name in ISOSURFACE and "[" not in str(kind):
             words[name] = getattr(options, name)
     for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", "scalar_component",
                  "ignore_solids"):

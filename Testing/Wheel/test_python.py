@@ -47,8 +47,9 @@ class Signatures(unittest.TestCase):
     def test_options_are_those_of_the_header(self):
         """All but what only ranks need, and what is said in another way."""
         numbers = {name for struct in ("mcor_options", "mcor_input") for name in _structs.KINDS[struct]}
+        numbers.update(name[len("MCOR_OUT_"):].lower() for name in _structs.ENUMS["mcor_output"])
         others = {name for name in numbers if name.endswith("_count") or name in (
-            "count", "positions", "smoothing_length", "volume", "mass", "density", "scalar", "scalar_dot",
+            "count", "outputs", "positions", "smoothing_length", "volume", "mass", "density", "scalar", "scalar_dot",
             "progress")}
         self.assertEqual(set(_options.Options.__annotations__), numbers - others,
                          "add it to Options and WORDS of _options.py")

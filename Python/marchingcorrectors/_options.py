@@ -100,7 +100,7 @@ WORDS = {
                   "weigh more than the fluid, with \"measured\" on the layer of solids that faces it. 0: it does not "
                   "end at solids. \"auto\": \"measured\" for a scalar, 0 for the free surface.",
     "preview": "True: vertices by linear interpolation on the edges of the grid, which is faster but not exact.",
-    "filled": "True: in two dimensions, triangles fill the region above the least iso value, in bands from each value "
+    "filled": "True: in two dimensions, triangles fill the region above the lowest iso value, in bands from each value "
               "to the next.",
     "tolerance": "the field at a vertex differs from the iso value by at most this share of the scalar's range.",
     "iteration_limit": "Newton iterations of a vertex, 1 to 255.",

@@ -273,7 +273,7 @@ const Options TheMethod = {
     "with --solids wall also the free surface at walls",
     [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
   { "--filled", "",
-    "in two dimensions, triangles fill the region above the least iso value, in bands from each "
+    "in two dimensions, triangles fill the region above the lowest iso value, in bands from each "
     "value to the next",
     [](Job& j, Text, Text) { j.Surface->FilledOn(); } },
   { "--seeds", "pairs|complete",

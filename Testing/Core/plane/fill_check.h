@@ -10,7 +10,7 @@
 typedef struct fill_report
 {
   double area,
-    enclosed; /* of triangles; of the lines of the least iso value, if all are closed, else 0 */
+    enclosed; /* of triangles; of the lines of the lowest iso value, if all are closed, else 0 */
   double inverted; /* of triangles that run round the other way */
   int64_t loose;   /* edges on the border that are no lines */
   double loose_length;

@@ -75,8 +75,8 @@ void mcor_blame_files(mcor_context* context)
   {
     mcor_pocl_folder(folder, sizeof folder);
     snprintf(context->error + length, sizeof context->error - length,
-      " If a process was killed while it compiled, files in the folder %s may be damaged: remove "
-      "it, and try again.",
+      " If a process was killed while it compiled, files may be damaged: remove the folder %s, "
+      "and try again.",
       folder);
   }
 }

@@ -3,7 +3,7 @@
 #ifndef mcor_fill_h
 #define mcor_fill_h
 
-/* Filling: in two dimensions, triangles of the region above the least iso value, divided by the lines of the
+/* Filling: in two dimensions, triangles of the region above the lowest iso value, divided by the lines of the
  * others. See mcor_fill_lines.c. */
 
 #include "mcor_cap.h"

@@ -54,6 +54,7 @@ typedef struct mcor_cl
   cl_device_id device;
   cl_device_id share; /* the device, where it is a part of one; else NULL */
   cl_context context;
+  struct mcor_pool* pool;              /* the built-in device's threads; else NULL */
   cl_command_queue queue, timed_queue; /* timed: for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
   mcor_build build;     /* of the programs */
@@ -128,7 +129,8 @@ typedef enum mcor_load
 /* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
 /* Before a call: where no device was named and this one cannot do the build, the best one that can is opened. */
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build);
+mcor_status mcor_settle_device(
+  mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
 /* What kernels are compiled for from now on. Those at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);

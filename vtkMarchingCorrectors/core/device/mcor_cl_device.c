@@ -277,6 +277,7 @@ static mcor_status mcor_start_device(
   cl_int error;
   cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateContext");
+  cl->pool = mcor_is_native(cl) ? mcor_native_pool(cl->context) : NULL;
   if (mcor_is_native(cl) && mcor_processors(count) < cl->units)
   {
     cl->units = mcor_native_pool(cl->context)->threads = mcor_processors(count);
@@ -385,7 +386,8 @@ void mcor_close_device(mcor_context* context)
   }
 }
 
-mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
+mcor_status mcor_settle_device(
+  mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context))
 {
   mcor_cl* cl = &context->cl;
   const mcor_cl before = *cl;
@@ -406,7 +408,7 @@ mcor_status mcor_settle_device(mcor_context* context, const mcor_build* build)
   {
     return MCOR_OK;
   }
-  mcor_release_memory(context);
+  release(context);
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   mcor_close_device(context);
   *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };

@@ -197,11 +197,11 @@ mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grai
       : most > 0       ? (int)most
                        : count > 0,
     body, data };
-  const bool native = context && context->cl.context && mcor_is_native(&context->cl);
-  const int usable = native || loop.slices < 2 ? 1 : mcor_limit_threads(mcor_processors(1));
+  mcor_pool* of_device = context ? context->cl.pool : NULL;
+  const int usable = of_device || loop.slices < 2 ? 1 : mcor_limit_threads(mcor_processors(1));
   mcor_pool own = { .threads = usable < MCOR_LOOP_THREADS ? usable : MCOR_LOOP_THREADS };
-  const mcor_status status = mcor_pool_run(native ? mcor_native_pool(context->cl.context) : &own,
-    context, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
+  const mcor_status status = mcor_pool_run(
+    of_device ? of_device : &own, context, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
   mcor_end_pool(&own);
   if (slices)
   {

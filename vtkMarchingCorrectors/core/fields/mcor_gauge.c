@@ -14,8 +14,7 @@
 #include <string.h>
 
 #define MCOR_GAUGE_LEVEL 0.5
-/* Points on the device at a time, and samples of lines taken together. */
-#define MCOR_GAUGE_BATCH (1 << 18)
+/* Samples of lines taken together. */
 #define MCOR_GAUGE_TOGETHER (1 << 20)
 /* Of a box, how far beyond it the field is evaluated, in steps: see mcor_gauge_line.c. */
 #define MCOR_GAUGE_MARGIN 2.5
@@ -24,29 +23,6 @@ const char* mcor_gauge_state_name(mcor_gauge_state state)
 {
   static const char* const names[MCOR_GAUGE_STATE_COUNT] = { "dry", "wet", "full" };
   return (unsigned)state < MCOR_GAUGE_STATE_COUNT ? names[state] : NULL;
-}
-
-mcor_status mcor_gauge_weights(
-  mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight)
-{
-  mcor_probe_run* run = job->run;
-  double* points = (double*)run->points->data;
-  memset(weight, 0, (size_t)count * sizeof *weight);
-  for (int64_t first = 0; first < count; first += MCOR_GAUGE_BATCH)
-  {
-    const int64_t rest = count - first;
-    const int n = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
-    for (int i = 0; i < 3 * n; ++i)
-    {
-      const mcor_gauge_line* l = &job->lines[line[first + i / 3]];
-      const int a = i % 3;
-      points[i] = l->from[a] + place[first + i / 3] * (l->to[a] - l->from[a]);
-    }
-    run->samples->weight_sum = weight + first;
-    MCOR_TRY(mcor_report_launch(job->context));
-    MCOR_TRY(mcor_probe_batch(run, 0, n));
-  }
-  return MCOR_OK;
 }
 
 /* Lines together, as many as are worth it. */

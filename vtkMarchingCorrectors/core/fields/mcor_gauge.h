@@ -56,9 +56,8 @@ typedef struct mcor_gauge_job
   mcor_gauge_parts suspects; /* with an extremum inside that may be beyond the level */
 } mcor_gauge_job;
 
-/* mcor_gauge.c. Weight sums at `count` places of lines, on the device. */
-mcor_status mcor_gauge_weights(
-  mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight);
+/* Points on the device at a time. */
+#define MCOR_GAUGE_BATCH (1 << 18)
 
 /* mcor_gauge_line.c */
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);

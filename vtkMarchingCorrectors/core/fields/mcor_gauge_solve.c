@@ -32,6 +32,30 @@ void mcor_free_gauge_parts(mcor_gauge_job* job)
   job->changed = job->suspects = (mcor_gauge_parts){ 0 };
 }
 
+/* Weight sums at places on lines. */
+static mcor_status mcor_gauge_weights(
+  mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight)
+{
+  mcor_probe_run* run = job->run;
+  double* points = (double*)run->points->data;
+  memset(weight, 0, (size_t)count * sizeof *weight);
+  for (int64_t first = 0; first < count; first += MCOR_GAUGE_BATCH)
+  {
+    const int64_t rest = count - first;
+    const int n = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
+    for (int i = 0; i < 3 * n; ++i)
+    {
+      const mcor_gauge_line* l = &job->lines[line[first + i / 3]];
+      const int a = i % 3;
+      points[i] = l->from[a] + place[first + i / 3] * (l->to[a] - l->from[a]);
+    }
+    run->samples->weight_sum = weight + first;
+    MCOR_TRY(mcor_report_launch(job->context));
+    MCOR_TRY(mcor_probe_batch(run, 0, n));
+  }
+  return MCOR_OK;
+}
+
 /* Weight sums at successive places of a line, evenly apart. */
 typedef struct mcor_gauge_row
 {

@@ -67,14 +67,12 @@ mcor_status mcor_begin_fill(mcor_context* context);
 mcor_status mcor_take_lines(mcor_context* context);
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);
 void mcor_end_fill(mcor_context* context);
-/* After all iso values: adds triangles to the surface, behind those that stand for lines, of which two
+/* mcor_fill_points.c. After all iso values: adds triangles to the surface, behind those that stand for lines, of which two
  * corners are one. */
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface);
 
-/* mcor_fill_squares.c, mcor_fill_points.c: the steps. */
+/* mcor_fill_squares.c: the polygons, of one band each. */
 mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill);
-mcor_status mcor_append_fill(
-  mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface);
 
 /* Ascending in the order of nodes: by 4 x 4 of them, which are near each other. */
 static inline uint64_t mcor_fill_node_key(const cl_int node[3])

@@ -191,21 +191,6 @@ void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t bas
   }
 }
 
-/* ---- after all lines ---- */
-
-mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
-{
-  mcor_filling* fill = context->run.fill;
-  if (!fill)
-  {
-    return MCOR_OK;
-  }
-  free(fill->value); /* bands are known */
-  fill->value = NULL;
-  MCOR_TRY(mcor_fill_squares(context, fill));
-  return mcor_append_fill(context, fill, input, surface);
-}
-
 void mcor_end_fill(mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;

@@ -241,9 +241,16 @@ static mcor_status mcor_append_fill_triangles(
   return MCOR_OK;
 }
 
-mcor_status mcor_append_fill(
-  mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
+mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
+  mcor_filling* fill = context->run.fill;
+  if (!fill)
+  {
+    return MCOR_OK;
+  }
+  free(fill->value); /* bands are known */
+  fill->value = NULL;
+  MCOR_TRY(mcor_fill_squares(context, fill));
   MCOR_TRY(mcor_place_fill_cuts(context, fill));
   MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
   return mcor_append_fill_triangles(context, fill, surface);

@@ -25,25 +25,6 @@ static int mcor_tile_limit(const mcor_context* context)
   return particles < 1 << 14 ? 1 << 14 : particles < 1 << 18 ? particles : 1 << 18;
 }
 
-int mcor_cap_plane(const mcor_context* context, int axis, int upper)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const mcor_box* box = &context->box;
-  const mcor_options* options = context->run.options;
-  const bool periodic = lattice->period[axis] > 0;
-  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
-  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
-  const int *lower_side = options->ranks ? box->whole_first : box->first,
-            *upper_side = options->ranks ? box->whole_last : box->last;
-  const int side = upper ? upper_side[axis] : lower_side[axis];
-  const int last = (int)(upper ? end : begin);
-  if (options->capping == MCOR_CAP_BOX && side != last)
-  {
-    return side;
-  }
-  return options->capping && periodic ? last : -1;
-}
-
 bool mcor_has_cap_side(const mcor_context* context, int axis, int upper)
 {
   const int plane = mcor_cap_plane(context, axis, upper);

@@ -121,6 +121,25 @@ bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* p, in
         mcor_cap_fluid(context, p, i) >= mcor_real_of(context, MCOR_LEAST_NODE_WEIGHT)));
 }
 
+int mcor_cap_plane(const mcor_context* context, int axis, int upper)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  const mcor_options* options = context->run.options;
+  const bool periodic = lattice->period[axis] > 0;
+  const int64_t begin = periodic ? lattice->period_first[axis] : lattice->first[axis];
+  const int64_t end = periodic ? begin + lattice->period[axis] : lattice->last[axis];
+  const int *lower_side = options->ranks ? box->whole_first : box->first,
+            *upper_side = options->ranks ? box->whole_last : box->last;
+  const int side = upper ? upper_side[axis] : lower_side[axis];
+  const int last = (int)(upper ? end : begin);
+  if (options->capping == MCOR_CAP_BOX && side != last)
+  {
+    return side;
+  }
+  return options->capping && periodic ? last : -1;
+}
+
 /* ---- vertices ---- */
 
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])

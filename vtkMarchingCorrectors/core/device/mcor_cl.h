@@ -128,7 +128,8 @@ typedef enum mcor_load
 
 /* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Before a call: where no device was named and this one cannot do the build, the best one that can is opened. */
+/* Before a call: where no device was named and this one cannot do the build, the best one that can is opened.
+ * release: gives back what is on this one. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);

@@ -136,7 +136,7 @@ static inline void mcor_cap_node(
   node[2] = mcor_is_plane(context) ? 0 : node[2];
 }
 
-/* Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole box); -1: none
+/* mcor_cap_points.c. Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole box); -1: none
  * does. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);

@@ -160,9 +160,9 @@ static void mcor_free_inner(mcor_gauge_inner* inner)
 
 static mcor_status mcor_make_inner(const mcor_gauge_job* job, int64_t n, mcor_gauge_inner* inner)
 {
-  inner->place = malloc((size_t)(n + 1) * sizeof *inner->place);
+  inner->place = calloc((size_t)(n + 1), sizeof *inner->place);
   inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
-  inner->line = malloc((size_t)(n + 1) * sizeof *inner->line);
+  inner->line = calloc((size_t)(n + 1), sizeof *inner->line);
   MCOR_TRY(mcor_allocated(job->context, inner->place && inner->weight && inner->line));
   return MCOR_OK;
 }

@@ -187,7 +187,7 @@ mcor_status mcor_march(mcor_context* context, double iso)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_find_neighbours(context));
+  MCOR_TRY(mcor_uses_pairs(context) ? MCOR_OK : mcor_find_neighbours(context)); /* growth has */
   MCOR_TRY(mcor_find_cells(context));
   MCOR_TRY(mcor_find_used(context));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);

@@ -14,7 +14,6 @@
 #include "mcor_pair.h"
 #include "mcor_box.h"
 #include "mcor_plane.h"
-#include "mcor_tree.h"
 
 /* Work-items that look for pairs. */
 static size_t mcor_pair_items(const mcor_context* context)
@@ -82,8 +81,8 @@ static mcor_status mcor_place_reached(mcor_context* context, double iso, bool fi
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
-  cl_int flag = 0;
-  MCOR_TRY(mcor_write(context, &pairs->found, &flag, sizeof flag));
+  cl_int flag;
+  MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_request", MCOR_LIGHT, mcor_count_places(context),
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&bricks->bits),
     MCOR_BUFFER(&pairs->found)));
@@ -96,17 +95,15 @@ static mcor_status mcor_place_reached(mcor_context* context, double iso, bool fi
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(first ? mcor_sign_nodes(context, iso, &bricks->now.known) : MCOR_OK);
   MCOR_TRY(mcor_evaluate_nodes(context));
-  MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
-  bricks->first_slot[0] = 0;
-  bricks->first_slot[1] = bricks->now.count;
-  return mcor_find_neighbours(context);
+  return mcor_sign_nodes(context, iso, &bricks->need);
 }
 
-/* Growth stays where nodes have right values: in the box whose particles are on the device, and the ring
- * around it. */
-static mcor_status mcor_limit_growth(mcor_context* context)
+/* What growth needs of slots. It stays where nodes have right values: in the box whose particles are on the device,
+ * and the ring around it. */
+static mcor_status mcor_begin_growth(mcor_context* context)
 {
   mcor_buffer* domain = &context->pairs.domain;
+  MCOR_TRY(mcor_find_neighbours(context));
   MCOR_TRY(mcor_fill(context, domain, 0xff, (size_t)context->bricks.now.count * sizeof(cl_ulong)));
   return mcor_clip_near(context, domain);
 }
@@ -116,9 +113,8 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
 {
   const mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
-  cl_int flag = 0;
-  MCOR_TRY(mcor_limit_growth(context));
-  MCOR_TRY(mcor_write(context, &pairs->found, &flag, sizeof flag));
+  cl_int flag;
+  MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_LEAF_ARGS(context),
     MCOR_BUFFER(&bricks->plain), MCOR_BUFFER(&bricks->leaf_of), MCOR_BUFFER(&bricks->now.bricks),
@@ -157,12 +153,12 @@ mcor_status mcor_find_reached(mcor_context* context, double iso)
   }
   MCOR_TRY(adaptive ? mcor_find_places(context) : MCOR_OK);
   MCOR_TRY(mcor_mark_pairs(context, iso));
-  MCOR_TRY(adaptive ? mcor_find_neighbours(context) : MCOR_OK);
   mcor_end_rounds(context);
   for (bool first = true, more = true; more; first = false)
   {
     bool placed = false;
     MCOR_TRY(adaptive ? MCOR_OK : mcor_place_reached(context, iso, first, &placed));
+    MCOR_TRY(first || placed ? mcor_begin_growth(context) : MCOR_OK);
     for (bool grown = true; grown;)
     {
       MCOR_TRY(mcor_grow_reached(context, &grown));

@@ -131,7 +131,5 @@ mcor_status mcor_select_seeds(mcor_context* context, double iso)
     ++context->run.statistics->march_rounds;
     MCOR_TRY(mcor_grow_bricks(context, &grown));
   }
-  bricks->first_slot[0] = 0;
-  bricks->first_slot[1] = bricks->now.count;
   return mcor_fill(context, &bricks->cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
 }

@@ -70,6 +70,8 @@ mcor_status mcor_place_bricks(mcor_context* context)
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
   mcor_brick_data last = bricks->now;
   bricks->now = (mcor_brick_data){ 0 };
+  bricks->first_slot[0] = 0;
+  bricks->first_slot[1] = count;
   const mcor_status status = mcor_fill_bricks(context, &last, count, words);
   mcor_release_brick_data(context, &last);
   return status;

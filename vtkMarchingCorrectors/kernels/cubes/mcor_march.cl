@@ -179,11 +179,7 @@ __kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, __global const int* neighbou
 
 /* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes triangles and, if
  * wanted, the keys of their cells. */
-__kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS,
-  MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS, const int follows, const int blocks_x, const int blocks_y,
-  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* used,
-  __global const ulong* edges, __global const int* vertex_base, __global const int* triangle_base,
-  __global ulong* triangle_cells, __global int* triangles)
+__kernel void mcor_march_triangles(MCOR_EMIT_PARAMS)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
   const ulong own = levels ? plain[slot] : ~0UL;

@@ -148,11 +148,7 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
  * cells. A line begins where the border of the square, run through with the square on the left, goes from above
  * to below. On an ambiguous square it ends at the crossing before that, or the one after it where what is
  * above is joined. */
-__kernel void mcor_plane_lines(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS,
-  MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS, const int follows, const int blocks_x, const int blocks_y,
-  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* used,
-  __global const ulong* edges, __global const int* vertex_base, __global const int* line_base,
-  __global ulong* line_cells, __global int* lines)
+__kernel void mcor_plane_lines(MCOR_EMIT_PARAMS)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
   const ulong own = levels ? plain[slot] : ~0UL;
@@ -167,7 +163,7 @@ __kernel void mcor_plane_lines(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLA
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
   const ulong key = mcor_slot_key(MCOR_KEY_ARGS, bricks[slot]) << 6;
   const ulong joined = resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] & own : 0;
-  long to = line_base[slot];
+  long to = triangle_base[slot];
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
@@ -193,15 +189,15 @@ __kernel void mcor_plane_lines(const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLA
       for (int k = 0; k < 2; ++k)
       {
         const int side = mcor_plane_side(&ring, k ? end : s), axis = side >> 5, lower = side & 31;
-        lines[3 * to + k] = is_plain
+        triangles[3 * to + k] = is_plain
           ? mcor_plane_vertex(neighbours + slot * 14L, edges, vertex_base, slot,
               (cell & 3) + lower % 3 / 2, (cell >> 2) + lower / 6, axis)
           : mcor_leaf_vertex(&leaf, cell, nodes.split, axis, lower, edges, vertex_base);
       }
-      lines[3 * to + 2] = lines[3 * to + 1];
+      triangles[3 * to + 2] = triangles[3 * to + 1];
       if (follows)
       {
-        line_cells[to] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
+        triangle_cells[to] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
       }
       ++to;
     }

@@ -31,10 +31,15 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 /** Of the longest side of the fluid's box, around it: the fluid ends somewhat beyond its particles. */
 constexpr double Margin = 0.03;
 
-/** Least coordinates, and minus the greatest, of the fluid's particles. */
+/** The fluid's particles are within; infinite the wrong way where there are none. */
 void FindEnds(const vtkSPHParticlesChoice& choice, vtkPointSet* particles, double ends[6])
 {
-  std::fill_n(ends, 6, std::numeric_limits<double>::infinity());
+  const double none = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
+  {
+    ends[2 * a] = none;
+    ends[2 * a + 1] = -none;
+  }
   vtkDataArray* fluid = particles->GetPointData()->GetArray(choice.FluidArrayName.c_str());
   for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
   {
@@ -45,7 +50,7 @@ void FindEnds(const vtkSPHParticlesChoice& choice, vtkPointSet* particles, doubl
     for (int a = 0; counts && a < 3; ++a)
     {
       ends[2 * a] = std::min(ends[2 * a], x[a]);
-      ends[2 * a + 1] = std::min(ends[2 * a + 1], -x[a]);
+      ends[2 * a + 1] = std::max(ends[2 * a + 1], x[a]);
     }
   }
 }
@@ -115,7 +120,7 @@ bool vtkSPHResample::FindBounds(double bounds[6])
     const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
     this->FindFluid(choice, own, ranks.MergeRanges());
     FindEnds(choice, own, ends);
-    ranks.Reduce(vtkSPHRanks::LEAST, ends, 6);
+    ranks.ReduceRanges(ends, 3);
   }
   else
 #endif
@@ -126,12 +131,12 @@ bool vtkSPHResample::FindBounds(double bounds[6])
   double longest = 0.0;
   for (int a = 0; a < 3; ++a)
   {
-    longest = std::max(longest, -ends[2 * a + 1] - ends[2 * a]);
+    longest = std::max(longest, ends[2 * a + 1] - ends[2 * a]);
   }
   for (int a = 0; a < 3; ++a)
   {
     bounds[2 * a] = ends[2 * a] - Margin * longest;
-    bounds[2 * a + 1] = -ends[2 * a + 1] + Margin * longest;
+    bounds[2 * a + 1] = ends[2 * a + 1] + Margin * longest;
   }
   return std::isfinite(ends[0]);
 }

@@ -3,6 +3,7 @@
 #include "vtkSPHRanksRoute.h"
 
 #include "vtkPolyData.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +16,6 @@ namespace
 constexpr double BrickCubes = 4.0;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-
-double ValueOf(const mcor_array& array, std::int64_t i)
-{
-  if (!array.data)
-  {
-    return array.constant;
-  }
-  return array.type == MCOR_FLOAT32 ? static_cast<const float*>(array.data)[i]
-                                    : static_cast<const double*>(array.data)[i];
-}
 
 std::size_t Side(int axis)
 {
@@ -117,7 +108,7 @@ private:
         double at[3];
         for (int a = 0; a < 3; ++a)
         {
-          at[a] = ValueOf(this->Input.positions, 3 * i + a);
+          at[a] = vtkSPHValueOf(this->Input.positions, 3 * i + a);
         }
         this->Route.Period.Take(at);
         const bool isOwned = this->Route.Partition && this->IsInWhole(at);
@@ -158,7 +149,7 @@ private:
   {
     const double support = this->Input.estimate_smoothing_length
       ? this->Globals.measured.h_estimate * this->Factor
-      : ValueOf(this->Input.smoothing_length, i) * this->Support;
+      : vtkSPHValueOf(this->Input.smoothing_length, i) * this->Support;
     return !this->HasLevels ? support
                             : support - this->LeastMargin +
         mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);

@@ -6,6 +6,7 @@
 #include "vtkSPHReals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -48,8 +49,7 @@ public:
       count *= static_cast<std::size_t>(this->Size[a]);
     }
     this->Counts.assign(count, 0);
-    this->Low.assign(count, Infinity);
-    this->High.assign(count, Infinity); // negated
+    this->Ranges.assign(count, { Infinity, -Infinity });
   }
 
   /** Tells the cells of this rank's particles, then of all ranks'. */
@@ -65,16 +65,15 @@ public:
         this->CellOf[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(cell);
         ++this->Counts[cell];
         const double value = hasValues ? vtkSPHScalarOf(this->Input, i) : 0.0;
-        this->Low[cell] = std::min(this->Low[cell], value);
-        this->High[cell] = std::min(this->High[cell], -value);
+        Range& range = this->Ranges[cell];
+        range = { std::min(range[0], value), std::max(range[1], value) };
       }
     }
     const int count = static_cast<int>(this->Counts.size());
     ranks.Reduce(vtkSPHRanks::SUM, this->Counts.data(), count);
     if (hasValues)
     {
-      ranks.Reduce(vtkSPHRanks::LEAST, this->Low.data(), count);
-      ranks.Reduce(vtkSPHRanks::LEAST, this->High.data(), count);
+      ranks.ReduceRanges(this->Ranges.front().data(), count);
     }
   }
 
@@ -119,7 +118,7 @@ private:
    */
   int CountSurfaces(std::size_t cell) const
   {
-    double low = this->Low[cell], high = -this->High[cell];
+    double low = this->Ranges[cell][0], high = this->Ranges[cell][1];
     int ends = 0; // sides at which the fluid does
     std::size_t stride = 1;
     for (int a = 0; a < 3; ++a)
@@ -130,8 +129,8 @@ private:
         const bool isIn = at + step >= 0 && at + step < this->Size[a];
         const std::size_t other = step < 0 ? cell - stride : cell + stride;
         ends += !isIn || FarFewer * this->Counts[other] < this->Counts[cell] ? 1 : 0;
-        low = isIn ? std::min(low, this->Low[other]) : low;
-        high = isIn ? std::max(high, -this->High[other]) : high;
+        low = isIn ? std::min(low, this->Ranges[other][0]) : low;
+        high = isIn ? std::max(high, this->Ranges[other][1]) : high;
       }
       stride *= static_cast<std::size_t>(this->Size[a]);
     }
@@ -151,7 +150,8 @@ private:
   int Size[3];
   std::vector<std::int64_t> Counts;
   std::vector<std::uint32_t> CellOf;
-  std::vector<double> Low, High;
+  using Range = std::array<double, 2>; // least and greatest
+  std::vector<Range> Ranges;           // of what is contoured, in each cell
 };
 }
 

@@ -18,8 +18,8 @@ class vtkSPHParticles;
 /**
  * This rank's particles (`data` may be null), without those that vtkGhostType marks as another
  * rank's. They have the same point arrays on all ranks, in one order: those that all ranks with
- * particles have, with one type and number of components. Their field data stay. `taken`: their indices in `data`, if that
- * is wanted. Collective.
+ * particles have, with one type and number of components. Their field data stay. `taken`: their indices in `data`,
+ * if that is wanted. Collective.
  */
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   vtkSPHRanks& ranks, vtkPointSet* data, std::vector<vtkIdType>* taken = nullptr);

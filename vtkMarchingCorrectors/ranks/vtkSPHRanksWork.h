@@ -20,8 +20,8 @@ class vtkSPHRanks;
 std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options);
 
 /**
- * The same, and where the surface is expected a share of what that costs. The surface is expected in cells of a coarse grid, whose number does not
- * grow with the particles, around which values are on both sides of an iso value; the free surface in
+ * The same, and where the surface is expected a share of what that costs. The surface is expected in cells of a
+ * coarse grid, whose number does not grow with the particles, around which values are on both sides of an iso value; the free surface in
  * those beside which there are far fewer particles. The same to the last bit however particles are
  * strewn over ranks. Collective.
  */

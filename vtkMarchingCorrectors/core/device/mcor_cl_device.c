@@ -278,9 +278,9 @@ static mcor_status mcor_start_device(
   cl->context = clCreateContext(NULL, 1, &cl->device, NULL, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateContext");
   cl->pool = mcor_is_native(cl) ? mcor_native_pool(cl->context) : NULL;
-  if (mcor_is_native(cl) && mcor_processors(count) < cl->units)
+  if (cl->pool && mcor_processors(count) < cl->units)
   {
-    cl->units = mcor_native_pool(cl->context)->threads = mcor_processors(count);
+    cl->units = cl->pool->threads = mcor_processors(count);
   }
   cl->segments = cl->is_cpu ? cl->units * 8 : 4096;
   cl->queue = clCreateCommandQueue(cl->context, cl->device, 0, &error);

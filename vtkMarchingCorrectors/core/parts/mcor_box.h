@@ -76,8 +76,8 @@ bool mcor_is_limited(const mcor_context* context);
 mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction. Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned ones; of
- * any, those whose particles are at hand. */
+/* Extraction. Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned
+ * ones; of any, those whose particles are at hand. */
 mcor_status mcor_clip_used(mcor_context* context);
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
 /* Owned ones of any cells: their masks, and how many of them are within others. */

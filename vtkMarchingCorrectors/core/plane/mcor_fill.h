@@ -67,8 +67,8 @@ mcor_status mcor_begin_fill(mcor_context* context);
 mcor_status mcor_take_lines(mcor_context* context);
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);
 void mcor_end_fill(mcor_context* context);
-/* mcor_fill_points.c. After all iso values: adds triangles to the surface, behind those that stand for lines, of which two
- * corners are one. */
+/* mcor_fill_points.c. After all iso values: adds triangles to the surface, behind those that stand for lines, of
+ * which two corners are one. */
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface);
 
 /* mcor_fill_squares.c: the polygons, of one band each. */

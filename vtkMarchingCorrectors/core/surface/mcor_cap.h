@@ -136,8 +136,8 @@ static inline void mcor_cap_node(
   node[2] = mcor_is_plane(context) ? 0 : node[2];
 }
 
-/* mcor_cap_points.c. Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole box); -1: none
- * does. */
+/* mcor_cap_points.c. Nodes along an axis to its lower or upper side, where a cap closes that (of ranks: of the whole
+ * box); -1: none does. */
 int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether it is a side of this call's box, too. */

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps close the surface at the sides of a period, and of a box, where that is asked for, around what is above the iso value. Each square of
- * a side is cut as marching cuts it: along the lines between the surface's own vertices there, which
- * the cap shares. The other vertices are nodes. Where the surface is trimmed the cap is, too: at the
+/* Caps close the surface at the sides of a period, and of a box, where that is asked for, around what is above the
+ * iso value. Each square of a side is cut as marching cuts it: along the lines between the surface's own vertices
+ * there, which the cap shares. The other vertices are nodes. Where the surface is trimmed the cap is, too: at the
  * surface's own cut vertices, and linearly within the side. A square is capped where the cell beside
  * it is valid.
  *

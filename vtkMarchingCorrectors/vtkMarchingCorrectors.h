@@ -158,8 +158,8 @@ public:
   /**
    * Contour values, in the unit of the scalar. Several values give several surfaces in one output. By
    * default there is none (NaN counts as none), and one surface is drawn at the median of the scalar in the
-   * fluid or, if all values are positive and span three decades, at the logarithmic middle of their range;
-   * see "IsoValues" in the output field data.
+   * fluid; if most values are alike, at the middle of the others; or, if all are positive and span three decades, at
+   * the logarithmic middle of their range; see "IsoValues" in the output field data.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
   double GetValue(int i)

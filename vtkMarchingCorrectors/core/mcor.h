@@ -536,10 +536,11 @@ extern "C"
   void mcor_free_surface(mcor_surface* surface);
 
   /* The range of the finite values of the scalar at fluid particles, and a suggested iso value: their median
-   * (one of the values), or the logarithmic middle of the range if all values are positive and span three
-   * decades (without the lowest and highest 2 %). Reads only the scalar and the solids of the input; over all
-   * ranks unless `ranks` is NULL. Returns 0 and changes nothing if there is no such value or another rank
-   * failed. */
+   * (one of the values); the middle of the values' 5 and 95 % if the median is at the end of these, and of the
+   * range if these are one value; or the logarithmic middle of the range if all values are positive and span three
+   * decades (without the lowest and highest 2 %), but no more than six with the median at their end. Reads only the
+   * scalar and the solids of the input; over all ranks unless `ranks` is NULL. Returns 0 and changes nothing if there
+   * is no such value or another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 

@@ -148,7 +148,7 @@ static void test_iso_values(void** state)
   double* sorted = malloc(count * sizeof *sorted);
   uint8_t* solid = calloc(count, 1);
   assert_true(value && sorted && solid);
-  for (int kind = 0; kind < 6; ++kind)
+  for (int kind = 0; kind < 8; ++kind)
   {
     int64_t fluid = 0;
     uint32_t seed = 7;
@@ -157,7 +157,8 @@ static void test_iso_values(void** state)
       seed = seed * 1664525u + 1013904223u;
       const double r = seed / 4294967296.0;
       const double values[] = { r, floor(10 * r), r < 0.6 ? 3 : r, pow(10, 6 * r - 3),
-        i == 17 ? -1e300 : 1e-300 * r, i == 5 ? -1 : pow(10, 6 * r - 3) };
+        i == 17 ? -1e300 : 1e-300 * r, i == 5 ? -1 : pow(10, 6 * r - 3),
+        r < 0.6 ? 1e-9 * r : 2 * r, r < 0.97 ? 0 : r };
       value[i] = i % 1000 == 3 ? NAN : i % 1000 == 4 ? INFINITY : values[kind];
       solid[i] = i % 7 == 0;
       if (isfinite(value[i]) && !solid[i])
@@ -173,7 +174,11 @@ static void test_iso_values(void** state)
     assert_true(mcor_find_iso_value(&input, NULL, range, &iso));
     assert_true(range[0] == sorted[0] && range[1] == sorted[fluid - 1]);
     const double logs = sqrt(sorted[fluid / 50] * sorted[fluid - 1 - fluid / 50]);
-    const double expected = kind == 3 ? logs : sorted[(fluid - 1) / 2];
+    const double middle = 0.5 * sorted[fluid / 20] + 0.5 * sorted[fluid - 1 - fluid / 20];
+    const double expected = kind == 3 ? logs
+      : kind == 2 || kind == 6        ? middle
+      : kind == 7                     ? 0.5 * sorted[0] + 0.5 * sorted[fluid - 1]
+                                      : sorted[(fluid - 1) / 2];
     CORE_CHECK(fabs(iso - expected) <= (kind == 3 ? 1e-12 : 0), "kind %d: %.17g, not %.17g", kind,
       iso, expected);
   }

@@ -19,6 +19,12 @@
 
 #define MCOR_THREE_DECADES 1000.0
 
+/* As a share of the span of most values. */
+#define MCOR_NEAR_END 1e-3
+
+/* Of more, the lowest are what rounding leaves of 0. */
+#define MCOR_MANY_DECADES 1e6
+
 typedef struct mcor_bin_job
 {
   const mcor_input* input;
@@ -146,7 +152,7 @@ static bool mcor_select_iso(
 static bool mcor_choose_iso(
   mcor_bin_job* job, const mcor_ranks* ranks, double range[2], double* iso_value)
 {
-  double found[2] = { INFINITY, -INFINITY }, ends[2], median;
+  double found[2] = { INFINITY, -INFINITY }, ends[2], most[2], median;
   int64_t count = 0;
   job->low = -INFINITY; /* all are in the last bin */
   job->high = INFINITY;
@@ -162,12 +168,21 @@ static bool mcor_choose_iso(
   }
   if (count == 0 || !mcor_select_iso(job, ranks, found, count / 50, &ends[0]) ||
     !mcor_select_iso(job, ranks, found, count - 1 - count / 50, &ends[1]) ||
+    !mcor_select_iso(job, ranks, found, count / 20, &most[0]) ||
+    !mcor_select_iso(job, ranks, found, count - 1 - count / 20, &most[1]) ||
     !mcor_select_iso(job, ranks, found, (count - 1) / 2, &median))
   {
     return false;
   }
-  const bool decades = found[0] > 0 && ends[1] / ends[0] >= MCOR_THREE_DECADES;
-  *iso_value = decades ? sqrt(ends[0]) * sqrt(ends[1]) : median;
+  /* If most values are alike (walls at rest, gas before a shock), what surrounds their median is noise, or nothing. */
+  const double* span = most[0] < most[1] ? most : found;
+  const double near = MCOR_NEAR_END * (span[1] - span[0]);
+  const bool at_end = median - span[0] <= near || span[1] - median <= near;
+  const bool decades = found[0] > 0 && ends[1] / ends[0] >= MCOR_THREE_DECADES &&
+    !(at_end && ends[1] / ends[0] > MCOR_MANY_DECADES);
+  *iso_value = decades ? sqrt(ends[0]) * sqrt(ends[1])
+    : at_end           ? 0.5 * span[0] + 0.5 * span[1]
+                       : median;
   range[0] = found[0];
   range[1] = found[1];
   return true;

@@ -568,12 +568,12 @@ extern "C"
   /* What may be wrong with the input although the extraction succeeded. */
   typedef enum mcor_warning
   {
-    MCOR_WARN_NEIGHBOURS = 0, /* far too few or too many, see neighbours_median */
+    MCOR_WARN_NEIGHBOURS = 0, /* far too few or too many, or far too large, see neighbours_median, filled_median */
     MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
     MCOR_WARN_ISO_VALUE,      /* outside the range of the field */
     MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
     MCOR_WARN_PRECISION,      /* positions are rounded too much, see position_error */
-    MCOR_WARN_TOLERANCE, /* some vertices are not on the iso value, see vertices_above_tolerance */
+    MCOR_WARN_TOLERANCE, /* vertices are off the iso value by more than rounding, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;
 

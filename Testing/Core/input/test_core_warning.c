@@ -99,6 +99,8 @@ static void test_neighbours(void** state)
          call.input.smoothing_length = far_off;
          call.options.cube_size = 1; call.options.node_threshold = 0;
          call.options.vertex_threshold = 0);
+  WARNED(MCOR_WARN_NEIGHBOURS, "Check the volumes, or masses and densities|unit of the positions",
+    call.input.volume = (mcor_array){ .constant = 1000 });
   WARNED(MCOR_WARN_NEIGHBOURS, "All 1000 fluid particles are at the same point",
     memset(call.set.position, 0, 3000 * sizeof(double)));
   SILENT(call.input.smoothing_length = twice; call.input.count = 60; call.iso[0] = -30;
@@ -248,6 +250,21 @@ static void test_tolerance(void** state)
     call.options.tolerance = 1e-9);
   WARNED(MCOR_WARN_TOLERANCE, "a higher iteration limit", call.options.iteration_limit = 1);
   SILENT(call.options.tolerance = 1e-9; call.options.precision = MCOR_FLOAT64);
+  warning_call call; /* what rounding leaves is told by the statistics alone */
+  begin_call(&call);
+  call.options.tolerance = 1e-6;
+  mcor_surface surface = core_extract(*state, &call.input, &call.options);
+  for (int i = 0; i < 2; ++i)
+  {
+    surface.statistics.vertices_above_tolerance = 2;
+    surface.statistics.residual_max =
+      (i ? 2e-5 : 2e-6) * (surface.statistics.scalar_max - surface.statistics.scalar_min);
+    char* text = mcor_describe_warning(MCOR_WARN_TOLERANCE, &call.input, &call.options, &surface);
+    CORE_CHECK((text != NULL) == (i == 1), "%s", text ? text : "not given");
+    free(text);
+  }
+  mcor_free_surface(&surface);
+  core_free_set(&call.set);
 }
 
 static void test_trimmed(void** state)

@@ -61,6 +61,9 @@ static bool mcor_is_wendland(mcor_sph_kernel kernel)
   return kernel == MCOR_WENDLAND_C2 || kernel == MCOR_WENDLAND_C4 || kernel == MCOR_WENDLAND_C6;
 }
 
+/* Where the volumes of particles fill this multiple of the supports, they are not in the unit of the positions. */
+#define MCOR_MOST_FILLED 10.0
+
 /* The kernel with which such particles, `ratio` smoothing lengths to the nearest one, would be usual: that
  * of many neighbours, or the one that reaches farther. */
 static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
@@ -90,10 +93,18 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
     ? found > (plane ? MCOR_ROW_NEIGHBOURS : MCOR_SHEET_NEIGHBOURS)
     : near > (wendland ? MCOR_MOST_RATIO_WENDLAND : MCOR_MOST_RATIO) &&
       found > (plane ? MCOR_MANY_IN_PLANE : MCOR_MANY_NEIGHBOURS);
-  if (n->fluid_particles < MCOR_FEW_PARTICLES || s->input->estimate_smoothing_length ||
-    !(few || many))
+  const bool unusual = !s->input->estimate_smoothing_length && (few || many);
+  if (n->fluid_particles < MCOR_FEW_PARTICLES || !(unusual || n->filled_median > MCOR_MOST_FILLED))
   {
     return false;
+  }
+  if (!unusual)
+  {
+    return mcor_say(s,
+      "Check the volumes, or masses and densities: they fill the supports of the particles %.3g "
+      "times (median), so weights in the fluid are about that, not 1. Perhaps they are not in the "
+      "unit of the positions.",
+      n->filled_median);
   }
   if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
   {
@@ -115,7 +126,8 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
       h / spacing, spacing);
   }
   return mcor_say(s,
-    "A fluid particle has %.0f neighbours within its support radius; its smoothing length is %.4g, "
+    "Check the smoothing length: a fluid particle has %.0f neighbours within its support radius; "
+    "its smoothing length is %.4g, "
     "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
     n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel][plane],
     wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
@@ -266,13 +278,19 @@ static bool mcor_warn_precision(mcor_suspicion* s)
     n->cube_size, n->position_error, share);
 }
 
-/* Vertices that the correction could not bring to the iso value. A preview does not try. */
+/* What rounding may leave of the field in single precision, as a share of the scalar's range. */
+#define MCOR_ROUNDED 1e-5
+
+/* Vertices that the correction could not bring to the iso value. A preview does not try. What rounding explains is told
+ * only where a tolerance asks for more. */
 static bool mcor_warn_tolerance(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
   const double range = n->scalar_max - n->scalar_min;
-  if (o->preview || n->vertices_above_tolerance == 0)
+  const bool is_rounding = o->precision == MCOR_FLOAT32 && o->tolerance > 0.05 * MCOR_ROUNDED &&
+    n->residual_max <= MCOR_ROUNDED * range;
+  if (o->preview || n->vertices_above_tolerance == 0 || is_rounding)
   {
     return false;
   }

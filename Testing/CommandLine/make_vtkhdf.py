@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How lattice.vtkhdf (an unstructured grid) and lattice_poly.vtkhdf were made: needs h5py."""
+"""How lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf and those that point to other files were made: needs h5py."""
 import pathlib
 
 import h5py
@@ -18,8 +18,8 @@ def fill_cells(group, count):
     group["Offsets"] = numpy.arange(count + 1)
 
 
-def write(path, kind, version):
-    points, arrays = files.lattice(3)
+def write(path, kind, version, side=3):
+    points, arrays = files.lattice(side)
     with h5py.File(path, "w", libver="earliest") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = numpy.array(version, "i8")
@@ -38,3 +38,16 @@ def write(path, kind, version):
 
 write(HERE / "lattice.vtkhdf", b"UnstructuredGrid", (1, 0))
 write(HERE / "lattice_poly.vtkhdf", b"PolyData", (2, 0))
+
+for name in ("link", "storage", "virtual"):
+    write(HERE / f"{name}.vtkhdf", b"UnstructuredGrid", (1, 0), 2)
+    with h5py.File(HERE / f"{name}.vtkhdf", "a", libver="earliest") as file:
+        arrays = file["VTKHDF/PointData"]
+        if name == "link":
+            arrays["Secret"] = h5py.ExternalLink("other.h5", "Secret")
+        elif name == "storage":
+            arrays.create_dataset("Secret", (8,), "u1", external=[("secret", 0, 8)])
+        else:
+            layout = h5py.VirtualLayout((8,), "u1")
+            layout[:] = h5py.VirtualSource("other.h5", "Secret", (8,))
+            arrays.create_virtual_dataset("Secret", layout)

@@ -542,6 +542,9 @@ class Formats(CommandLineTest):
         for bad in (data[:2000], data[:2002] + b"\xf5" + data[2003:]):  # HDF5 says more of the second when it ends
             damaged.write_bytes(bad)
             self.refuse(self.extract("--free-surface", source=damaged), 1, "damaged.vtkhdf cannot be read: ")
+        for name in ("link", "storage", "virtual"):  # whether or not there is such a file
+            self.refuse(self.extract("--free-surface", source=HERE / f"{name}.vtkhdf"), 1,
+                        "its 'VTKHDF/PointData/Secret' lies in another file, which is not opened")
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@
 #include "vtkDataObject.h"
 #include "vtkGenericDataObjectReader.h"
 #ifdef MCOR_HAS_VTKHDF
+#include "HdfLinks.h"
 #include "vtkHDFReader.h"
 #endif
 #include "vtkNew.h"
@@ -33,7 +34,6 @@
 #include "vtkXMLUnstructuredGridReader.h"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -142,13 +142,10 @@ std::string HintFor(const std::string& file)
 #ifdef MCOR_HAS_VTKHDF
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file)
 {
+  RefuseHdfLinks(file);
   vtkNew<vtkHDFReader> reader;
   reader->SetFileName(file.c_str());
-  const bool isKnown = reader->CanReadFile(file.c_str());
-  // HDF5 has begun now, and ends after this: of a damaged file, it writes what it thinks even then.
-  static const int isRegistered = std::atexit([] { new Silence; });
-  (void)isRegistered;
-  if (!isKnown)
+  if (!reader->CanReadFile(file.c_str()))
   {
     throw std::runtime_error(
       file + " cannot be read: its reader does not know what it holds" + HintFor(file));

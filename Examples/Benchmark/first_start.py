@@ -72,7 +72,6 @@ def measure(arguments):
             os.mkdir(cache)
             environment = dict(os.environ, POCL_CACHE_DIR=cache,
                                XDG_CACHE_HOME=os.path.join(folder, "cache"))
-            environment.pop("MCOR_CACHE_DIR", None)
             for name, options in RUNS:
                 taken[name].append(seconds(
                     [arguments.program, arguments.particles, os.path.join(folder, "o.vtp"),

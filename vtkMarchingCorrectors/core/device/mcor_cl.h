@@ -6,7 +6,6 @@
 /* OpenCL: device, programs, buffers, launches. Only mcor_cl_*.c call cl*. */
 
 #include "mcor.h"
-#include "mcor_cache.h"
 #include "mcor_opencl.h"
 
 #include <stdbool.h>
@@ -69,7 +68,6 @@ typedef struct mcor_cl
   bool declares_builtins;         /* programs do so themselves, see mcor_builtin.cl */
   int lanes;                      /* of the programs */
   int segments;                   /* runs into which scans and sorts cut their arrays */
-  bool keeps_binaries;            /* programs are kept in files, see mcor_cache.h */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
   uint64_t memory_limit;     /* what of device_memory may be used; of the call under way */

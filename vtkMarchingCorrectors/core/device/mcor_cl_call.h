@@ -26,6 +26,9 @@ const char* mcor_cl_error_name(cl_int error);
 bool mcor_is_no_memory(cl_int error);
 /* Sets the sentence about a call that failed. */
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
+#define MCOR_POCL_HINT                                                                             \
+  "PoCL needs a folder of its own to compile in, writable and with free space: set POCL_CACHE_DIR " \
+  "to one (else it is ~/.cache/pocl)."
 /* Adds to the sentence of a failure, where the device is PoCL, which of its files may be the cause. */
 void mcor_blame_files(mcor_context* context);
 

@@ -25,7 +25,6 @@ static void mcor_find_devices(mcor_device_list* list)
   cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
   cl_uint platform_count = 0;
   list->count = 0;
-  mcor_own_pocl_folder();
   if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
   {
     return;
@@ -171,9 +170,6 @@ static void mcor_query_device(mcor_cl* cl)
   cl->is_cpu = mcor_has_cpu_form(cl);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-  /* PoCL has a cache of its own, and compiles every kernel anew when asked for its binaries; the built-in
-   * device has none. */
-  cl->keeps_binaries = !mcor_is_pocl(cl) && !mcor_is_native(cl);
   cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
 }
@@ -301,20 +297,14 @@ static mcor_status mcor_fail_without_device(
   single.precision = MCOR_FLOAT32;
   char missing[MCOR_BUILD_NAME];
   mcor_name_build(build, missing, sizeof missing);
-  char fault[1200];
-  const bool has_fault = mcor_pocl_folder_fault(fault, sizeof fault);
-  const char *if_installed = has_fault ? " If PoCL is installed: " : "",
-             *why = has_fault ? fault : "";
   MCOR_RETURN_IF(mcor_choose_device(list, &usual) >= 0, context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. %s "
     "an OpenCL driver (PoCL, Debian package pocl-opencl-icd, runs on the CPU), or build with "
-    "MCOR_AHEAD=all.%s%s",
-    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install",
-    if_installed, why);
+    "MCOR_AHEAD=all. " MCOR_POCL_HINT,
+    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install");
   return mcor_fail(context, MCOR_DEVICE_ERROR,
     "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
-    "runs on the CPU.%s%s",
-    if_installed, why);
+    "runs on the CPU. " MCOR_POCL_HINT);
 }
 
 /* A device where none was named. */

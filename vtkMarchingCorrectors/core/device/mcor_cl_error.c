@@ -3,7 +3,6 @@
 
 /* What OpenCL's errors mean. */
 
-#include "mcor_cache.h"
 #include "mcor_cl_call.h"
 
 #include <stdio.h>
@@ -69,15 +68,11 @@ bool mcor_is_no_memory(cl_int error)
 
 void mcor_blame_files(mcor_context* context)
 {
-  char folder[1024];
   const size_t length = strlen(context->error);
   if (mcor_is_pocl(&context->cl))
   {
-    mcor_pocl_folder(folder, sizeof folder);
-    snprintf(context->error + length, sizeof context->error - length,
-      " If a process was killed while it compiled, files may be damaged: remove the folder %s, "
-      "and try again.",
-      folder);
+    snprintf(context->error + length, sizeof context->error - length, " %s",
+      MCOR_POCL_HINT " If a process was killed while PoCL compiled, remove that folder.");
   }
 }
 

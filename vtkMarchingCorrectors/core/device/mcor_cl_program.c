@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Programs: built, or loaded, when they are first needed. */
+/* Programs are built when they are first needed. Drivers keep what they have built; see devices.md. */
 
-#include "mcor_cache.h"
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
 
@@ -79,86 +78,12 @@ static mcor_status mcor_fail_build(
   return status;
 }
 
-/* Of all that a compiled program depends on. */
-static mcor_cache_key mcor_program_key(
-  const mcor_cl* cl, const char* const* sources, cl_uint count, const char* options)
-{
-  mcor_cache_key key = { { 0 } };
-  const cl_device_info infos[] = { CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION };
-  mcor_cache_add(&key, cl->platform_name);
-  mcor_cache_add(&key, cl->device_name);
-  for (size_t i = 0; i < sizeof infos / sizeof infos[0]; ++i)
-  {
-    char text[256] = "";
-    clGetDeviceInfo(cl->device, infos[i], sizeof text - 1, text, NULL);
-    mcor_cache_add(&key, text);
-  }
-  mcor_cache_add(&key, options);
-  for (cl_uint i = 0; i < count; ++i)
-  {
-    mcor_cache_add(&key, sources[i]);
-  }
-  return key;
-}
-
-/* The program from the cache; NULL where it is not there, or no longer to the driver's liking. */
-static cl_program mcor_load_program(
-  const mcor_cl* cl, const mcor_cache_key* key, const char* options)
-{
-  size_t size = 0;
-  void* binary = cl->keeps_binaries ? mcor_cache_load(key, &size) : NULL;
-  if (!binary)
-  {
-    return NULL;
-  }
-  cl_int error, loaded = CL_SUCCESS;
-  const unsigned char* data = binary;
-  cl_program program =
-    clCreateProgramWithBinary(cl->context, 1, &cl->device, &size, &data, &loaded, &error);
-  free(binary);
-  if (error != CL_SUCCESS)
-  {
-    return NULL;
-  }
-  if (loaded != CL_SUCCESS ||
-    clBuildProgram(program, 1, &cl->device, options, NULL, NULL) != CL_SUCCESS)
-  {
-    clReleaseProgram(program);
-    return NULL;
-  }
-  return program;
-}
-
-static void mcor_store_program(const mcor_cl* cl, const mcor_cache_key* key, cl_program program)
-{
-  size_t size = 0;
-  if (!cl->keeps_binaries ||
-    clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, NULL) != CL_SUCCESS ||
-    size == 0)
-  {
-    return;
-  }
-  unsigned char* binary = malloc(size);
-  if (binary &&
-    clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof binary, &binary, NULL) == CL_SUCCESS)
-  {
-    mcor_cache_store(key, binary, size);
-  }
-  free(binary);
-}
-
 static mcor_status mcor_build_with_options(
   mcor_context* context, mcor_program number, const char* options)
 {
   mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT];
   const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
-  const mcor_cache_key key = mcor_program_key(cl, sources, count, options);
-  cl->programs[number] = mcor_load_program(cl, &key, options);
-  if (cl->programs[number])
-  {
-    return MCOR_OK;
-  }
   cl_int error;
   cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
@@ -169,7 +94,6 @@ static mcor_status mcor_build_with_options(
     clReleaseProgram(program);
     return status;
   }
-  mcor_store_program(cl, &key, program);
   cl->programs[number] = program;
   return MCOR_OK;
 }
@@ -177,9 +101,7 @@ static mcor_status mcor_build_with_options(
 static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
 {
   mcor_cl* cl = &context->cl;
-  char options[512], fault[1200];
-  MCOR_RETURN_IF(mcor_is_pocl(cl) && mcor_pocl_folder_fault(fault, sizeof fault), context,
-    MCOR_DEVICE_ERROR, "%s", fault);
+  char options[512];
   mcor_program_options(cl, number, options, sizeof options);
   mcor_status status = mcor_build_with_options(context, number, options);
   if (status != MCOR_OK && cl->declares_builtins)

@@ -68,7 +68,6 @@ FORWARD(void*, clEnqueueMapBuffer, (cl_command_queue o, cl_mem m, cl_bool b, cl_
 FORWARD(cl_int, clEnqueueUnmapMemObject, (cl_command_queue o, cl_mem m, void* p, cl_uint c, const cl_event* w, cl_event* e), (o, m, p, c, w, e), o)
 FORWARD(cl_int, clEnqueueNDRangeKernel, (cl_command_queue o, cl_kernel k, cl_uint d, const size_t* s, const size_t* g, const size_t* l, cl_uint c, const cl_event* w, cl_event* e), (o, k, d, s, g, l, c, w, e), o)
 FORWARD(cl_program, clCreateProgramWithSource, (cl_context o, cl_uint n, const char** s, const size_t* l, cl_int* e), (o, n, s, l, e), o)
-FORWARD(cl_program, clCreateProgramWithBinary, (cl_context o, cl_uint n, const cl_device_id* d, const size_t* l, const unsigned char** b, cl_int* s, cl_int* e), (o, n, d, l, b, s, e), o)
 FORWARD(cl_int, clReleaseProgram, (cl_program o), (o), o)
 FORWARD(cl_int, clBuildProgram, (cl_program o, cl_uint n, const cl_device_id* d, const char* t, void (CL_CALLBACK* f)(cl_program, void*), void* u), (o, n, d, t, f, u), o)
 FORWARD(cl_int, clGetProgramInfo, (cl_program o, cl_program_info w, size_t n, void* v, size_t* r), (o, w, n, v, r), o)

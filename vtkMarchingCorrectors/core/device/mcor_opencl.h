@@ -13,7 +13,6 @@
 #define clCreateCommandQueue mcor_clCreateCommandQueue
 #define clCreateContext mcor_clCreateContext
 #define clCreateKernel mcor_clCreateKernel
-#define clCreateProgramWithBinary mcor_clCreateProgramWithBinary
 #define clCreateProgramWithSource mcor_clCreateProgramWithSource
 #define clCreateSubDevices mcor_clCreateSubDevices
 #define clEnqueueCopyBuffer mcor_clEnqueueCopyBuffer

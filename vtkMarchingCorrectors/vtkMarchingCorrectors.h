@@ -545,7 +545,7 @@ private:
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillOptions(mcor_options& options);
   void ClearSummary();
-  /** What the next update would find. */
+  /** Findings of the next update, ahead of it. */
   struct vtkAhead
   {
     double ScalarRange[2] = { 0.0, 0.0 };
@@ -559,7 +559,7 @@ private:
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  /** Those that were given, or a usual one, over all ranks unless that is null. False if there is none. */
+  /** Lists the iso values that were given, or a usual one, over all ranks unless that is null. False if there is none. */
   bool ListIsoValues(
     const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list);
 

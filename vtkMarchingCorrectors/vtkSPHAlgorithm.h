@@ -463,7 +463,7 @@ protected:
   /** Whether the particles, once collected, can be used on all ranks, and whether there is fluid on any. */
   bool AcceptDistributed(
     vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
-  /** What is global, for a surface, or for mcor_probe and mcor_derive; the period and the dimension. */
+  /** Measures all that is global, for a surface, or for mcor_probe and mcor_derive; the period and the dimension. */
   bool MeasureDistributed(vtkSPHRanksRun& run, vtkSPHParticles& particles, bool forSamples);
   /** Sends particles, which the core has as `input`, to the ranks whose boxes need them; a call is for its box then. */
   void ShareDistributed(vtkSPHRanksRun& run, const mcor_input& input, vtkPolyData* particles,
@@ -486,7 +486,7 @@ protected:
    * reported.
    */
   bool SetPeriod(vtkPointSet* particles, mcor_options& options);
-  /** The same on all ranks together; these are one's own. */
+  /** Finds the period on all ranks together; these particles are one's own. */
   bool SetPeriodDistributed(vtkPointSet* particles, mcor_options& options);
   /** False, and reported, where none was found, or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);

@@ -53,7 +53,7 @@ private:
   int Place = 0, Count = 0;
   bool InRun = false;
   bool ReleaseAfterRun = false;
-  /** What something was in the last run, and how many others it has been. */
+  /** A value of the last run, and how many others it has been. */
   struct Kept
   {
     std::vector<std::uint64_t> Signature;

@@ -55,7 +55,7 @@ void CopyTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes
   to->CopyData(from, ids, places);
 }
 
-/** Those that are not left out. */
+/** Adds the ids of the pieces that are not left out. */
 void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
 {
   vtkNew<vtkIdTypeArray> ids;
@@ -95,7 +95,7 @@ private:
 };
 }
 
-/** What a piece encloses. */
+/** The particles that a piece encloses. */
 struct vtkSPHComponents::Content
 {
   double Particles = 0.0;

@@ -76,7 +76,7 @@ public:
   }
 
 private:
-  /** What GetPoint() says, row by row: to ask for each point takes as long as to send it to the device. */
+  /** Copies points as GetPoint() gives them, row by row: asking for each takes as long as sending it to the device. */
   static void CopyImagePoints(vtkImageData* image, vtkIdType first, vtkIdType count, double* to)
   {
     const int* extent = image->GetExtent();

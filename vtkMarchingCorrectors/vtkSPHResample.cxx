@@ -28,7 +28,7 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/** Of the longest side of the fluid's box, around it: the fluid ends somewhat beyond its particles. */
+/** A share of the longest side of the fluid's box, added around it: the fluid ends somewhat beyond its particles. */
 constexpr double Margin = 0.03;
 
 /** The fluid's particles are within; infinite the wrong way where there are none. */

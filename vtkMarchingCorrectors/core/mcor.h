@@ -69,7 +69,7 @@ extern "C"
     MCOR_SPH_KERNEL_COUNT
   } mcor_sph_kernel;
 
-  /* What is contoured. V: particle volume, A: scalar, W: kernel. */
+  /* The field to contour. V: particle volume, A: scalar, W: kernel. */
   typedef enum mcor_field
   {
     MCOR_SHEPARD = 0,   /* sum V A W / sum V W; the default */
@@ -198,7 +198,7 @@ extern "C"
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
-  /* What a surface or samples carry besides points and triangles: the array of that name in mcor_surface, or in
+  /* Arrays that a surface or samples carry besides points and triangles, by their names in mcor_surface and
    * mcor_samples. */
   typedef enum mcor_output
   {
@@ -306,7 +306,7 @@ extern "C"
      * Borrowed until return. */
     const mcor_ranks* ranks;
 
-    /* What the surface carries besides points and triangles. */
+    /* Arrays that the surface carries besides points and triangles. */
     unsigned outputs;     /* bits of mcor_output; default MCOR_OUT_NORMALS */
     int triangle_normals; /* normals by area-weighted triangle normals instead of the gradient */
 
@@ -363,7 +363,7 @@ extern "C"
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
-    /* Of the returned surface: whether each edge has triangles on both sides; area, unit L^2; volume that a
+    /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume that a
      * closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In two
      * dimensions: whether all lines are closed; the area that they then enclose, else 0, or the filled area;
      * the length of the lines, unit L. */
@@ -472,7 +472,7 @@ extern "C"
   const char* mcor_sph_kernel_name(mcor_sph_kernel kernel);
   double mcor_support_factor(mcor_sph_kernel kernel); /* support radius / smoothing length */
 
-  /* What a particle array holds, judging by its name. */
+  /* The quantity that an array of particles holds, judging by its name. */
   typedef enum mcor_quantity
   {
     MCOR_SMOOTHING_LENGTH = 0,
@@ -557,15 +557,15 @@ extern "C"
    * least: mcor_least_smoothing_length, of all ranks that share the particles, whose numbers add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
-  /* What a run of so many cells may take, a warning; what was used, "0.02 to 0.045 (array h)", "array Mass / array
-   * Density"; and area and volume, or length and area, "" where there is no surface. In words, with six digits;
-   * free them with free(). NULL if there is no such warning, or if memory ran out. */
+  /* Words for panels, with six digits: a warning of how long a run of so many cells may take; the smoothing length
+   * and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array Density"; area and volume, or length and
+   * area, "" where there is no surface. Free them with free(). NULL if there is no such warning, or if memory ran out. */
   char* mcor_describe_estimate(double cells);
   char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
   char* mcor_describe_volume(const mcor_input* input);
   char* mcor_describe_measures(const mcor_statistics* statistics);
 
-  /* What may be wrong with the input although the extraction succeeded. */
+  /* Warnings: the extraction succeeded, but the input may not be what was meant. */
   typedef enum mcor_warning
   {
     MCOR_WARN_NEIGHBOURS = 0, /* far too few or too many, or far too large, see neighbours_median, filled_median */
@@ -631,7 +631,7 @@ extern "C"
     MCOR_GAUGE_STATE_COUNT
   } mcor_gauge_state;
 
-  /* Of one line; lengths are measured from its beginning, unit L. */
+  /* The reading of one line; lengths are measured from its beginning, unit L. */
   typedef struct mcor_gauge_reading
   {
     mcor_gauge_state state;

@@ -3,7 +3,7 @@
 #ifndef mcor_internal_h
 #define mcor_internal_h
 
-/* What the phases ask of each other. Each phase is one file of the same name as its kernels. */
+/* Functions that phases call of each other. Each phase is one file of the same name as its kernels. */
 
 #include "mcor_state.h"
 
@@ -35,7 +35,7 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 #endif
   ;
 double mcor_seconds(void);
-/* Of a kernel with W = norm / h^3 w(q). */
+/* The norm of a kernel W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);
 
 /* mcor_memory.c. Whether memory of the host could be allocated. */
@@ -163,7 +163,7 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
 
 /* mcor_statistics.c. Reports that something runs from one fraction of the call to another; may cancel. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
-/* The same between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
+/* Reports between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
  * nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
 /* Ends the phase under way, reports progress and may cancel. */
@@ -236,7 +236,7 @@ mcor_status mcor_correct(mcor_context* context, double iso);
 /* The boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context, double iso);
-/* What is trimmed by, at the vertices on lattice edges, and where it ends. */
+/* The quantity by which trimming decides, at the vertices on lattice edges, and its threshold. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);

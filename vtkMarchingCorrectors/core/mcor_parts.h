@@ -29,7 +29,7 @@ extern "C"
     double at; /* its value */
   } mcor_plane;
 
-  /* What is measured over all particles. Lengths in L; h: the unscaled smoothing length. */
+  /* Measures over all particles. Lengths in L; h: the unscaled smoothing length. */
   typedef struct mcor_measure
   {
     int64_t fluid_count, solid_count;
@@ -48,7 +48,7 @@ extern "C"
     double plane_normal[3], plane_extent; /* as in mcor_statistics */
   } mcor_measure;
 
-  /* What must be known about all particles to extract the surface of a box from some of them. */
+  /* Facts about all particles that a call with only some of them needs for the surface of its box. */
   struct mcor_globals
   {
     mcor_measure measured;
@@ -83,7 +83,7 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* The same for records that matter only near their places ([count][3], L): at least those records of all
+    /* Gathers records that matter only near their places ([count][3], L): at least those records of all
      * ranks, this one included, that are within `reach` of this rank's box along each axis, or of a
      * periodic image of it. May be NULL: gather is called instead. */
     int (*pass)(void* user, const void* records, int64_t count, size_t width, const double* places,

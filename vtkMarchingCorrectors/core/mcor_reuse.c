@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What of the last call still holds. */
+/* Reuse of the last call's results. */
 
 #include "mcor_internal.h"
 
@@ -71,7 +71,7 @@ static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));
 }
 
-/* What of the last call still holds. The caller's version numbers stand for the arrays' content;
+/* Finds which results of the last call still hold. The caller's version numbers stand for the arrays' content;
  * all else that the search grid, the scalar and the node values depend on is compared. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {

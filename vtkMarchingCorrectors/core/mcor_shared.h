@@ -42,7 +42,7 @@ typedef struct mcor_level
 
 /* Beside the key of a triangle's cell: not of the box, but of the ring around it. */
 #define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
-/* Of a square of a cap, which is above all keys of cells. */
+/* Marks the key of a cap's square, which is above all keys of cells. */
 #define MCOR_CAP_SQUARE ((MCOR_TYPE(ulong))1 << 62)
 
 /* Particles or triangles that one work-item treats in turn where that spares work: a CPU hides

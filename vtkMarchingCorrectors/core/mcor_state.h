@@ -57,7 +57,7 @@ typedef struct mcor_grid
   bool has_solids;
 } mcor_grid;
 
-/* What is known of the bricks that exist. */
+/* The bricks that exist, and what is known of them. */
 typedef struct mcor_brick_data
 {
   int count;
@@ -167,7 +167,7 @@ typedef struct mcor_pairs
   mcor_buffer found;                  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
-/* Of MCOR_TOPOLOGY_FIELD. */
+/* Decisions of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
 {
   mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
@@ -223,7 +223,7 @@ typedef struct mcor_attributes
   mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
 
-/* Who counts a vertex; 0: nobody. */
+/* The box that counts a vertex; 0: none. */
 enum
 {
   MCOR_OWN = 1,

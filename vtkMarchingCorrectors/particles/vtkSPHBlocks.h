@@ -44,7 +44,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree);
 void vtkSPHSplitBlocks(
   vtkDataObjectTree* tree, vtkPointSet* before, vtkPointSet* joined, vtkDataObjectTree* output);
 
-/** Of the data set, and of all that it is made of. */
+/** The latest time of the data set, and of all that it is made of. */
 vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree);
 
 /**

@@ -129,7 +129,7 @@ public:
 
 protected:
   static std::string Quote(const std::string& name);
-  /** What lists of arrays show in place of an array, as in ParaView's panel, is no name. */
+  /** The array's name; empty for entries that lists of arrays, as in ParaView's panel, show in place of one. */
   static std::string RealName(const std::string& name);
   static std::string NameOf(vtkAbstractArray* array);
   static bool Contains(const std::vector<std::string>& names, const std::string& name);

@@ -60,7 +60,7 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
 
 namespace
 {
-/** Of an array of some whole numbers; of any other numbers one that tells of no fluid. */
+/** Finds the range of an array of whole numbers; for other numbers one that tells of no fluid. */
 void FindWholeRange(vtkDataArray* array, double range[2])
 {
   const double none = std::numeric_limits<double>::infinity();

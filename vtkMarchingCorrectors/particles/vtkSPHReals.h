@@ -72,10 +72,10 @@ vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* soli
 /** How often each value occurs in an array of one component; empty if there are more than `most`. */
 std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most);
 
-/** Of the core's array, or the constant that stands for it. */
+/** An element of the core's array, or the constant that stands for it. */
 double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
 
-/** What is contoured at a particle. */
+/** The scalar to contour at a particle. */
 double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);
 
 #endif

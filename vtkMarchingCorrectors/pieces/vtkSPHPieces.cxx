@@ -18,7 +18,7 @@ namespace
 {
 using Triple = std::array<double, 3>;
 
-/** Of a period: how far from a side a point on it may have been rounded. */
+/** A share of the period: how far from a side a point on it may have been rounded. */
 constexpr double SideTolerance = 1e-5;
 }
 

@@ -13,7 +13,7 @@
 
 class vtkPolyData;
 
-/** Of one piece. Lengths have the unit of the positions. */
+/** One piece. Lengths have the unit of the positions. */
 struct vtkSPHPiece
 {
   vtkIdType Parent = -1; ///< of a cavity: the piece around it; -1: none

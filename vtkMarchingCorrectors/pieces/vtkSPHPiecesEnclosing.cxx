@@ -178,7 +178,7 @@ vtkIdType Enclosing(const Columns& columns, const std::vector<vtkSPHPiece>& piec
   return total > 0 ? found : -1;
 }
 
-/** The same place, within the period. */
+/** Moves the place into the period. */
 Triple WithinPeriod(const double period[6], const Triple& point)
 {
   Triple at = point;

@@ -22,7 +22,7 @@
 
 namespace
 {
-/** Of the particles that came, those from each rank that this one owns. */
+/** Lists, for each rank, the particles that came from it and that this one owns. */
 vtkSPHRanksLists ListOwned(const vtkSPHRanksRun& run)
 {
   vtkSPHRanksLists owned;

@@ -42,7 +42,7 @@ public:
    */
   bool Agree(std::string& sentence);
 
-  /** Of the `count` ranks on this machine, by its name, this one is number `place`. */
+  /** Finds the `count` ranks on this machine, by its name, and the `place` of this one among them. */
   void FindNeighbors(int& place, int& count);
 
   enum Operation
@@ -59,14 +59,14 @@ public:
     this->Controller->AllReduce(own.data(), values, count, operation);
   }
 
-  /** Of ranges, each a least and a greatest value, which are infinite the wrong way where there is nothing. */
+  /** Merges ranges, each a least and a greatest value, infinite the wrong way where there is nothing. */
   void ReduceRanges(double* ranges, int count);
   vtkSPHMergeRanges MergeRanges()
   {
     return [this](double* ranges, int count) { this->ReduceRanges(ranges, count); };
   }
 
-  /** What each rank gives, in the order of ranks. */
+  /** Gathers what each rank gives, in the order of ranks. */
   template <typename T>
   std::vector<T> Gather(const T& mine)
   {
@@ -118,7 +118,7 @@ public:
     return received;
   }
 
-  /** The same to the first rank alone: there what each rank gives, on the others nothing. */
+  /** Gathers on the first rank alone; the others get nothing. */
   template <typename T>
   std::vector<std::vector<T>> GatherOnFirst(std::vector<T> mine)
   {

@@ -21,7 +21,7 @@
 
 namespace
 {
-/** What an array is, but for its values. */
+/** An array's name, type and components. */
 struct Form
 {
   std::string Name;
@@ -68,7 +68,7 @@ std::vector<std::string> LabelsOf(vtkAbstractArray* array)
   return labels;
 }
 
-/** Of the point arrays those that have a name and a value for each point, but for vtkGhostType. */
+/** Lists the point arrays that have a name and a value for each point, but for vtkGhostType. */
 Layout Describe(vtkPolyData* particles)
 {
   Layout layout;
@@ -97,7 +97,7 @@ Layout Describe(vtkPolyData* particles)
   return layout;
 }
 
-/** What all ranks that have points have, in the order of the first of them. Collective. */
+/** Lists the arrays of all ranks that have points, in the order of the first of them. Collective. */
 Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
 {
   Layout common;
@@ -174,7 +174,7 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkPolyData* from, const Layout& layout,
   return taken;
 }
 
-/** Those that no other rank has. */
+/** Lists the points that no other rank has. */
 vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
 {
   auto own = vtkSmartPointer<vtkIdList>::New();

@@ -20,7 +20,7 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Of all ranks' keys, for each range that a rank sorts: ranges are even up to about an eighth. */
+/** Samples of all ranks' keys for each range that a rank sorts: ranges are even up to about an eighth. */
 constexpr std::int64_t Samples = 64;
 
 /** Where the range of keys that each rank sorts ends: the same on all ranks. */
@@ -89,7 +89,7 @@ Keys Merge(const std::vector<Keys>& lists)
   return keys;
 }
 
-/** What numbers a key takes. */
+/** How many numbers a key takes. */
 using Weight = std::int64_t (*)(const Key& key);
 
 /** In place of the keys that each rank sent the numbers of these distinct ones. */

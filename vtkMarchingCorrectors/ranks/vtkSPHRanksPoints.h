@@ -12,7 +12,7 @@
 
 class vtkSPHRanks;
 
-/** Of a rank's points and triangles, and how many there are on all ranks. */
+/** Numbers of a rank's points and triangles, and how many there are on all ranks. */
 struct vtkSPHRanksNumbers
 {
   vtkSmartPointer<vtkIdTypeArray> OfPoints, OfTriangles;

@@ -34,7 +34,7 @@ struct vtkSPHRanksRoute
   /** The rank whose box holds a place, or an image of it. */
   int FindOwner(const double at[3]) const;
 
-  /** Of this rank's points, those in the boxes of each. */
+  /** Lists, for each rank, those of this rank's points that are in its boxes. */
   vtkSPHRanksLists ListOwners(vtkPolyData* points) const;
 
   /** Lists the ranks whose boxes, or images of them, are within `reach` of a place. */
@@ -50,10 +50,10 @@ struct vtkSPHRanksRoute
   std::int64_t Work = 0; ///< of all ranks' particles in its box, see vtkSPHRanksBalance
 };
 
-/** What stands at these places of the numbers. */
+/** Lists the numbers at these places. */
 vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers);
 
-/** What is divided evenly. */
+/** The work that is divided evenly. */
 struct vtkSPHRanksBalance
 {
   std::vector<std::int64_t> Work; ///< of each particle, 0: it is needed nowhere; empty: 1 each

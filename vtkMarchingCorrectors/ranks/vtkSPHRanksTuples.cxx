@@ -41,7 +41,7 @@ bool IsPlain(vtkAbstractArray* array)
   return array->GetDataType() != VTK_STRING && array->GetDataType() != VTK_BIT;
 }
 
-/** Of a size that is known early: several times as fast. */
+/** Copies tuples of a size that the compiler knows: several times as fast. */
 template <std::size_t Size>
 void CopyTuples(const char* values, const std::vector<vtkIdType>& ids, char* to)
 {

@@ -18,7 +18,7 @@ constexpr double CellLimit = 1 << 18;
 /** Their edge in median smoothing lengths, where there are not too many of them. */
 constexpr double CellLengths = 2.0;
 
-/** What a cube of the surface costs: so many times what a particle does. */
+/** The cost of a cube of the surface, in costs of a particle. */
 constexpr double CubeWork = 40.0;
 
 /** A cell has far fewer particles than another: less than one in so many. */
@@ -77,7 +77,7 @@ public:
     }
   }
 
-  /** What each particle of a cell stands for. */
+  /** The work that each particle of a cell stands for. */
   std::vector<std::int64_t> Share() const
   {
     const double across = this->Edge / this->Globals.measured.cube;
@@ -94,7 +94,7 @@ public:
     return shares;
   }
 
-  /** Of a fluid particle of this rank. */
+  /** The cell of a fluid particle of this rank. */
   std::size_t GetCell(std::int64_t i) const { return this->CellOf[static_cast<std::size_t>(i)]; }
 
 private:

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-/** What the user chose, and the times of the two steps, the second one later. */
+/** The user's choices, and the times of the two steps, the second one later. */
 struct vtkSPHTemporalChoice
 {
   std::string IdArrayName;

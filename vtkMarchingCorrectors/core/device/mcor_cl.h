@@ -19,7 +19,7 @@ typedef struct mcor_buffer
   size_t size; /* bytes */
 } mcor_buffer;
 
-/* What the program is compiled for. */
+/* One variant of the programs: all that their compilation depends on. */
 typedef struct mcor_build
 {
   mcor_sph_kernel sph_kernel;
@@ -131,7 +131,7 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
-/* What kernels are compiled for from now on. Those at hand are kept where they fit. */
+/* Sets the variant of the kernels from now on. Kernels at hand are kept where they fit. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
 /* A large buffer is kept, for the next that is about as large: the first touch of memory takes longer than
@@ -158,11 +158,11 @@ typedef struct mcor_mapping
 } mcor_mapping;
 /* Where one fails, those behind it are not mapped. */
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
-/* Of those that are mapped. Returns `status`, or, where that is MCOR_OK, the first failure. */
+/* Unmaps all that are mapped. Returns `status`, or, where that is MCOR_OK, the first failure. */
 mcor_status mcor_unmap_all(
   mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);
-/* The same for bytes [first, last). */
+/* Fills bytes [first, last) alone. */
 mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
 /* Makes room for `bytes`, keeping the first `old`. */

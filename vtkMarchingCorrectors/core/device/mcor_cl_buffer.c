@@ -222,7 +222,7 @@ mcor_status mcor_unmap_all(
   return status;
 }
 
-/* Of so many bytes those to fill or copy between two reports: about 10 ms of memory not touched yet. */
+/* Bytes to fill or copy between two reports: about 10 ms of memory that was not touched before. */
 static size_t mcor_step_of(size_t bytes)
 {
   const size_t most = (size_t)1 << 25;

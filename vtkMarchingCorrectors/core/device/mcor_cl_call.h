@@ -3,7 +3,7 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* What the files mcor_cl_*.c, the only ones that call OpenCL, share, and what is known of some drivers. */
+/* Shared by the files mcor_cl_*.c, the only ones that call OpenCL; with what is known of some drivers. */
 
 #include "mcor_internal.h"
 #include "mcor_native.h"

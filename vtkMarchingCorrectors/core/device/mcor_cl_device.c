@@ -174,7 +174,7 @@ static void mcor_query_device(mcor_cl* cl)
   cl->units = (int)units;
 }
 
-/* Of `count` processes number `place` takes one of the devices like the chosen one, in turn; both become
+/* Lets `count` processes take the devices like the chosen one in turn; this one is number `place`. Both become
  * those among the processes that take the same. */
 static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
 {
@@ -193,7 +193,7 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
   return like[turn];
 }
 
-/* Of a CPU that `count` processes have in common the share of number `place`. A driver that does not
+/* Divides a CPU among `count` processes; this one takes share number `place`. A driver that does not
  * divide it gives all of it to each; of the built-in device a share is a number of threads. */
 static void mcor_take_share(mcor_cl* cl, int place, int count)
 {

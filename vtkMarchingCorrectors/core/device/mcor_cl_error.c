@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What OpenCL's errors mean. */
+/* OpenCL's errors in words. */
 
 #include "mcor_cl_call.h"
 

@@ -138,7 +138,7 @@ static cl_int mcor_device_info(
   const cl_uint units = (cl_uint)mcor_units(), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
   const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
     CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-  /* Of the machine. What other programs use, nobody can know. */
+  /* All of the machine's memory: how much of it other programs use is not known. */
   const cl_ulong bytes = mcor_system_memory(), memory = bytes > 0 ? bytes : (cl_ulong)1 << 32;
   switch (what)
   {
@@ -163,7 +163,7 @@ static cl_int mcor_device_info(
 
 /* ---- Objects ---- */
 
-/* Of objects that own nothing else. */
+/* Defines the release of a type whose objects own nothing else. */
 #define MCOR_RELEASE_ALONE(name, type)                                                             \
   static cl_int name(type object)                                                                  \
   {                                                                                                \

@@ -30,7 +30,7 @@ typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t la
  * of slices. */
 int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
-/* The same in a call, which asks between slices whether it is cancelled: then some are left out. `slices`
+/* Runs the body within a call, which may be cancelled between slices: then some are left out. `slices`
  * becomes their number; NULL: not wanted. A context that is NULL, or in no call, is not asked. A
  * body makes no loops, and no launches, of the same context. */
 mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,

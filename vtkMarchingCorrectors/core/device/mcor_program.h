@@ -28,7 +28,7 @@ int mcor_program_sources(
   const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT]);
 /* False where a look into the program for this kernel, which builds it, is in vain. */
 bool mcor_program_may_have(mcor_program program, const char* kernel);
-/* What a device lacks that cannot do a build, for a sentence: "the SPH kernel sinc6". */
+/* Names, for a sentence, why a device cannot do a build: "the SPH kernel sinc6". */
 #define MCOR_BUILD_NAME 80
 void mcor_name_build(const mcor_build* build, char* text, size_t size);
 

@@ -3,7 +3,7 @@
 #ifndef mcor_system_h
 #define mcor_system_h
 
-/* What differs between operating systems: mcor_system_posix.c, or mcor_system_windows.c.
+/* Operating systems: everything that differs is in mcor_system_posix.c or mcor_system_windows.c.
  * Threads are pthreads everywhere: on Windows of MinGW's runtime. */
 
 #include <stdbool.h>

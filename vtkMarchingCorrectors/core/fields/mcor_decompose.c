@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What people ask of the gradient of a velocity, J = S + O: S symmetric, O antisymmetric. */
+/* Quantities of the gradient of a velocity, J = S + O: S symmetric, O antisymmetric. */
 
 #include "mcor.h"
 #include "mcor_parallel.h"

@@ -204,7 +204,7 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
         const double g = corrected
           ? inverse[a][0] * slope[0] + inverse[a][1] * slope[1] + inverse[a][2] * slope[2]
           : slope[a];
-        /* Of fma(-1, 0, 0), some compilers make 0 and some -0. */
+        /* Adding 0 turns -0 into 0: compilers differ in the sign of fma(-1, 0, 0). */
         gradient[a] = g / component->scale / context->lattice.cube + 0.0;
       }
     }

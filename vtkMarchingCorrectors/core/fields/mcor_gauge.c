@@ -16,7 +16,7 @@
 #define MCOR_GAUGE_LEVEL 0.5
 /* Samples of lines taken together. */
 #define MCOR_GAUGE_TOGETHER (1 << 20)
-/* Of a box, how far beyond it the field is evaluated, in steps: see mcor_gauge_line.c. */
+/* Steps beyond a box up to which the field is evaluated: see mcor_gauge_line.c. */
 #define MCOR_GAUGE_MARGIN 2.5
 
 const char* mcor_gauge_state_name(mcor_gauge_state state)

@@ -29,7 +29,7 @@ typedef struct mcor_gauge_samples
   int64_t begin; /* the first one of the whole line */
 } mcor_gauge_samples;
 
-/* What was found on a line: a crossing at a place from 0 to 1, or one of these instead. */
+/* A record of a line: a crossing at a place from 0 to 1, or one of these instead. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
 typedef struct mcor_gauge_record
@@ -65,7 +65,7 @@ mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, 
 double mcor_gauge_step(double h_scale, double smoothing_length_min);
 /* Appends the samples of a line, those in the box, if there is one; the lattice is known. */
 mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
-/* What all lines read, from the records of all: into the gauges. */
+/* Makes the readings of all lines from the records of all ranks. */
 mcor_status mcor_read_lines(
   const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count);
 

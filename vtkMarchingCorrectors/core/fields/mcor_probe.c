@@ -31,7 +31,7 @@ void mcor_release_probe(mcor_probe_run* run)
 
 /* ---- evaluation ---- */
 
-/* What the device made of a batch. */
+/* The device's results for one batch. */
 typedef struct mcor_probe_views
 {
   void *order, *weight, *sums, *weight_gradient, *gradients;
@@ -402,7 +402,7 @@ static mcor_status mcor_run_probe(
   return MCOR_OK;
 }
 
-/* What evaluates arrays, but no scalar, runs as for the free surface: without solids, but where these
+/* Calls that evaluate arrays, but no scalar, run as for the free surface: without solids, but where these
  * count in computed volumes. Sets the options; returns whether solids are used. */
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
 {

@@ -100,7 +100,7 @@ static mcor_status mcor_reserve_padded(
   return mcor_fill_range(context, buffer, 0, end, end + MCOR_PADDING * size);
 }
 
-/* What sorts groups of particles with the same key, see mcor_sort_before. */
+/* Sorts groups of particles with the same key, see mcor_sort_before. */
 typedef struct mcor_key_sort
 {
   const mcor_buffer *keys, *x, *y, *z, *inv_h, *size, *value;

@@ -130,7 +130,7 @@ mcor_status mcor_sort(
   return MCOR_OK;
 }
 
-/* What sorting needs is as large as the particles. */
+/* Gives back the memory that sorting needs, which is as large as the particles. */
 void mcor_release_sort(mcor_context* context)
 {
   mcor_sort_data* s = &context->sort;

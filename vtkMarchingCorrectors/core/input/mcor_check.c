@@ -37,7 +37,7 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   return MCOR_OK;
 }
 
-/* What no measure gives; of nothing, ranges are empty. */
+/* Refuses values that no measurement gives. Without particles, ranges are empty. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
   bool good = g->measured.fluid_count >= 0 && g->measured.solid_count >= 0 &&
@@ -233,7 +233,7 @@ mcor_status mcor_check_input(
   }
   MCOR_RETURN_IF(
     !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
-  /* Those of a search grid that holds have been checked before. */
+  /* Particles of a search grid that still holds were checked before. */
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input))
   {
     MCOR_TRY(mcor_check_particles(context, input));

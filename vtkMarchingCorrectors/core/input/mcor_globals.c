@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What is measured over all particles, handed out, and taken back where only some are at hand. */
+/* Measures over all particles, handed out, and taken back by calls that have only some of them. */
 
 #include "mcor_input.h"
 #include "mcor_plane.h"

@@ -275,7 +275,7 @@ static bool mcor_is_zero(const mcor_array* array, int64_t i)
   return zero;
 }
 
-/* Of particle i, a^T b or its root, by powers of 2 that keep what exists from overflowing, or
+/* a^T b of particle i, or its root; scaled by powers of 2 so that no product overflows, or
  * vanishing, on the way. */
 static double mcor_scaled_product(
   const mcor_array* a, const mcor_array* b, int64_t i, bool magnitude)

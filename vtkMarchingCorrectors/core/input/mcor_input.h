@@ -87,7 +87,7 @@ int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int6
 /* mcor_attribute.c. Components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
-/* Of one component, all but whether its attribute is finite. */
+/* Measures one component; whether its attribute is finite is known before. */
 void mcor_measure_component(
   const mcor_input* input, int attribute, int component, mcor_global_component* found);
 
@@ -122,9 +122,9 @@ mcor_status mcor_choose_samples(
 /* One for all particles, from their spacing. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
-/* Of a number above 0; the same bits everywhere, which cbrt and pow of C libraries have not. */
+/* Cube root of a number above 0, with the same bits everywhere, unlike cbrt and pow of C libraries. */
 double mcor_cube_root(double value);
-/* Of `count` numbers, which it sorts; 0 of none. */
+/* Median of `count` numbers, which it sorts; 0 if there are none. */
 double mcor_median_of(double* values, int count);
 
 /* mcor_measure_neighbours.c. Told of all positions, it ends by filling in the measure's neighbours,
@@ -144,7 +144,7 @@ static inline bool mcor_needs_density(const mcor_input* input)
     !(mcor_is_given(&input->mass) && mcor_is_given(&input->density));
 }
 
-/* What the input has of volumes: these, or where they are computed masses, or 1; of at most MCOR_CHUNK. */
+/* Reads the volumes of at most MCOR_CHUNK particles; where they are computed, the masses, or 1. */
 void mcor_read_size(const mcor_input* input, int64_t first, int count, double* out);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What the other phases need to know of the particles: ranges, bounds, the lattice. */
+/* Measures the particles for the other phases: ranges, bounds, the lattice. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
@@ -41,7 +41,7 @@ static void mcor_read_chunk(
   }
 }
 
-/* What is measured of all particles, alike for slices and for ranks. */
+/* Places of the measures over all particles; slices and ranks merge them alike. */
 enum
 {
   MCOR_REACHES = 0, /* positions -+ support radii; x, y, z */
@@ -87,7 +87,7 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
   r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
 }
 
-/* Of a chunk's fluid, or of its solids, all but the scalar. Rounding keeps the order of numbers: what is least
+/* Measures a chunk's fluid, or its solids, but for the scalar. Rounding keeps the order of numbers: what is least
  * before a product or a difference with the same number is so after it. */
 static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reach, mcor_ranges* r)
 {
@@ -213,7 +213,7 @@ static mcor_status mcor_measure_particles(
   return status;
 }
 
-/* What all ranks have measured. Which particle is not finite is for its rank to say. */
+/* Keeps the measures of all ranks. A particle that is not finite is reported by its own rank. */
 static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
 {
   mcor_measure* m = &context->measure;

@@ -22,7 +22,7 @@
 /* As a share of the span of most values. */
 #define MCOR_NEAR_END 1e-3
 
-/* Of more, the lowest are what rounding leaves of 0. */
+/* A range of more decades begins with values that rounding has left of 0. */
 #define MCOR_MANY_DECADES 1e6
 
 typedef struct mcor_bin_job
@@ -71,7 +71,7 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Those of all particles, of all ranks, end in the first slice. A context that is NULL has no call. */
+/* Counts values by bin; the sums over all slices and ranks end in the first slice. A context may be NULL. */
 static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks, mcor_bin_job* job)
 {
   int slices;
@@ -138,7 +138,7 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
 
 /* ---- an iso value ---- */
 
-/* Of the values in order the one of this number: until its bin holds one value alone. */
+/* Finds the value of this number in ascending order: narrows bins until one holds a single value. */
 static bool mcor_select_iso(
   mcor_bin_job* job, const mcor_ranks* ranks, const double range[2], int64_t number, double* value)
 {

@@ -96,7 +96,7 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-/* Of all slices, then of all ranks. */
+/* Merges the samples of all slices, then of all ranks. */
 static mcor_status mcor_merge_samples(mcor_context* context, mcor_samples_found* found, int slices)
 {
   for (int s = 1; s < slices; ++s)

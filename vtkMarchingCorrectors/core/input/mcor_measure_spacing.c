@@ -87,7 +87,7 @@ static int64_t mcor_count_up_to(const mcor_neighbours* nearest, int64_t bits)
   return count;
 }
 
-/* Of each sample the farthest of its neighbours over all ranks, and how many these are: bit by bit, from
+/* Finds, over all ranks, each sample's farthest neighbour and the number of neighbours: bit by bit, from
  * counts. */
 static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing* job,
   double farthest[MCOR_SAMPLES], int64_t neighbours[MCOR_SAMPLES])

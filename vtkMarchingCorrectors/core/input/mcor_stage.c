@@ -58,7 +58,7 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input)
   const mcor_options* options = context->run.options;
   if (!mcor_needs_density(input))
   {
-    /* Of an area, times the smoothing length: see mcor_plane.h. */
+    /* An area becomes a volume by a factor times the smoothing length: see mcor_plane.h. */
     const double plane =
       mcor_is_plane(context) ? mcor_plane_factor(options->sph_kernel) * options->h_scale : 1;
     return plane / (cube * cube * cube);

@@ -17,7 +17,7 @@ typedef struct mcor_staging
   void* level;        /* uint8_t */
 } mcor_staging;
 
-/* What the input's volume or mass is multiplied by on the way to the device. */
+/* The factor of the input's volume or mass on the way to the device. */
 double mcor_size_scale(const mcor_context* context, const mcor_input* input);
 mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);

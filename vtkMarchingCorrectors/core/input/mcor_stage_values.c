@@ -57,7 +57,7 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
     {
       used[n] = (chunk[mcor_source_of(job->context, begin + n) - from] - shift) * scale;
     }
-    /* Those of solids play no part, whatever they are. */
+    /* Values of solids play no part, whatever they are. */
     for (int i = 0; i < n && input->solid; ++i)
     {
       used[i] = input->solid[mcor_source_of(job->context, begin + i)] ? 0 : used[i];

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a run may take, and what it found and used, in words: for panels. */
+/* Words for panels: how long a run may take, and which values it found and used. */
 
 #include "mcor_input.h"
 
@@ -52,7 +52,7 @@ double mcor_least_smoothing_length(const mcor_input* input)
   return least;
 }
 
-/* Of the fluid in the box: the sum of h^3, or in a plane h^2, where cubes are larger of h in their units. */
+/* Sums h^3 (in a plane h^2) over the fluid in the box, with h in cubes where these are larger. */
 static double mcor_sum_cubes(
   const mcor_input* input, const mcor_options* options, double least, bool is_plane)
 {

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What may be wrong with an input that is legal: one sentence each, with figures. Only what hardly any
+/* Warnings of inputs that are legal: one sentence each, with figures. Only what hardly any
  * simulation means. */
 
 #include "mcor.h"
@@ -15,7 +15,7 @@
 
 #define MCOR_SENTENCE 800
 
-/* Of fewer particles nothing is usual. */
+/* With fewer particles no number of neighbours is unusual. */
 #define MCOR_FEW_PARTICLES 100
 
 typedef struct mcor_suspicion
@@ -52,7 +52,7 @@ mcor_say(mcor_suspicion* s, const char* format, ...)
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
-/* The same in two dimensions, per square; the lattices of these numbers are the same. */
+/* In two dimensions, per square; the lattices of these numbers are the same. */
 #define MCOR_MANY_IN_PLANE 5.6
 #define MCOR_ROW_NEIGHBOURS 3.5
 
@@ -168,7 +168,7 @@ static bool mcor_warn_plane(mcor_suspicion* s)
       normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
 }
 
-/* What no value of the field can pass: a Shepard mean with positive kernels is between the values of
+/* Checks the iso value against bounds of the field: a Shepard mean with positive kernels is between the values of
  * the particles, a sum between 0 and somewhat above these. */
 static bool mcor_warn_iso_value(mcor_suspicion* s)
 {
@@ -278,7 +278,7 @@ static bool mcor_warn_precision(mcor_suspicion* s)
     n->cube_size, n->position_error, share);
 }
 
-/* What rounding may leave of the field in single precision, as a share of the scalar's range. */
+/* Rounding error of the field in single precision, at most, as a share of the scalar's range. */
 #define MCOR_ROUNDED 1e-5
 
 /* Vertices that the correction could not bring to the iso value. A preview does not try. What rounding explains is told
@@ -332,7 +332,7 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   return mcor_copy_text(suspicion.text);
 }
 
-/* What seems to be the fluid's value, as ", which seems to be 0"; "" where it is not clear. */
+/* Suggests the fluid's value, as ", which seems to be 0"; "" where it is not clear. */
 static void mcor_suggest_fluid(
   const char* name, const double* values, int count, char* text, size_t size)
 {

@@ -51,12 +51,12 @@ int mcor_has_box(const mcor_options* options)
 /* A particle that misses a box by more, in cubes, is not needed there. */
 #define MCOR_GLOBALS_MARGIN 3
 
-/* The same of adaptive cubes, of the particle's level, and more: a particle reaches no cells larger than
- * these. Of a cell whose centre is in the box, and the ring, nodes are two cells away from it at
- * most; trimming may move a vertex by 3/4 of one, to where cells are half as large. */
+/* The margin with adaptive cubes, in cubes of the particle's level, is larger: a particle reaches no cells larger than
+ * these. A cell of the ring, or one whose centre is in the box, has nodes at most two cells away from the box;
+ * trimming may move a vertex by 3/4 of a cell, to where cells are half as large. */
 #define MCOR_LEVEL_MARGIN 6
 
-/* The same of a probe's points: what rounding moves particles by. */
+/* The margin of a probe's points: rounding moves particles by less. */
 #define MCOR_POINTS_MARGIN 0.25
 
 /* How far apart particles of a pair may be, in smoothing lengths, and a little more. */
@@ -211,7 +211,7 @@ mcor_status mcor_void_bricks(mcor_context* context)
         MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
 }
 
-/* Of the bricks that are marched, those cells that are in a box, made larger by so many cells below and above;
+/* Keeps, of the marched bricks' cells, those in a box that is made larger by so many cells below and above;
  * of leaves all cells of a ring around it, whatever these are. */
 static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lower, int upper,
   const mcor_buffer* cells, mcor_buffer* clipped)
@@ -424,7 +424,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   return true;
 }
 
-/* What a call leaves behind on the host. */
+/* Frees what a call leaves behind on the host. */
 void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);

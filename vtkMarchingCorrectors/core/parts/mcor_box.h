@@ -3,7 +3,7 @@
 #ifndef mcor_box_h
 #define mcor_box_h
 
-/* What the phases ask of the box; where all of the lattice is owned, nothing is done. See
+/* The box of a call, for its phases; where all of the lattice is owned, nothing is done. See
  * mcor_box.c. */
 
 #include "mcor_internal.h"
@@ -16,7 +16,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
 /* The edges in fixed-point units, and a cube as a length. */
 void mcor_fit_steps(mcor_context* context, int64_t extent);
 
-/* Of a box the cells along an axis, [side[0], side[1]); before, those that there are. */
+/* Limits the cells along an axis, [side[0], side[1]), to those of the box. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
 
 /* The cells that the call owns; the lattice is known. */

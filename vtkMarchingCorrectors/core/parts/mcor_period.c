@@ -188,7 +188,7 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
 
 /* ---- Unequal edges ---- */
 
-/* Of a cube, edges are at least this part, or a bit less. */
+/* Edges are at least 15/16 of a cube, or a bit less. */
 #define MCOR_STEP_RANGE 16
 
 /* Trailing zeros that an edge needs as a fixed-point number: nodes must be as round as particles with long

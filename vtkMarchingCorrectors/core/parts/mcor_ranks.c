@@ -14,7 +14,7 @@ mcor_status mcor_heard(mcor_context* context, int failed)
   return MCOR_OK;
 }
 
-/* Of no values, as of no samples where there is no fluid, which all ranks know, callers hear nothing. */
+/* If count is 0 (no fluid, so no samples), the call is skipped; all ranks agree on count. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {

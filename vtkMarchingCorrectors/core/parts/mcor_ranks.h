@@ -3,11 +3,11 @@
 #ifndef mcor_ranks_h
 #define mcor_ranks_h
 
-/* What ranks tell each other, by the functions of options.ranks. Alone, all is said already. */
+/* Exchange between ranks, by the functions of options.ranks. A process alone has all values already. */
 
 #include "mcor_internal.h"
 
-/* Of a function of options.ranks, which has failed or not. */
+/* The status of a call of options.ranks, which has failed or not. */
 mcor_status mcor_heard(mcor_context* context, int failed);
 
 mcor_status mcor_reduce_doubles(
@@ -18,7 +18,7 @@ mcor_status mcor_reduce_counts(
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count);
 
-/* Of all ranks' records at least those within `reach` of where this one's box is; see mcor_ranks. */
+/* Gathers at least those of all ranks' records within `reach` of this rank's box; see mcor_ranks. */
 mcor_status mcor_pass(mcor_context* context, const void* records, int64_t count, size_t width,
   const double* places, double reach, const void** all, int64_t* all_count);
 

@@ -35,7 +35,7 @@ mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
   return status;
 }
 
-/* Of vertices, what the first triangle says that uses them and is somebody's. */
+/* Gives each vertex the owner of the first owned triangle that uses it. */
 static void mcor_list_owners(
   const cl_int* corners, const cl_ulong* cells, size_t triangles, uint8_t* owners)
 {

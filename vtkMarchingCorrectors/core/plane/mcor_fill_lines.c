@@ -95,7 +95,7 @@ mcor_status mcor_begin_fill(mcor_context* context)
 
 /* ---- one iso value's lines ---- */
 
-/* Those of the iso value under way, where they are to be filled; else NULL. */
+/* The lines of the iso value under way, where they are to be filled; else NULL. */
 static mcor_fill_line* mcor_line_under_way(const mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;

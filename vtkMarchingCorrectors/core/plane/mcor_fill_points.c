@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What is filled as part of the surface: points that lines have not, and triangles. */
+/* Adds the filled region to the surface: triangles, and the points that lines do not have. */
 
 #include "mcor_box.h"
 #include "mcor_fill.h"
@@ -157,7 +157,7 @@ static mcor_status mcor_append_fill_points(mcor_context* context, const mcor_inp
   return mcor_append_output(context, input, 0, true, surface);
 }
 
-/* What of points is relative to an iso value: that of their band. */
+/* Makes the points' iso values and residuals those of their bands. */
 static void mcor_set_bands(
   const mcor_filling* fill, const mcor_cap_vertex* vertices, int64_t base, mcor_surface* surface)
 {

@@ -55,7 +55,7 @@ static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corn
 
 /* ---- The border ---- */
 
-/* Of a lattice edge by its lower node, and of a part of it. */
+/* The key of a lattice edge, by its lower node, and of a part of the edge. */
 static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
 {
   const cl_int edge[3] = { corner->node[0], corner->node[1], corner->axis };
@@ -184,7 +184,7 @@ static mcor_status mcor_find_border_cut(
   return MCOR_OK;
 }
 
-/* What trimming leaves of a polygon: each run of corners inside, with the cuts before and behind it. */
+/* Adds what trimming leaves of a polygon: each run of corners inside, with the cuts before and behind it. */
 static mcor_status mcor_add_polygon(
   mcor_fill_job* job, const mcor_fill_side* sides, int count, int band)
 {

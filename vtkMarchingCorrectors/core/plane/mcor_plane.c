@@ -144,7 +144,7 @@ int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int di
   return dimension == 2 || (dimension == 0 && mcor_plane_of(&spread, 0).axis > 0) ? 2 : 3;
 }
 
-/* Who is not in the plane of the others: solids, if all fluid is in one. */
+/* Names the first particle off the plane (a solid one if all fluid shares a plane). */
 static mcor_status mcor_refuse_plane(
   mcor_context* context, const mcor_input* input, const mcor_spread* spread)
 {

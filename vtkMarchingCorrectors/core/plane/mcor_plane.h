@@ -35,7 +35,7 @@ mcor_status mcor_flatten_points(mcor_context* context, const mcor_array* points,
   mcor_array* turned, double** flat);
 /* The sides of a box, turned: of a plane inside all, else nothing. */
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
-/* What is measured over all particles, turned or turned back. */
+/* Turns the measures over all particles, or turns them back. */
 void mcor_turn_measure(mcor_measure* measure, bool back);
 /* Turns the numbers of the lattice and the extent back. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
@@ -63,7 +63,7 @@ double mcor_plane_factor(mcor_sph_kernel kernel);
 /* Marching squares: what nodes in the plane are, those above are too; nothing else is a brick. */
 mcor_status mcor_spread_signs(mcor_context* context);
 mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso);
-/* Of all cells those that are squares. */
+/* Keeps of all cells those that are squares. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
 /* mcor_plane_lines.c: normals from lines where the gradient gives none, while all of the box's ring are there. */

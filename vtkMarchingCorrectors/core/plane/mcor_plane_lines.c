@@ -55,7 +55,7 @@ static bool mcor_is_line(const int32_t* t)
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Of a line that trimming has cut, two triangles may remain; see mcor_trim_cut. */
+/* Reads the lines; trimming may leave two triangles of one line, see mcor_trim_cut. */
 static mcor_status mcor_read_lines(
   mcor_context* context, const mcor_surface* surface, mcor_joining* j)
 {
@@ -109,7 +109,7 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   return true;
 }
 
-/* Of what is filled. */
+/* The area of the filled region. */
 static double mcor_filled_area(const mcor_surface* surface, int u, int v)
 {
   const double* x = surface->points;

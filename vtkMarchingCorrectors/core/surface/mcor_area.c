@@ -19,7 +19,7 @@ static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
   return x ^ (x >> 31);
 }
 
-/* What a triangle adds; volumes are about the origin. */
+/* Adds a triangle's area, and its volume about the origin. */
 static inline void mcor_measure_triangle(
   const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
 {
@@ -56,7 +56,7 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* Of each slice of the triangles its own measures, as exact as those of parts. */
+/* Measures of each slice of the triangles, as exact as those of parts. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;

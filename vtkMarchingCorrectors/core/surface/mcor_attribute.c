@@ -49,7 +49,7 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
   return MCOR_OK;
 }
 
-/* Of samples, a component's shift and scale bring it to [-1, 1]. */
+/* A component's shift and scale bring samples to [-1, 1]. */
 static mcor_component mcor_scale_component(
   int attribute, int component, bool of_surface, const mcor_global_component* found)
 {
@@ -221,7 +221,7 @@ mcor_status mcor_find_nearest(mcor_context* context)
     MCOR_BUFFER(nearest));
 }
 
-/* Of the vertices that are put out, see mcor_is_output. */
+/* Adds the attributes of the vertices that are put out, see mcor_is_output. */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {

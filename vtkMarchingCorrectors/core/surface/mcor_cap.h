@@ -21,7 +21,7 @@ static inline bool mcor_caps_walls(const mcor_context* context)
 /* Adds the caps to the trimmed mesh. iso: relative to A0. */
 mcor_status mcor_cap(mcor_context* context, double iso);
 
-/* Of a node, or of what else has three such numbers; the virtual grid has not more than 2^20 + 64 along an axis. */
+/* The key of a node, or of anything with three such numbers; an axis has at most 2^20 + 64 nodes. */
 static inline uint64_t mcor_cap_key(const cl_int node[3])
 {
   return (uint64_t)node[0] | (uint64_t)node[1] << 21 | (uint64_t)node[2] << 42 | UINT64_C(1) << 63;
@@ -92,7 +92,7 @@ enum
   MCOR_CAP_KNOWN = 1, /* as marching has it */
   MCOR_CAP_ABOVE = 2,
   MCOR_CAP_VALID = 4,
-  /* Of the cell beside the side, and of the side itself, that have their lowest node here. */
+  /* Flags of the cell beside the side, and of the side itself, whose lowest node this is. */
   MCOR_CAP_USED = 8,
   MCOR_CAP_JOINED = 16 /* nodes above are joined where the side is ambiguous */
 };
@@ -103,7 +103,7 @@ typedef struct mcor_cap_face
   int plane;              /* nodes along the axis; the next ones within are beside it */
   int across[2];          /* the other axes: right-handed, this one being the third */
   int first[2], count[2]; /* of nodes along these */
-  /* Of tiles, MCOR_CAP_TILE nodes along an edge: how many there might be along these; the number of each,
+  /* Tiles, MCOR_CAP_TILE nodes along an edge: how many there might be along the axes; the number of each,
    * 0 of those that no particle reaches; how many others; where each of these is. */
   int tiles[2];
   int32_t* tile; /* [tiles[1]][tiles[0]] */
@@ -118,7 +118,7 @@ typedef struct mcor_cap_face
 #define MCOR_CAP_TILE 16
 #define MCOR_CAP_TILE_NODES (MCOR_CAP_TILE * MCOR_CAP_TILE)
 
-/* Of all nodes that no particle reaches the same, below MCOR_CAP_TILE_NODES. */
+/* The place of a node: below MCOR_CAP_TILE_NODES, and the same for all, where no particle reaches it. */
 static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
 {
   const int64_t tile =
@@ -147,7 +147,7 @@ void mcor_cap_range(const mcor_context* context, int axis, int range[2]);
 /* Whether there is room for the caps. */
 mcor_status mcor_check_caps(mcor_context* context);
 
-/* Of a face whose extent is known: which tiles there are, or that they are too many; iso_value: of the field itself. */
+/* Notes which tiles a face of known extent has, or that they are too many; iso_value: of the field itself. */
 mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face);
 /* Then numbers of the tiles, and room for their nodes. */
 mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face);

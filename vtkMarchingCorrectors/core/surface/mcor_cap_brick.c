@@ -47,7 +47,7 @@ static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, c
   return MCOR_OK;
 }
 
-/* Of a particle at x, in nodes: adds the bricks that it reaches if it is solid; else, once these are there, notes it
+/* Adds the bricks that a solid particle at x, in nodes, reaches; notes a fluid one, once these are there,
  * at them. A cell is looked at from its lowest node: one node more; another one for rounding. */
 static mcor_status mcor_reach_wall(
   mcor_context* context, const double x[3], double reach, bool is_solid, void* data)

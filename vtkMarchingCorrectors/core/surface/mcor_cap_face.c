@@ -14,7 +14,7 @@
 
 /* ---- extent and tiles ---- */
 
-/* Of which a side's directory has places, at most. */
+/* Places of a side's directory of tiles, at most. */
 #define MCOR_CAP_PLACE_LIMIT (1 << 24)
 
 /* Tiles of a side at most: 4 to 64 million nodes. Where few particles reach more, a smoothing length or the cube

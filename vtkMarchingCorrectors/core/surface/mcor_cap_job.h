@@ -78,7 +78,7 @@ typedef struct mcor_wall_brick
   cl_ulong key; /* of its first cell */
   cl_int at[3]; /* in bricks */
   bool has_fluid, is_known;
-  /* Of nodes, and of the cells and faces that have their lowest node here. */
+  /* Bits of nodes, and of the cells and faces whose lowest node is here. */
   cl_ulong above, used, joined[3];
   double margin[MCOR_BRICK_NODES]; /* of nodes above */
 } mcor_wall_brick;

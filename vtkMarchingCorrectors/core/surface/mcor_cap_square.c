@@ -17,7 +17,7 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-/* Of a square's corners; side k follows corner k. */
+/* A square's corners; side k follows corner k. */
 static const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
 
 /* ---- vertices ---- */
@@ -32,7 +32,7 @@ static void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
   }
 }
 
-/* Of a map's key, a vertex that is made where there is none. */
+/* Finds the vertex of a key, or makes one. */
 static mcor_status mcor_find_cap_vertex(
   mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], uint8_t flag, int32_t* v)
 {
@@ -220,7 +220,7 @@ static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* sq
   return MCOR_OK;
 }
 
-/* What trimming leaves of a polygon of up to 6 corners: each run of corners inside, with the cuts
+/* Adds what trimming leaves of a polygon of up to 6 corners: each run of corners inside, with the cuts
  * before and behind it. */
 static mcor_status mcor_add_cap_polygon(
   mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)

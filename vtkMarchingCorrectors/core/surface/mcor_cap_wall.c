@@ -26,7 +26,7 @@ typedef struct mcor_wall_edge
   int32_t triangle, from, to;
 } mcor_wall_edge;
 
-/* What the caps are made of. */
+/* The edges, loops and points of which caps at walls are made. */
 typedef struct mcor_wall_job
 {
   mcor_cap_job* cap;
@@ -55,7 +55,7 @@ static int mcor_compare_wall_edges(const void* x, const void* y)
                             : (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-/* Those of the trimmed triangles: a triangle has one where two corners are cuts. */
+/* Lists the trimmed triangles' border edges: a triangle has one where two corners are cuts. */
 static mcor_status mcor_list_wall_edges(
   mcor_wall_job* job, const cl_int* triangles, const cl_ulong* cells)
 {

@@ -109,7 +109,7 @@ static int mcor_flag_of(const mcor_download* d, int64_t v)
                                           : ((const uint8_t*)d->flag)[v];
 }
 
-/* Of a length of the virtual grid that of vertex v's level: see mcor_adaptive.h. */
+/* Turns a length in cubes of vertex v's level into one in cubes of the grid: see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
   const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
@@ -332,7 +332,7 @@ static mcor_status mcor_deliver_triangles(
   return MCOR_OK;
 }
 
-/* What only arrays of the surface need. */
+/* Evaluates what only arrays of the surface need. */
 static mcor_status mcor_evaluate_extras(mcor_context* context)
 {
   const mcor_options* options = context->run.options;

@@ -27,7 +27,7 @@ uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
   return block << 15 | inner;
 }
 
-/* The same of adaptive cubes: by the key of the brick of its level, then by node. Fits, see MCOR_TREE_KEY_BITS. */
+/* A node's key with adaptive cubes: by the key of the brick of its level, then by node; see MCOR_TREE_KEY_BITS. */
 static uint64_t mcor_adaptive_node_key(const mcor_tree* tree, const cl_int node[4])
 {
   const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };

@@ -25,7 +25,7 @@ bool mcor_trims_by_eigenvalue(const mcor_context* context)
     context->run.options->field != MCOR_WEIGHT_SUM;
 }
 
-/* What the vertex threshold applies to, at the vertices on lattice edges. */
+/* The quantity of the vertex threshold, at the vertices on lattice edges. */
 static const mcor_buffer* mcor_threshold_quantity(const mcor_context* context)
 {
   return mcor_trims_by_eigenvalue(context) ? &context->trim.eigenvalue
@@ -46,14 +46,14 @@ static bool mcor_may_lack_fluid(const mcor_context* context)
     (context->grid.has_solids || mcor_trims_by_eigenvalue(context));
 }
 
-/* Of the weight or the boundary eigenvalue. */
+/* The threshold of the weight or the boundary eigenvalue. */
 double mcor_vertex_threshold(const mcor_context* context)
 {
   const double threshold = context->run.options->vertex_threshold;
   return mcor_may_lack_fluid(context) ? threshold : fmax(threshold, mcor_least_fluid(context));
 }
 
-/* What is trimmed by, and where it ends. */
+/* The quantity by which trimming decides; its threshold. */
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) || mcor_may_lack_fluid(context)

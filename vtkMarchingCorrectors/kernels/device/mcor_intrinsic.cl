@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What compilers for CPUs can do beyond OpenCL C, and the same in plain OpenCL C for all others.
+/* Extensions of compilers for CPUs, and their equals in plain OpenCL C for all others.
  * Nothing outside of this file depends on the compiler. */
 
 #ifndef __has_builtin

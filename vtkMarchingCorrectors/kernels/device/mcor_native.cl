@@ -6,7 +6,7 @@
 
 #define MCOR_DEFINE __attribute__((overloadable, always_inline)) static inline
 
-/* Of the work-item's kernel, see CompileAhead.cmake. */
+/* mcor_item is a parameter of each kernel, see CompileAhead.cmake. */
 #define get_global_id(dimension) mcor_item
 
 /* S: the ending of Clang's functions of T. */
@@ -37,7 +37,7 @@
   }                                                                                                \
   MCOR_DEFINE_RANGE(T, T)
 
-/* What is not a number gives way to the other argument. B: T, or a scalar for all lanes of T. */
+/* NaN gives way to the other argument. B: T, or a scalar for all lanes of T. */
 #define MCOR_DEFINE_RANGE(T, B)                                                                    \
   MCOR_DEFINE T fmin(T a, B other)                                                                 \
   {                                                                                                \

@@ -29,7 +29,7 @@
  * choose between them. */
 #pragma OPENCL FP_CONTRACT OFF
 
-/* Of functions called in several places, and seldom for one particle: a compiler for CPUs makes a copy for
+/* Marks functions called in several places, and seldom for one particle: a compiler for CPUs makes a copy for
  * each call else, in each kernel anew, and its time is the first surface's. */
 #if MCOR_LANES == 1
 #define MCOR_INLINE
@@ -135,7 +135,7 @@ real mcor_lane_sum(realv v)
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL
 
-/* Those that are lowest along an axis. */
+/* Bits of the nodes that are lowest along an axis. */
 ulong mcor_lowest(int axis)
 {
   return axis == 0 ? MCOR_LOW_X : axis == 1 ? MCOR_LOW_Y : MCOR_LOW_Z;

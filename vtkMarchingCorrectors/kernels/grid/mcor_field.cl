@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a particle adds to the SPH field at a point. */
+/* A particle's contribution to the SPH field at a point. */
 
 /* Roots. CPU vector units take longer for a square root and a division than for all the rest of a
  * kernel sum. From an integer guess y, whose error e = 1 - x y^2 is below 0.07, and
@@ -56,7 +56,7 @@ realv mcor_square(realv x, realv y, realv z)
  * as a chain, they take longer than a CPU can look ahead. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
 
-/* Of a tensor kernel, the weight itself. */
+/* With a tensor kernel: the weight itself, in place of a distance. */
 realv mcor_distance(realv dx, realv dy, realv dz, realv inv_h)
 {
 #if MCOR_TENSOR

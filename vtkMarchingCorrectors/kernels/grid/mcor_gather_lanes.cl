@@ -7,7 +7,7 @@
 /* Particles that one gather collects at most before they are evaluated. */
 #define MCOR_TILE_SIZE 1024
 
-/* Of arrays that are read MCOR_LANES elements at a time: no such access then touches two cache
+/* For arrays that are read MCOR_LANES elements at a time: no such access then touches two cache
  * lines. */
 #define MCOR_ALIGNED __attribute__((aligned(sizeof(real) * MCOR_LANES)))
 

@@ -248,7 +248,7 @@ __kernel void mcor_grid_merge(
     while (low < high)
     {
       const int middle = low + (high - low) / 2;
-      /* Of equal ones, the first run's come first. */
+      /* Where keys are equal, the first run's come first. */
       const bool before = is_first ? mcor_sort_before(MCOR_SORT_ARGS, order[middle], order[i])
                                    : !mcor_sort_before(MCOR_SORT_ARGS, order[i], order[middle]);
       low = before ? middle + 1 : low;

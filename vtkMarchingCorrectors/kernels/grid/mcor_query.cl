@@ -59,7 +59,7 @@ typedef struct
   fix origin[3];                /* in a tile, positions count from here */
   real center[3], half_size[3]; /* of the box, in cubes from the origin */
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
-  /* Of this level, in fixed-point units: cells, where the first one begins, how far rounding may have
+  /* This level, in fixed-point units: cells, where the first one begins, how far rounding may have
    * moved that; reach; squared distance of row z. */
   float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
@@ -317,7 +317,7 @@ int mcor_query_particles(
 #define MCOR_TRIM_WEIGHT weight
 #endif
 
-/* What the field is made of at a particle: its weight times this. */
+/* A particle's term of the field is its weight times this. */
 #if MCOR_FIELD == 0
 #define MCOR_FIELD_TERM(value, iso) ((value) - (iso)) /* both relative to A0 */
 #else

@@ -39,7 +39,7 @@ __kernel void mcor_scan_top(const int segments, __global long* sums)
   }
 }
 #else
-/* The same by one work-group of 64; a work-item = a 64th of the sums. */
+/* Scans the segments' sums by one work-group of 64; a work-item = a 64th of the sums. */
 __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
   const int segments, __global long* sums)
 {

@@ -53,7 +53,7 @@ int mcor_plane_count(const ulong* corners, ulong squares)
   return lines;
 }
 
-/* Of the squares beside edges along an axis, as cells around them (see mcor_cell_around): a square is on the upper and
+/* Masks of the squares beside edges along an axis, as cells around them (see mcor_cell_around): a square is on the upper and
  * on the lower side of the plane. */
 void mcor_plane_around(int axis, ulong* q)
 {

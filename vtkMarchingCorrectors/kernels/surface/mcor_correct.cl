@@ -110,7 +110,7 @@ void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, rea
   mcor_points_bound(grid, from, to, points, query);
 }
 
-/* What has the field's sign, against the iso value, but for a mean's pole, where a kernel with negative
+/* A quantity with the sign of field minus iso value, except at a mean's pole, where a kernel with negative
  * lobes lets the weight pass 0: the sum of the terms against it. Between nodes of a positive weight it is
  * that which passes 0. */
 realv mcor_correct_side(const mcor_field_at* at)

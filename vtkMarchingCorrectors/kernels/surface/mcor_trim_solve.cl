@@ -4,7 +4,7 @@
 /* Trimming [III-D.3]: by what a vertex is trimmed, and where cut vertices are. They are moved from linear cuts to where
  * the field is the iso value and what is trimmed by its threshold. */
 
-/* What a Shepard mean at a vertex needs of the fluid's own weight. */
+/* The fluid's own weight that a Shepard mean at a vertex needs. */
 #define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
 
 /* The fluid's own weight at vertex v. */
@@ -83,7 +83,7 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
 /* |w - threshold| of a cut vertex, at most. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
-/* What is trimmed by: thresholds of the weight or the boundary eigenvalue and, above 0, of the
+/* Thresholds of trimming: of the weight or the boundary eigenvalue and, above 0, of the
  * fluid's share of the weight; where points lie on an edge whose one end lacks fluid, its weight. */
 typedef struct
 {
@@ -328,7 +328,7 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   group_count, groups, node, iso, tolerance, threshold, fluid_share, steps, plane, offset, value,  \
     gradient, weight, flag, MCOR_ATTRIBUTE_ARGS
 
-/* What the next two kernels do. */
+/* Moves the cut points of one group; the body of the next two kernels. */
 void mcor_trim_solve_group(
   const mcor_grid* grid, int group, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
 {
@@ -384,7 +384,7 @@ __kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
   mcor_trim_solve_group(&grid, get_global_id(0), false, MCOR_TRIM_SOLVE_ARGS);
 }
 
-/* The same for the boundary eigenvalue; the linear cut also stays where it has no gradient. */
+/* Trimming by the boundary eigenvalue; the linear cut also stays where it has no gradient. */
 __kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;

@@ -4,9 +4,11 @@
 /* Prints a hash of all bits of a few surfaces, for same_bits.cmake to compare between settings of
  * the environment. "small": small cases only, for slow devices. "fewer": of these, those that reach
  * few nodes and have kernels that no other has, for tools that slow everything down. "devices": some
- * of these on all devices, each against the first. */
+ * of these on all devices, each against the first. "usual": the cases that every device can do; "kernels":
+ * the others, and one for each SPH kernel and precision. */
 
 #include "core_fixture.h"
+#include "core_keep.h"
 #include "mcor_cl_call.h"
 
 #include <math.h>
@@ -38,19 +40,19 @@ static const bits_case cases[] = {
     MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
   { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, MCOR_BOUNDARY_WEIGHT_SUM, 0, 1,
     1.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
-  { "tensor eigenvalue", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
+  { "tensor_eigenvalue", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_EIGENVALUE, 0, 1, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
   { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE,
     MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
-  { "double eigenvalue", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
+  { "double_eigenvalue", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
     MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
-  { "sinc6 eigenvalue", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+  { "sinc6_eigenvalue", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
-  { "sinc6 double", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
+  { "double_sinc6", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
     MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
   { "quartic", MCOR_QUARTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0 },
-  { "wendland_c6 eigenvalue", MCOR_WENDLAND_C6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
+  { "wendland_c6_eigenvalue", MCOR_WENDLAND_C6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0 },
   { "topology", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.1, MCOR_TOPOLOGY_FIELD, 0, 0 },
@@ -58,7 +60,7 @@ static const bits_case cases[] = {
     MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0.2, 0 },
   { "mixed", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE, MCOR_BOUNDARY_EIGENVALUE,
     1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 1 },
-  { "mixed pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS,
+  { "mixed_pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS,
     MCOR_BOUNDARY_WEIGHT_SUM, 1, 1, -14, MCOR_TOPOLOGY_TABLE, 0, 1 },
 };
 
@@ -67,7 +69,8 @@ static void widen(core_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)
   {
-    const double factor = pow(64, random_unit(seed));
+    const int doublings = (int)(random_bits(seed) % 6); /* no pow: the same bits everywhere */
+    const double factor = ldexp(1 + random_unit(seed), doublings);
     set->smoothing_length[i] *= factor;
     set->volume[i] *= factor * factor * factor;
   }
@@ -139,17 +142,46 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
     (long long)surface.point_count, (long long)surface.triangle_count,
     (long long)statistics->trim_vertices, (unsigned long long)*hash);
   fflush(stdout);
+  if (left_out)
+  {
+    core_keep_size(at->name, 0, -1);
+  }
+  else
+  {
+    core_keep_surface(at->name, &input, &surface);
+  }
   mcor_free_surface(&surface);
   core_free_set(&set);
   return good;
 }
 
-/* Those of one build, in single precision, which every device can do: a driver may take half a minute
- * for each program. */
+/* In single precision and with the built-in device's SPH kernel, so every device can do it. */
+static int is_usual(const bits_case* at)
+{
+  return at->precision == MCOR_FLOAT32 && at->kernel == MCOR_CUBIC_SPLINE;
+}
+
+/* Those of one build: a driver may take half a minute for each program. */
 static int in_sample(const bits_case* at)
 {
-  return at->precision == MCOR_FLOAT32 && at->kernel == MCOR_CUBIC_SPLINE &&
-    at->field == MCOR_SHEPARD;
+  return is_usual(at) && at->field == MCOR_SHEPARD;
+}
+
+static int run_kernels(mcor_context* context)
+{
+  int good = 1;
+  for (int k = 0; k < 2 * MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    char name[64];
+    uint64_t hash;
+    const mcor_sph_kernel kernel = (mcor_sph_kernel)(k / 2);
+    const bits_case at = {
+      .name = name, .kernel = kernel, .precision = k % 2 ? MCOR_FLOAT64 : MCOR_FLOAT32, .iso = 0.5
+    };
+    snprintf(name, sizeof name, "%s_%s", mcor_sph_kernel_name(kernel), k % 2 ? "double" : "single");
+    good = run_case(context, &at, 0, &hash) && good;
+  }
+  return good;
 }
 
 /* Runs the sample on a device and compares with `expected`, which the first device sets. */
@@ -209,14 +241,19 @@ int main(int argc, char** argv)
     mcor_free_context(context);
     return 1;
   }
-  const int fewer = argc > 1 && strcmp(argv[1], "fewer") == 0;
-  int good = 1;
+  const char* word = argc > 1 ? argv[1] : "";
+  const int fewer = strcmp(word, "fewer") == 0, usual = strcmp(word, "usual") == 0;
+  const int kernels = strcmp(word, "kernels") == 0;
+  const int small = argc > 1 && !usual && !kernels;
+  int good = !kernels || run_kernels(context);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     uint64_t hash;
     const int repeats = cases[i].mixed ||
       (cases[i].boundary == MCOR_BOUNDARY_EIGENVALUE && cases[i].kernel != MCOR_M_PRIME_4);
-    good = ((fewer && repeats) || run_case(context, cases + i, argc > 1, &hash)) && good;
+    const int skipped =
+      (fewer && repeats) || (usual && !is_usual(cases + i)) || (kernels && is_usual(cases + i));
+    good = (skipped || run_case(context, cases + i, small, &hash)) && good;
   }
   mcor_free_context(context);
   return good ? 0 : 1;

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The smallest runs that reach all kernels of adaptive cubes, probe, gauges, derivatives, box and period. Prints
- * a hash of all bits of their results, for same_bits.cmake; whether these are right is tested elsewhere.
- * With words: those of these runs. */
+/* The smallest runs that reach all kernels of adaptive cubes, probe, gauges, derivatives, box and period, and a
+ * tank with all options in turn. Prints a hash of all bits of their results, for same_bits.cmake, and keeps
+ * them for bits.cmake; whether these are right is tested elsewhere. With words: those of these runs. */
 
-#include "core_fixture.h"
+#include "core_keep.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,6 +43,26 @@ static void modules_print(
   fflush(stdout);
 }
 
+/* Of a result that is no surface. */
+typedef struct modules_hash
+{
+  const char* name;
+  uint64_t hash;
+} modules_hash;
+
+static void modules_add(modules_hash* hash, const void* data, size_t bytes)
+{
+  hash->hash = core_hash_bytes(hash->hash, data, bytes);
+  core_keep(hash->name, "arrays", data, bytes);
+}
+
+static void modules_end(
+  const mcor_context* context, const modules_hash* hash, int64_t points, int64_t cells)
+{
+  modules_print(context, hash->name, points, hash->hash);
+  core_keep_size(hash->name, points, cells);
+}
+
 static int modules_surface(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
 {
@@ -53,7 +73,8 @@ static int modules_surface(
   {
     levels += surface.statistics.cells_of_level[l] > 0;
   }
-  modules_print(context, name, surface.triangle_count, core_hash(&surface));
+  modules_print(context, name, surface.triangle_count + surface.line_count, core_hash(&surface));
+  core_keep_surface(name, input, &surface);
   const int good = status == MCOR_OK && surface.triangle_count > 0 &&
     (levels > 1 || options->level_limit == 0) &&
     (surface.statistics.cap_triangles > 0 || !options->capping);
@@ -77,18 +98,18 @@ static int modules_adaptive(mcor_context* context, const mcor_input* input)
 {
   mcor_options options = modules_options(MCOR_WEIGHT_SUM);
   options.level_limit = MCOR_CUBE_LEVELS - 1;
-  int good = modules_surface(context, "adaptive, free surface", input, &options);
+  int good = modules_surface(context, "adaptive_free_surface", input, &options);
   options.iso_values = modules_isos;
   options.field = MCOR_SHEPARD;
   options.iso_count = 2;
   options.wall_share = 0.5;
   options.vertex_threshold = 0.3;
-  good = modules_surface(context, "adaptive, scalar", input, &options) && good;
+  good = modules_surface(context, "adaptive_scalar", input, &options) && good;
   for (int s = 0; s < 6; ++s)
   {
     options.box[s] = s % 2 == 0 ? -10 : (s == 1 ? 14 : 20);
   }
-  return modules_surface(context, "adaptive, box", input, &options) && good;
+  return modules_surface(context, "adaptive_box", input, &options) && good;
 }
 
 static int modules_uniform(mcor_context* context, const mcor_input* input)
@@ -102,7 +123,7 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
   {
     options.box[s] = s % 2 == 0 ? -3 : (s == 1 ? 1 : 5);
   }
-  const int good = modules_surface(context, "box", &fine, &options);
+  const int good = modules_surface(context, "uniform_box", &fine, &options);
   memset(options.box, 0, sizeof options.box);
   options.outputs &= ~(unsigned)(MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
   options.field = MCOR_WEIGHT_SUM;
@@ -112,7 +133,7 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
   {
     options.periodic[s] = s % 2 == 0 ? 1 : 9;
   }
-  return modules_surface(context, "period, caps", &fine, &options) && good;
+  return modules_surface(context, "uniform_period_caps", &fine, &options) && good;
 }
 
 /* The lowest layer of the fine particles; then that of the coarse ones, too. */
@@ -148,9 +169,10 @@ static int modules_plane(mcor_context* context, const mcor_input* input)
     options.node_threshold = 0.05;
     mcor_surface surface;
     const mcor_status status = mcor_extract(context, &flat, &options, &surface);
-    const uint64_t hash = core_hash_bytes(core_hash(&surface), surface.line_points,
-      (size_t)surface.line_point_count * sizeof *surface.line_points);
-    modules_print(context, "plane", surface.line_count, hash);
+    char name[32];
+    snprintf(name, sizeof name, "plane_%d_%d", levels, field);
+    modules_print(context, name, surface.line_count, core_hash(&surface));
+    core_keep_surface(name, &flat, &surface);
     good = status == MCOR_OK && surface.line_count > 0 &&
       (surface.statistics.cells_of_level[1] > 0) == (levels > 0) && good;
     mcor_free_surface(&surface);
@@ -171,15 +193,18 @@ static int modules_probe(mcor_context* context, const mcor_input* input)
     mcor_samples samples;
     const mcor_status status = mcor_probe(context, input, &options, &array, 5, &samples);
     good = status == MCOR_OK && samples.valid[0] && !samples.valid[3] && good;
-    uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, samples.weight_sum, 5 * sizeof(double));
-    hash = core_hash_bytes(hash, samples.weight_gradient, 15 * sizeof(double));
+    char name[32];
+    snprintf(name, sizeof name, "probe_%d", field);
+    modules_hash hash = { name, CORE_HASH_OF_NOTHING };
+    modules_add(&hash, samples.weight_sum, 5 * sizeof(double));
+    modules_add(&hash, samples.weight_gradient, 15 * sizeof(double));
     for (int a = 0; a < samples.attribute_count; ++a)
     {
       const size_t bytes = (a == 0 ? 15 : 5) * sizeof(double);
-      hash = core_hash_bytes(hash, samples.values[a], bytes);
-      hash = core_hash_bytes(hash, samples.gradients[a], 3 * bytes);
+      modules_add(&hash, samples.values[a], bytes);
+      modules_add(&hash, samples.gradients[a], 3 * bytes);
     }
-    modules_print(context, "probe", samples.count, hash);
+    modules_end(context, &hash, samples.count, 0);
     mcor_free_samples(&samples);
   }
   free(points);
@@ -196,12 +221,14 @@ static int modules_derive(mcor_context* context, const mcor_input* input)
     const mcor_status status = mcor_derive(context, input, &options, (mcor_gradient)form, &d);
     good = status == MCOR_OK && d.gradients[0] && d.gradients[1] && good;
     const size_t n = (size_t)d.count;
-    uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, d.corrected, n);
+    modules_hash hash = { form == MCOR_GRADIENT_CORRECTED ? "derive_corrected" : "derive_standard",
+      CORE_HASH_OF_NOTHING };
+    modules_add(&hash, d.corrected, n);
     for (int a = 0; a < d.attribute_count; ++a)
     {
-      hash = core_hash_bytes(hash, d.gradients[a], n * (a == 0 ? 9 : 3) * sizeof(double));
+      modules_add(&hash, d.gradients[a], n * (a == 0 ? 9 : 3) * sizeof(double));
     }
-    modules_print(context, "derive", d.count, hash);
+    modules_end(context, &hash, d.count, 0);
     mcor_free_derivatives(&d);
   }
   return good;
@@ -215,11 +242,194 @@ static int modules_gauge(mcor_context* context, const mcor_input* input)
   const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
   mcor_gauges found;
   const mcor_status status = mcor_gauge(context, input, &options, lines, 3, &found);
-  const size_t bytes = (size_t)found.crossing_count * sizeof(double);
-  modules_print(context, "gauge", found.crossing_count,
-    core_hash_bytes(CORE_HASH_OF_NOTHING, found.crossings, bytes));
+  modules_hash hash = { "gauge", CORE_HASH_OF_NOTHING };
+  modules_add(&hash, found.crossings, (size_t)found.crossing_count * sizeof(double));
+  modules_end(context, &hash, found.count, found.crossing_count);
   const int good = status == MCOR_OK && found.crossing_count > 3;
   mcor_free_gauges(&found);
+  return good;
+}
+
+/* A tank along x in three blocks of spacing 1, 2 and 4, on a layer of solids; the fluid's top slopes and is
+ * rough. Particles repeat along y. Without libm, so the bits are the same everywhere. */
+static core_set tank_set(bool flat)
+{
+  core_set set = core_make_set(5000);
+  uint64_t seed = 11;
+  int64_t n = 0;
+  double x0 = 0;
+  for (int level = 0; level < 3; ++level)
+  {
+    const int spacing = 1 << level, across = flat ? 1 : 32 / spacing;
+    const int along = level == 0 ? 8 : level == 1 ? 6 : 14;
+    for (int i = 0; i < along * across * (16 / spacing); ++i)
+    {
+      const double cell[3] = { i % along, i / along % across, i / along / across };
+      const double top = 9 - 0.0625 * x0 + 3 * random_unit(&seed);
+      double* x = set.position + 3 * n;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double jitter = 0.25 * (random_unit(&seed) - 0.5);
+        x[a] = (a == 0 ? x0 : 0) + spacing * (cell[a] + 0.5 + jitter);
+      }
+      x[1] = flat ? 2 : x[1];
+      set.smoothing_length[n] = 1.3 * spacing * (1 + 0.2 * random_unit(&seed));
+      set.volume[n] = flat ? spacing * spacing : spacing * spacing * spacing;
+      set.scalar[n] = x[2] + 0.0625 * x[0] * (x[1] - 16) + random_unit(&seed);
+      set.solid[n] = cell[2] == 0;
+      n += x[2] < top;
+    }
+    x0 += along * spacing;
+  }
+  set.count = n;
+  set.has_solids = 1;
+  return set;
+}
+
+/* What a run in the tank has. */
+enum
+{
+  TANK_LEVELS = 1,
+  TANK_FLAT = 2,
+  TANK_FILLED = 4 | TANK_FLAT,
+  TANK_CAPS = 8,    /* of whatever sides there are, and at walls */
+  TANK_PERIOD = 16, /* along y; in the plane along x */
+  TANK_BOX = 32,
+  TANK_TOPOLOGY = 64, /* by the field, with noise */
+  TANK_PAIRS = 128,
+  TANK_WALL = 256, /* the surface ends at solids */
+  TANK_EIGENVALUE = 512,
+  TANK_PREVIEW = 1024,   /* and normals of triangles */
+  TANK_COMPUTED = 2048,  /* volumes */
+  TANK_MASS = 4096,      /* volumes of masses */
+  TANK_ESTIMATED = 8192, /* smoothing lengths */
+  TANK_AGAIN = 16384     /* a second call with the same particles and another iso value */
+};
+
+typedef struct tank_case
+{
+  const char* name;
+  mcor_field field;
+  int has;
+} tank_case;
+
+static int tank_run(mcor_context* context, const tank_case* at)
+{
+  static const double levels[3] = { 5.3, 0.5, 8 };
+  const int has = at->has;
+  core_set set = tank_set(has & TANK_FLAT);
+  uint64_t seed = 3;
+  for (int64_t i = 0; i < set.count && has & TANK_TOPOLOGY; ++i)
+  {
+    set.scalar[i] = 9 * random_unit(&seed);
+  }
+  const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
+  mcor_input input = core_input(&set);
+  input.attributes = attributes;
+  input.attribute_count = 2;
+  input.mass = has & TANK_MASS ? input.volume : input.mass;
+  input.volume = has & (TANK_COMPUTED | TANK_MASS) ? (mcor_array){ 0 } : input.volume;
+  input.estimate_smoothing_length = (has & TANK_ESTIMATED) != 0;
+  mcor_options options = modules_options(at->field);
+  options.iso_values = at->field == MCOR_WEIGHT_SUM ? levels + 1 : levels;
+  options.iso_count = has & TANK_FILLED & ~TANK_FLAT && at->field == MCOR_SHEPARD ? 3 : 1;
+  options.level_limit = has & TANK_LEVELS ? MCOR_CUBE_LEVELS - 1 : 0;
+  options.filled = (has & TANK_FILLED) == TANK_FILLED;
+  options.cube_size_factor = has & TANK_TOPOLOGY ? 0.5 : 0.78;
+  options.h_scale = has & TANK_TOPOLOGY ? 0.6 : 1;
+  options.topology = has & TANK_TOPOLOGY ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+  options.seeds = has & TANK_PAIRS ? MCOR_PAIRS : MCOR_COMPLETE;
+  options.wall_share = has & TANK_WALL ? 0.5 : 0;
+  options.boundary_detection =
+    has & TANK_EIGENVALUE ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
+  options.vertex_threshold = has & TANK_EIGENVALUE ? 0.3 : 0.5;
+  options.outputs |= has & TANK_EIGENVALUE ? MCOR_OUT_BOUNDARY_EIGENVALUE : 0;
+  options.preview = options.triangle_normals = (has & TANK_PREVIEW) != 0;
+  options.capping = has & TANK_CAPS ? (has & TANK_BOX ? MCOR_CAP_BOX : MCOR_CAP_PERIOD) : 0;
+  if (has & TANK_PERIOD)
+  {
+    const int axis = has & TANK_FLAT ? 0 : 1;
+    options.periodic[2 * axis + 1] = has & TANK_FLAT ? 76 : 32;
+  }
+  for (int side = 0; side < 6 && has & TANK_BOX; ++side)
+  {
+    options.box[side] = side % 2 == 0 ? 3 - side : side == 1 ? 60 : 34 - 5 * side;
+  }
+  if (has & TANK_AGAIN)
+  {
+    mcor_surface first;
+    input.particles_version = input.scalar_version = 1;
+    (void)mcor_extract(context, &input, &options, &first);
+    mcor_free_surface(&first);
+    options.iso_values = levels + 2;
+  }
+  mcor_surface surface;
+  const mcor_status status = mcor_extract(context, &input, &options, &surface);
+  const mcor_statistics* s = &surface.statistics;
+  const int64_t cells = surface.triangle_count + surface.line_count;
+  modules_print(context, at->name, cells, core_hash(&surface));
+  core_keep_surface(at->name, &input, &surface);
+  const int good = status == MCOR_OK && cells > 0 &&
+    (s->cells_of_level[1] > 0) == ((has & TANK_LEVELS) != 0) &&
+    (s->cap_triangles > 0 || !(has & TANK_CAPS)) &&
+    (s->joined_faces > 0 || !(has & TANK_TOPOLOGY)) &&
+    (s->trim_vertices > 0 || !(has & TANK_WALL) || has & TANK_FLAT);
+  if (!good)
+  {
+    fprintf(stderr, "%s: %lld cells, %lld of level 1, %lld caps, %lld faces joined, %lld cut\n",
+      at->name, (long long)cells, (long long)s->cells_of_level[1], (long long)s->cap_triangles,
+      (long long)s->joined_faces, (long long)s->trim_vertices);
+  }
+  mcor_free_surface(&surface);
+  core_free_set(&set);
+  return good;
+}
+
+static int modules_tank(mcor_context* context, const mcor_input* input)
+{
+  static const tank_case cases[] = {
+    { "tank_scalar", MCOR_SHEPARD, 0 },
+    { "tank_free_surface", MCOR_WEIGHT_SUM, 0 },
+    { "tank_sum", MCOR_SUM, TANK_LEVELS },
+    { "tank_computed", MCOR_SHEPARD, TANK_COMPUTED | TANK_LEVELS },
+    { "tank_mass", MCOR_WEIGHT_SUM, TANK_MASS },
+    { "tank_estimated", MCOR_SHEPARD, TANK_ESTIMATED },
+    { "tank_preview", MCOR_WEIGHT_SUM, TANK_PREVIEW | TANK_LEVELS },
+    { "tank_again", MCOR_SHEPARD, TANK_AGAIN },
+    { "tank_wall", MCOR_SHEPARD, TANK_WALL },
+    { "tank_wall_free_surface", MCOR_WEIGHT_SUM, TANK_WALL },
+    { "tank_wall_caps", MCOR_WEIGHT_SUM, TANK_WALL | TANK_CAPS },
+    { "tank_box_caps", MCOR_SHEPARD, TANK_BOX | TANK_CAPS },
+    { "tank_period", MCOR_SHEPARD, TANK_PERIOD | TANK_BOX },
+    { "tank_period_caps", MCOR_WEIGHT_SUM, TANK_PERIOD | TANK_CAPS },
+    { "tank_topology", MCOR_SHEPARD, TANK_TOPOLOGY },
+    { "tank_pairs", MCOR_SHEPARD, TANK_PAIRS | TANK_TOPOLOGY },
+    { "tank_pairs_period", MCOR_SHEPARD, TANK_PAIRS | TANK_PERIOD },
+    { "tank_levels", MCOR_SHEPARD, TANK_LEVELS },
+    { "tank_levels_free_surface", MCOR_WEIGHT_SUM, TANK_LEVELS },
+    { "tank_levels_eigenvalue", MCOR_SHEPARD, TANK_LEVELS | TANK_EIGENVALUE },
+    { "tank_levels_again", MCOR_SHEPARD, TANK_LEVELS | TANK_AGAIN },
+    { "tank_levels_wall", MCOR_SHEPARD, TANK_LEVELS | TANK_WALL },
+    { "tank_levels_box", MCOR_SHEPARD, TANK_LEVELS | TANK_BOX },
+    { "tank_levels_period", MCOR_WEIGHT_SUM, TANK_LEVELS | TANK_PERIOD },
+    { "tank_levels_topology", MCOR_SHEPARD, TANK_LEVELS | TANK_TOPOLOGY },
+    { "tank_levels_pairs", MCOR_SHEPARD, TANK_LEVELS | TANK_PAIRS },
+    { "tank_plane", MCOR_SHEPARD, TANK_FLAT },
+    { "tank_plane_wall", MCOR_WEIGHT_SUM, TANK_FLAT | TANK_WALL },
+    { "tank_plane_caps", MCOR_SHEPARD, TANK_FLAT | TANK_BOX | TANK_CAPS },
+    { "tank_plane_period", MCOR_WEIGHT_SUM, TANK_FLAT | TANK_PERIOD | TANK_CAPS },
+    { "tank_plane_levels", MCOR_WEIGHT_SUM, TANK_FLAT | TANK_LEVELS },
+    { "tank_plane_levels_topology", MCOR_SHEPARD, TANK_FLAT | TANK_LEVELS | TANK_TOPOLOGY },
+    { "tank_filled", MCOR_SHEPARD, TANK_FILLED },
+    { "tank_filled_box", MCOR_SHEPARD, TANK_FILLED | TANK_BOX },
+    { "tank_filled_free_surface", MCOR_WEIGHT_SUM, TANK_FILLED | TANK_WALL },
+  };
+  (void)input;
+  int good = 1;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    good = tank_run(context, cases + i) && good;
+  }
   return good;
 }
 
@@ -233,7 +443,7 @@ int main(int argc, char** argv)
 {
   static const modules_run runs[] = { { "adaptive", modules_adaptive },
     { "uniform", modules_uniform }, { "plane", modules_plane }, { "probe", modules_probe },
-    { "derive", modules_derive }, { "gauge", modules_gauge } };
+    { "derive", modules_derive }, { "gauge", modules_gauge }, { "tank", modules_tank } };
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {

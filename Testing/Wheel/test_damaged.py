@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 import pyvista
 from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from marchingcorrectors import io
 from test_files import DENSITY, X, Case, quietly, write_bgeo, write_bi4, write_gadget, write_phantom, write_pysph
@@ -22,6 +23,18 @@ def write_vtk(path):
     body = pyvista.PolyData(X.astype(np.float32))
     body["Density"], body["Velocity"] = DENSITY, X
     (body if path.suffix != ".vtu" else body.cast_to_unstructured_grid()).save(path)
+
+
+def write_packed(path, kind):
+    """Bytes behind the XML, packed by one of VTK's."""
+    body = pyvista.PolyData(X)
+    body["Density"], body["Velocity"] = DENSITY, X.astype(np.float32)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(body)
+    getattr(writer, f"SetCompressorTypeTo{kind}")()
+    writer.SetEncodeAppendedData(kind == "LZ4")
+    writer.Write()
 
 
 def write_grid(path, text=False):
@@ -88,8 +101,56 @@ class Hostile(Case):
         with h5py.File(self.at("snap.hdf5"), "w") as file:
             file.create_dataset("PartType0/Coordinates", (10 ** 12, 3), "f8", chunks=(1024, 3))
         self.assert_refused("claims", self.at("snap.hdf5"))
+        write_gadget(self.at("snap.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # a chunk is made room for as a whole
+            file["PartType0"].create_dataset("Large", (len(X),), "f8", maxshape=(None,), chunks=(2 ** 27,), compression=9)
+        self.assert_refused("claims 1073741824 bytes", self.at("snap.hdf5"))
+        write_gadget(self.at("snap.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "a") as file:  # many names of one
+            for i in range(20000):
+                file[f"PartType0/{i}"] = file["PartType0/Density"]
+        with h5py.File(self.at("few.hdf5"), "w", libver="latest") as file:
+            file.create_dataset("PartType0/Coordinates", (2 ** 18, 3), "f4")
+            for i in range(20):
+                file[f"PartType0/{i}"] = file["PartType0/Coordinates"]
+        self.assert_refused("'/PartType0' claims", self.at("few.hdf5"))
+        write_gadget(self.at("snap.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "a") as file:
+            twice = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+            twice.set_chunk((len(X),))
+            twice.set_deflate(9)
+            twice.set_deflate(9)
+            h5py.h5d.create(file["PartType0"].id, b"Twice", h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple((len(X),)), twice)
+        self.assert_refused("packed more than once", self.at("snap.hdf5"))
+        write_vtk(self.at("body.vtp"))
+        whole = self.at("body.vtp").read_bytes()
+        self.at("body.vtp").write_bytes(whole.replace(b'NumberOfPoints="%d"' % len(X), b'NumberOfPoints="1000000000"'))
+        self.assert_refused("claims", self.at("body.vtp"))
         write_bgeo(self.at("bomb.bgeo"), lambda data: gzip.compress(data[:9] + b"\x7f" + data[10:]))
         self.assert_refused("too short", self.at("bomb.bgeo"))
+
+    def test_little_memory(self):
+        """A long word among 70,000 short ones is as long as it is: NumPy's arrays of words are as wide as the longest."""
+        self.at("text.vtk").write_text("# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 30000 double\n"
+                                       + "1" * 14000 + " 2" * 89999 + "\n")
+        lines = ("import resource, sys", "from marchingcorrectors import io",
+                 "resource.setrlimit(resource.RLIMIT_AS, (2 ** 30, 2 ** 30))", "print(len(io.read(sys.argv[1]).positions))")
+        done = subprocess.run([sys.executable, "-c", "\n".join(lines), str(self.at("text.vtk"))], stdout=subprocess.PIPE,
+                              env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        self.assertEqual((done.returncode, done.stdout), (0, b"30000\n"))
+
+    def test_written_anew(self):
+        """By a solver that runs, after it was opened; and no file stays open."""
+        write_bi4(self.at("Part_0001.bi4"))
+        particles = io.read(self.at("Part_0001.bi4"))
+        self.at("Part_0001.bi4").write_bytes(self.at("Part_0001.bi4").read_bytes()[:1000])
+        with self.assertRaisesRegex(io.FileError, "written anew"):
+            particles.arrays["Vel"]
+        write_bi4(self.at("Part_0001.bi4"))
+        before = len(os.listdir("/dev/fd"))
+        kept = [io.read(self.at("Part_0001.bi4")) for _ in range(20)]
+        self.assertEqual(len(os.listdir("/dev/fd")), before)
+        self.assertEqual(len(kept[0].positions), len(X))
 
     def test_cut_off(self):
         """A file of each kind without its end: one line on stderr, and no file."""
@@ -120,7 +181,8 @@ class Hostile(Case):
         random, refused = np.random.default_rng(34), 0
         makers = {"snap.hdf5": write_gadget, "dump.h5": write_phantom, "run.hdf5": write_pysph,
                   "Part_0001.bi4": write_bi4, "fluid.bgeo": write_bgeo, "body.vtp": write_vtk, "body.vtu": write_vtk,
-                  "body.vtk": write_vtk, "grid.vtk": write_grid}
+                  "body.vtk": write_vtk, "grid.vtk": write_grid, "text.vtk": lambda path: write_grid(path, True),
+                  **{f"{kind}.vtp": lambda path, kind=kind: write_packed(path, kind) for kind in ("ZLib", "LZ4", "LZMA")}}
         for name, make in makers.items():
             make(self.at(name))
             whole = self.at(name).read_bytes()

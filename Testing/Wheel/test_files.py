@@ -431,6 +431,59 @@ class Layouts(Case):
                 self.assertTrue(np.array_equal(found.arrays[name], wanted[name]), (version, text, grid, name))
             self.assertEqual(found.time, 0.75)
 
+    def test_xml_of_all_kinds(self):
+        """Text, base64 and bytes, packed or not, both byte orders and sizes of headers: as VTK reads them."""
+        import pyvista
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+
+        random = np.random.default_rng(43)
+        for mode, packed, order, header in itertools.product(
+                ("Ascii", "Binary", "Appended", "bytes"), ("None", "ZLib", "LZ4", "LZMA"), (0, 1), (32, 64)):
+            body = pyvista.PolyData(random.normal(size=(random.integers(1, 2000), 3)).astype(random.choice(["f4", "f8"])))
+            for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"):
+                limits = np.iinfo(kind)
+                body[f"an {kind}"] = random.integers(limits.min // 2, limits.max // 2, body.n_points).astype(kind)
+            body["Velocity"], body["t"] = body.points, random.normal(size=(body.n_points, 9))
+            body["gaps"] = np.where(np.arange(body.n_points) % 2, np.nan, np.inf)
+            body.cell_data["Mass"], body.field_data["TimeValue"] = np.arange(body.n_points), [0.75]
+            body.field_data["words"] = ["a", "b"]
+            grid = random.integers(2)
+            path = self.at("grid.vtu" if grid else "body.vtp")
+            writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
+            writer.SetFileName(str(path))
+            writer.SetInputData(body.cast_to_unstructured_grid() if grid else body)
+            getattr(writer, f"SetDataModeTo{mode.replace('bytes', 'Appended')}")()
+            writer.SetEncodeAppendedData(mode == "Appended")
+            writer.SetCompressor(None) if packed == "None" else getattr(writer, f"SetCompressorTypeTo{packed}")()
+            writer.SetByteOrder(order)
+            writer.SetHeaderType(header)
+            writer.SetBlockSize(4096)
+            writer.Write()
+            found, wanted = io.read(path), pyvista.read(path)
+            self.assertEqual((found.positions.dtype, found.positions.tolist()), (wanted.points.dtype, wanted.points.tolist()))
+            self.assertEqual(sorted(found.arrays), sorted(wanted.point_data))
+            for name in found.arrays:
+                values = np.asarray(wanted.point_data[name])
+                self.assertEqual(found.arrays[name].dtype, values.dtype)
+                self.assertTrue(np.array_equal(found.arrays[name], values, equal_nan=True), (mode, packed, order, header, name))
+            self.assertEqual(found.time, 0.75)
+
+    def test_xml_in_pieces(self):
+        """Arrays that all pieces have, one after the other."""
+        def piece(numbers, more=""):
+            return (f'<Piece NumberOfPoints="{len(numbers)}"><PointData><DataArray type="Float64" Name="h" format="ascii">'
+                    f'{" ".join(map(str, numbers))}</DataArray>{more}</PointData><Points><DataArray type="Float32" '
+                    f'NumberOfComponents="3">{" ".join(f"{n} 0 0" for n in numbers)}</DataArray></Points></Piece>')
+
+        more = '<DataArray type="Int8" Name="a &lt; b" format="ascii">7</DataArray>'
+        self.at("body.vtp").write_text('<VTKFile type="PolyData" byte_order="LittleEndian"><PolyData>' + piece([1, 2]) + piece([])
+                                       + piece([3], more) + "</PolyData></VTKFile>")
+        particles = io.read(self.at("body.vtp"))
+        self.assertEqual(particles.positions.tolist(), [[1, 0, 0], [2, 0, 0], [3, 0, 0]])
+        self.assertEqual({name: array.tolist() for name, array in particles.arrays.items()}, {"h": [1, 2, 3]})
+        self.at("one.vtp").write_text('<VTKFile type="PolyData"><PolyData>' + piece([3], more) + "</PolyData></VTKFile>")
+        self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
+
     def test_lazy(self):
         """No array is read before it is used."""
         write_gadget(self.at("snap.hdf5"))

@@ -147,6 +147,12 @@ class Particles:
         return words
 
 
+def check_claim(file, thing, claimed, there):
+    """A declared size costs nothing in a file: one that the file cannot hold, packed by less than 1000 to 1, is refused."""
+    if claimed > 2 ** 24 + 1000 * there:
+        raise FileError(f"{file}: {thing} claims {claimed} bytes, the file has {there}. It is damaged.")
+
+
 def join(parts):
     parts = [np.asarray(part) for part in parts]
     return parts[0] if len(parts) == 1 else np.concatenate(parts)

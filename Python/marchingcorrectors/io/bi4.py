@@ -4,7 +4,8 @@
 (0, 1). Then an item: size of its definition, "\\nITEM\\n", name, hidden, values hidden, two formats, numbers of arrays and
 items, bytes of values; "\\nVALUES", number, (name, type, value); arrays, each: size of its definition, "\\nARRAY", name,
 hidden, type, count, bytes, data; items. Text: length, letters. Arrays stay in the file until they are used."""
-import mmap
+import os
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,35 +16,61 @@ PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8",
 TEXT, DEPTH = 1, 8
 
 
+def state_of(file):
+    """Another one where the file was written anew."""
+    status = os.fstat(file.fileno())
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+class Array(NamedTuple):
+    """Where an array lies in a file."""
+    path: os.PathLike
+    state: tuple
+    begin: int
+    kind: np.dtype
+    count: int
+    columns: int
+
+    def load(self):
+        with open(self.path, "rb") as file:
+            values = np.fromfile(file, self.kind, self.count * self.columns, offset=self.begin)
+            if state_of(file) != self.state:
+                raise FileError(f"{self.path.name} was written anew after it had been opened: read it once more.")
+        values = values.astype(self.kind.newbyteorder("="), copy=False)
+        return values.reshape(self.count, self.columns) if self.columns > 1 else values
+
+
 class Reader:
     """All lengths are compared with what is left of the file before they are believed."""
 
-    def __init__(self, data, name):
-        self.data, self.at, self.name = data, 64, name
-        order = data[60] if len(data) >= 64 else 9
+    def __init__(self, file, path):
+        self.file, self.path, self.name, self.state = file, path, path.name, state_of(file)
+        self.size = self.state[1]
+        head = file.read(64)
+        order = head[60] if len(head) == 64 else 9
         if order % 10 > 1:
-            raise FileError(f"{name} has a damaged head.")
-        self.order, self.wide = "<>"[order % 10], data[61] == 1
+            raise FileError(f"{self.name} has a damaged head.")
+        self.order, self.wide = "<>"[order % 10], head[61] == 1
+
+    def check(self, size):
+        if size > self.size - self.file.tell():
+            raise FileError(f"{self.name} ends too early, or is damaged, at byte {self.file.tell()}.")
 
     def take(self, size):
-        if size < 0 or size > len(self.data) - self.at:
-            raise FileError(f"{self.name} ends too early, or is damaged, at byte {self.at}.")
-        self.at += size
-        return self.at - size
+        self.check(size)
+        return self.file.read(size)
 
     def number(self, kind="u4", count=1):
         kind = np.dtype(self.order + kind)
-        values = np.frombuffer(self.data, kind, count, self.take(kind.itemsize * count))
+        values = np.frombuffer(self.take(kind.itemsize * count), kind, count)
         return values[0].item() if count == 1 else values.tolist()
 
     def text(self):
-        size = self.number()
-        begin = self.take(size)
-        return bytes(self.data[begin:begin + size]).decode(errors="replace")
+        return self.take(self.number()).decode(errors="replace")
 
     def expect(self, code):
         if self.text() != code:
-            raise FileError(f"{self.name} is damaged before byte {self.at}.")
+            raise FileError(f"{self.name} is damaged before byte {self.file.tell()}.")
 
     def value(self):
         name, kind = self.text(), self.number()
@@ -58,14 +85,15 @@ class Reader:
         self.expect("\nARRAY")
         name, _, kind = self.text(), self.number(), self.number()
         count, size = self.number("u8" if self.wide else "u4"), self.number("u8" if self.wide else "u4")
-        begin = self.take(size)
+        self.check(size)
+        begin = self.file.tell()
+        self.file.seek(size, os.SEEK_CUR)
         if kind not in PLAIN:
             return name, None
         dtype, columns = np.dtype(self.order + PLAIN[kind]), 3 if kind >= 20 else 1
         if count * columns * dtype.itemsize != size:
             raise FileError(f"{self.name}: the array '{name}' has {size} bytes for {count} values.")
-        values = np.frombuffer(self.data, dtype, count * columns, begin)
-        return name, values.reshape(count, 3) if columns == 3 else values
+        return name, Array(self.path, self.state, begin, dtype, count, columns)
 
     def item(self, depth=0):
         """(values, arrays, [items])."""
@@ -85,33 +113,27 @@ class Reader:
 
 def read_bi4(path):
     with open(path, "rb") as file:
-        data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-    values, arrays, items = Reader(data, path.name).item()
+        values, arrays, items = Reader(file, path).item()
     for more, found, _ in items:
         values, arrays = {**values, **more}, {**arrays, **{k: v for k, v in found.items() if v is not None}}
     positions = arrays.pop("Posd", arrays.pop("Pos", None))
     ids = arrays.get("Idpd", arrays.get("Idp"))
-    if positions is None or not len(positions):
+    if positions is None or not positions.count:
         raise FileError(f"{path.name} has no positions (Pos, Posd): it is no file of particles.")
-    arrays = {name: array for name, array in arrays.items() if array is not None and len(array) == len(positions)}
-    if ids is not None and "CaseNfixed" in values and len(ids) == len(positions):
+    arrays = {name: array for name, array in arrays.items() if array is not None and array.count == positions.count}
+    read, solid = {name: array.load for name, array in arrays.items()}, None
+    if ids is not None and "CaseNfixed" in values and ids.count == positions.count:
         ends = np.cumsum([values.get(f"CaseN{kind}", 0) for kind in ("fixed", "moving", "float")])
-        arrays["Type"] = np.searchsorted(ends, ids, side="right").astype(np.uint8)
-    solid = arrays["Type"] != 3 if "Type" in arrays else None
+        types = np.searchsorted(ends, ids.load(), side="right").astype(np.uint8)
+        read["Type"], solid = lambda: types, types != 3
     density = next((name for name in ("Rhop", "Rho") if name in arrays), None)
     h = values.get("H", 0)
     return Particles(
-        path.name, "DualSPHysics", lambda: native(positions), {k: lambda v=v: native(v) for k, v in arrays.items()},
+        path.name, "DualSPHysics", positions.load, read,
         smoothing_length=h if h > 0 else None, mass=values.get("MassFluid") or None, density=density,
         rho0=values.get("Rhop0", values.get("RhopZero")), solid=solid if solid is not None and solid.any() else None,
         kernel="Wendland C2", dimension=2 if values.get("Data2d") else 3, period=period_of(values),
         time=values.get("TimeStep"), parameters=values)
-
-
-def native(array):
-    """Where it lies in the file, unless its byte order is another's, or the file's text before it makes it uneven."""
-    array = array.astype(array.dtype.newbyteorder("="), copy=False)
-    return array if array.flags.aligned else array.copy()
 
 
 def period_of(values):

@@ -1,63 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's files (.vtp, .vtu, .vtk) of SPHinXsys, PartVTK, SPlisHSPlasH: several bodies as one set, walls marked."""
-import contextlib
-
 import numpy as np
 
 from ._particles import WALL, FileError, Particles, join
 from .legacy import read_legacy
-
-
-@contextlib.contextmanager
-def caught():
-    """What VTK has to say goes into a list, and nowhere else."""
-    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-
-    before, window, complaints = vtkOutputWindow.GetInstance(), vtkStringOutputWindow(), []
-    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
-    vtkOutputWindow.SetInstance(window)
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    try:
-        yield complaints
-    finally:
-        vtkLogger.SetStderrVerbosity(verbosity)
-        vtkOutputWindow.SetInstance(before)
-        complaints += window.GetOutput().splitlines()
-
-
-def make_reader(path):
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
-
-    with open(path, "rb") as file:
-        if not file.read(64).lstrip().startswith((b"<?xml", b"<VTKFile")):
-            raise FileError(f"{path.name} is no file of VTK's, or its beginning is damaged.")
-    return vtkXMLPolyDataReader() if path.suffix.lower() == ".vtp" else vtkXMLUnstructuredGridReader()
-
-
-def load(path):
-    if path.suffix.lower() == ".vtk":
-        return read_legacy(path)
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-
-    with caught() as complaints:
-        reader = make_reader(path)
-        for kind in ("ErrorEvent", "WarningEvent"):
-            reader.AddObserver(kind, lambda *_: complaints.append(1))
-        reader.SetFileName(str(path))
-        reader.Update()
-    data = reader.GetOutput()
-    if complaints or data is None or not hasattr(data, "GetPoints") or not data.GetPoints() or not data.GetNumberOfPoints():
-        raise FileError(f"{path.name} has no points, ends too early, or is damaged.")
-    count, points, arrays = data.GetNumberOfPoints(), vtk_to_numpy(data.GetPoints().GetData()), {}
-    for i in range(data.GetPointData().GetNumberOfArrays()):
-        array = data.GetPointData().GetArray(i)
-        if array is not None and array.GetNumberOfTuples() == count and array.GetName():
-            arrays[array.GetName()] = vtk_to_numpy(array)
-    if len(points) != count:
-        raise FileError(f"{path.name} is damaged.")
-    time = data.GetFieldData().GetArray("TimeValue") or data.GetFieldData().GetArray("TIME")
-    return points, arrays, time.GetTuple1(0) if time and time.GetNumberOfTuples() else None
+from .vtk_xml import read_xml
 
 
 def column(name, bodies, fluids):
@@ -77,7 +25,7 @@ def column(name, bodies, fluids):
 
 def read_bodies(paths, walls):
     every = paths + [path for path in walls if path not in paths]
-    bodies = [load(path) for path in every]
+    bodies = [read_legacy(path) if path.suffix.lower() == ".vtk" else read_xml(path) for path in every]
     marked = [path in walls or not walls and len(every) > 1 and bool(WALL.search(path.stem)) for path in every]
     counts = [len(points) for points, _, _ in bodies]
     fluids = [body for body, wall in zip(bodies, marked) if not wall] or bodies

@@ -1,12 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """HDF5 by h5py: data sets of this file alone."""
+import math
 import os
 from typing import NamedTuple, Optional
 
 import numpy as np
 
-from ._particles import FileError
+from ._particles import FileError, check_claim
+
+
+KEEP_SIZE = (2, 3)  # filters of HDF5 that do not pack: bytes shuffled, a checksum
 
 
 def get(group, place):
@@ -34,15 +38,24 @@ def is_numbers(thing):
 
 
 def data_set(group, place):
-    """A data set of numbers. Its declared size costs nothing in a file: one that the file cannot hold is refused."""
+    """A data set of numbers."""
     data = get(group, place)
     if data is None or not is_numbers(data):
         raise FileError(f"{os.path.basename(group.file.filename)}: '{place}' is missing, or does not hold numbers.")
-    name, file = data.name, data.file.filename
-    bytes_there = os.path.getsize(file)
-    if data.nbytes > 2 ** 24 and data.nbytes > 1000 * bytes_there:
-        raise FileError(f"{os.path.basename(file)}: '{name}' claims {data.nbytes} bytes, the file has {bytes_there}.")
+    check_storage(data)
     return data
+
+
+def check_storage(data):
+    """What HDF5 makes room for is the data set, and a chunk of it, which may be larger. Packed twice, a chunk could grow to
+    any size."""
+    path, properties = data.file.filename, data.id.get_create_plist()
+    name, there = os.path.basename(path), os.path.getsize(path)
+    chunk = math.prod(data.chunks or ()) * data.dtype.itemsize
+    check_claim(name, f"'{data.name}'", max(data.nbytes, chunk), there)
+    packing = [properties.get_filter(i)[0] for i in range(properties.get_nfilters())]
+    if sum(code not in KEEP_SIZE for code in packing) > 1:
+        raise FileError(f"{name}: '{data.name}' is packed more than once, which is not read.")
 
 
 class Part(NamedTuple):
@@ -83,5 +96,9 @@ def load(parts, name):
 
 
 def names_of(group, count):
-    """Arrays of numbers with so many rows."""
-    return [name for name in group if is_numbers(get(group, name)) and get(group, name).shape[:1] == (count,)]
+    """Arrays of numbers with so many rows, which the file must be able to hold together: many names may stand for one."""
+    found = {name: get(group, name) for name in group}
+    names = [name for name, data in found.items() if is_numbers(data) and data.shape[:1] == (count,)]
+    path = group.file.filename
+    check_claim(os.path.basename(path), f"'{group.name}'", sum(found[name].nbytes for name in names), os.path.getsize(path))
+    return names

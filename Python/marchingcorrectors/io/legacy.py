@@ -8,6 +8,7 @@ from urllib.parse import unquote_to_bytes
 import numpy as np
 
 from ._particles import FileError
+from ._text import parse_numbers
 
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
          "int": "i4", "vtkidtype": "i4", "unsigned_long": "u8", "long": "i8", "float": "f4", "double": "f8",
@@ -57,11 +58,8 @@ class Legacy:
         if size > left + self.text:  # each a digit and a blank, but for the last
             raise self.damaged()
         if self.text:
-            words = self.data[self.at:].split(None, count * columns)
-            if len(words) < count * columns:
-                raise self.damaged()
-            self.at = len(self.data) - (len(words.pop()) if len(words) > count * columns else 0)
-            values = np.array(words, bytes).astype(code) if words else np.empty(0, code)
+            values, end = parse_numbers(memoryview(self.data)[self.at:], code, count * columns)
+            self.at += end
         else:
             values = np.frombuffer(self.data, ">" + code, count * columns, self.at).astype(code)
             self.at += size

@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""VTK's XML files (.vtp, .vtu): points and their arrays, of all pieces. VTK's own reader believes what a damaged file
+claims, and ends Python; here all lengths are compared with what is there, and cells are not read. Arrays: text, or
+base64 in the file, or base64 or bytes behind an underscore in <AppendedData>, at their offset. Of these bytes the first
+are their number; of packed ones: number of blocks, bytes of a block, bytes of the last one if it is shorter (else 0),
+packed bytes of each."""
+import binascii
+import lzma
+import re
+import zlib
+from xml.parsers import expat
+
+import numpy as np
+
+from ._particles import FileError, check_claim
+from ._text import parse_numbers
+
+KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
+         "Float32": "f4", "Float64": "f8"}
+BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
+
+
+def decode_base64(text):
+    """Of several pieces, each with padding at its end."""
+    text = text.translate(None, b" \t\r\n")
+    if text.translate(None, BASE64):
+        raise ValueError("letters that are not base64's")
+    return b"".join(map(binascii.a2b_base64, re.findall(b"[^=]+=*", text)))
+
+
+def unpack_zlib(packed, size):
+    return zlib.decompressobj().decompress(packed, size)
+
+
+def unpack_lzma(packed, size):
+    return lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=2 ** 28).decompress(packed, size)
+
+
+def unpack_lz4(packed, size):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
+
+    compressor = vtkLZ4DataCompressor()
+    compressor.AddObserver("ErrorEvent", lambda *_: None)  # its result tells
+    found = compressor.Uncompress(np.frombuffer(packed, np.uint8), len(packed), size)
+    return b"" if found is None else vtk_to_numpy(found).tobytes()
+
+
+UNPACK = {"vtkZLibDataCompressor": unpack_zlib, "vtkLZMADataCompressor": unpack_lzma, "vtkLZ4DataCompressor": unpack_lz4}
+
+
+class Array:
+    """A DataArray's attributes, and its text."""
+
+    def __init__(self, attributes, count):
+        self.name, self.format = attributes.get("Name", ""), attributes.get("format", "ascii")
+        self.kind, self.columns = KINDS.get(attributes.get("type")), int(attributes.get("NumberOfComponents", 1))
+        self.count = count if count is not None else int(attributes.get("NumberOfTuples", 1))
+        self.offset, self.text = int(attributes.get("offset", 0)), []
+        if self.count < 0 or not 0 < self.columns <= 1000:
+            raise ValueError(f"the array '{self.name}' has {self.count} values of {self.columns} numbers")
+
+    def bytes(self):
+        return self.count * self.columns * np.dtype(self.kind).itemsize
+
+
+class XmlFile:
+    def __init__(self, path):
+        self.data = path.read_bytes()
+        self.pieces, self.field, self.file = [], [], {}  # a piece: {"Points": arrays, "PointData": arrays, "count": number}
+        self.offsets, self.path, self.array = set(), [], None
+        appended = re.search(rb"<AppendedData\b([^>]*)>\s*_", self.data)
+        self.begin = appended.end() if appended else len(self.data)
+        self.is_raw = bool(appended and re.search(rb"encoding\s*=\s*[\"']raw", appended[1]))
+        parser = expat.ParserCreate()
+        parser.buffer_text = True
+        parser.StartDoctypeDeclHandler = self.refuse
+        parser.StartElementHandler, parser.EndElementHandler = self.start, self.end
+        parser.CharacterDataHandler = self.add_text
+        parser.Parse(self.data[:appended.start()] if appended else self.data, not appended)
+        if self.file.get("type") not in ("PolyData", "UnstructuredGrid"):
+            raise ValueError("it holds no poly data and no unstructured grid")
+        self.order = ">" if self.file.get("byte_order") == "BigEndian" else "<"
+        self.header = np.dtype(self.order + ("u8" if self.file.get("header_type") == "UInt64" else "u4"))
+        arrays = [array for piece in self.pieces for name in ("Points", "PointData") for array in piece[name]]
+        check_claim(path.name, "the arrays", sum(array.bytes() for array in arrays + self.field), len(self.data))
+
+    @staticmethod
+    def refuse(*_):
+        raise ValueError("it has a document type")
+
+    def start(self, tag, attributes):
+        self.path.append(tag)
+        if len(self.path) > 100:
+            raise ValueError("its parts lie too deep in each other")
+        if tag == "VTKFile":
+            self.file = attributes
+        elif tag == "Piece":
+            self.pieces.append({"Points": [], "PointData": [], "count": int(attributes["NumberOfPoints"])})
+        elif tag == "DataArray":
+            if "offset" in attributes:
+                self.offsets.add(int(attributes["offset"]))
+            parent = self.path[-2] if len(self.path) > 1 else ""
+            if attributes.get("type") in KINDS and (parent == "FieldData" or parent in ("Points", "PointData")):
+                self.array = Array(attributes, None if parent == "FieldData" else self.pieces[-1]["count"])
+                (self.field if parent == "FieldData" else self.pieces[-1][parent]).append(self.array)
+
+    def end(self, tag):
+        self.path.pop()
+        self.array = None if tag == "DataArray" else self.array
+
+    def add_text(self, text):
+        if self.array is not None and self.path[-1] == "DataArray":  # and not in what it says about itself
+            self.array.text.append(text)
+
+    def values(self, array):
+        if array.format == "ascii":
+            text = "".join(array.text).encode()
+            values, end = parse_numbers(text, array.kind, array.count * array.columns)
+        else:
+            values = np.frombuffer(self.bytes_of(array), self.order + array.kind).astype(array.kind)
+        return values.reshape(array.count, array.columns) if array.columns > 1 else values
+
+    def bytes_of(self, array):
+        """A header, as it stands before the numbers, and what it says of them."""
+        if array.format == "binary":
+            data = decode_base64("".join(array.text).encode())
+        else:
+            begin = self.begin + array.offset
+            after = [offset for offset in self.offsets if offset > array.offset]
+            end = self.begin + min(after) if after else len(self.data)
+            data = memoryview(self.data)[begin:end]
+            data = data if self.is_raw else decode_base64(bytes(data).partition(b"<")[0])
+        width, wanted = self.header.itemsize, array.bytes()
+
+        def numbers(count, at=0):
+            return np.frombuffer(data, self.header, count, at * width).tolist()
+
+        packed = self.file.get("compressor")
+        if not packed:
+            found = data[width:width + wanted]
+            if numbers(1) != [wanted] or len(found) != wanted:
+                raise ValueError(f"it has not the {wanted} bytes that its points want")
+            return found
+        if packed not in UNPACK:
+            raise ValueError(f"its packing is unknown ({packed})")
+        blocks, size, last = numbers(3)
+        sizes, at, found = numbers(blocks, 3), (3 + blocks) * width, []
+        if blocks * size - (size - last if last else 0) != wanted or last > size:
+            raise ValueError(f"it has not the {wanted} bytes that its points want")
+        for i, length in enumerate(sizes):
+            plain = last if last and i == blocks - 1 else size
+            found.append(UNPACK[packed](bytes(data[at:at + length]), plain))
+            if len(found[-1]) != plain:
+                raise ValueError(f"its block {i} is damaged")
+            at += length
+        return b"".join(found)
+
+
+def read_xml(path):
+    """Points, arrays, time."""
+    try:
+        file = XmlFile(path)
+        pieces = [piece for piece in file.pieces if piece["count"]]
+        if not pieces:
+            raise FileError(f"{path.name} has no points.")
+        points = np.concatenate([file.values(piece["Points"][0]) for piece in pieces])
+        each = [{array.name: array for array in piece["PointData"]} for piece in pieces]
+        names = [name for name in each[0] if all(name in own and own[name].columns == each[0][name].columns for own in each)]
+        arrays = {name: np.concatenate([file.values(own[name]) for own in each]) for name in names}
+        time = next((file.values(array).ravel() for array in file.field if array.name in ("TimeValue", "TIME")), ())
+    except (FileError, ImportError, MemoryError):
+        raise
+    except Exception as error:
+        raise FileError(f"{path.name} has no points, ends too early, or is damaged: {error}.") from None
+    return points, arrays, float(time[0]) if len(time) else None

@@ -14,7 +14,8 @@ from ._context import Context
 from ._library import InvalidArgument
 from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, Options, check_names,
                        did_you_mean, with_options)
-from ._vtk_particles import (GHOSTS, QUANTITIES, describe_missing_length, describe_unused_types, detect, join_velocity,
+from ._vtk_blocks import join_blocks
+from ._vtk_particles import (GHOSTS, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect, join_velocity,
                              name_of)
 from ._vtk_period import NO_PERIOD, find_period
 from ._warnings import warn
@@ -174,6 +175,8 @@ class SphAccessor:
         fluid: Optional[Tuple[str, float]] = words.pop("fluid", None)
         if fluid is not None:
             words["solid"] = np.asarray(self._array(fluid[0])) != fluid[1]
+        elif WALL_BLOCK in self._particles.point_data:
+            words.setdefault("solid", self._array(WALL_BLOCK))
         else:
             self._warn_of_unused_type()
         if isinstance(words.get("periodic"), str):
@@ -181,7 +184,7 @@ class SphAccessor:
         names: Optional[Iterable[str]] = words.pop("attributes", None)
         if names is None:
             data = self._particles.GetPointData()
-            names = [name for name in self._particles.point_data.keys() if name != GHOSTS]
+            names = [name for name in self._particles.point_data.keys() if name not in (GHOSTS, WALL_BLOCK)]
             names += ["Velocity"] if join_velocity(data, self._particles.n_points) is not None else []
         words["attributes"] = {name: self._array(name) for name in names}
         return words
@@ -226,3 +229,17 @@ class SphAccessor:
             found = detect(self._particles.GetPointData(), self._particles.n_points, quantity)
             if found is not None:
                 words[quantity] = self._array(name_of(found))
+
+
+@pyvista.register_dataset_accessor("sph", pyvista.MultiBlock)
+class BlocksAccessor:
+    """As SphAccessor, of the points of all blocks as one set; names of blocks tell of walls."""
+
+    def __init__(self, blocks: pyvista.MultiBlock):
+        self._blocks = blocks
+
+    def __getattr__(self, name):
+        return getattr(SphAccessor(pyvista.wrap(join_blocks(self._blocks))), name)
+
+    def __dir__(self):
+        return dir(SphAccessor)

@@ -484,6 +484,61 @@ class Layouts(Case):
         self.at("one.vtp").write_text('<VTKFile type="PolyData"><PolyData>' + piece([3], more) + "</PolyData></VTKFile>")
         self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
 
+    def test_quantities(self):
+        """What is given takes the place of what the file has, and nothing else; names are those of the core."""
+        import pyvista
+
+        body = pyvista.PolyData(X)
+        body["Rhop"], body["hsml"], body["m1"], body["Velocity"] = DENSITY, np.full(len(X), H), MASS, X
+        body.save(self.at("body.vtp"))
+        particles = io.read(self.at("body.vtp"))
+        self.assertEqual((particles.density, particles.smoothing_length, particles.mass), ("Rhop", "hsml", None))
+        wanted = quietly(mc.free_surface, X, smoothing_length=H, mass=0.001, density=DENSITY)
+        found = quietly(mc.free_surface, particles, mass=0.001)
+        self.assertEqual(found.points.tobytes(), wanted.points.tobytes())
+        wanted = quietly(mc.free_surface, X, smoothing_length=H, mass=MASS, density=DENSITY)
+        self.assertEqual(quietly(mc.free_surface, particles, mass=MASS).points.tobytes(), wanted.points.tobytes())
+        with self.assertRaisesRegex(io.FileError, "the array 'Velocity' has the shape"):
+            particles.smoothing_length = "Velocity"
+            particles.quantity("smoothing_length")
+
+    def test_types_of_numbers(self):
+        write_gadget(self.at("snap.hdf5"))
+        with h5py.File(self.at("snap.hdf5"), "a") as file:
+            file["PartType0/Half"], file["PartType0/Long"] = DENSITY.astype(np.float16), DENSITY.astype(np.longdouble)
+            file["PartType0/Big"] = DENSITY.astype(">f4")
+        arrays = io.read(self.at("snap.hdf5")).arrays
+        self.assertEqual([arrays[name].dtype for name in ("Half", "Long", "Big")], [np.float32, np.float64, np.float32])
+        self.assertTrue(np.array_equal(arrays["Long"], DENSITY))
+        data = mc.read_pyvista(self.at("snap.hdf5"))
+        self.assertTrue(np.array_equal(data["Half"], DENSITY.astype(np.float16).astype(np.float32)))
+
+    def test_named_twice(self):
+        text = "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nPOINT_DATA 1\n"
+        self.at("body.vtk").write_text(text + "FIELD f 2\nh 1 1 float\n1\nh 1 1 float\n2\n")
+        with self.assertWarnsRegex(mc.InputWarning, "body.vtk has several arrays 'h'; the last one is taken"):
+            self.assertEqual(io.read(self.at("body.vtk")).arrays["h"].tolist(), [2])
+
+    def test_one_of_no_files(self):
+        write_gadget(self.at("snap.0.hdf5"), files=0)
+        self.assertEqual(len(io.read(self.at("snap.0.hdf5"))), len(X))
+
+    def test_legacy_strings(self):
+        """Beside numbers, in text and bytes."""
+        import pyvista
+
+        for binary in (False, True):
+            body = pyvista.PolyData(X)
+            body.field_data["constants"], body.field_data["TIME"] = ["h:0.025", "", "m 0.56", "x" * 300], [0.5]
+            body["Density"], body["words"] = DENSITY, [str(i) for i in range(len(X))]
+            body["Marks"] = X[:, 0] < 0
+            body.save(self.at("body.vtk"), binary=binary)
+            particles = io.read(self.at("body.vtk"))
+            self.assertEqual(particles.time, 0.5)
+            self.assertEqual(sorted(particles.arrays), ["Density", "Marks"])
+            self.assertLess(np.abs(particles.arrays["Density"] - DENSITY).max(), 1e-9)
+            self.assertEqual(particles.arrays["Marks"].tolist(), (X[:, 0] < 0).tolist())
+
     def test_lazy(self):
         """No array is read before it is used."""
         write_gadget(self.at("snap.hdf5"))
@@ -530,6 +585,19 @@ class Layouts(Case):
 
 
 class Conversion(Case):
+    def test_blocks(self):
+        """Of all blocks as one set; those with names of walls are walls."""
+        import pyvista
+
+        blocks = pyvista.MultiBlock()
+        for name, chosen in (("water", ~WALL), ("wall", WALL)):
+            blocks[name] = pyvista.PolyData(X[chosen])
+            blocks[name]["h"], blocks[name]["m"], blocks[name]["rho"] = np.full(chosen.sum(), H), MASS[chosen], DENSITY[chosen]
+        order = np.concatenate([np.flatnonzero(~WALL), np.flatnonzero(WALL)])
+        wanted = quietly(mc.free_surface, X[order], smoothing_length=H, mass=MASS[order], density=DENSITY[order],
+                         solid=WALL[order])
+        self.assertTrue(np.array_equal(quietly(blocks.sph.free_surface).points, wanted.points))
+
     def test_pyvista(self):
         write_bi4(self.at("Part_0003.bi4"), period=3)
         data = mc.read_pyvista(self.at("Part_0003.bi4"))

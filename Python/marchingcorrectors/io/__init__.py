@@ -33,8 +33,8 @@ def read(path, *, types=None, walls=()):
     except FileError:
         raise
     except ImportError as error:
-        raise FileError(f"{paths[0].name} needs the package {error.name}: "
-                        'pip install "marching-correctors[files,vtk]".') from None
+        package = "vtk" if str(error.name).startswith("vtk") else str(error.name).partition(".")[0]
+        raise FileError(f"{paths[0].name} needs the package {package}: pip install {package}.") from None
     except MemoryError:
         raise FileError(f"{paths[0].name} asks for more memory than there is: it is damaged, or too large.") from None
     except Exception as error:  # of a damaged file each library has its own kinds

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from .. import _structs as c
 from .._library import Error, lib
 from .._options import did_you_mean, words_of
 from .._warnings import warn
@@ -18,6 +19,8 @@ KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6"
 
 # Names of bodies and of sets that tell of walls; rb_particle_data is SPlisHSPlasH's rigid bodies.
 WALL = re.compile(r"wall|bound|solid|obstacle|rigid|rb_particle|container|tank", re.I)
+
+TIMES = ("TimeValue", "TIME", "time")  # arrays of field data, in VTK's files
 
 
 class FileError(Error, ValueError):
@@ -52,7 +55,9 @@ class Lazy(Mapping):
             if name not in self._read:
                 raise KeyError(name)
             try:
-                self._kept[name] = self._read[name]()
+                array = self._read[name]()
+                kind = {np.dtype(np.float16): np.float32, np.dtype(np.longdouble): np.float64}.get(array.dtype, array.dtype)
+                self._kept[name] = array.astype(kind, copy=False)  # of a type that all functions take
             except FileError:
                 raise
             except MemoryError:
@@ -75,7 +80,7 @@ class Lazy(Mapping):
 class Particles:
     """Positions, arrays, and what the functions of this package want to know.
 
-    smoothing_length, mass, density: the name of an array, one value, or None. support_radius: whether
+    smoothing_length, volume, mass, density: the name of an array, one value, or None. support_radius: whether
     the smoothing length is the radius at which the kernel ends. h_factor: what it is multiplied with.
     solid: None, or for each particle whether it is a wall. parameters: all else that the file says
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
@@ -86,6 +91,7 @@ class Particles:
         self._all = Lazy({"": positions, **arrays}, file)
         self.arrays = Lazy({name: lambda n=name: self._all[n] for name in arrays}, file)
         self.smoothing_length = self.mass = self.density = self.kernel = self.rho0 = None
+        self.volume = None
         self.support_radius, self.h_factor = False, 1.0
         self.solid = self.period = self.time = None
         self.dimension, self.parameters = 3, {}
@@ -116,6 +122,9 @@ class Particles:
     def quantity(self, name):
         value = getattr(self, name)
         value = self.array(value) if isinstance(value, str) else value
+        if np.ndim(value) and np.shape(value) != (len(self),):
+            raise FileError(f"{self.file}: the array '{getattr(self, name)}' has the shape {np.shape(value)}, where {name} "
+                            f"is one number for each of {len(self)} particles.")
         if name == "smoothing_length" and value is not None and self.h_factor != 1:
             value = value * self.h_factor
         return value
@@ -127,9 +136,12 @@ class Particles:
             words["smoothing_length"] = self.quantity("smoothing_length")
             if words["smoothing_length"] is not None:
                 words.setdefault("smoothing_length_is_support_radius", self.support_radius)
-        if all(words.get(name) is None for name in ("volume", "mass", "density")):
-            words["mass"] = self.quantity("mass")
-            words["density"] = self.quantity("density") if words["mass"] is not None else None
+        if words.get("mass") is None and words.get("density") is None and words.get("volume") is None:
+            words["volume"] = self.quantity("volume")
+        if words.get("volume") is None:  # what is given of mass and density takes the file's place, the other stays
+            words["mass"] = self.quantity("mass") if words.get("mass") is None else words["mass"]
+            if words["mass"] is not None and words.get("density") is None:
+                words["density"] = self.quantity("density")
         if words.get("solid") is None and self.solid is not None:
             words["solid"] = self.solid
         if self.period is not None:
@@ -145,6 +157,24 @@ class Particles:
         if isinstance(names, (list, tuple)):
             words["attributes"] = {name: self.array(name) for name in names}
         return words
+
+
+def usual(names, quantity):
+    """The name most usual for a quantity, of several; None where none is. The core knows them."""
+    number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
+    ranks = [(lib.mcor_name_priority(number, name.encode(errors="replace")), i) for i, name in enumerate(names)]
+    best = min((rank for rank in ranks if rank[0] >= 0), default=None)
+    return names[best[1]] if best else None
+
+
+def by_name(file, pairs):
+    """{name: thing}; of several of one name the last, as in VTK, with a warning."""
+    found = {}
+    for name, thing in pairs:
+        if name in found:
+            warn(f"{file} has several arrays '{name}'; the last one is taken.")
+        found[name] = thing
+    return found
 
 
 def check_claim(file, thing, claimed, there):

@@ -8,7 +8,7 @@ import zlib
 
 import numpy as np
 
-from ._particles import FileError, Particles
+from ._particles import FileError, Particles, by_name
 
 TYPES = {0: ">f4", 1: ">i4", 5: ">f4"}  # float, int, vector
 LIMIT = 1000  # deflate packs no more than that
@@ -58,6 +58,6 @@ def read_bgeo(path):
         return lambda: np.ascontiguousarray(table[str(i)][:, 0] if size == 1 else table[str(i)]).astype(
             fields[i][1].replace(">", "="))
 
-    arrays = {name: column(i, size) for i, (name, _, size) in enumerate(fields) if i}
+    arrays = by_name(path.name, ((name, column(i, size)) for i, (name, _, size) in enumerate(fields) if i))
     return Particles(path.name, "bgeo", lambda: np.ascontiguousarray(table["0"][:, :3]).astype("=f4"), arrays,
                      density="density" if "density" in arrays else None)

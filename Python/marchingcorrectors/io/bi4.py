@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._particles import FileError, Particles
+from ._particles import FileError, Particles, by_name
 
 PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8", 10: "u8", 11: "f4", 12: "f8",
          20: "i4", 21: "u4", 22: "f4", 23: "f8"}
@@ -107,7 +107,7 @@ class Reader:
         if size:
             self.expect("\nVALUES")
             values = dict(self.value() for _ in range(self.number()))
-        found = dict(self.array() for _ in range(arrays))
+        found = by_name(self.name, (self.array() for _ in range(arrays)))
         return values, found, [self.item(depth + 1) for _ in range(items)]
 
 

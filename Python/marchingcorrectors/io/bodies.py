@@ -3,7 +3,7 @@
 """VTK's files (.vtp, .vtu, .vtk) of SPHinXsys, PartVTK, SPlisHSPlasH: several bodies as one set, walls marked."""
 import numpy as np
 
-from ._particles import WALL, FileError, Particles, join
+from ._particles import WALL, Particles, join, usual
 from .legacy import read_legacy
 from .vtk_xml import read_xml
 
@@ -32,15 +32,11 @@ def read_bodies(paths, walls):
     common = [name for name in fluids[0][1] if all(
         name in arrays and arrays[name].shape[1:] == fluids[0][1][name].shape[1:] for _, arrays, _ in fluids)]
     arrays = {name: lambda n=name: column(n, bodies, fluids) for name in common}
-    lower = {name.lower(): name for name in reversed(common)}
-
-    def find(*names):
-        return next((lower[name] for name in names if name in lower), None)
-
+    single = [name for name in common if fluids[0][1][name].ndim == 1]
     solid = np.repeat(marked, counts)
     if "Type" in common and ("Rhop" in common or "Idp" in common):
         solid |= arrays["Type"]() != 3  # PartVTK's
     return Particles(paths[0].name, "VTK", lambda: join([points for points, _, _ in bodies]), arrays,
-                     smoothing_length=find("smoothinglength", "hsml", "h"), mass=find("mass", "masses", "m"),
-                     density=find("density", "rho", "rhop"), solid=solid if solid.any() else None,
-                     time=bodies[0][2], parameters={"bodies": dict(zip([path.name for path in every], counts))})
+                     **{name: usual(single, name) for name in ("smoothing_length", "volume", "mass", "density")},
+                     solid=solid if solid.any() else None, time=bodies[0][2],
+                     parameters={"bodies": dict(zip([path.name for path in every], counts))})

@@ -29,7 +29,7 @@ def text(value):
 def files_of(path, count):
     """All files of a snapshot that is in several, NAME.0.hdf5, ..."""
     found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5)", path.name)
-    if count == 1 or not found:
+    if count <= 1 or not found:  # 0 in some that are whole
         return [path]
     if count > 65536:
         raise FileError(f"{path.name} claims to be one of {count} files.")

@@ -7,7 +7,8 @@ from urllib.parse import unquote_to_bytes
 
 import numpy as np
 
-from ._particles import FileError
+from .._warnings import warn
+from ._particles import TIMES, FileError
 from ._text import parse_numbers
 
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
@@ -50,8 +51,12 @@ class Legacy:
         return []
 
     def values(self, kind, count, columns=1):
-        code, count, columns = KINDS.get(kind.lower()), int(count), int(columns)
-        left = len(self.data) - self.at
+        kind, count, columns = kind.lower(), int(count), int(columns)
+        code, left = KINDS.get(kind), len(self.data) - self.at
+        if kind in ("string", "utf8_string", "variant"):
+            return self.skip_strings(count * columns, self.text or kind == "variant")
+        if kind == "bit" and not self.text:
+            return self.values("unsigned_char", (count * columns + 7) // 8)[:0]
         if code is None or count < 0 or not 0 < columns <= 1000:
             raise self.damaged()
         size = count * columns * (2 if self.text else np.dtype(code).itemsize)
@@ -64,6 +69,25 @@ class Legacy:
             values = np.frombuffer(self.data, ">" + code, count * columns, self.at).astype(code)
             self.at += size
         return values.reshape(count, columns) if columns > 1 else values
+
+    def skip_strings(self, count, in_lines):
+        """A line each; or behind its length, of whose first byte two bits tell how many bytes it has: 8, 4, 2 or 1."""
+        for _ in range(count):
+            if in_lines:
+                self.at = self.data.find(b"\n", self.at) + 1 or len(self.data) + 1
+            else:
+                size = 8 >> (self.data[self.at] >> 6)
+                self.at += size + (int.from_bytes(self.data[self.at:self.at + size], "big") & (1 << (8 * size - 2)) - 1)
+            if self.at > len(self.data):
+                raise self.damaged()
+        return np.empty(0)
+
+    def put(self, into, name, values):
+        """As VTK, which writes blanks and the like as %20, and of two arrays of one name keeps the last."""
+        name = unquote_to_bytes(name).decode(errors="replace")
+        if name in self.arrays and into is self.arrays:
+            warn(f"{self.name} has several arrays '{name}'; the last one is taken.")
+        into[name] = values
 
     def section(self, words, into):
         """Reads what words begin; into: where arrays go. Returns where those after it go."""
@@ -86,17 +110,17 @@ class Legacy:
         elif word == "FIELD":
             for _ in range(int(rest[1])):
                 name, columns, count, kind = self.next_array()
-                into[plain(name)] = self.values(kind, count, columns)
+                self.put(into, name, self.values(kind, count, columns))
         elif word == "SCALARS":
             if self.line()[0].upper() != "LOOKUP_TABLE":
                 raise self.damaged()
-            into[plain(rest[0])] = self.values(rest[1], self.count, rest[2] if len(rest) > 2 else 1)
+            self.put(into, rest[0], self.values(rest[1], self.count, rest[2] if len(rest) > 2 else 1))
         elif word in COLUMNS:
-            into[plain(rest[0])] = self.values(rest[1], self.count, COLUMNS[word])
+            self.put(into, rest[0], self.values(rest[1], self.count, COLUMNS[word]))
         elif word == "TEXTURE_COORDINATES":
-            into[plain(rest[0])] = self.values(rest[2], self.count, rest[1])
+            self.put(into, rest[0], self.values(rest[2], self.count, rest[1]))
         elif word == "COLOR_SCALARS":
-            into[plain(rest[0])] = self.values("float" if self.text else "unsigned_char", self.count, rest[1])
+            self.put(into, rest[0], self.values("float" if self.text else "unsigned_char", self.count, rest[1]))
         elif word == "LOOKUP_TABLE":
             self.values("float" if self.text else "unsigned_char", rest[1], 4)
         elif word == "METADATA":
@@ -114,13 +138,8 @@ class Legacy:
 
     def skip_metadata(self):
         """It ends with an empty line."""
-        end = self.data.find(b"\n\n", self.at)
-        self.at = end + 2 if end >= 0 else len(self.data)
-
-
-def plain(name):
-    """VTK writes blanks and the like as %20."""
-    return unquote_to_bytes(name).decode(errors="replace")
+        end = re.compile(rb"\n\r?\n").search(self.data, self.at)
+        self.at = end.end() if end else len(self.data)
 
 
 def read_legacy(path):
@@ -132,6 +151,6 @@ def read_legacy(path):
     except Exception:  # words that are no numbers, or too few
         raise FileError(f"{path.name} is damaged, or ends too early.") from None
     count = len(legacy.points)
-    time = next((legacy.field[name] for name in ("TimeValue", "TIME") if name in legacy.field), ())
+    time = next((legacy.field[name] for name in TIMES if name in legacy.field), ())
     return (legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
             float(np.ravel(time)[0]) if len(time) else None)

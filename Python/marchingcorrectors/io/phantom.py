@@ -41,7 +41,11 @@ def make(path, array, positions, names, values):
 
 
 def read_native(path):
-    import sarracen
+    try:
+        import sarracen
+    except ImportError:  # scikit-learn, which it does not ask for, goes by another name
+        raise FileError(f"{path.name} is a dump of Phantom's own format, which the packages sarracen and scikit-learn read: "
+                        "pip install sarracen scikit-learn.") from None
 
     frames = sarracen.read_phantom(str(path), separate_types=None)
     frame = frames[frames["itype"] == 1] if "itype" in frames else frames

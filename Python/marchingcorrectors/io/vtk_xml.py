@@ -13,7 +13,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from ._particles import FileError, check_claim
+from ._particles import TIMES, FileError, by_name, check_claim
 from ._text import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
@@ -166,10 +166,10 @@ def read_xml(path):
         if not pieces:
             raise FileError(f"{path.name} has no points.")
         points = np.concatenate([file.values(piece["Points"][0]) for piece in pieces])
-        each = [{array.name: array for array in piece["PointData"]} for piece in pieces]
+        each = [by_name(path.name, ((array.name, array) for array in piece["PointData"])) for piece in pieces]
         names = [name for name in each[0] if all(name in own and own[name].columns == each[0][name].columns for own in each)]
         arrays = {name: np.concatenate([file.values(own[name]) for own in each]) for name in names}
-        time = next((file.values(array).ravel() for array in file.field if array.name in ("TimeValue", "TIME")), ())
+        time = next((file.values(array).ravel() for array in file.field if array.name in TIMES), ())
     except (FileError, ImportError, MemoryError):
         raise
     except Exception as error:

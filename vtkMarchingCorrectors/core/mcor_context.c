@@ -57,10 +57,11 @@ mcor_status mcor_create_shared_context(
     return MCOR_OUT_OF_CAPACITY;
   }
   (*context)->report_interval = MCOR_REPORT_SECONDS;
-  const mcor_status status = place >= 0 && place < count
+  mcor_status status = place >= 0 && place < count
     ? mcor_open_device(*context, device, place, count)
     : mcor_fail(
         *context, MCOR_INVALID_ARGUMENT, "place is %d; it must be from 0 to %d.", place, count - 1);
+  status = status == MCOR_OK ? mcor_upload_case_table(*context) : status;
   (*context)->created = status == MCOR_OK;
   return status;
 }
@@ -93,13 +94,22 @@ void mcor_release_memory(mcor_context* context)
   context->attributes.varying_count = 0;
 }
 
+void mcor_release_all_data(mcor_context* context)
+{
+  mcor_release_memory(context);
+  MCOR_RELEASE(
+    context, &context->case_table, &context->topology.cases, &context->topology.rows);
+  mcor_drop_kept(context, 0);
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
+}
+
 void mcor_free_context(mcor_context* context)
 {
   if (!context)
   {
     return;
   }
-  mcor_release_memory(context);
+  mcor_release_all_data(context);
   mcor_close_device(context);
   free(context);
 }
@@ -115,6 +125,9 @@ mcor_status mcor_prepare(
     MCOR_TRY(mcor_measure_input(context, input, options));
   }
   MCOR_TRY(mcor_measure_wall(context, input));
+  const mcor_measure* m = &context->measure;
+  context->cl.terms =
+    fmin(m->neighbours * pow(options->h_scale, 3), (double)(m->fluid_count + m->solid_count));
   mcor_place_box(context, options);
   context->grid.has_solids = context->measure.solid_count > 0 && context->run.uses_solids;
   const mcor_build build = { .sph_kernel = options->sph_kernel,
@@ -158,6 +171,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
     .fraction_end = 0.1,
     .report_time = mcor_seconds() };
   context->cl.build_seconds = 0;
+  context->cl.observer = options->progress ? mcor_observe_call : NULL;
   context->grid.view = 0;
   mcor_begin_buffers(context);
   mcor_flat flat;
@@ -171,6 +185,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
   mcor_end_fill(context);
+  context->cl.observer = NULL;
   context->run = (mcor_run){ .fraction = context->run.fraction };
   mcor_end_box(context);
   mcor_end_rounds(context);

@@ -152,6 +152,8 @@ typedef mcor_status (*mcor_body)(
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
+/* Gives back everything on the device, the tables that stay between calls, too. */
+void mcor_release_all_data(mcor_context* context);
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 
@@ -166,6 +168,8 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
 /* Reports between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
  * nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
+/* The observer of calls that report progress. */
+mcor_status mcor_observe_call(mcor_context* context, bool compiles);
 /* Ends the phase under way, reports progress and may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
@@ -295,6 +299,8 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
 /* 256 rows of 16: up to 15 edges, 3 a triangle, see mcor_cell_row; then the number of triangles. */
 void mcor_make_case_table(uint8_t table[256][16]);
+/* Unless it is on the device. */
+mcor_status mcor_upload_case_table(mcor_context* context);
 
 #define MCOR_TOPOLOGY_ROWS 1200
 typedef struct mcor_topology_table

@@ -256,7 +256,7 @@ typedef struct mcor_run
   mcor_statistics* statistics;
   int iso_number; /* of the iso value under way */
   mcor_phase phase;
-  double phase_begin;
+  double phase_begin, phase_built; /* cl.build_seconds then */
   const char* doing;             /* what runs, as last reported */
   double fraction, fraction_end; /* last reported, also by a first attempt; where what runs ends */
   double report_time;            /* of the last report */

@@ -37,13 +37,31 @@ mcor_status mcor_report_launch(mcor_context* context)
     context->run.fraction_end);
 }
 
+mcor_status mcor_observe_call(mcor_context* context, bool compiles)
+{
+  const mcor_options* options = context->run.options;
+  if (!compiles)
+  {
+    return mcor_report_launch(context);
+  }
+  const bool told = context->run.building_told;
+  context->run.building_told = true;
+  MCOR_RETURN_IF(!told && options->progress(options->progress_user, context->run.fraction,
+                            "building the OpenCL program (first time only)") != 0,
+    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
+  return MCOR_OK;
+}
+
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end)
 {
   MCOR_TRY(mcor_finish(context));
   const double now = mcor_seconds();
-  context->run.statistics->seconds[context->run.phase] += now - context->run.phase_begin;
+  const double built = context->cl.build_seconds; /* told apart from the phase */
+  context->run.statistics->seconds[context->run.phase] +=
+    now - context->run.phase_begin - (built - context->run.phase_built);
   context->run.phase = phase;
   context->run.phase_begin = now;
+  context->run.phase_built = built;
   context->run.building_told = false;
   return mcor_report(context, mcor_phase_name(phase), fraction, end);
 }

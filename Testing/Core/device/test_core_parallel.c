@@ -130,6 +130,7 @@ static void test_cancelled(void** state)
   options.progress = ask;
   context->run.options = &options;
   context->run.doing = "a loop";
+  context->cl.observer = mcor_observe_call;
   context->report_interval = 0;
   for (int most = 0; most < 3; ++most)
   {

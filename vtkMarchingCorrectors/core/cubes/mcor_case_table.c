@@ -418,3 +418,14 @@ void mcor_make_topology_table(mcor_topology_table* table)
     assert(table->row_count <= MCOR_TOPOLOGY_ROWS);
   }
 }
+
+mcor_status mcor_upload_case_table(mcor_context* context)
+{
+  uint8_t table[256][16];
+  if (context->case_table.mem)
+  {
+    return MCOR_OK;
+  }
+  mcor_make_case_table(table);
+  return mcor_write(context, &context->case_table, table, sizeof table);
+}

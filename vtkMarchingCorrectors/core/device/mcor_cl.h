@@ -47,6 +47,10 @@ typedef struct mcor_kernel
   double part;         /* work-items launched at once, see mcor_enqueue_cut; 0: not known yet */
 } mcor_kernel;
 
+/* Asked between launches, and before a driver compiles, which may take seconds. A call
+ * ends with the status if it is not MCOR_OK. */
+typedef mcor_status (*mcor_observer)(mcor_context* context, bool compiles);
+
 typedef struct mcor_cl
 {
   cl_platform_id platform;
@@ -76,6 +80,8 @@ typedef struct mcor_cl
   int kept_count;
   int64_t kept_bytes, used_peak, used_before; /* used_peak: without those kept; of the last call */
   double build_seconds;                       /* of the call under way */
+  mcor_observer observer;                      /* of the call under way; NULL: none */
+  double terms;                               /* of the sum at a point, about; for mcor_is_cut */
   bool compiles; /* the driver does, at a kernel's first launch: the last one took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
@@ -127,7 +133,7 @@ typedef enum mcor_load
 /* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
 /* Before a call: where no device was named and this one cannot do the build, the best one that can is opened.
- * release: gives back what is on this one. */
+ * release: gives back all that is on this one. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);

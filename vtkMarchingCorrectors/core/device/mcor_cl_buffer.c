@@ -245,7 +245,7 @@ mcor_status mcor_fill_range(
       clEnqueueFillBuffer(
         context->cl.queue, buffer->mem, &byte, sizeof byte, at, bytes, 0, NULL, NULL),
       "clEnqueueFillBuffer");
-    MCOR_TRY(mcor_report_launch(context));
+    MCOR_TRY(mcor_ask(context, false));
   }
   return MCOR_OK;
 }
@@ -260,7 +260,7 @@ mcor_status mcor_copy(
       clEnqueueCopyBuffer(
         context->cl.queue, from->mem, to->mem, at, to_offset + at, step, 0, NULL, NULL),
       "clEnqueueCopyBuffer");
-    MCOR_TRY(mcor_report_launch(context));
+    MCOR_TRY(mcor_ask(context, false));
   }
   return MCOR_OK;
 }

@@ -35,6 +35,11 @@ void mcor_blame_files(mcor_context* context);
 /* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
+static inline mcor_status mcor_ask(mcor_context* context, bool compiles)
+{
+  return context->cl.observer ? context->cl.observer(context, compiles) : MCOR_OK;
+}
+
 static inline bool mcor_is_native(const mcor_cl* cl)
 {
   return cl->platform == mcor_native_platform();
@@ -50,9 +55,5 @@ static inline bool mcor_is_pocl(const mcor_cl* cl)
 mcor_status mcor_need_program(mcor_context* context, mcor_program number);
 /* Drops the programs, or those that depend on what is computed, and their kernels. */
 void mcor_drop_programs(mcor_cl* cl, bool all);
-/* Tells the caller, once in a phase, that the next is building, which may take seconds. */
-mcor_status mcor_report_building(mcor_context* context);
-/* Building is reported apart from the phase in which it happens. */
-void mcor_add_build_seconds(mcor_context* context, double seconds);
 
 #endif

@@ -284,9 +284,7 @@ static mcor_status mcor_start_device(
   cl->timed_queue =
     clCreateCommandQueue(cl->context, cl->device, CL_QUEUE_PROFILING_ENABLE, &error);
   MCOR_CL_TRY(context, error, "clCreateCommandQueue");
-  uint8_t table[256][16];
-  mcor_make_case_table(table);
-  return mcor_write(context, &context->case_table, table, sizeof table);
+  return MCOR_OK;
 }
 
 static mcor_status mcor_fail_without_device(
@@ -353,9 +351,6 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 void mcor_close_device(mcor_context* context)
 {
   mcor_cl* cl = &context->cl;
-  mcor_release(context, &context->case_table);
-  mcor_release(context, &context->topology.cases);
-  mcor_release(context, &context->topology.rows);
   mcor_drop_programs(cl, true);
   free(cl->kernels);
   if (cl->timed_queue)
@@ -399,9 +394,11 @@ mcor_status mcor_settle_device(
     return MCOR_OK;
   }
   release(context);
-  context->kept.grid = context->kept.value = context->kept.nodes = false;
   mcor_close_device(context);
-  *cl = (mcor_cl){ .is_default = true, .place = before.place, .count = before.count };
+  *cl = (mcor_cl){ .is_default = true,
+    .place = before.place,
+    .count = before.count,
+    .observer = before.observer };
   const mcor_status status = mcor_start_default(context, &list, build);
   cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory
     ? before.memory_limit

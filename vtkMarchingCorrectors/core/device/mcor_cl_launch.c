@@ -123,7 +123,7 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
     clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL) == CL_SUCCESS)
   {
     const double building = fmax(seconds - 1e-9 * (double)(end - start), 0);
-    mcor_add_build_seconds(context, building);
+    cl->build_seconds += building;
     cl->compiles = building > MCOR_COMPILE_SECONDS;
   }
   clReleaseEvent(event);
@@ -149,8 +149,7 @@ typedef struct mcor_parts
 
 static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 {
-  const mcor_options* options = context->run.options;
-  const bool watched = options && options->progress;
+  const bool watched = context->cl.observer != NULL;
   return load == MCOR_HEAVY ? !context->cl.is_cpu || watched
                             : watched && mcor_is_native(&context->cl);
 }
@@ -158,13 +157,9 @@ static bool mcor_is_cut(const mcor_context* context, mcor_load load)
 /* Work-items of a part at most. What one does goes with the particles that reach a point. */
 static double mcor_part_limit(const mcor_context* context)
 {
-  const mcor_measure* m = &context->measure;
-  const double scale = context->run.options ? context->run.options->h_scale : 1;
-  const double terms =
-    fmin(m->neighbours * scale * scale * scale, (double)m->fluid_count + (double)m->solid_count);
   const int limit =
     context->cl.real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
-  return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(terms, 1) : INFINITY;
+  return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(context->cl.terms, 1) : INFINITY;
 }
 
 /* On the built-in device parts cost nothing, where a driver may compile a kernel once more for what does not begin
@@ -195,7 +190,7 @@ static mcor_status mcor_enqueue_part(
   *launched = *launched || mcor_is_native(cl);
   if (!*launched && cl->compiles)
   {
-    MCOR_TRY(mcor_report_building(context));
+    MCOR_TRY(mcor_ask(context, true));
   }
   MCOR_CL_TRY(context,
     *launched
@@ -231,7 +226,7 @@ static mcor_status mcor_enqueue_cut(
       : seconds > 2 * MCOR_PART_SECONDS ? fmax(part * MCOR_PART_SECONDS / seconds, (double)group)
                                         : part;
     kernel->part = part;
-    MCOR_TRY(mcor_report_launch(context));
+    MCOR_TRY(mcor_ask(context, false));
   }
   return MCOR_OK;
 }
@@ -244,11 +239,11 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   {
     return MCOR_OK;
   }
-  if (load == MCOR_HEAVY && context->run.options && context->run.options->progress)
+  if (load == MCOR_HEAVY && cl->observer)
   {
     MCOR_TRY(mcor_finish(context)); /* so that what was launched before is not reported with it */
   }
-  MCOR_TRY(mcor_report_launch(context));
+  MCOR_TRY(mcor_ask(context, false));
   mcor_kernel* kernel = NULL;
   MCOR_TRY(mcor_find_kernel(context, name, &kernel));
   cl_uint wanted = 0;

@@ -35,24 +35,6 @@ void mcor_drop_programs(mcor_cl* cl, bool all)
   }
 }
 
-mcor_status mcor_report_building(mcor_context* context)
-{
-  const mcor_options* options = context->run.options;
-  const char* phase = "building the OpenCL program (first time only)";
-  const bool told = context->run.building_told;
-  context->run.building_told = true;
-  MCOR_RETURN_IF(!told && options && options->progress &&
-      options->progress(options->progress_user, context->run.fraction, phase) != 0,
-    context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
-  return MCOR_OK;
-}
-
-void mcor_add_build_seconds(mcor_context* context, double seconds)
-{
-  context->cl.build_seconds += seconds;
-  context->run.phase_begin += seconds;
-}
-
 static mcor_status mcor_fail_build(
   mcor_context* context, cl_program program, cl_int error, const char* options)
 {
@@ -120,10 +102,10 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_report_building(context));
+  MCOR_TRY(mcor_ask(context, true));
   const double begin = mcor_seconds();
   const mcor_status status = mcor_build_program(context, number);
-  mcor_add_build_seconds(context, mcor_seconds() - begin);
+  context->cl.build_seconds += mcor_seconds() - begin;
   return status;
 }
 

@@ -39,7 +39,7 @@ static mcor_status mcor_pool_work(mcor_pool* pool, mcor_context* context)
        i = atomic_fetch_add(&pool->next, step))
   {
     pool->body(pool->data, i, last - i < step ? last : i + step);
-    status = context ? mcor_report_launch(context) : MCOR_OK;
+    status = context ? mcor_ask(context, false) : MCOR_OK;
     if (status != MCOR_OK)
     {
       atomic_store(&pool->next, last);

@@ -248,5 +248,6 @@ mcor_status mcor_check_input(
     .field = options->field,
     .precision = options->precision,
     .solids = mcor_uses_solids(input, options) && input->solid };
-  return mcor_settle_device(context, &build, mcor_release_memory);
+  MCOR_TRY(mcor_settle_device(context, &build, mcor_release_all_data));
+  return mcor_upload_case_table(context);
 }

@@ -7,7 +7,9 @@
 
 With PyVista: particles.sph.isosurface("Velocity", 1.0). With VTK: vtkMarchingCorrectors.
 """
+import sys as _sys
 from pkgutil import extend_path as _extend_path
+from typing import TYPE_CHECKING, Any, List
 
 from ._context import Context
 from ._functions import derivatives, flow, free_surface, isosurface, probe
@@ -18,6 +20,19 @@ from ._structs import VERSION as __version__
 from ._surface import Derivatives, Samples, Surface
 from ._warnings import InputWarning
 
+if TYPE_CHECKING:
+    import pyvista
+
+    from . import io as io
+
+    vtkMarchingCorrectors: Any
+    vtkSPHComponents: Any
+    vtkSPHDerivatives: Any
+    vtkSPHGauge: Any
+    vtkSPHProbe: Any
+    vtkSPHResample: Any
+    vtkSPHTemporalInterpolator: Any
+
 __all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Gauges", "InputWarning", "InvalidArgument",
            "InvalidData", "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow",
            "free_surface", "gauge", "isosurface", "probe", "read_pyvista"]
@@ -26,7 +41,7 @@ __all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Gauge
 __path__ = _extend_path(__path__, __name__)
 
 
-def read_pyvista(path, **words):
+def read_pyvista(path: Any, **words: Any) -> "pyvista.PolyData":
     """A solver's file as pyvista.PolyData, for particles.sph; words are those of io.read()."""
     import pyvista
 
@@ -36,14 +51,24 @@ def read_pyvista(path, **words):
     return pyvista.wrap(to_vtk(read(path, **words)))
 
 
-def __getattr__(name):
-    """VTK's classes, and io, when they are asked for: NumPy users need no VTK."""
-    if name == "io":
-        from importlib import import_module
+def __dir__() -> List[str]:
+    return sorted([*__all__, "__version__", "io", "vtkMarchingCorrectors"])
 
-        return import_module(".io", __name__)
-    if name == "vtkMarchingCorrectors" or name.startswith("vtkSPH"):
-        from ._vtk import find_class
 
-        return find_class(name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+if not TYPE_CHECKING:  # whose checkers know the names above, and no others
+    def __getattr__(name):
+        """VTK's classes, and io, when they are asked for: NumPy users need no VTK."""
+        if name == "io":
+            from importlib import import_module
+
+            return import_module(".io", __name__)
+        if name == "vtkMarchingCorrectors" or name.startswith("vtkSPH"):
+            from ._vtk import find_class
+
+            try:
+                return find_class(name)
+            except ImportError as error:
+                if _sys._getframe(1).f_globals.get("__name__") == "importlib._bootstrap":
+                    raise  # "from marchingcorrectors import ..." says this sentence
+                raise AttributeError(str(error)) from None
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,11 +1,14 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Contexts: a device with its compiled programs, and what it keeps between calls."""
+from __future__ import annotations
+
 import contextlib
 import ctypes
 import os
 import signal
 import threading
+from typing import Union
 
 import numpy as np
 
@@ -25,16 +28,16 @@ class Context:
     numbers as `particles_version` (and `scalar_version`).
     """
 
-    def __init__(self, device=None):
+    def __init__(self, device: Union[None, str, int] = None) -> None:
         self._pid = os.getpid()
         self._lock = threading.Lock()
         self._used_by = None  # the thread that has the lock
         self._handle = ctypes.c_void_p()
-        wanted = "" if device is None else str(device)
+        self._wanted = "" if device is None else str(device)
         start()
         if not _list():
             raise DeviceError(NO_DEVICE)
-        status = lib.mcor_create_context(wanted.encode(errors="replace"), ctypes.byref(self._handle))
+        status = lib.mcor_create_context(self._wanted.encode(errors="replace"), ctypes.byref(self._handle))
         if status:
             sentence = self._sentence()
             self.close()
@@ -57,13 +60,13 @@ class Context:
         return (lib.mcor_last_error(self._handle) if self._handle else b"").decode(errors="replace") \
             or "Memory ran out."
 
-    def release_memory(self):
+    def release_memory(self) -> None:
         """Drops what is kept on the device between calls; compiled programs stay."""
         with self._alone():
             if self._handle:
                 lib.mcor_release_memory(self._handle)
 
-    def close(self):
+    def close(self) -> None:
         """Gives the device back. Using the context afterwards is an error."""
         # A forked child has the handle, but not the driver's threads.
         if self._handle and self._pid == os.getpid():
@@ -71,10 +74,13 @@ class Context:
                 lib.mcor_free_context(self._handle)
         self._handle = ctypes.c_void_p()
 
-    def __enter__(self):
+    def __repr__(self) -> str:
+        return f"<Context: {'closed' if not self._handle else self._wanted or 'the device that is found first'}>"
+
+    def __enter__(self) -> Context:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def __reduce__(self):

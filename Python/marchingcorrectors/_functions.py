@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import functools
-from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Union, cast
 
 import numpy as np
 
@@ -15,19 +15,31 @@ from ._arrays import (Arguments, as_named, as_points, contiguous, is_real, left_
                       take_all, take_each, take_lines)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, lib
-from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, check_names, with_options
+from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, check_names, with_options
 from ._surface import Derivatives, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
 from ._warnings import describe_warnings, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-    from typing_extensions import Literal, Unpack
+    from typing_extensions import Literal, Protocol, Unpack
 
     from ._options import Options
+    from .io import Particles
 
+    class Frame(Protocol):
+        """A table of columns, as of pandas."""
+
+        @property
+        def columns(self) -> Any: ...
+
+        def __getitem__(self, name: Any, /) -> Any: ...
+
+    Positions = Union[ArrayLike, Particles]
     Progress = Union[bool, Callable[[float, str], Any]]
-    Attributes = Mapping[str, ArrayLike]
+    Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
+
+QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 
 
 def prepare(units, attributes, given, options):
@@ -67,29 +79,27 @@ def called(function, kind, arguments, given, *more):
         getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))
 
 
-def _of_files(function):
-    """Particles of io.read() may stand in place of positions: an array's name is then an array, and what the file says
-    of h, mass, walls, kernel and period is taken, unless it is given."""
+def of_files(function: Function) -> Function:
+    """Decorator: particles of io.read() may stand in place of positions. An array's name is then an array, and what the
+    file says of h, mass, walls, kernel and period is taken, unless it is given."""
     @functools.wraps(function)
-    def call(positions, *arguments, **words):
+    def call(positions: Any, *arguments: Any, **words: Any) -> Any:
         if not hasattr(positions, "words"):
             return function(positions, *arguments, **words)
-        if function.__name__ == "derivatives":
-            if arguments:
-                words["attributes"], arguments = arguments[0], arguments[1:]
+        if function.__name__ == "derivatives" and arguments:
+            words["attributes"], arguments = arguments[0], arguments[1:]
         given = [positions.array(thing) if isinstance(thing, str) else thing for thing in arguments]
-        for name in ("scalar", "scalar_dot"):
+        for name in ("scalar", "scalar_dot", "solid", *QUANTITIES):
             if isinstance(words.get(name), str):
                 words[name] = positions.array(words[name])
-        words = positions.words(words)
-        return function(positions.positions, *given, **words)
+        return function(positions.positions, *given, **positions.words(words))
 
-    return call
+    return cast(Function, call)
 
 
-@_of_files
+@of_files
 @with_options(ISOSURFACE)
-def isosurface(positions: ArrayLike, scalar: Optional[ArrayLike], iso: Union[float, Sequence[float]], *,
+def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[float, Sequence[float]], *,
                smoothing_length: Optional[ArrayLike] = None,
                volume: Optional[ArrayLike] = None,
                mass: Optional[ArrayLike] = None,
@@ -207,9 +217,9 @@ def _surface(surface, arguments, names, attributes, from_nearest, nearest_wanted
                    statistics=statistics(surface.statistics))
 
 
-@_of_files
+@of_files
 @with_options(FREE_SURFACE)
-def free_surface(positions: ArrayLike, iso: Union[float, Sequence[float]] = 0.5, *,
+def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5, *,
                  smoothing_length: Optional[ArrayLike] = None,
                  volume: Optional[ArrayLike] = None,
                  mass: Optional[ArrayLike] = None,
@@ -231,9 +241,9 @@ def free_surface(positions: ArrayLike, iso: Union[float, Sequence[float]] = 0.5,
     return _extract({**locals(), "scalar": None, "scalar_dot": None}, {**options, "field": "weight_sum"})
 
 
-@_of_files
+@of_files
 @with_options(PROBE)
-def probe(positions: ArrayLike, points: ArrayLike, *,
+def probe(positions: Positions, points: ArrayLike, *,
           smoothing_length: Optional[ArrayLike] = None,
           volume: Optional[ArrayLike] = None,
           mass: Optional[ArrayLike] = None,
@@ -274,9 +284,9 @@ def _or_zeros(array, count):
     return np.zeros(count) if array is None else array
 
 
-@_of_files
+@of_files
 @with_options(DERIVATIVES)
-def derivatives(positions: ArrayLike, attributes: Attributes, *, form: Literal["corrected", "standard"] = "corrected",
+def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["corrected", "standard"] = "corrected",
                 smoothing_length: Optional[ArrayLike] = None,
                 volume: Optional[ArrayLike] = None,
                 mass: Optional[ArrayLike] = None,

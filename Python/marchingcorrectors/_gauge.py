@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field as dataclass_field
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
 
 import numpy as np
 
 from . import _structs as c
 from ._arrays import as_bytes, contiguous, statistics
 from ._context import Context
-from ._functions import called, prepare
+from ._functions import called, of_files, prepare
 from ._library import InvalidArgument, lib
 from ._options import GAUGE, check_names, with_options
 from ._surface import Result
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
+    from ._functions import Positions, Progress
     from ._options import Options
 
 STATES = np.array(["dry", "wet", "full"])
@@ -84,8 +85,9 @@ def _gauges(found, names):
         statistics=statistics(found.statistics))
 
 
+@of_files
 @with_options(GAUGE)
-def gauge(positions: ArrayLike, lines: Any, iso: float = 0.5, *,
+def gauge(positions: Positions, lines: Any, iso: float = 0.5, *,
           smoothing_length: Optional[ArrayLike] = None,
           volume: Optional[ArrayLike] = None,
           mass: Optional[ArrayLike] = None,
@@ -93,7 +95,7 @@ def gauge(positions: ArrayLike, lines: Any, iso: float = 0.5, *,
           solid: Optional[ArrayLike] = None,
           context: Optional[Context] = None,
           device: Union[None, str, int] = None,
-          progress: Optional[Union[bool, Callable[[float, str], Any]]] = None,
+          progress: Optional[Progress] = None,
           **options: Unpack[Options]) -> Gauges:
     """Water levels: where straight lines cross the free surface, every crossing.
 

@@ -5,6 +5,7 @@ import ctypes
 import os
 import threading
 from pathlib import Path
+from typing import List
 
 from . import _structs as c
 
@@ -119,7 +120,7 @@ def _list():
         _free(text)
 
 
-def devices():
+def devices() -> List[str]:
     """The devices, "device (platform)" each, in the order of their numbers: the built-in one, whose kernels
     are in this package, then those of OpenCL drivers, as the system's loader lists them.
     """

@@ -5,12 +5,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field as dataclass_field, fields
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
 
 import numpy as np
 
 from ._library import InvalidArgument
 from ._warnings import warn
+
+if TYPE_CHECKING:
+    import os
+
+    import meshio
+    import pyvista
+    import trimesh
 
 
 def _same(one, other):
@@ -77,14 +84,14 @@ class Surface(Result):
     statistics: Dict[str, Any] = dataclass_field(default_factory=dict)  #: as mcor_statistics of mcor.h
 
     @property
-    def lines(self):
+    def lines(self) -> List[np.ndarray]:
         """Of two dimensions: the points of each polyline, greater values on its left; a closed one ends with its
         first point."""
         if self.line_offsets is None:
             return []
         return np.split(self.line_points, self.line_offsets[1:-1]) if len(self.line_offsets) > 1 else []
 
-    def line_values(self):
+    def line_values(self) -> np.ndarray:
         """The iso value of each of the lines, which needs the array iso_value."""
         return self.iso_value[self.line_points[self.line_offsets[:-1]]]
 
@@ -94,7 +101,7 @@ class Surface(Result):
         return (f"<Surface: {len(self.points)} points, {cells}; "
                 f"arrays: {self._names(CELLS)}>")
 
-    def point_arrays(self):
+    def point_arrays(self) -> Dict[str, np.ndarray]:
         """{name: array} of all that points carry, under the names that VTK's filter gives them."""
         arrays = dict(self.attributes)
         for f in fields(self):
@@ -103,7 +110,7 @@ class Surface(Result):
                 arrays["".join(part.capitalize() for part in f.name.split("_"))] = array
         return arrays
 
-    def to_pyvista(self):
+    def to_pyvista(self) -> pyvista.PolyData:
         """A pyvista.PolyData with all arrays of the surface."""
         import pyvista
 
@@ -126,7 +133,7 @@ class Surface(Result):
         mesh.set_active_scalars(None)  # colours are for the user to choose
         return mesh
 
-    def to_trimesh(self):
+    def to_trimesh(self) -> trimesh.Trimesh:
         """A trimesh.Trimesh with all arrays of the points as vertex_attributes."""
         import trimesh
 
@@ -135,7 +142,7 @@ class Surface(Result):
         return trimesh.Trimesh(self.points, self.triangles, vertex_normals=normals, vertex_attributes=arrays,
                                process=False)
 
-    def to_meshio(self):
+    def to_meshio(self) -> meshio.Mesh:
         """A meshio.Mesh with all arrays of the points that hold numbers."""
         import meshio
 
@@ -151,7 +158,7 @@ class Surface(Result):
         of_lines = np.repeat(self.line_values(), np.diff(self.line_offsets) - 1)
         return meshio.Mesh(self.points, cells, point_data=arrays, cell_data={"BandValue": [of_lines, self.band_value]})
 
-    def save(self, path):
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes a file, whose name's end tells the format.
 
         .npz: NumPy's, all arrays by their names, read by numpy.load(). .ply: with all arrays of

@@ -18,7 +18,8 @@ from pathlib import Path
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pyvista,vtk"
 # What users have beside it: tests alone need these.
-OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel")
+OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel", "mypy",
+          "pyright[nodejs]")
 SKIPPED = 77
 
 

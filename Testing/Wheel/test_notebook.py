@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the notebook of Examples/Notebook: it says again what is kept in it, and draws the same pictures.
+"""Runs the notebook of Examples/Notebook in its own folder, as people do: it says again what is kept in it, and draws the
+same pictures.
 
     test_notebook.py [write]
 write: what it says and draws now is kept instead. Look at the pictures then.
@@ -34,7 +35,7 @@ def pictures(cell):
 
 def run(notebook):
     NotebookClient(notebook, timeout=900, kernel_name="python3",
-                   resources={"metadata": {"path": str(SOURCES)}}).execute()
+                   resources={"metadata": {"path": str(FILE.parent)}}).execute()
     for cell in notebook.cells:
         cell.metadata = {}
         if cell.cell_type == "code":

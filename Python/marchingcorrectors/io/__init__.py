@@ -4,16 +4,21 @@
 
     marchingcorrectors.isosurface(marchingcorrectors.io.read("snapshot.hdf5"), "Density", 1e-4)
 """
+from __future__ import annotations
+
 import os
 from pathlib import Path
+from typing import Optional, Sequence, Union
 
 from ._particles import FileError, Particles
 
 ENDINGS = (".hdf5", ".h5", ".bi4", ".bgeo", ".vtp", ".vtu", ".vtk")
+PathName = Union[str, "os.PathLike[str]"]
 __all__ = ["ENDINGS", "FileError", "Particles", "read"]
 
 
-def read(path, *, types=None, walls=()):
+def read(path: Union[PathName, Sequence[PathName]], *, types: Optional[Sequence[Union[str, int]]] = None,
+         walls: Sequence[PathName] = ()) -> Particles:
     """Particles of one time.
 
     path: a file, or a list of files of bodies (.vtp, .vtu, .vtk) that are one set.

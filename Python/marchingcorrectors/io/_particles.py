@@ -1,8 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles of a file, whose arrays are read when they are asked for."""
+from __future__ import annotations
+
 import re
 from collections.abc import Mapping
+from typing import Any, Callable, Dict, Iterator, Optional, Sequence, Union
 
 import numpy as np
 
@@ -76,6 +79,19 @@ class Lazy(Mapping):
     def __contains__(self, name):
         return name in self._read
 
+    def __repr__(self):
+        return f"<arrays: {', '.join(self) or 'none'}>"
+
+    def __reduce__(self):
+        """Pickle and copy take the arrays themselves, not the open file."""
+        return _keep, (dict(self), self._file)
+
+
+def _keep(arrays, file):
+    made = Lazy(arrays, file)
+    made._kept.update(arrays)
+    return made
+
 
 class Particles:
     """Positions, arrays, and what the functions of this package want to know.
@@ -86,34 +102,52 @@ class Particles:
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
-    def __init__(self, file, layout, positions, arrays, **more):
+    def __init__(self, file: Any, layout: str, positions: Callable[[], Any], arrays: Mapping[str, Callable[[], Any]],
+                 **more: Any) -> None:
         self.file, self.layout = str(file), layout
         self._all = Lazy({"": positions, **arrays}, file)
-        self.arrays = Lazy({name: lambda n=name: self._all[n] for name in arrays}, file)
-        self.smoothing_length = self.mass = self.density = self.kernel = self.rho0 = None
-        self.volume = None
+        self.arrays: Mapping[str, np.ndarray] = Lazy({name: lambda n=name: self._all[n] for name in arrays}, file)
+        self.smoothing_length: Union[None, str, float] = None
+        self.mass: Union[None, str, float] = None
+        self.volume: Union[None, str, float] = None
+        self.density: Union[None, str, float] = None
+        self.kernel: Optional[str] = None
+        self.rho0: Optional[float] = None
         self.support_radius, self.h_factor = False, 1.0
-        self.solid = self.period = self.time = None
-        self.dimension, self.parameters = 3, {}
+        self.solid: Optional[np.ndarray] = None
+        self.period: Optional[Sequence[float]] = None
+        self.time: Optional[float] = None
+        self.dimension: int = 3
+        self.parameters: Dict[str, Any] = {}
         for name, value in more.items():
             if not hasattr(self, name):
                 raise TypeError(name)
             setattr(self, name, value)
 
     @property
-    def positions(self):
+    def positions(self) -> np.ndarray:
         positions = self._all[""]
         if positions.ndim != 2 or positions.shape[1] != 3 or positions.dtype.kind not in "fiu":
             raise FileError(f"{self.file}: positions have the shape {positions.shape} and the type {positions.dtype}.")
         return positions
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.positions)
 
-    def __repr__(self):
-        return f"<Particles of {self.file} ({self.layout}): arrays: {', '.join(self.arrays)}>"
+    def __iter__(self) -> Iterator[str]:
+        """The names of the arrays."""
+        return iter(self.arrays)
 
-    def array(self, name):
+    def __contains__(self, name: object) -> bool:
+        return name in self.arrays
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.array(name)
+
+    def __repr__(self) -> str:
+        return f"<Particles of {self.file} ({self.layout}): arrays: {', '.join(self.arrays) or 'none'}>"
+
+    def array(self, name: str) -> np.ndarray:
         if name not in self.arrays:
             raise FileError(f"{self.file} has no array '{name}'.{did_you_mean(name, self.arrays)} Arrays: "
                             f"{', '.join(self.arrays) or 'none'}.")

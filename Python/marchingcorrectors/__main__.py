@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """python -m marchingcorrectors convert IN... OUT.vtp|OUT.pvd: a solver's files for ParaView and the shell program.
+python -m marchingcorrectors surface | gauge | slice | line IN... OUT [--help]: of one file, with the program's words.
 
-Several files become the times of a .pvd; in a .vtp they are bodies of one set (.vtp, .vtu, .vtk)."""
+For convert, several files become the times of a .pvd; else they are bodies of one set (.vtp, .vtu, .vtk)."""
 import sys
 
 from ._library import Error
@@ -10,15 +11,21 @@ from .io import FileError
 
 
 def main(arguments):
-    if len(arguments) < 3 or arguments[0] != "convert":
+    is_convert = len(arguments) >= 3 and arguments[0] == "convert"
+    if not is_convert and arguments[:1] not in (["surface"], ["gauge"], ["slice"], ["line"]):
         print(__doc__.strip(), file=sys.stderr)
         return 2
     try:
-        from .io.convert import convert
+        if is_convert:
+            from .io.convert import convert
 
-        convert(arguments[1:-1], arguments[-1])
+            convert(arguments[1:-1], arguments[-1])
+        else:
+            from ._command import run
+
+            run(arguments)
     except ImportError as error:
-        print(f'marchingcorrectors: this needs the package {error.name}: pip install "marching-correctors[files,vtk]"',
+        print(f'marchingcorrectors: this needs the package {error.name}: pip install {error.name}',
               file=sys.stderr)
         return 1
     except (Error, FileError, OSError) as error:

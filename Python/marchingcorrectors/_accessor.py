@@ -4,15 +4,15 @@
 from __future__ import annotations
 
 import inspect
-from typing import TYPE_CHECKING, Callable, Iterable, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import pyvista
 
-from . import _functions
+from . import _functions, _gauge
 from ._context import Context
 from ._library import InvalidArgument
-from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, Options, check_names,
+from ._options import (DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, Function, Options, check_names,
                        did_you_mean, with_options)
 from ._vtk_blocks import join_blocks
 from ._vtk_particles import (GHOSTS, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect, join_velocity,
@@ -90,6 +90,8 @@ class SphAccessor:
 
         Example: particles.sph.isosurface("Velocity", 1.0).plot()
 
+        Returns a pyvista.PolyData with all point arrays, and the normals of the field.
+
         scalar: the name of a point array, or an array.
         iso: the value of the scalar on the surface, or a list of values.
         scalar_dot: a second vector; the scalar is then the dot product.
@@ -103,15 +105,24 @@ class SphAccessor:
     @_method(FREE_SURFACE)
     def free_surface(self, iso: Union[float, Sequence[float]] = 0.5,
                      **options: Unpack[Particles]) -> pyvista.PolyData:
-        """The surface of the fluid: where the sum of the particles' weights (no unit) is `iso`."""
+        """The surface of the fluid: where the sum of the particles' weights (no unit) is `iso`.
+
+        Example: particles.sph.free_surface(fluid=("ParticleType", 0)).plot()
+
+        Returns a pyvista.PolyData with all point arrays, and the normals of the field.
+        """
         check_names(SphAccessor.free_surface, options, FREE_SURFACE + OWN)
         return _functions.free_surface(self._particles.points, iso, **self._words(options)).to_pyvista()
 
     @_method(PROBE)
     def probe(self, points: Union[pyvista.DataSet, np.ndarray],
               **options: Unpack[Particles]) -> pyvista.DataSet:
-        """A copy of the points (a data set, or (points, 3)) with the field of the point arrays at
-        them, "WeightSum", and "vtkValidPointMask": 1 where there is fluid.
+        """The field at the points of another data set.
+
+        Example: particles.sph.probe(pyvista.Line((0, 0, 0), (1, 0, 0)))["Velocity"]
+
+        Returns a copy of the points with the field of the point arrays, NaN where there is no fluid, "WeightSum", and
+        "vtkValidPointMask": 1 where there is fluid.
 
         points: a data set, or an array (points, 3).
         """
@@ -130,8 +141,12 @@ class SphAccessor:
 
     @_method(DERIVATIVES)
     def derivatives(self, array: str, *, form: str = "corrected", **options: Unpack[Particles]) -> pyvista.DataSet:
-        """A copy of the particles with "Gradients" of a point array; of one with three components
-        also "Divergence", "Vorticity", "Q-criterion", "Lambda2" (not in two dimensions) and "StrainRate".
+        """SPH gradients at the particles.
+
+        Example: particles.sph.derivatives("Velocity")["Vorticity"]
+
+        Returns a copy of the particles with "Gradients" of a point array; of one with three components also "Divergence",
+        "Vorticity", "Q-criterion", "Lambda2" (not in two dimensions) and "StrainRate".
 
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
@@ -154,6 +169,22 @@ class SphAccessor:
             for name, values in flow.items():
                 result.point_data[names[name]] = values.reshape(len(values), -1) if values.ndim > 1 else values
         return result
+
+    @_method(GAUGE)
+    def gauge(self, lines: Any, iso: float = 0.5, **options: Unpack[Particles]) -> _gauge.Gauges:
+        """Water levels: where straight lines cross the free surface, every crossing.
+
+        Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
+
+        Returns Gauges, as marchingcorrectors.gauge() does.
+
+        lines: (lines, 2, 3): from and to of each; or one line, (2, 3); or {name: (from, to)}.
+        iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+        """
+        check_names(SphAccessor.gauge, options, GAUGE + OWN)
+        words = self._words({**options, "attributes": []})
+        del words["attributes"]
+        return _gauge.gauge(self._particles.points, lines, iso, **words)
 
     def _array(self, thing):
         if not isinstance(thing, str):

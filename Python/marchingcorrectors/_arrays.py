@@ -152,14 +152,16 @@ class Arguments:
         array = (c.mcor_array * max(len(views), 1))(*views)
         self.kept.append(array)
         self.input.attributes, self.input.attribute_count = array, len(views)
-        self.components = [(view.components, np.ndim(values) == 2)
-                           for view, values in zip(views, attributes.values())]
+        self.kinds = [(() if np.ndim(values) == 1 else (view.components,), view.type)
+                      for view, values in zip(views, attributes.values())]
         return list(attributes)
 
     def set_iso_values(self, values):
         values = contiguous(values, "list of iso values").astype(np.float64)
         if values.ndim != 1:
             raise InvalidArgument(f"Iso values are one number or a list of them, not of the shape {values.shape}.")
+        for value in values[~np.isfinite(values)]:
+            raise InvalidArgument(f"The iso value is {value}; it must be a finite number.")
         self.kept.append(values)
         self.options.iso_values = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         self.options.iso_count = len(values)
@@ -176,7 +178,10 @@ class Arguments:
 
     def bounds_of_period(self, period):
         """Six bounds, also of three lengths: where the particles lie in them."""
-        if period is None or np.size(period) != 3:
+        if isinstance(period, (bool, str)) or period is not None and np.size(period) not in (3, 6):
+            raise InvalidArgument(f"periodic is {period!r}; it must be three lengths, 0 along axes that are not periodic, "
+                                  "or six bounds (x0, x1, y0, y1, z0, z1).")
+        if period is None or np.size(period) == 6:
             return period
         lengths = np.ravel(contiguous(period, "list of numbers of periodic")).astype(np.float64)
         extent = [0.0] * 6
@@ -268,12 +273,13 @@ def take_lines(surface):
             "line_points": take(surface.line_points, (surface.line_point_count,))}
 
 
-def take_each(pointers, names, components, count, more=()):
-    """One array per attribute; those that the core left out are missing."""
+def take_each(pointers, names, kinds, shape, more=()):
+    """One array per attribute, float32 as the attribute was; those that the core left out are missing."""
     arrays = {}
-    for i, (name, (size, is_matrix)) in enumerate(zip(names, components)):
+    for i, (name, (components, kind)) in enumerate(zip(names, kinds)):
         if pointers and pointers[i]:
-            arrays[name] = take(pointers[i], (count,) + ((size,) if is_matrix else ()) + more)
+            values = take(pointers[i], shape + components + more)
+            arrays[name] = values.astype(np.float32) if kind == FLOATS[np.dtype(np.float32)] else values
     return arrays
 
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequen
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (Arguments, as_named, as_points, contiguous, is_real, left_out, number, statistics, take,
+from ._arrays import (Arguments, as_bytes, as_named, as_points, contiguous, is_real, left_out, number, statistics, take,
                       take_all, take_each, take_lines)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, lib
 from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, check_names, with_options
 from ._surface import Derivatives, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
-from ._warnings import describe_warnings, warn
+from ._warnings import describe_unused_type, describe_warnings, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -44,12 +44,44 @@ QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 
 def prepare(units, attributes, given, options):
     """given: the arguments of the function that was called."""
+    _warn_of_ignored(given, options)
     arguments = Arguments(units.positions)
     arguments.set_quantities(units.quantities(given))
     arguments.set_solid(given["solid"])
     names = arguments.set_attributes(attributes)
     arguments.set_options(units.options(options))
     return arguments, names
+
+
+def _warn_of_ignored(given, options):
+    """What was given, but has no effect beside something else."""
+    has = {name for name in QUANTITIES if given[name] is not None}
+    if options.get("estimate_smoothing_length") and "smoothing_length" in has:
+        warn("smoothing_length is not used, because estimate_smoothing_length takes its place. Leave one of them out.")
+    if "volume" in has and has & {"mass", "density"}:
+        unused = " and ".join(name for name in ("mass", "density") if name in has)
+        warn(f"{unused} {'are' if 'and' in unused else 'is'} not used, because volume is given. Leave volume out to use "
+             "mass / density.")
+    elif "density" in has and "mass" not in has:
+        warn("density is not used, because volumes are mass / density, and there is no mass. Give mass, too.")
+    versions = [name for name in options if name.endswith("_version") and options[name]]
+    if versions and given["context"] is None:
+        warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")
+
+
+def _describe_empty(arguments, found):
+    """A sentence for a surface of nothing that the core does not explain; "" where a box may just be elsewhere."""
+    values, options, n = arguments.options.iso_values, arguments.options, found.statistics
+    if len(found.points) or not arguments.count or any(options.box):
+        return ""
+    iso = ", ".join(f"{values[i]:.6g}" for i in range(options.iso_count))
+    if options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
+        return (f"There is no surface: the sum of the weights crosses {iso} nowhere. It is about 1 in the fluid and falls to "
+                "0 outside, so an iso value of 0.5 is usual. A periodic box full of fluid has no free surface.")
+    if n["scalar_min"] == n["scalar_max"]:
+        return f"There is no surface: the scalar is {n['scalar_min']:.6g} at all fluid particles."
+    return (f"There is no surface: the field crosses {iso} nowhere, although the scalar goes from {n['scalar_min']:.6g} to "
+            f"{n['scalar_max']:.6g}. Perhaps the particles there are too few or too far apart for the node threshold.")
 
 
 def _warn_of(missing):
@@ -79,6 +111,16 @@ def called(function, kind, arguments, given, *more):
         getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))
 
 
+def _warn_of_unused_type(particles):
+    for name in particles.arrays:
+        if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
+            sentence = describe_unused_type(name, particles.arrays[name])
+            if sentence:
+                warn(sentence.replace("select it together with the value of the fluid", f"say solid=particles['{name}'] != "
+                                      f"VALUE (in a shell --fluid {name}=VALUE)"))
+                return
+
+
 def of_files(function: Function) -> Function:
     """Decorator: particles of io.read() may stand in place of positions. An array's name is then an array, and what the
     file says of h, mass, walls, kernel and period is taken, unless it is given."""
@@ -92,7 +134,10 @@ def of_files(function: Function) -> Function:
         for name in ("scalar", "scalar_dot", "solid", *QUANTITIES):
             if isinstance(words.get(name), str):
                 words[name] = positions.array(words[name])
-        return function(positions.positions, *given, **positions.words(words))
+        words = positions.words(words)
+        if words.get("solid") is None:
+            _warn_of_unused_type(positions)
+        return function(positions.positions, *given, **words)
 
     return cast(Function, call)
 
@@ -112,6 +157,11 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
                progress: Optional[Progress] = None,
                **options: Unpack[Options]) -> Surface:
     """The isosurface of a quantity that particles carry.
+
+    Example: surface = isosurface(x, speed, 1.0, smoothing_length=h, mass=m, density=rho, attributes={"speed": speed})
+
+    Returns a Surface: points, triangles, normals, attributes, statistics, and the arrays that were asked for; lines in two
+    dimensions. Points and attributes are float32 where positions or attributes are.
 
     positions: (particles, 3), length unit L. float32 and float64 arrays in C order are used where
         they lie; so are all arrays below. Lists, data frames, and what speaks DLPack will do, too.
@@ -164,8 +214,9 @@ def _extract(given, options):
         found = _surface(surface, arguments, names, attributes, from_nearest, wanted)
         sentences = describe_warnings(arguments, surface)
     _warn_of(found.left_out)
-    for sentence in sentences.values():
-        warn(sentence)
+    for sentence in list(sentences.values()) or [_describe_empty(arguments, found)]:
+        if sentence:
+            warn(sentence)
     return found
 
 
@@ -199,10 +250,11 @@ def _surface(surface, arguments, names, attributes, from_nearest, nearest_wanted
                       {"point_count": count, "triangle_count": surface.triangle_count})
     if arrays["points"] is None:
         arrays["points"] = np.empty((0, 3))
+    arrays["points"] = arrays["points"].astype(arguments.positions.dtype, copy=False)
     if arrays["triangles"] is None:
         arrays["triangles"] = np.empty((0, 3), np.int32)
     arrays.update(take_lines(surface))
-    means = take_each(surface.attributes, names, arguments.components, count)
+    means = take_each(surface.attributes, names, arguments.kinds, (count,))
     carried = {}
     for name in attributes:
         if name in means:
@@ -232,6 +284,10 @@ def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5,
                  **options: Unpack[Options]) -> Surface:
     """The surface of the fluid: where the sum of the particles' weights is `iso`.
 
+    Example: free_surface(x, smoothing_length=h, mass=m, density=rho).save("water.ply")
+
+    Returns a Surface, as isosurface() does.
+
     The sum has no unit: it is about 1 inside the fluid and falls to 0 outside. The arguments that
     are not listed here are those of isosurface().
 
@@ -256,7 +312,12 @@ def probe(positions: Positions, points: ArrayLike, *,
           **options: Unpack[Options]) -> Samples:
     """The field of the attributes, and with gradients=True its gradients, at any points.
 
-    points: (points, 3), L; one that is not finite is not valid.
+    Example: probe(x, grid, smoothing_length=h, attributes={"speed": speed}).values["speed"]
+
+    Returns Samples: values, gradients, weight_sum and valid, in the shape (...) of the points. Where a point is not valid,
+    because there is no fluid, values are NaN.
+
+    points: (..., 3), L; one that is not finite is not valid.
     attributes: {name: (particles,) or (particles, components)}, or a data frame.
 
     The other arguments are those of isosurface().
@@ -266,16 +327,23 @@ def probe(positions: Positions, points: ArrayLike, *,
     check_names(probe, options, PROBE)
     given, attributes, units = locals(), as_named(attributes), Units(positions)
     arguments, names = prepare(units, attributes, given, options)
-    where = as_points(units.lengths(points, "array of points"), "points", "(points, 3)")
-    view, n = arguments.view(where, "points"), len(where)
-    with called(lib.mcor_probe, c.mcor_samples, arguments, given, ctypes.byref(view), n) as samples:
+    where = contiguous(units.lengths(points, "array of points"), "array of points")
+    is_whole = where.shape[-1:] == (3,)
+    shape = where.shape[:-1] if is_whole else (0,)
+    where = as_points(where.reshape(-1, 3) if is_whole else where, "points", "(..., 3)")
+    view = arguments.view(where, "points")
+    with called(lib.mcor_probe, c.mcor_samples, arguments, given, ctypes.byref(view), len(where)) as samples:
         arrays = take_all("mcor_samples", samples, {"count": samples.count})
+        valid = _or_zeros(arrays["valid"], len(where)).astype(bool).reshape(shape)
         result = Samples(
-            weight_sum=_or_zeros(arrays["weight_sum"], n), valid=_or_zeros(arrays["valid"], n).astype(bool),
-            values=take_each(samples.values, names, arguments.components, samples.count),
-            gradients=take_each(samples.gradients, names, arguments.components, samples.count, (3,)),
-            weight_gradient=arrays["weight_gradient"], left_out=left_out(samples, names),
+            weight_sum=_or_zeros(arrays["weight_sum"], len(where)).reshape(shape), valid=valid,
+            values=take_each(samples.values, names, arguments.kinds, shape),
+            gradients=take_each(samples.gradients, names, arguments.kinds, shape, (3,)),
+            weight_gradient=None if arrays["weight_gradient"] is None else arrays["weight_gradient"].reshape(*shape, 3),
+            left_out=left_out(samples, names),
             statistics=statistics(samples.statistics))
+    for values in [*result.values.values(), *result.gradients.values()]:
+        values[~valid] = np.nan
     _warn_of(result.left_out)
     return result
 
@@ -298,6 +366,10 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
                 **options: Unpack[Options]) -> Derivatives:
     """SPH gradients of the attributes at the particles themselves.
 
+    Example: flow(derivatives(x, {"v": velocity}, smoothing_length=h).gradients["v"])["vorticity"]
+
+    Returns Derivatives: gradients, (particles, 3) or (particles, components, 3) by name, and where they are corrected.
+
     attributes: {name: (particles,) or (particles, components)}, or a data frame.
     form: "corrected" (exact for linear attributes) or "standard".
 
@@ -313,7 +385,7 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
     with called(lib.mcor_derive, c.mcor_derivatives, arguments, given, chosen) as result:
         corrected = take(result.corrected, (result.count,))
         found = Derivatives(
-            gradients=take_each(result.gradients, names, arguments.components, result.count, (3,)),
+            gradients=take_each(result.gradients, names, arguments.kinds, (result.count,), (3,)),
             corrected=_or_zeros(corrected, arguments.count).astype(bool), left_out=left_out(result, names),
             statistics=statistics(result.statistics))
     _warn_of(found.left_out)
@@ -323,9 +395,12 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
 def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:
     """What velocity gradients J say of a flow.
 
-    gradients: (particles, 3, 3), d component / d axis, as of derivatives(). Returns "divergence" (tr
-    J), "vorticity" (the curl, (particles, 3)), "q_criterion", "lambda2" and "strain_rate"
-    ((particles, 3, 3)), in the unit of J or its square.
+    Example: flow(gradients)["vorticity"]
+
+    Returns {name: array}: "divergence" (tr J), "vorticity" (the curl, (particles, 3)), "q_criterion", "lambda2" and
+    "strain_rate" ((particles, 3, 3)), in the unit of J or its square.
+
+    gradients: (particles, 3, 3), d component / d axis, as of derivatives().
     """
     matrices = contiguous(without_unit(gradients), "array of velocity gradients").astype(np.float64)
     if matrices.ndim != 3 or matrices.shape[1:] != (3, 3):

@@ -99,6 +99,10 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, *,
           **options: Unpack[Options]) -> Gauges:
     """Water levels: where straight lines cross the free surface, every crossing.
 
+    Example: gauge(x, {"mast": ((0.5, 0, 0), (0.5, 1, 0))}, smoothing_length=h, mass=m, density=rho).last
+
+    Returns Gauges: state, first, last, depth and place of each line, and all crossings by name.
+
     lines: (lines, 2, 3), L: from and to of each; or one line, (2, 3); or {name: (from, to)}.
     iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
 

@@ -186,14 +186,23 @@ def did_you_mean(name, known):
     return f" Did you mean '{close[0]}'?" if close else ""
 
 
+# What other packages call things, and what people try first.
+SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoothing_length",
+            "support_radius": "smoothing_length_is_support_radius", "spacing": "volume", "dp": "volume", "dx": "volume",
+            "rho": "density", "m": "mass", "value": "iso", "isovalue": "iso", "level": "iso", "threshold": "iso",
+            "walls": "solid", "boundary": "solid", "arrays": "attributes", "fields": "attributes", "period": "periodic"}
+
+
 def check_names(function, given, known):
     """TypeError, as Python raises it, for a keyword that there is not."""
     parameters = [p.name for p in inspect.signature(function).parameters.values() if p.kind != p.VAR_KEYWORD]
     for name in given:
         if name not in known:
+            meant = SYNONYMS.get(name.lower())
+            hint = f" Did you mean '{meant}'{', which is spacing**3' * (meant == 'volume')}?" \
+                if meant in parameters or meant in known else did_you_mean(name, dict.fromkeys([*parameters, *known]))
             raise TypeError(f"{function.__name__}() has no option '{name}'."
-                            + (did_you_mean(name, dict.fromkeys([*parameters, *known]))
-                               or f" Its options are {', '.join(known)}."))
+                            + (hint or f" Its options are {', '.join(known)}."))
 
 
 def describe(names):

@@ -61,7 +61,7 @@ class Surface(Result):
     """A triangle mesh, or lines of two dimensions, which may be filled. Arrays that were not asked for are None; all own
     their memory."""
 
-    points: np.ndarray  #: (points, 3) float64, unit of the positions (L)
+    points: np.ndarray  #: (points, 3), float32 or float64 as the positions, in their unit (L)
     triangles: np.ndarray  #: (triangles, 3) int32; the right-hand normal points to lower values
     normals: Optional[np.ndarray] = None  #: (points, 3) float32, unit length
     gradients: Optional[np.ndarray] = None  #: (points, 3) float64, scalar unit / L
@@ -77,7 +77,7 @@ class Surface(Result):
     line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other
     line_offsets: Optional[np.ndarray] = None  #: (lines + 1,) int64: where each line begins in line_points
     band_value: Optional[np.ndarray] = None  #: filled: (triangles,) float64, the iso value with which the band begins
-    #: {name: (points,) or (points, components)}: float64 means of real arrays, others as they are
+    #: {name: (points,) or (points, components)}: means of real arrays, others as they are; of the array's own type
     attributes: Dict[str, np.ndarray] = dataclass_field(default_factory=dict)
     #: {name: particle} of the attributes that are left out, being NaN or infinite there
     left_out: Dict[str, int] = dataclass_field(default_factory=dict)
@@ -167,6 +167,9 @@ class Surface(Result):
         """
         path = Path(path)
         ending = path.suffix.lower()
+        if ending in (".stl", ".obj", ".off") and not len(self.triangles) and (ending != ".obj" or not self.lines):
+            raise InvalidArgument(f"{path.name} was not written, because the surface has no triangles, and files {ending} "
+                                  "hold nothing else. Formats that can be empty are .npz, .ply and .vtp.")
         if ending == ".npz":
             arrays = {f.name: getattr(self, f.name) for f in fields(self)
                       if isinstance(getattr(self, f.name), np.ndarray)}
@@ -180,6 +183,9 @@ class Surface(Result):
         else:
             raise InvalidArgument(f"The file name '{path}' has no ending that tells the format, as .npz, .ply, .vtp.")
         lost = sorted(set(self.point_arrays()) - {"Normals"})
+        if self.lines and ending == ".ply":
+            warn(f"{path.name} has the points of {len(self.lines)} lines, but not the lines. Formats that hold them are .vtp, "
+                 ".obj and .npz.")
         if lost and ending in (".stl", ".obj", ".off"):
             warn(f"A file {ending} holds no arrays: {', '.join(lost)} {'is' if len(lost) == 1 else 'are'} not in "
                  f"{path.name}. Formats that hold them are .ply, .vtp and .npz.")
@@ -248,18 +254,18 @@ def _save_ply(path, surface):
 
 @dataclass(eq=False, repr=False)
 class Samples(Result):
-    """The field at points. Values are 0 where the field is not valid."""
+    """The field at points, in arrays of the shape (...) that the points (..., 3) had. NaN where it is not valid."""
 
-    weight_sum: np.ndarray  #: (points,) float64, of fluid particles
-    valid: np.ndarray  #: (points,) bool: the weight sum is not below node_threshold
-    values: Dict[str, np.ndarray]  #: {name: (points,) or (points, components)} float64
-    gradients: Dict[str, np.ndarray]  #: {name: (points, 3) or (points, components, 3)}, per L
-    weight_gradient: Optional[np.ndarray] = None  #: (points, 3), 1 / L
+    weight_sum: np.ndarray  #: (...) float64, of fluid particles
+    valid: np.ndarray  #: (...) bool: the weight sum is not below node_threshold
+    values: Dict[str, np.ndarray]  #: {name: (...) or (..., components)}, float32 or float64 as the attribute
+    gradients: Dict[str, np.ndarray]  #: {name: (..., 3) or (..., components, 3)}, per L
+    weight_gradient: Optional[np.ndarray] = None  #: (..., 3), 1 / L
     left_out: Dict[str, int] = dataclass_field(default_factory=dict)
     statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
 
     def __repr__(self):
-        return (f"<Samples: {len(self.valid)} points, {int(self.valid.sum())} of them valid; "
+        return (f"<Samples: {self.valid.size} points, {int(self.valid.sum())} of them valid; "
                 f"arrays: {self._names(('valid',))}>")
 
 

@@ -4,6 +4,7 @@
 import unittest
 
 import numpy as np
+import pyvista
 
 import marchingcorrectors as mc
 
@@ -42,6 +43,10 @@ class Gauge(unittest.TestCase):
         one = mc.gauge(POSITIONS, UP, **WORDS)
         self.assertEqual((one.names, one.last.tolist()), (["0"], found.last[:1].tolist()))
         self.assertEqual(mc.gauge(POSITIONS, [], **WORDS).place.shape, (0, 3))
+
+    def test_accessor(self):
+        particles = pyvista.PolyData(POSITIONS)
+        self.assertEqual(particles.sph.gauge({"mast": UP}, **WORDS), mc.gauge(POSITIONS, {"mast": UP}, **WORDS))
 
     def test_what_is_no_line(self):
         for lines, sentence in ((UP[0], "shape"), ({"bow": UP * 0}, "bow has no length"), (UP * np.nan, "not finite")):

@@ -53,7 +53,10 @@ class Test(unittest.TestCase):
                 wanted = re.search(r"# (\d+) triangles", text)
                 if wanted:
                     self.assertEqual(scope["surface"].n_cells, int(wanted.group(1)))
-        self.assertAlmostEqual(np.linalg.norm(scope["surface"].points - 0.5, axis=1).mean(), 0.3, delta=0.02)
+        surface = scope["surface"]  # a closed ball, whose normals point outwards
+        self.assert_ball(surface.points, np.sqrt(-np.log(0.7)))
+        self.assertTrue(surface.statistics["is_closed"])
+        self.assertGreater(np.einsum("ij,ij->i", surface.normals, surface.points).min(), 0)
 
     def test_gadget_and_swift(self):
         found = {}

@@ -168,13 +168,22 @@ class Results(unittest.TestCase):
         self.assertEqual(len(quietly(sphere, iso=99).triangles), 0)
         everything = quietly(sphere, iso=99, point_keys=True, triangle_keys=True, nearest_particle=True)
         self.assertEqual((everything.point_keys.shape, everything.triangle_keys.shape), ((0, 3), (0, 2)))
-        self.assertEqual(len(mc.probe(POSITIONS, np.empty((0, 3)), smoothing_length=H).valid), 0)
+        for nothing in (np.empty((0, 3)), []):
+            self.assertEqual(len(mc.probe(POSITIONS, nothing, smoothing_length=H).valid), 0)
 
     def test_probe_and_derivatives(self):
         linear = POSITIONS @ [1.0, 2.0, 3.0]
         found = mc.probe(POSITIONS, [[0.65, 0.65, 0.65], [9, 9, 9]], smoothing_length=H, volume=V,
                          attributes={"a": linear, "v": POSITIONS}, gradients=True)
         self.assertEqual(found.valid.tolist(), [True, False])
+        self.assertTrue(np.isnan(found.values["v"][1]).all() and np.isnan(found.gradients["a"][1]).all())
+        grid = mc.probe(POSITIONS, POSITIONS[:12].reshape(3, 4, 3), smoothing_length=H, volume=V,
+                        attributes={"a": linear, "v": POSITIONS.astype(np.float32)}, gradients=True)
+        flat = mc.probe(POSITIONS, POSITIONS[:12], smoothing_length=H, volume=V, attributes={"a": linear}, gradients=True)
+        self.assertEqual((grid.valid.shape, grid.values["v"].shape, grid.gradients["v"].shape, grid.values["v"].dtype),
+                         ((3, 4), (3, 4, 3), (3, 4, 3, 3), np.float32))
+        np.testing.assert_array_equal(grid.values["a"].ravel(), flat.values["a"])
+        np.testing.assert_array_equal(grid.weight_gradient.reshape(-1, 3), flat.weight_gradient)
         self.assertAlmostEqual(found.values["a"][0], 3.9, delta=0.05)
         self.assertEqual((found.values["v"].shape, found.gradients["a"].shape, found.gradients["v"].shape),
                          ((2, 3), (2, 3), (2, 3, 3)))
@@ -256,7 +265,7 @@ class Inputs(unittest.TestCase):
             mc.isosurface(POSITIONS, nothing, iso=0.4, smoothing_length=H)
         with self.assertRaisesRegex(mc.InvalidArgument, r"\(particles, 3\)"):
             mc.free_surface(nothing, smoothing_length=H)
-        with self.assertRaisesRegex(mc.InvalidArgument, r"\(points, 3\)"):
+        with self.assertRaisesRegex(mc.InvalidArgument, r"\(\.\.\., 3\)"):
             mc.probe(POSITIONS, nothing, smoothing_length=H)
 
     def test_what_is_no_array_of_numbers(self):

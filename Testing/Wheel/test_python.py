@@ -42,7 +42,7 @@ class Signatures(unittest.TestCase):
     def functions(self):
         sph = pyvista.PolyData(POSITIONS).sph
         return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives, mc.gauge,
-                sph.isosurface, sph.free_surface, sph.probe, sph.derivatives]
+                sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge]
 
     def test_options_are_those_of_the_header(self):
         """All but what only ranks need, and what is said in another way."""
@@ -72,6 +72,8 @@ class Signatures(unittest.TestCase):
                 self.assertNotEqual(parameter.kind, parameter.VAR_KEYWORD, function)
                 self.assertTrue(any(name in words for words in heads), f"{function} does not explain {name}")
             self.assertNotIn("MCOR", text)
+            for word in ("Example: ", "Returns "):
+                self.assertIn(f"\n{word}", inspect.getdoc(function), function)
             self.assertNotIn("{options}", text)
         self.assertEqual(inspect.signature(mc.isosurface).parameters["sph_kernel"].default, "cubic")
         self.assertEqual(inspect.signature(mc.isosurface).parameters["precision"].default, "float32")
@@ -89,7 +91,8 @@ class Signatures(unittest.TestCase):
         sph = pyvista.PolyData(POSITIONS).sph
         for call, words, right in (
                 (sphere, {"smoothing_lenght": 1}, "'smoothing_length'"), (sphere, {"kernel": "cubic"}, "'sph_kernel'"),
-                (sphere, {"attribute": {}}, "'attributes'"), (sphere, {"vertex_treshold": 1}, "'vertex_threshold'"),
+                (sphere, {"attribute": {}}, "'attributes'"), (sphere, {"h": 1}, "'smoothing_length'"),
+                (sphere, {"spacing": 1}, r"'volume', which is spacing\*\*3"), (sphere, {"vertex_treshold": 1}, "'vertex_threshold'"),
                 (sph.free_surface, {"smoothing_length": H, "fluids": 1}, "'fluid'"),
                 (sph.free_surface, {"estimate_smoothing": True}, "'estimate_smoothing_length'")):
             with self.assertRaisesRegex(TypeError, rf"no option '{list(words)[-1]}'\. Did you mean {right}\?"):
@@ -107,10 +110,16 @@ class Signatures(unittest.TestCase):
     def test_values_that_cannot_be(self):
         for name in ("smoothing_length", "volume", "mass", "density"):
             for value in (0, 0.0, -1, float("nan")):
-                words = {"volume": None, "mass": 1.0, name: value}
+                words = {"volume": None, "mass": None if name == "volume" else 1.0, name: value}
                 with self.assertRaisesRegex(mc.InvalidArgument,
                                             rf"{name.replace('_', ' ')} is .*; it must be greater than 0"):
                     sphere(**words)
+        for words, sentence in (({"iso": float("nan")}, "The iso value is nan; it must be a finite number"),
+                                ({"iso": [0.4, np.inf]}, "The iso value is inf"),
+                                ({"periodic": True}, "periodic is True; it must be three lengths"),
+                                ({"periodic": "auto"}, "periodic is 'auto'; it must be three lengths")):
+            with self.assertRaisesRegex(mc.InvalidArgument, sentence):
+                sphere(**words)
         zeros = np.full(COUNT, H)
         zeros[11] = 0
         with self.assertRaisesRegex(mc.InvalidData, "smoothing length.* 11 "):
@@ -140,6 +149,33 @@ class Objects(unittest.TestCase):
         self.assertEqual(where, mc.probe(POSITIONS, POSITIONS, smoothing_length=H))
         self.assertEqual(pickle.loads(pickle.dumps(one)), one)
 
+    def test_module(self):
+        self.assertLessEqual({"io", "vtkMarchingCorrectors", "isosurface"}, set(dir(mc)))
+        self.assertNotIn("_functions", dir(mc))
+        script = ("import sys; sys.modules['vtkmodules'] = None; import marchingcorrectors as mc\n"
+                  "assert not hasattr(mc, 'vtkMarchingCorrectors')\n"
+                  "try: from marchingcorrectors import vtkMarchingCorrectors\n"
+                  "except ImportError as error: assert 'VTK was not found' in str(error), error\n"
+                  "else: raise AssertionError")
+        subprocess.run([sys.executable, "-c", script], check=True)
+
+    def test_particles_of_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            data = pyvista.PolyData(POSITIONS)
+            data["distance"], data["Type"] = DISTANCE, np.arange(COUNT) % 2
+            data.save(Path(folder) / "a.vtk")
+            particles = mc.io.read(Path(folder) / "a.vtk")
+            again = pickle.loads(pickle.dumps(copy.deepcopy(particles)))
+        for each in (particles, again):
+            np.testing.assert_array_equal(each["distance"], DISTANCE)
+            self.assertEqual((list(each), "distance" in each, len(each)), (["distance", "Type"], True, COUNT))
+            self.assertIn("distance", repr(each.arrays))
+        found = mc.isosurface(again, "distance", 0.4, smoothing_length=H, volume=V, solid=np.zeros(COUNT, bool))
+        np.testing.assert_allclose(found.points, sphere().points, atol=1e-6)
+        told = caught(mc.free_surface, particles, smoothing_length=H, volume=V)
+        self.assertIn("say solid=particles['Type'] != VALUE", str(told[0].message))
+        self.assertEqual(quietly(mc.gauge, again, [[[0.6, 0.6, -1], [0.6, 0.6, 2]]], smoothing_length="distance").names, ["0"])
+
     def test_context_is_not_copied(self):
         """Both would give the same device back."""
         with mc.Context() as context:
@@ -166,6 +202,30 @@ class Warned(unittest.TestCase):
             with self.assertRaises(mc.InputWarning):
                 sphere(iso=99.0)
         self.assertGreater(len(sphere().triangles), 500)
+
+    def test_where_there_is_no_surface(self):
+        box = np.stack(np.meshgrid(*[np.arange(10)] * 3), -1).reshape(-1, 3) / 10
+        full = {"periodic": (1, 1, 1), "smoothing_length": H, "volume": V}
+        for call, sentence in (
+                (lambda: mc.free_surface(POSITIONS, 20.0, smoothing_length=H), "sum of the weights crosses 20 nowhere"),
+                (lambda: mc.free_surface(box, **full), "A periodic box full of fluid has no free surface"),
+                (lambda: mc.isosurface(POSITIONS, np.full(COUNT, 3.0), 3.0, smoothing_length=H), "is 3 at all")):
+            found = caught(call)
+            self.assertEqual(len(found), 1, [str(each.message) for each in found])
+            self.assertRegex(str(found[0].message), sentence)
+        self.assertEqual(caught(sphere, box=(9, 10) * 3), [])
+
+    def test_what_is_not_used(self):
+        for words, sentence in (({"estimate_smoothing_length": True}, "smoothing_length is not used"),
+                                ({"density": 1.0, "volume": None}, "density is not used.*there is no mass"),
+                                ({"mass": 1.0}, "mass is not used, because volume is given"),
+                                ({"mass": 1.0, "density": 1.0}, "mass and density are not used"),
+                                ({"scalar_version": 1}, "scalar_version is not used without a context")):
+            found = caught(sphere, **words)
+            self.assertEqual(len(found), 1, [str(each.message) for each in found])
+            self.assertRegex(str(found[0].message), sentence)
+        told = caught(sphere, smoothing_length=1.0, smoothing_length_is_support_radius=True)
+        self.assertIn("Perhaps the smoothing length is not in the unit", str(told[0].message))
 
     def test_at_the_callers_line(self):
         particles = pyvista.PolyData(POSITIONS)
@@ -242,7 +302,7 @@ class Inputs(unittest.TestCase):
         x = POSITIONS - POSITIONS.min(axis=0)
         self.assertEqual(mc.free_surface(x, periodic=(1.4, 1.4, 0), **words),
                          mc.free_surface(x, periodic=(0, 1.4, 0, 1.4, 0, 0), **words))
-        with self.assertRaisesRegex(mc.InvalidArgument, "6 numbers"):
+        with self.assertRaisesRegex(mc.InvalidArgument, "three lengths, 0 along"):
             mc.free_surface(x, periodic=(1, 2), **words)
 
 
@@ -321,6 +381,10 @@ class Files(unittest.TestCase):
         self.assertEqual(len(loaded.faces), len(self.surface.triangles))
 
     def test_formats_without_arrays(self):
+        empty = quietly(sphere, iso=99.0)
+        for name in ("a.stl", "a.obj", "a.off"):
+            with self.assertRaisesRegex(mc.InvalidArgument, rf"{name} was not written, because the surface has no triangles"):
+                self.save(name, empty)
         for name in ("a.stl", "a.obj"):
             path, sentences = self.save(name)
             self.assertRegex("".join(sentences), r"holds no arrays: WeightSum, id, speed, where are not in a\.")

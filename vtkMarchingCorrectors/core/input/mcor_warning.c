@@ -112,12 +112,14 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
       "All %lld fluid particles are at the same point. Is this the array of positions?",
       (long long)n->fluid_particles);
   }
-  const char* why = few && s->input->smoothing_length_is_support_radius
+  const bool is_radius = s->input->smoothing_length_is_support_radius;
+  const char* why = few && is_radius
     ? "Perhaps the array holds the smoothing length, not the support radius, or is not in the unit "
       "of the positions."
-    : few ? "Perhaps the smoothing length is not in the unit of the positions."
-          : "Perhaps the array holds the support radius (there is an option for that), or is not "
-            "in the unit of the positions.";
+    : few || is_radius
+    ? "Perhaps the smoothing length is not in the unit of the positions."
+    : "Perhaps the array holds the support radius (there is an option for that), or is not in the "
+      "unit of the positions.";
   const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
   char times[100] = "no other particle is within that";
   if (spacing > 0)

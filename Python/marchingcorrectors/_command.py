@@ -1,0 +1,270 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""python -m marchingcorrectors surface, gauge, slice, line: the functions for files, with the words of the program
+marching-correctors, whose options for films, pieces, pictures and several processes are not here."""
+import argparse
+import csv
+import os
+import re
+import sys
+import warnings
+
+import numpy as np
+
+from . import io
+from ._functions import free_surface, isosurface, probe
+from ._gauge import gauge
+from ._library import InvalidArgument
+from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, words_of
+
+
+def quantity(text):
+    """A number, or an array's name."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def numbers(text):
+    return [float(part) for part in text.split(",")]
+
+
+def named_line(text):
+    """NAME=X,Y,Z:X,Y,Z"""
+    name, _, ends = text.rpartition("=")
+    begin, end = map(numbers, ends.split(":"))
+    if not name or len(begin) != 3 or len(end) != 3:
+        raise ValueError(text)
+    return name, (begin, end)
+
+
+def named_value(text):
+    """NAME=VALUE"""
+    name, _, value = text.rpartition("=")
+    if not name:
+        raise ValueError(text)
+    return name, float(value)
+
+
+def plane(text):
+    """AXIS=PLACE"""
+    axis, _, place = text.partition("=")
+    return "xyz".index(axis), float(place)
+
+
+named_line.__name__, named_value.__name__, plane.__name__ = "NAME=X,Y,Z:X,Y,Z", "NAME=VALUE", "AXIS=PLACE"
+
+# The program's word for an option of the functions, and what its value is: None for a flag, a list for other words.
+OPTIONS = {
+    "--component": ("scalar_component", quantity), "--field": ("field", {"shepard": "shepard", "sum": "sum"}),
+    "--support-radius": ("smoothing_length_is_support_radius", None),
+    "--wall-share": ("wall_share", quantity), "--kernel": ("sph_kernel", {word: word for word in words_of("mcor_sph_kernel")}),
+    "--dimension": ("dimension", {"auto": 0, "2": 2, "3": 3}), "--h-scale": ("h_scale", float),
+    "--cube-factor": ("cube_size_factor", float), "--cube-size": ("cube_size", float), "--max-level": ("level_limit", int),
+    "--box": ("box", numbers), "--periodic": ("periodic", numbers), "--capping": ("capping", None),
+    "--filled": ("filled", None), "--seeds": ("seeds", {"complete": "complete", "pairs": "pairs"}),
+    "--topology": ("topology", {"table": "table", "field": "field"}), "--preview": ("preview", None),
+    "--node-threshold": ("node_threshold", float),
+    "--boundary": ("boundary_detection", {"weight": "weight_sum", "eigenvalue": "eigenvalue"}),
+    "--vertex-threshold": ("vertex_threshold", float),
+    "--precision": ("precision", {"single": "float32", "double": "float64"}),
+    "--weight-sum": ("weight_sum", None), "--boundary-eigenvalue": ("boundary_eigenvalue", None),
+    "--gradients": ("gradients", None), "--tolerance": ("tolerance", float), "--iteration-limit": ("iteration_limit", int)}
+COMMANDS = {
+    "surface": (ISOSURFACE, "the free surface, or with --scalar and --iso an isosurface", ".ply, .vtp, .stl, .obj, .npz, ..."),
+    "gauge": (GAUGE, "where lines cross the free surface", ".csv"),
+    "slice": (PROBE, "the field on a plane", ".vti or .npz"),
+    "line": (PROBE, "the field on a line", ".vtp, .csv or .npz")}
+
+
+def make_parser(command):
+    names, text, endings = COMMANDS[command]
+    parser = argparse.ArgumentParser(prog=f"python -m marchingcorrectors {command}", description=text, allow_abbrev=False)
+    add = parser.add_argument
+    add("input", nargs="+", metavar="IN", help="a solver's file, or files of bodies that are one set")
+    add("output", metavar="OUT", help=endings)
+    add("--smoothing-length", metavar="NAME|VALUE|estimate", type=quantity, help="an array, one value, or an estimate")
+    add("--dp", metavar="D", type=float, help="DualSPHysics: the initial particle distance; h is coefh x sqrt(3) x D (sqrt(2) "
+        "in 2-D), and volumes are D^3 (D^2) where mass and density do not tell")
+    add("--coefh", metavar="C", type=float, default=1.0, help="DualSPHysics: the coefficient in --dp (default 1)")
+    for name in ("volume", "mass", "density"):
+        add("--" + name, metavar="NAME|VALUE", type=quantity, help="an array, or one value")
+    add("--fluid", metavar="NAME=VALUE", type=named_value, help="where this array has another value, particles are solid")
+    add("--walls", metavar="FILE", action="append", default=[], help="the particles of this file are walls, too")
+    if command == "surface":
+        add("--scalar", metavar="NAME", help="array to contour")
+        add("--free-surface", action="store_true", help="contour the sum of the weights, as without --scalar")
+        add("--cubes", choices=("uniform", "adaptive"), help="cubes of one size, or larger ones where h is (default)")
+        add("--solids", choices=("auto", "weight", "ignore", "wall"), help="what solids do where they meet the surface")
+    if command in ("surface", "gauge"):
+        add("--iso", metavar="V[,V...]", type=numbers, help="values of the scalar, or of the sum of the weights (0.5)")
+    if command != "gauge":
+        add("--attributes", metavar="NAME[,NAME...]", type=lambda text: text.split(","), help="these arrays (default all)")
+        add("--no-attributes", dest="attributes", action="store_const", const=[], help="no arrays")
+    if command == "gauge":
+        add("--gauge", metavar="NAME=X,Y,Z:X,Y,Z", action="append", type=named_line, required=True, help="a line")
+    if command == "slice":
+        add("--slice", metavar="AXIS=PLACE", type=plane, required=True, help="as z=0.1")
+    if command == "line":
+        add("--line", metavar="X,Y,Z,X,Y,Z", type=numbers, required=True, help="from one point to another")
+    if command in ("slice", "line"):
+        add("--resolution", metavar="N", type=int, default=512, help="points on the line or the longest side (512)")
+    for word, (name, kind) in OPTIONS.items():
+        if name in names:
+            about = WORDS[name].replace("%", "%%")
+            if kind is None:
+                add(word, dest=name, action="store_true", default=None, help=about)
+            elif isinstance(kind, dict):
+                add(word, dest=name, choices=kind, help=about)
+            else:
+                add(word, dest=name, type=kind, help=about)
+    add("--memory-limit", metavar="MIB", type=int, help="most device memory")
+    add("--device", metavar="N|NAME", help="a device, by number or part of its name")
+    add("--threads", metavar="N", type=int, help="most threads of the built-in device")
+    add("--quiet", action="store_true", help="errors and warnings only")
+    return parser
+
+
+def find_words(given, names, particles):
+    """Keywords of the functions, which the file completes."""
+    words = {}
+    for word, (name, kind) in OPTIONS.items():
+        value = getattr(given, name, None)
+        if value is not None and name not in names:
+            raise InvalidArgument(f"{word} is not for the free surface: leave it out, or give --scalar and --iso.")
+        if value is not None:
+            words[name] = kind[value] if isinstance(kind, dict) else value
+    for name in ("volume", "mass", "density"):
+        value = getattr(given, name)
+        if value is not None:
+            words[name] = particles.array(value) if isinstance(value, str) else value
+    length = given.smoothing_length
+    if length in ("estimate", "neighbours"):
+        words["estimate_smoothing_length"] = True if length == "estimate" else length
+    elif length is not None:
+        words["smoothing_length"] = particles.array(length) if isinstance(length, str) else length
+    if given.dp is not None:
+        if length is not None:
+            raise InvalidArgument("--dp and --smoothing-length both give the smoothing length; leave one of them out.")
+        dimension = 2 if (np.ptp(particles.positions, axis=0) == 0).sum() == 1 else 3
+        words["smoothing_length"] = given.coefh * dimension ** 0.5 * given.dp
+        if "volume" not in words and particles.volume is None and any(name not in words and getattr(particles, name) is None
+                                         for name in ("mass", "density")):
+            words = {name: value for name, value in words.items() if name not in ("mass", "density")}
+            words["volume"] = given.dp ** dimension
+    if given.fluid is not None:
+        words["solid"] = particles.array(given.fluid[0]) != given.fluid[1]
+    if getattr(given, "cubes", None) == "uniform":
+        words["level_limit"] = 0
+    solids = getattr(given, "solids", None)
+    if solids == "ignore":
+        words["ignore_solids"] = True
+    elif solids == "wall":
+        words.setdefault("wall_share", "measured")
+    if solids in ("weight", "ignore"):
+        words["wall_share"] = 0.0
+    if given.memory_limit is not None:
+        words["memory_limit"] = given.memory_limit << 20
+    return {**words, "device": given.device}
+
+
+def attributes_of(given, particles):
+    names = list(particles.arrays) if given.attributes is None else given.attributes
+    found = {name: particles.array(name) for name in names}
+    return {name: array for name, array in found.items() if array.dtype.kind in "fiub"}
+
+
+def run_surface(given, particles):
+    names = FREE_SURFACE if given.scalar is None else ISOSURFACE
+    words = {**find_words(given, names, particles), "attributes": attributes_of(given, particles)}
+    if given.scalar is None:
+        surface = free_surface(particles, given.iso or 0.5, **words)
+    elif given.iso is None or given.free_surface:
+        raise InvalidArgument("With --scalar give --iso, and leave --free-surface out.")
+    else:
+        surface = isosurface(particles, given.scalar, given.iso, **words)
+    surface.save(given.output)
+    return f"{len(surface.points)} points, {len(surface.triangles)} triangles"
+
+
+def run_gauge(given, particles):
+    found = gauge(particles, dict(given.gauge), (given.iso or [0.5])[0], **find_words(given, GAUGE, particles))
+    time = 0.0 if particles.time is None else float(particles.time)
+    rows = [[time, name, found.state[i], found.first[i], found.last[i], found.depth[i], len(found.crossings[name]),
+             *found.place[i]] for i, name in enumerate(found.names)]
+    write_table(given.output, ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"], rows)
+    return f"{len(rows)} gauges"
+
+
+def write_table(output, head, rows):
+    """NaN is an empty cell."""
+    if not output.lower().endswith(".csv"):
+        raise InvalidArgument(f"The output is a .csv file, not '{output}'.")
+    with open(output, "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(
+            [head, *([cell if cell == cell else "" for cell in row] for row in rows)])
+
+
+def run_probe(given, particles, points, make):
+    """make(pyvista): the data set of these points (points, 3)."""
+    found = probe(particles, points, attributes=attributes_of(given, particles), **find_words(given, PROBE, particles))
+    arrays = {**found.values, **{name + "_Gradient": values for name, values in found.gradients.items()},
+              "WeightSum": found.weight_sum, "vtkValidPointMask": found.valid.astype(np.uint8)}
+    ending = os.path.splitext(given.output)[1].lower()
+    if ending == ".npz":
+        np.savez_compressed(given.output, points=points, **arrays)
+    elif ending == ".csv":
+        columns = {}
+        for name, values in {"": points, **arrays}.items():
+            flat = values.reshape(len(points), -1)
+            columns.update((name if values.ndim == 1 else "xyz"[i] if not name else f"{name}:{i}", flat[:, i].tolist())
+                           for i in range(flat.shape[1]))
+        write_table(given.output, list(columns), zip(*columns.values()))
+    else:
+        import pyvista
+
+        mesh = make(pyvista)
+        for name, values in arrays.items():
+            mesh.point_data[name] = values.reshape(len(points), -1) if values.ndim > 1 else values
+        mesh.save(given.output)
+    return f"{len(points)} points, {int(found.valid.sum())} of them in the fluid"
+
+
+def run_slice(given, particles):
+    axis, place = given.slice
+    low, high = particles.positions.min(axis=0).astype(float), particles.positions.max(axis=0).astype(float)
+    spacing = np.delete(high - low, axis).max() / (max(given.resolution, 2) - 1) or 1.0
+    lines = [low[a] + spacing * np.arange(int(round((high[a] - low[a]) / spacing)) + 1) for a in range(3)]
+    lines[axis] = np.array([place])
+    points = np.stack(np.meshgrid(*lines[::-1], indexing="ij")[::-1], -1).reshape(-1, 3)  # x runs fastest
+    return run_probe(given, particles, points, lambda pyvista: pyvista.ImageData(
+        dimensions=[len(line) for line in lines], spacing=[spacing] * 3, origin=[line[0] for line in lines]))
+
+
+def run_line(given, particles):
+    if len(given.line) != 6:
+        raise InvalidArgument("--line takes six numbers, X,Y,Z,X,Y,Z.")
+    begin, end = np.array(given.line[:3]), np.array(given.line[3:])
+    points = begin + np.linspace(0, 1, max(given.resolution, 2))[:, None] * (end - begin)
+    return run_probe(given, particles, points, lambda pyvista: pyvista.lines_from_points(points))
+
+
+def run(arguments):
+    """arguments: the command's name, and what follows it."""
+    joined = []
+    for word in arguments[1:]:  # argparse takes a list that begins with a negative number for an option
+        if joined and joined[-1].startswith("--") and re.match(r"-[\d.]", word):
+            joined[-1] += "=" + word
+        else:
+            joined.append(word)
+    given = make_parser(arguments[0]).parse_args(joined)
+    if given.threads is not None:
+        os.environ["MCOR_THREADS"] = str(given.threads)
+    particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_: print(f"marchingcorrectors: warning: {message}", file=sys.stderr)
+        said = {"surface": run_surface, "gauge": run_gauge, "slice": run_slice, "line": run_line}[arguments[0]](
+            given, particles)
+    if not given.quiet:
+        print(f"{given.output}: {said}")

@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""python -m marchingcorrectors surface, gauge, slice, line: what the functions give, and what the program writes."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import pyvista
+
+DAM = str(Path(os.environ["MCOR_TEST_DATA"]) / "dam_break_45k.vtp")
+PROGRAM = os.environ.get("MCOR_TEST_PROGRAM")
+FLUID = ["--fluid", "ParticleType=0"]
+
+
+class Command(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def run_it(self, command, name, *words, program=(), status=0, given=DAM):
+        """The file that the wheel's command wrote, and the program's beside it, if it was asked for."""
+        path, other = (str(Path(self.folder.name) / each) for each in (name, "program_" + name))
+        done = subprocess.run([sys.executable, "-m", "marchingcorrectors", command, given, path, *words],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.said = done.stderr
+        if PROGRAM and status == 0:
+            subprocess.run([PROGRAM, given, other, *words, *program], check=True, stdout=subprocess.DEVNULL)
+        return path, other if PROGRAM else path
+
+    def test_surface(self):
+        for words, program in (([], ["--free-surface"]), (["--scalar", "Velocity", "--iso", "1,2", "--kernel", "wendland"], [])):
+            mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *FLUID, *words, program=program))
+            self.assertGreater(mine.n_cells, 10000)
+            self.assertEqual((mine.points.tobytes(), mine.faces.tolist()), (its.points.tobytes(), its.faces.tolist()))
+            np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
+
+    def test_particle_distance(self):
+        """h, and volumes, of DualSPHysics' particles without mass and density."""
+        line = np.arange(16) * 0.02
+        data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3))
+        data["Idp"] = np.arange(data.n_points)
+        data.save(Path(self.folder.name) / "in.vtk")
+        path, _ = self.run_it("gauge", "a.csv", "--dp", "0.02", "--coefh", "1.2", "--kernel", "wendland", "--gauge",
+                              "up=0.15,0.15,-1:0.15,0.15,1", given=str(Path(self.folder.name) / "in.vtk"))
+        with open(path) as file:
+            self.assertAlmostEqual(float(next(csv.DictReader(file))["z"]), 0.31, delta=0.001)  # half a spacing above
+
+    def test_tables(self):
+        words = [*FLUID, "--gauge", "tank=0.5,-0.05,0:0.5,1,0", "--gauge", "front=2.9,-0.05,0:2.9,1,0"]
+        mine, its = (list(csv.DictReader(Path(path).read_text().splitlines())) for path in self.run_it("gauge", "a.csv", *words))
+        self.assertEqual([row["gauge"] for row in mine], ["tank", "front"])
+        for one, other in zip(mine, its):
+            for name in one:
+                self.assertEqual(one[name] == "", other[name] == "", name)
+                if name in ("first", "depth", "crossings", "y") and one[name]:
+                    self.assertAlmostEqual(float(one[name]), float(other[name]), places=6)
+
+    def test_fields(self):
+        mine, its = map(pyvista.read, self.run_it("slice", "a.vti", *FLUID, "--slice", "z=0", "--resolution", "80"))
+        self.assertEqual(mine.dimensions, its.dimensions)
+        valid = mine["vtkValidPointMask"] == 1
+        self.assertGreater(valid.sum(), 100)
+        np.testing.assert_array_equal(valid, its["vtkValidPointMask"] == 1)
+        np.testing.assert_allclose(mine["Velocity"][valid], its["Velocity"][valid], rtol=1e-4, atol=1e-4)
+        mine, its = map(pyvista.read, self.run_it("line", "a.vtp", *FLUID, "--line", "-1,0,0,3,0,0", "--resolution", "50"))
+        np.testing.assert_allclose(mine.points, its.points, atol=1e-6)
+        np.testing.assert_array_equal(mine["vtkValidPointMask"], its["vtkValidPointMask"])
+
+    def test_sentences(self):
+        for words, sentence in ((["--field", "sum"], "--field is not for the free surface"),
+                                (["--scalar", "Velocity"], "give --iso"), (["--mass", "Msas"], "Did you mean 'Mass'"),
+                                (["--dp", "1", "--smoothing-length", "1"], "leave one of them out")):
+            self.run_it("surface", "a.ply", *words, status=1)
+            self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")
+        self.run_it("surface", "a.ply", "--preview")
+        self.assertIn("--fluid ParticleType=VALUE", self.said)
+
+
+if __name__ == "__main__":
+    unittest.main()

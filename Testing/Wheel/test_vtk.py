@@ -59,7 +59,7 @@ class Test(unittest.TestCase):
 
     def test_accessor(self):
         surface = self.dam.sph.isosurface("Velocity", 1.0, fluid=FLUID)
-        extract, expected = run_filter(self.dam, FluidArrayName="ParticleType", OutputPointsPrecision=1)
+        extract, expected = run_filter(self.dam, FluidArrayName="ParticleType")
         self.assertEqual(surface.points.tobytes(), expected.points.tobytes())
         self.assertEqual(surface.faces.tolist(), expected.faces.tolist())
         self.assertEqual(np.asarray(surface["Normals"]).tobytes(), np.asarray(expected["Normals"]).tobytes())
@@ -79,7 +79,7 @@ class Test(unittest.TestCase):
                                    {"box": (x0, (x0 + x1) / 2, -9, 9, -9, 9)}),
                                   ({"PeriodicBounds": (x0 - 0.05, x1, 0, 0, 0, 0)},
                                    {"periodic": (x0 - 0.05, x1, 0, 0, 0, 0)})):
-            extract, found = run_filter(small, scalar="Speed", value=1.5, OutputPointsPrecision=1, **properties)
+            extract, found = run_filter(small, scalar="Speed", value=1.5, **properties)
             expected = small.sph.isosurface("Speed", 1.5, **words)
             self.assertEqual(extract.GetErrorMessage(), "")
             self.assertEqual(found.points.tobytes(), expected.points.tobytes())
@@ -93,7 +93,7 @@ class Test(unittest.TestCase):
             self.assertIn("give no period", extract.GetErrorMessage())
             told.field_data["boundaryType"] = (1, 0, 2)
             told.field_data[name] = values
-            extract, again = run_filter(told, scalar="Speed", value=1.5, OutputPointsPrecision=1, DetectPeriod=1)
+            extract, again = run_filter(told, scalar="Speed", value=1.5, DetectPeriod=1)
             self.assertEqual(extract.GetErrorMessage(), "")
             if name != "BoxSize":  # of which only the length is told
                 self.assertEqual(again.points.tobytes(), found.points.tobytes())

@@ -40,16 +40,18 @@ real mcor_trim_fraction(real wa, real wb, real w)
 }
 
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the lower vertex, offset. It
- * keeps off the ends, as cut vertices of several edges would meet there. Writes in place of its gradient how
- * far the end inside is, and whether it is the fluid that ends. */
+ * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the end inside, offset. It
+ * keeps off the ends, as cut vertices of several edges would meet there, and begins at the end inside, so its bits
+ * do not depend on the order of vertices. Writes in place of its gradient how far that end is, and whether
+ * it is the fluid that ends. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
 {
   MCOR_ITEM(i, i < cut_count);
-  const int a = (int)(keys[i] >> 32), b = (int)(keys[i] & 0xffffffffUL);
-  const bool inside = trimmed_by[a] > threshold;
+  const int low = (int)(keys[i] >> 32), high = (int)(keys[i] & 0xffffffffUL);
+  const bool is_inside = trimmed_by[low] > threshold;
+  const int a = is_inside ? low : high, b = is_inside ? high : low;
   real s = mcor_trim_fraction(trimmed_by[a], trimmed_by[b], threshold);
   bool lacks = false;
 #if MCOR_FIELD == 0
@@ -57,19 +59,20 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   if (!(fmin(fa, fb) > MCOR_LEAST_FLUID))
   {
     const real t = mcor_trim_fraction(fa, fb, MCOR_LEAST_FLUID);
-    lacks = inside ? t < s : t > s;
+    lacks = t < s;
     s = lacks ? t : s;
   }
 #endif
-  /* In cells of a's level; b's, of adaptive cubes, may be higher. */
-  const int4 n = node[a];
-  const int level = n.w >> MCOR_LEVEL_SHIFT, above = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
-  const int4 d = (node[b] << above) - n;
-  const real4 to = offset[b] * (real)(1 << above) + (real4)(d.x, d.y, d.z, 0);
+  /* In cells of the lower level, which the lower vertex has. */
+  const int level = node[low].w >> MCOR_LEVEL_SHIFT;
+  const int up = (node[a].w >> MCOR_LEVEL_SHIFT) - level;
+  const int up_b = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
+  const int4 n = node[a] << up, d = (node[b] << up_b) - n;
+  const real4 from = offset[a] * (real)(1 << up);
+  const real4 along = offset[b] * (real)(1 << up_b) + (real4)(d.x, d.y, d.z, 0) - from;
   node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
-  offset[vertex_count + i] = offset[a] + s * (to - offset[a]);
-  const real4 along = inside ? -s * (to - offset[a]) : ((real)1 - s) * (to - offset[a]);
-  gradient[vertex_count + i] = (real4)(along.x, along.y, along.z, lacks);
+  offset[vertex_count + i] = from + s * along;
+  gradient[vertex_count + i] = (real4)(-s * along.x, -s * along.y, -s * along.z, lacks);
 }
 
 /* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */

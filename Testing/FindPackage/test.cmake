@@ -1,6 +1,6 @@
 # Installs the project, then configures, builds and runs the third project against the install tree.
-# Variables: BUILD (build tree), SOURCE (this folder), WORK (scratch), WITH_VTK, and DEFINITIONS, the
-# cache entries with which the SDK was found.
+# Variables: BUILD (build tree), LIBRARIES (its folder of libraries), SOURCE (this folder), WORK (scratch), PYTHON,
+# WITH_VTK, and DEFINITIONS, the cache entries with which the SDK was found.
 function (run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if (status)
@@ -10,6 +10,7 @@ endfunction ()
 
 file(REMOVE_RECURSE "${WORK}")
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/install")
+run("${PYTHON}" "${SOURCE}/../library_paths.py" "${BUILD}/bin" "${BUILD}/${LIBRARIES}" "${WORK}/install")
 
 # Kernels that the build keeps are installed on its own machine, and are no part of a package for others.
 function (find_kept variable folder)

@@ -73,6 +73,8 @@ def main():
     size = wheel.stat().st_size
     assert size < 20_000_000, f"{size} bytes"
     run(*pip, "install", f"{wheel}[{EXTRAS}]", *OTHERS)
+    package, = (folder / "venv" / "lib").glob("*/site-packages/marchingcorrectors")
+    print(run(sys.executable, sources / "Testing" / "library_paths.py", package))
     print(f"{wheel.name}: {size} bytes")
 
 

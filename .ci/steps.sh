@@ -59,8 +59,13 @@ mcor_step() { # [must-finish] LABEL COMMAND...
 # Configures and builds for the SDK, plain VTK or ParaView. A build folder holds paths of the one for
 # which it was made.
 mcor_build() { # FOLDER vtk|paraview CMAKE ARGUMENTS...
-  local build=$1 sdk=$2 made_for fresh=()
+  local build=$1 sdk=$2 made_for fresh=() other kept
   shift 2
+  # Kernels that another build of these sources has compiled already.
+  for other in build build-tests; do
+    kept=$PWD/$other/vtkMarchingCorrectors/core/ahead
+    if [ "$other" != "$build" ] && [ -d "$kept" ]; then set -- "-DMCOR_AHEAD_KEPT=$kept" "$@"; fi
+  done
   made_for=$(sed -n 's/^MCOR_SDK:INTERNAL=\([A-Za-z]*\).*/\L\1/p' "$build/CMakeCache.txt" 2>/dev/null || true)
   if [ -n "$made_for" ] && [ "$made_for" != "$sdk" ]; then
     echo "The folder $build was made for another SDK ($made_for): its configuration starts anew"

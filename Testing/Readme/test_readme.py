@@ -9,7 +9,8 @@ test_readme.py SOURCE --links          all links between pages lead somewhere
 SCRATCH becomes what the page calls "this folder": it shows the source tree's files and, as "build",
 the build tree. Fenced blocks with a file name behind the language are written to that file; then the
 blocks of language sh are run. They must succeed, leave every .vtp and .png that the section names, and
-print every "N triangles" that stands in a comment. Of a second section the files alone are written.
+print every "N triangles" that stands in a comment, and git must ignore the files that they write. Of a second
+section the files alone are written.
 """
 import os
 import re
@@ -73,6 +74,15 @@ def faults(blocks, scratch, output):
             yield f"{name} is not there"
 
 
+def not_ignored(source, scratch):
+    """Files of the scratch folder, the links apart, that "git status" would show in the source tree."""
+    written = [entry.name + "/" * entry.is_dir() for entry in os.scandir(scratch) if not entry.is_symlink()]
+    ignored = subprocess.run(["git", "-C", source, "check-ignore", "--no-index", *written], stdout=subprocess.PIPE,
+                             stderr=subprocess.DEVNULL, text=True, check=False)
+    if ignored.returncode in (0, 1):  # else these sources are no clone
+        yield from (f"git status would show {name}" for name in written if name not in ignored.stdout.split("\n"))
+
+
 def pages(source):
     """All .md files but those of build trees."""
     for folder, folders, names in os.walk(source):
@@ -99,7 +109,7 @@ def main(source, build, scratch, *sections):
             written.append(section_of(file.read(), title))
         write_files(written[-1], scratch)
     blocks = written[0]
-    found = list(faults(blocks, scratch, run(blocks, scratch)))
+    found = [*faults(blocks, scratch, run(blocks, scratch)), *not_ignored(source, scratch)]
     sys.exit("\n".join(found) if found else 0)
 
 

@@ -112,6 +112,19 @@ class Steps(unittest.TestCase):
         self.assertNotIn("after", output)
 
 
+    def test_kernels_of_another_build_are_taken(self):
+        """By quickstart.sh those of run-tests.sh, and the other way round."""
+        for other, build in (("build", "build-tests"), ("build-tests", "build")):
+            kept = os.path.join(SCRATCH, other, "vtkMarchingCorrectors", "core", "ahead")
+            os.makedirs(kept)
+            status, output = self.run_steps(f"""cd {SCRATCH}; mcor_step() {{ echo "$@"; }}
+                mcor_build {build} vtk -DMORE=1; mcor_build {other} vtk""")
+            self.assertEqual(status, 0)
+            first, _, second, _ = output.splitlines()
+            self.assertIn(f" -DMCOR_AHEAD_KEPT={kept} -DMORE=1", first)
+            self.assertNotIn("MCOR_AHEAD_KEPT", second)
+            shutil.rmtree(SCRATCH)
+
     def test_a_long_test_is_named_while_it_runs(self):
         status, output = self.run_steps(
             """(echo '    Start  1: quick'; echo '1/2 Test  #1: quick ....   Passed    0.10 sec'

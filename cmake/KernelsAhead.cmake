@@ -1,5 +1,5 @@
-# The kernels of the built-in device: mcor_ahead_sources are the object files, and the C file that lists
-# them (mcor_native_programs, see mcor_native.h): none where there is no clang.
+# The kernels of the built-in device: mcor_ahead_objects are the object files, none where there is no clang, and
+# mcor_ahead_sources these and the C file that lists them (mcor_native_programs, see mcor_native.h).
 set(MCOR_AHEAD usual CACHE STRING
   "Kernels compiled for the built-in device: usual, all (all SPH kernels, double precision, too), or OFF")
 # All of them would take the build minutes more.
@@ -135,4 +135,5 @@ file(GENERATE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/mcor_native_programs.c" CONTEN
 ${mcor_ahead_declared}const mcor_native_program mcor_native_programs[] = {
 ${mcor_ahead_table}  { 0, MCOR_INSTRUCTIONS_BASE, 0, 0, 0 } };
 ")
+set(mcor_ahead_objects ${mcor_ahead_sources})
 list(APPEND mcor_ahead_sources "${CMAKE_CURRENT_BINARY_DIR}/mcor_native_programs.c")

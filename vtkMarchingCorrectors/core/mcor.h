@@ -34,6 +34,10 @@
 extern "C"
 {
 #endif
+/* A shared library shows what its headers declare, and nothing else. */
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 #define MCOR_VERSION "0.1.0"
 
@@ -711,6 +715,9 @@ extern "C"
   /* Frees what the context keeps between calls: results for reuse, and large buffers. */
   void mcor_release_memory(mcor_context* context);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -12,6 +12,9 @@
 extern "C"
 {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
   /* One component of an attribute, over fluid particles. */
   typedef struct mcor_global_component
@@ -138,6 +141,9 @@ extern "C"
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -132,7 +132,8 @@ def python_module(header):
     kinds = {struct: {name: f"{base}[{length}]" if length else base
                       for name, base, pointers, length, _ in header.structs[struct] if not pointers}
              for struct in ("mcor_options", "mcor_input")}
-    for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds)):
+    statistics = re.findall(r'^STATISTIC\((\w+), (\w+), (\w+), "(\w*)"\)', header.statistics, re.M)
+    for label, value in (("STATISTICS", statistics), ("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds)):
         lines += ["", f"{label} = {value!r}"]
     return "\n".join(lines) + "\n"
 
@@ -153,6 +154,7 @@ def c_checks(module, header):
 
 def main():
     header = Header("".join(Path(name).read_text(encoding="utf-8") for name in sys.argv[1:-1]))
+    header.statistics = Path(sys.argv[1]).with_name("mcor_statistics.def").read_text(encoding="utf-8")
     folder = Path(sys.argv[-1])
     folder.mkdir(parents=True, exist_ok=True)
     module = python_module(header)

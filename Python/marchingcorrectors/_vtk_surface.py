@@ -171,43 +171,25 @@ def add_run(data, surface, particles, arguments):
     add_run_statistics(data, surface)
 
 
-def add_named(data, s, *names):
-    """Statistics by the core's names: "cube_size" is CubeSize."""
-    for name in names:
-        values = s[name] if isinstance(s[name], tuple) else (s[name],)
-        add_it = add_real if isinstance(values[0], float) else add_count
-        add_it(data, "".join(part.capitalize() for part in name.split("_")), *values)
-
-
 def add_statistics(data, s, surface, options):
     plane = s["dimension"] == 2
-    add_named(data, s, "fluid_particles", "solid_particles")
+    when = {"always": True, "is_run": False, "is_plane": plane, "has_levels": options.level_limit > 0,
+            "has_scalar": options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"], "has_caps": options.capping > 0,
+            "has_area": not plane or s["is_closed"] or options.filled, "has_volume": not plane and s["is_closed"]}
+    for _, condition, member, name in c.STATISTICS:
+        if name and when[condition]:
+            values = s[member] if isinstance(s[member], tuple) else (s[member],)
+            if len(values) > 3:
+                add_levels(data, name, values)
+            else:
+                (add_real if isinstance(values[0], float) else add_count)(data, name, *values)
     add_real(data, "SmoothingLengthRange", s["smoothing_length_min"], s["smoothing_length_max"])
-    if options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
+    if when["has_scalar"]:
         add_real(data, "ScalarRange", s["scalar_min"], s["scalar_max"])
-    add_named(data, s, "cube_size", "lattice_origin", "lattice_cells", "virtual_cells", "seed_cells",
-              "seed_cells_not_intersected", "cells_used")
-    if options.level_limit:
-        add_levels(data, "CellsOfLevel", s["cells_of_level"])
-        add_levels(data, "TrianglesOfLevel", s["triangles_of_level"])
-        add_named(data, s, "flat_loops", "highest_level")
-    add_named(data, s, "ambiguous_faces", "joined_faces", "ambiguous_cells", "tunnels")
     add_count(data, "Points", surface.point_count)
     add_count(data, "Triangles", surface.triangle_count)
     if plane:
-        add_named(data, s, "dimension")
         add_count(data, "Lines", surface.line_count)
-    add_named(data, s, "triangles_before_trimming", *["cap_triangles"] * bool(options.capping), "correction_mean",
-              "correction_max")
-    add_real(data, "CorrectionStandardDeviation", s["correction_deviation"])
-    add_named(data, s, "vertices_corrected", "vertices_above_tolerance", "iterations_mean", "iterations_max",
-              "newton_evaluations", "residual_max", "position_error", "trim_vertices", "trim_vertices_linear")
-    if plane:
-        add_named(data, s, "length")
-    if not plane or s["is_closed"] or options.filled:
-        add_named(data, s, "area")
-    if not plane and s["is_closed"]:
-        add_named(data, s, "volume")
 
 
 def add_quantity(data, name, array):
@@ -219,7 +201,7 @@ def add_quantity(data, name, array):
 
 def add_parameters(data, particles, arguments, wall_share):
     o, core, choice = arguments.options, arguments.input, particles.choice
-    add_text(data, "Field", ("shepard", "sum", "weight sum")[o.field])
+    add_text(data, "Field", ("shepard", "sum", "weight_sum")[o.field])
     add_text(data, "Scalar", particles.scalar_name)
     add_text(data, "SmoothingLengthArray", (core.smoothing_length.name or b"").decode())
     add_count(data, "SmoothingLengthIsSupportRadius", core.smoothing_length_is_support_radius)
@@ -237,11 +219,9 @@ def add_parameters(data, particles, arguments, wall_share):
     add_text(data, "Topology", ("table", "field")[o.topology])
     add_text(data, "Precision", ("single", "double")[o.precision])
     add_real(data, "CubeSizeFactor", o.cube_size_factor)
-    if o.level_limit:
-        add_text(data, "CubeSizeMode", "adaptive")
-        add_count(data, "CubeLevelLimit", o.level_limit)
-    if o.filled:
-        add_count(data, "Filled", 1)
+    add_text(data, "CubeSizeMode", "adaptive" if o.level_limit else "uniform")
+    add_count(data, "CubeLevelLimit", o.level_limit)
+    add_count(data, "Filled", o.filled)
     if any(o.box):
         add_real(data, "Box", *o.box)
     periodic = any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3))
@@ -251,7 +231,7 @@ def add_parameters(data, particles, arguments, wall_share):
         add_count(data, "Capping", o.capping > 0)
     add_real(data, "HScaleFactor", o.h_scale)
     add_real(data, "NodeThreshold", o.node_threshold)
-    add_text(data, "BoundaryDetection", ("weight sum", "eigenvalue")[o.boundary_detection])
+    add_text(data, "BoundaryDetection", ("weight_sum", "eigenvalue")[o.boundary_detection])
     add_real(data, "VertexThreshold", o.vertex_threshold)
     add_real(data, "Tolerance", o.tolerance)
     add_count(data, "IterationLimit", o.iteration_limit)
@@ -271,16 +251,11 @@ def add_run_statistics(run, surface):
         array.SetComponentName(i, name)
         array.SetComponent(0, i, array.GetComponent(0, i) + value)
 
-    def before(name):
-        return int(run.GetArray(name).GetComponent(0, 0)) if run.HasArray(name) else 0
-
-    add_count(run, "ParticlesInReach", before("ParticlesInReach") + s["particles_in_reach"])
-    add_count(run, "Bricks", before("Bricks") + s["bricks"])
-    add_count(run, "NodesEvaluated", before("NodesEvaluated") + s["nodes_evaluated"])
-    add_count(run, "MarchRounds", before("MarchRounds") + s["march_rounds"])
-    add_count(run, "DeviceBytesPeak", max(before("DeviceBytesPeak"), s["device_bytes_peak"]))
-    add_real(run, "MedianNeighbors", s["neighbours_median"])
-    add_real(run, "MedianSpacing", s["spacing_median"])
+    for how, when, member, name in c.STATISTICS:
+        if when == "is_run":
+            before = run.GetArray(name).GetComponent(0, 0) if run.HasArray(name) and how != "SAME" else 0
+            add_it = add_real if how == "SAME" else add_count
+            add_it(run, name, max(before, s[member]) if how == "MOST" else before + s[member])
 
 
 def describe(run):

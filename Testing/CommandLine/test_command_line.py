@@ -516,7 +516,7 @@ class Options(CommandLineTest):
         low = self.succeed("--free-surface", "--iso", "0.3")
         half = self.succeed("--free-surface")
         self.assertEqual(half["parameters"]["iso_values"], [0.5])
-        self.assertEqual(half["parameters"]["field"], "weight sum")
+        self.assertEqual(half["parameters"]["field"], "weight_sum")
         self.assertGreater(low["statistics"]["cells_used"], half["statistics"]["cells_used"])
         self.assertNotIn("scalar_range", half["statistics"])
         self.assertRegex(self.extract("--free-surface", "--iso", "50").stderr,
@@ -755,7 +755,7 @@ class Options(CommandLineTest):
     def test_boundary_detection(self):
         cut = ["--scalar", "Radius", "--iso", "0.55"]  # through the sides of the block
         weight = self.succeed(*cut)
-        self.assertEqual(weight["parameters"]["boundary_detection"], "weight sum")
+        self.assertEqual(weight["parameters"]["boundary_detection"], "weight_sum")
         self.assertEqual(weight["parameters"]["vertex_threshold"], 0.5)
         counts = {weight["statistics"]["triangles"]}
         for arguments, threshold in ([], 0.3), (["--vertex-threshold", "0.75"], 0.75):

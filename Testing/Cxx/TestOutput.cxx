@@ -328,7 +328,7 @@ void TestFieldData()
   CHECK(Text(run, "Field") == "shepard");
   CHECK(Text(run, "SeedMode") == "complete");
   CHECK(Text(run, "Topology") == "table" && Number(run, "AmbiguousFaces") == 0.0);
-  CHECK(Text(run, "BoundaryDetection") == "weight sum");
+  CHECK(Text(run, "BoundaryDetection") == "weight_sum");
   CHECK(Text(run, "Scalar") == "Radius");
   CHECK(Text(run, "SmoothingLengthArray") == "SmoothingLength");
   CHECK(Text(run, "VolumeArray") == "Volume");

@@ -19,21 +19,10 @@ void mcor_set_default_options(mcor_options* options)
   {
     return;
   }
-  *options = (mcor_options){ .sph_kernel = MCOR_CUBIC_SPLINE,
-    .field = MCOR_SHEPARD,
-    .seeds = MCOR_COMPLETE,
-    .topology = MCOR_TOPOLOGY_TABLE,
-    .h_scale = 1,
-    .cube_size_factor = 0.5,
-    .level_limit = MCOR_CUBE_LEVELS - 1,
-    .node_threshold = 0.1,
-    .vertex_threshold = 0.5,
-    .wall_share = MCOR_WALL_SHARE_AUTO,
-    .boundary_detection = MCOR_BOUNDARY_WEIGHT_SUM,
-    .tolerance = 1e-6,
-    .iteration_limit = 30,
-    .precision = MCOR_FLOAT32,
-    .outputs = MCOR_OUT_NORMALS };
+  *options = (mcor_options){ .outputs = MCOR_OUT_NORMALS,
+#define OPTION(member, usual, legal, words, scope, property) .member = usual,
+#include "mcor_options.def"
+  };
 }
 
 /* Between signs of life, so that cancelling is answered at once and reports cost nothing. */

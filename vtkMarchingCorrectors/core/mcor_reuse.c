@@ -58,15 +58,28 @@ static bool mcor_same_globals(const mcor_context* context, const mcor_globals* g
   return same;
 }
 
-/* Whether the same particles and images reach the box, and as much is needed of them. */
-static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
+static bool mcor_same_bounds(const double a[6], const double b[6])
 {
-  bool same = !a->ranks == !b->ranks, part = mcor_has_box(a);
+  bool same = true;
   for (int i = 0; i < 6; ++i)
   {
-    same = same && a->box[i] == b->box[i] && a->periodic[i] == b->periodic[i];
-    part = part || a->periodic[i] != 0;
+    same = same && a[i] == b[i];
   }
+  return same;
+}
+
+/* Whether all options are the same on which the search grid depends. */
+static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
+{
+  enum { SURFACE = 0, PROBE = 0, GAUGE = 0, ALL = 0, KEEPS = 1 };
+  const double none[6] = { 0 };
+  bool same = !a->ranks == !b->ranks;
+#define OPTION(member, usual, legal, words, scope, property)                                       \
+  same = same && ((scope) == KEEPS || a->member == b->member);
+#define BOUNDS(member, scope, property) same = same && mcor_same_bounds(a->member, b->member);
+#include "mcor_options.def"
+  /* As much is needed of the particles and images that reach a part. */
+  const bool part = mcor_has_box(a) || !mcor_same_bounds(a->periodic, none);
   const unsigned changed = a->outputs ^ b->outputs;
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));
 }
@@ -76,14 +89,9 @@ static bool mcor_same_box(const mcor_options* a, const mcor_options* b)
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   const mcor_input* last = &context->kept.input;
-  const mcor_options* o = &context->kept.options;
   const bool particles = mcor_same_particles(input, last);
-  const bool parameters = options->dimension == o->dimension &&
-    options->sph_kernel == o->sph_kernel && options->field == o->field &&
-    options->h_scale == o->h_scale && options->cube_size == o->cube_size &&
-    options->cube_size_factor == o->cube_size_factor && options->precision == o->precision &&
-    options->level_limit == o->level_limit && options->capping == o->capping &&
-    mcor_same_box(options, o) && mcor_same_globals(context, options->globals);
+  const bool parameters = mcor_same_options(options, &context->kept.options) &&
+    mcor_same_globals(context, options->globals);
   context->kept.grid = context->kept.grid && particles && parameters &&
     context->run.uses_solids == context->kept.uses_solids;
   context->kept.value = context->kept.value && context->kept.grid && input->scalar_version != 0 &&

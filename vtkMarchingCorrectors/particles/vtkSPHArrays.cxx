@@ -109,6 +109,31 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
   vtkSPHAddArray(data, name, array);
 }
 
+namespace
+{
+enum How
+{
+  SAME,
+  SUM,
+  MOST,
+  OTHER
+};
+
+/// Counts of several runs add up.
+template <typename T>
+void AddToRun(vtkFieldData* run, How how, const char* name, const T& value)
+{
+  vtkDataArray* array = run->GetArray(name);
+  const T before = array && how != SAME ? static_cast<T>(array->GetComponent(0, 0)) : T();
+  vtkSPHAdd(run, name, static_cast<T>(how == MOST ? std::max(before, value) : before + value));
+}
+
+template <typename T, std::size_t N>
+void AddToRun(vtkFieldData*, How, const char*, const T (&)[N])
+{
+}
+}
+
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
 {
   if (!run->GetArray("Seconds"))
@@ -126,19 +151,39 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
   }
   addSeconds(MCOR_PHASE_COUNT, s.build_seconds);
   addSeconds(MCOR_PHASE_COUNT + 1, total);
-  const auto count = [run](const char* name)
+  const bool is_run = true, always = false, has_scalar = false, has_levels = false, has_caps = false,
+             is_plane = false, has_area = false, has_volume = false;
+#define STATISTIC(how, when, member, name)                                                         \
+  if (when)                                                                                        \
+  {                                                                                                \
+    AddToRun(run, how, name, s.member);                                                            \
+  }
+#include "mcor_statistics.def"
+}
+
+void vtkSPHAdd(vtkFieldData* data, const char* name, double value)
+{
+  vtkSPHAddReal(data, name, { value });
+}
+
+void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value)
+{
+  vtkSPHAddCount(data, name, { value });
+}
+
+void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&counts)[MCOR_CUBE_LEVELS])
+{
+  int levels = MCOR_CUBE_LEVELS;
+  while (levels > 1 && counts[levels - 1] == 0)
   {
-    vtkDataArray* array = run->GetArray(name);
-    return array ? static_cast<std::int64_t>(array->GetComponent(0, 0)) : 0;
-  };
-  vtkSPHAddCount(run, "ParticlesInReach", { count("ParticlesInReach") + s.particles_in_reach });
-  vtkSPHAddCount(run, "Bricks", { count("Bricks") + s.bricks });
-  vtkSPHAddCount(run, "NodesEvaluated", { count("NodesEvaluated") + s.nodes_evaluated });
-  vtkSPHAddCount(run, "MarchRounds", { count("MarchRounds") + s.march_rounds });
-  vtkSPHAddCount(
-    run, "DeviceBytesPeak", { std::max(count("DeviceBytesPeak"), s.device_bytes_peak) });
-  vtkSPHAddReal(run, "MedianNeighbors", { s.neighbours_median });
-  vtkSPHAddReal(run, "MedianSpacing", { s.spacing_median });
+    --levels;
+  }
+  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
+  for (int level = 0; level < levels; ++level)
+  {
+    array->InsertNextValue(counts[level]);
+  }
+  vtkSPHAddArray(data, name, array);
 }
 
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components)

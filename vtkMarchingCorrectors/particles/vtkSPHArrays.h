@@ -50,6 +50,27 @@ void vtkSPHAddCount(
   vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values);
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
 
+/** A number, or an array of them; counts of levels up to the last that has any, a tuple each. */
+///@{
+void vtkSPHAdd(vtkFieldData* data, const char* name, double value);
+void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value);
+void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
+inline void vtkSPHAdd(vtkFieldData* data, const char* name, int value)
+{
+  vtkSPHAdd(data, name, static_cast<std::int64_t>(value));
+}
+template <std::size_t N>
+void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&v)[N])
+{
+  vtkSPHAddCount(data, name, { v[0], v[1], v[2] });
+}
+template <std::size_t N>
+void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&v)[N])
+{
+  vtkSPHAddReal(data, name, { v[0], v[1], v[2] });
+}
+///@}
+
 /** Adds what a call of the core cost to what calls before it did: not the same for each run. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 

@@ -16,47 +16,33 @@
 
 namespace
 {
-/** `all` becomes factor * all + one. */
-void AddCounts(mcor_statistics& all, const mcor_statistics& one, int factor)
+enum How
 {
-  std::int64_t mcor_statistics::*const counts[] = { &mcor_statistics::particles_in_reach,
-    &mcor_statistics::virtual_cells, &mcor_statistics::seed_cells,
-    &mcor_statistics::seed_cells_not_intersected, &mcor_statistics::bricks,
-    &mcor_statistics::nodes_evaluated, &mcor_statistics::cells_used,
-    &mcor_statistics::triangles_before_trimming, &mcor_statistics::cap_triangles,
-    &mcor_statistics::ambiguous_faces, &mcor_statistics::joined_faces,
-    &mcor_statistics::ambiguous_cells, &mcor_statistics::tunnels,
-    &mcor_statistics::correction_count, &mcor_statistics::vertices_corrected,
-    &mcor_statistics::newton_evaluations, &mcor_statistics::vertices_above_tolerance,
-    &mcor_statistics::trim_vertices, &mcor_statistics::trim_vertices_linear,
-    &mcor_statistics::flat_loops };
-  for (const auto count : counts)
+  SAME,
+  SUM,
+  MOST,
+  OTHER
+};
+
+template <typename T>
+void Merge(How how, T& all, T one)
+{
+  all = how == SUM ? all + one : how == MOST ? std::max(all, one) : all;
+}
+
+template <typename T, std::size_t N>
+void Merge(How how, T (&all)[N], const T (&one)[N])
+{
+  for (std::size_t i = 0; i < N; ++i)
   {
-    all.*count = factor * all.*count + one.*count;
-  }
-  for (int level = 0; level < MCOR_CUBE_LEVELS; ++level)
-  {
-    all.cells_of_level[level] = factor * all.cells_of_level[level] + one.cells_of_level[level];
-    all.triangles_of_level[level] =
-      factor * all.triangles_of_level[level] + one.triangles_of_level[level];
+    Merge(how, all[i], one[i]);
   }
 }
 
-void TakeGreatest(mcor_statistics& all, const mcor_statistics& one)
+void MergeAll(mcor_statistics& all, const mcor_statistics& one)
 {
-  for (int phase = 0; phase < MCOR_PHASE_COUNT; ++phase)
-  {
-    all.seconds[phase] = std::max(all.seconds[phase], one.seconds[phase]);
-  }
-  double mcor_statistics::*const reals[] = { &mcor_statistics::build_seconds,
-    &mcor_statistics::correction_max, &mcor_statistics::residual_max };
-  for (const auto real : reals)
-  {
-    all.*real = std::max(all.*real, one.*real);
-  }
-  all.march_rounds = std::max(all.march_rounds, one.march_rounds);
-  all.device_bytes_peak = std::max(all.device_bytes_peak, one.device_bytes_peak);
-  all.iterations_max = std::max(all.iterations_max, one.iterations_max);
+#define STATISTIC(how, when, member, name) Merge(how, all.member, one.member);
+#include "mcor_statistics.def"
 }
 
 /** The box around both. */
@@ -147,13 +133,14 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
   const auto known = std::find_if(shares.begin(), shares.end(),
     [](const vtkSPHRanksShare& share) { return share.Statistics.cube_size > 0.0; });
   mcor_statistics all = known == shares.end() ? mcor_statistics() : known->Statistics;
-  AddCounts(all, mcor_statistics(), 0);
   Sums sums;
   for (const vtkSPHRanksShare& share : shares)
   {
     AddCells(all, share.Statistics);
-    AddCounts(all, share.Statistics, 1);
-    TakeGreatest(all, share.Statistics);
+    if (known != shares.end() && &share != &*known)
+    {
+      MergeAll(all, share.Statistics);
+    }
     sums.Add(share);
   }
   sums.Take(all);

@@ -264,7 +264,6 @@ void vtkMarchingCorrectorsOutput::AddRun(vtkFieldData* run) const
   this->AddIsoValues(run);
   this->AddParameters(run);
   vtkSPHAddRunStatistics(run, this->Surface.statistics);
-  this->AddMeasures(run);
 }
 
 void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
@@ -277,103 +276,37 @@ void vtkMarchingCorrectorsOutput::AddIsoValues(vtkFieldData* fieldData) const
   vtkSPHAddArray(fieldData, "IsoValues", isoValues);
 }
 
-namespace
-{
-/// Counts of adaptive cubes, up to the last level that has any.
-void AddLevels(vtkFieldData* fieldData, const char* name, const int64_t counts[MCOR_CUBE_LEVELS])
-{
-  int levels = MCOR_CUBE_LEVELS;
-  while (levels > 1 && counts[levels - 1] == 0)
-  {
-    --levels;
-  }
-  auto array = vtkSmartPointer<vtkTypeInt64Array>::New();
-  for (int l = 0; l < levels; ++l)
-  {
-    array->InsertNextValue(counts[l]);
-  }
-  vtkSPHAddArray(fieldData, name, array);
-}
-}
-
 void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 {
   const mcor_statistics& s = this->Surface.statistics;
-  vtkSPHAddCount(fieldData, "FluidParticles", { s.fluid_particles });
-  vtkSPHAddCount(fieldData, "SolidParticles", { s.solid_particles });
+  const bool always = true, is_run = false, is_plane = s.dimension == 2;
+  const bool has_scalar = this->Options.field != MCOR_WEIGHT_SUM, has_caps = this->Options.capping != 0;
+  const bool has_levels = this->Options.level_limit > 0, has_volume = !is_plane && s.is_closed;
+  const bool has_area = !is_plane || s.is_closed || this->Options.filled;
+#define STATISTIC(how, when, member, name)                                                         \
+  if ((when) && *(name))                                                                           \
+  {                                                                                                \
+    vtkSPHAdd(fieldData, name, s.member);                                                          \
+  }
+#include "mcor_statistics.def"
   vtkSPHAddReal(
     fieldData, "SmoothingLengthRange", { s.smoothing_length_min, s.smoothing_length_max });
-  if (this->Options.field != MCOR_WEIGHT_SUM)
+  if (has_scalar)
   {
     vtkSPHAddReal(fieldData, "ScalarRange", { s.scalar_min, s.scalar_max });
   }
-  vtkSPHAddReal(fieldData, "CubeSize", { s.cube_size });
-  vtkSPHAddCount(
-    fieldData, "LatticeOrigin", { s.lattice_origin[0], s.lattice_origin[1], s.lattice_origin[2] });
-  vtkSPHAddCount(
-    fieldData, "LatticeCells", { s.lattice_cells[0], s.lattice_cells[1], s.lattice_cells[2] });
-  vtkSPHAddCount(fieldData, "VirtualCells", { s.virtual_cells });
-  vtkSPHAddCount(fieldData, "SeedCells", { s.seed_cells });
-  vtkSPHAddCount(fieldData, "SeedCellsNotIntersected", { s.seed_cells_not_intersected });
-  vtkSPHAddCount(fieldData, "CellsUsed", { s.cells_used });
-  if (this->Options.level_limit > 0)
-  {
-    AddLevels(fieldData, "CellsOfLevel", s.cells_of_level);
-    AddLevels(fieldData, "TrianglesOfLevel", s.triangles_of_level);
-    vtkSPHAddCount(fieldData, "FlatLoops", { s.flat_loops });
-    vtkSPHAddCount(fieldData, "HighestLevel", { s.highest_level });
-  }
-  vtkSPHAddCount(fieldData, "AmbiguousFaces", { s.ambiguous_faces });
-  vtkSPHAddCount(fieldData, "JoinedFaces", { s.joined_faces });
-  vtkSPHAddCount(fieldData, "AmbiguousCells", { s.ambiguous_cells });
-  vtkSPHAddCount(fieldData, "Tunnels", { s.tunnels });
   vtkSPHAddCount(fieldData, "Points", { this->Surface.point_count });
   vtkSPHAddCount(fieldData, "Triangles", { this->Surface.triangle_count });
-  if (s.dimension == 2)
+  if (is_plane)
   {
-    vtkSPHAddCount(fieldData, "Dimension", { s.dimension });
     vtkSPHAddCount(fieldData, "Lines", { this->Surface.line_count });
-  }
-  vtkSPHAddCount(fieldData, "TrianglesBeforeTrimming", { s.triangles_before_trimming });
-  if (this->Options.capping)
-  {
-    vtkSPHAddCount(fieldData, "CapTriangles", { s.cap_triangles });
-  }
-  vtkSPHAddReal(fieldData, "CorrectionMean", { s.correction_mean });
-  vtkSPHAddReal(fieldData, "CorrectionMax", { s.correction_max });
-  vtkSPHAddReal(fieldData, "CorrectionStandardDeviation", { s.correction_deviation });
-  vtkSPHAddCount(fieldData, "VerticesCorrected", { s.vertices_corrected });
-  vtkSPHAddCount(fieldData, "VerticesAboveTolerance", { s.vertices_above_tolerance });
-  vtkSPHAddReal(fieldData, "IterationsMean", { s.iterations_mean });
-  vtkSPHAddCount(fieldData, "IterationsMax", { s.iterations_max });
-  vtkSPHAddCount(fieldData, "NewtonEvaluations", { s.newton_evaluations });
-  vtkSPHAddReal(fieldData, "ResidualMax", { s.residual_max });
-  vtkSPHAddReal(fieldData, "PositionError", { s.position_error });
-  vtkSPHAddCount(fieldData, "TrimVertices", { s.trim_vertices });
-  vtkSPHAddCount(fieldData, "TrimVerticesLinear", { s.trim_vertices_linear });
-}
-
-void vtkMarchingCorrectorsOutput::AddMeasures(vtkFieldData* fieldData) const
-{
-  const mcor_statistics& s = this->Surface.statistics;
-  if (s.dimension == 2)
-  {
-    vtkSPHAddReal(fieldData, "Length", { s.length });
-  }
-  if (s.dimension != 2 || s.is_closed || this->Options.filled)
-  {
-    vtkSPHAddReal(fieldData, "Area", { s.area });
-  }
-  if (s.dimension != 2 && s.is_closed)
-  {
-    vtkSPHAddReal(fieldData, "Volume", { s.volume });
   }
 }
 
 void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
 {
   const mcor_options& o = this->Options;
-  const char* const fields[] = { "shepard", "sum", "weight sum" };
+  const char* const fields[] = { "shepard", "sum", "weight_sum" };
   vtkSPHAddText(fieldData, "Field", fields[o.field]);
   vtkSPHAddText(fieldData, "Scalar", this->Input.ScalarName);
   AddArrayName(fieldData, "SmoothingLengthArray", this->Input.Core.smoothing_length);
@@ -397,11 +330,8 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddText(fieldData, "Topology", o.topology == MCOR_TOPOLOGY_FIELD ? "field" : "table");
   vtkSPHAddText(fieldData, "Precision", o.precision == MCOR_FLOAT64 ? "double" : "single");
   vtkSPHAddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
-  if (o.level_limit > 0)
-  {
-    vtkSPHAddText(fieldData, "CubeSizeMode", "adaptive");
-    vtkSPHAddCount(fieldData, "CubeLevelLimit", { o.level_limit });
-  }
+  vtkSPHAddText(fieldData, "CubeSizeMode", o.level_limit > 0 ? "adaptive" : "uniform");
+  vtkSPHAddCount(fieldData, "CubeLevelLimit", { o.level_limit });
   const double* p = o.periodic;
   const bool isPeriodic = p[0] < p[1] || p[2] < p[3] || p[4] < p[5];
   if (isPeriodic)
@@ -412,10 +342,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   {
     vtkSPHAddCount(fieldData, "Capping", { o.capping != MCOR_CAP_NONE ? 1 : 0 });
   }
-  if (o.filled)
-  {
-    vtkSPHAddCount(fieldData, "Filled", { 1 });
-  }
+  vtkSPHAddCount(fieldData, "Filled", { o.filled });
   if (mcor_has_box(&o))
   {
     vtkSPHAddReal(fieldData, "Box", { o.box[0], o.box[1], o.box[2], o.box[3], o.box[4], o.box[5] });
@@ -423,7 +350,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddReal(fieldData, "HScaleFactor", { o.h_scale });
   vtkSPHAddReal(fieldData, "NodeThreshold", { o.node_threshold });
   vtkSPHAddText(fieldData, "BoundaryDetection",
-    o.boundary_detection == MCOR_BOUNDARY_EIGENVALUE ? "eigenvalue" : "weight sum");
+    o.boundary_detection == MCOR_BOUNDARY_EIGENVALUE ? "eigenvalue" : "weight_sum");
   vtkSPHAddReal(fieldData, "VertexThreshold", { o.vertex_threshold });
   vtkSPHAddReal(fieldData, "Tolerance", { o.tolerance });
   vtkSPHAddCount(fieldData, "IterationLimit", { o.iteration_limit });

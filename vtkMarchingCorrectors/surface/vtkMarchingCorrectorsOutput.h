@@ -44,7 +44,6 @@ private:
   void ChooseActive(vtkPolyData* output, const vtkSPHMergeRanges& merge) const;
   void AddIsoValues(vtkFieldData* fieldData) const;
   void AddStatistics(vtkFieldData* fieldData) const;
-  void AddMeasures(vtkFieldData* fieldData) const;
   void AddParameters(vtkFieldData* fieldData) const;
 
   const vtkMarchingCorrectorsInput& Input;

@@ -107,7 +107,7 @@ void SetField(Job& job, Text option, Text text)
 void SetBoundary(Job& job, Text option, Text text)
 {
   const int boundary = ToChoice(
-    option, text, { { "weight", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
+    option, text, { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE }, { "weight", Filter::WEIGHT_SUM } });
   job.Surface->SetBoundaryDetection(boundary);
   if (!job.HasVertexThreshold)
   {
@@ -297,8 +297,8 @@ const Options TheMethod = {
       j.Surface->SetNodeThreshold(ToThreshold(n, v));
       j.Probe->SetWeightThreshold(ToThreshold(n, v));
     } },
-  { "--boundary", "weight|eigenvalue",
-    "trim by the weight (default), or by the boundary eigenvalue of Marrone et al.", SetBoundary },
+  { "--boundary", "weight_sum|eigenvalue",
+    "trim by the weight sum (default), or by the boundary eigenvalue of Marrone et al.", SetBoundary },
   { "--vertex-threshold", "T",
     "trim triangles where the weight (or eigenvalue) is lower than T (default 0.5, or 0.3)",
     [](Job& j, Text n, Text v)

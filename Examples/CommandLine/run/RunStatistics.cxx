@@ -22,21 +22,16 @@ namespace
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
 const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
-  "Mass", "Density", "IsoValues", "Field", "Kernel", "SeedMode", "Topology", "Precision",
-  "CubeSize", "CubeSizeMode", "CubeLevelLimit", "Box", "PeriodicBounds", "Capping", "Filled",
-  "CubeSizeFactor", "HScaleFactor", "NodeThreshold", "BoundaryDetection", "VertexThreshold",
-  "Tolerance", "IterationLimit", "Preview" };
-const char* const StatisticNames[] = { "FluidParticles", "SolidParticles", "ParticlesInReach",
-  "SmoothingLengthRange", "ScalarRange", "LatticeOrigin", "LatticeCells", "VirtualCells",
-  "SeedCells", "SeedCellsNotIntersected", "CellsUsed", "CellsOfLevel", "TrianglesOfLevel",
-  "FlatLoops", "HighestLevel", "Bricks", "NodesEvaluated", "MarchRounds", "AmbiguousFaces",
-  "JoinedFaces", "AmbiguousCells", "Tunnels", "Points", "Triangles", "Area", "Volume", "Pieces",
-  "Dimension", "Lines", "Length", "CapTriangles", "TrianglesBeforeTrimming", "CorrectionMean",
-  "CorrectionMax", "CorrectionStandardDeviation", "VerticesCorrected", "VerticesAboveTolerance",
-  "IterationsMean", "IterationsMax", "NewtonEvaluations", "ResidualMax", "PositionError",
-  "TrimVertices", "TrimVerticesLinear", "DeviceBytesPeak", "MedianNeighbors", "MedianSpacing",
-  "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles",
-  "RankSeconds" };
+  "Mass", "Density", "IsoValues", "Field", "CubeSizeMode", "Capping",
+#define BOUNDS(member, scope, property) property,
+#define OPTION(member, usual, legal, words, scope, property) property,
+#include "mcor_options.def"
+};
+const char* const StatisticNames[] = {
+#define STATISTIC(how, when, member, name) name,
+#include "mcor_statistics.def"
+  "SmoothingLengthRange", "ScalarRange", "Points", "Triangles", "Lines", "Pieces", "RankParticles",
+  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {
@@ -203,7 +198,7 @@ void WriteGroup(JsonText& json, vtkFieldData* run, const char* group, const char
   json.Begin(group);
   for (const char* name : names)
   {
-    if (run->GetAbstractArray(name))
+    if (*name && run->GetAbstractArray(name))
     {
       WriteArray(json, run, name);
     }

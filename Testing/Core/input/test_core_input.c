@@ -84,11 +84,11 @@ static void expect_good(mcor_context* context)
 
 static void test_enumerations(void** state)
 {
-  ARGUMENT("SPH kernel|99", call.options.sph_kernel = (mcor_sph_kernel)99);
-  ARGUMENT("SPH kernel", call.options.sph_kernel = MCOR_SPH_KERNEL_COUNT);
-  ARGUMENT("SPH kernel|-1", call.options.sph_kernel = (mcor_sph_kernel)-1);
+  ARGUMENT("sph kernel|99", call.options.sph_kernel = (mcor_sph_kernel)99);
+  ARGUMENT("sph kernel", call.options.sph_kernel = MCOR_SPH_KERNEL_COUNT);
+  ARGUMENT("sph kernel|-1", call.options.sph_kernel = (mcor_sph_kernel)-1);
   ARGUMENT("field|3", call.options.field = (mcor_field)3);
-  ARGUMENT("seed mode|2", call.options.seeds = (mcor_seed_mode)2);
+  ARGUMENT("seeds|2", call.options.seeds = (mcor_seed_mode)2);
   ARGUMENT("topology|2", call.options.topology = (mcor_topology)2);
   ARGUMENT("boundary detection|2", call.options.boundary_detection = (mcor_boundary_detection)2);
   ARGUMENT("boundary detection|-1", call.options.boundary_detection = (mcor_boundary_detection)-1);
@@ -103,7 +103,7 @@ static void test_options(void** state)
   const double bad[] = { 0, -1, NAN, INFINITY };
   for (int i = 0; i < 4; ++i)
   {
-    ARGUMENT("h scale factor|above 0", call.options.h_scale = bad[i]);
+    ARGUMENT("h scale|above 0", call.options.h_scale = bad[i]);
     ARGUMENT("cube size factor|above 0", call.options.cube_size_factor = bad[i]);
     ARGUMENT("tolerance|above 0", call.options.tolerance = bad[i]);
   }

@@ -7,6 +7,7 @@
 #include "mcor_plane.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static mcor_status mcor_check_period(mcor_context* context, const mcor_options* options)
@@ -58,51 +59,77 @@ static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals*
   return MCOR_OK;
 }
 
+/* The numbers that an option may be: from low to high, or those of its words. */
+typedef struct mcor_legal
+{
+  bool is_word, excludes_low, excludes_high;
+  double low, high;
+} mcor_legal;
+
+// clang-format off
+#define WORD { .is_word = true }
+#define FLAG FROM(-INFINITY, INFINITY)
+#define AT_LEAST_0 FROM(0, INFINITY)
+#define ABOVE_0 { .low = 0, .high = INFINITY, .excludes_low = true }
+#define SHARE { .low = 0, .high = 1, .excludes_high = true }
+#define FROM(least, greatest) { .low = least, .high = greatest }
+// clang-format on
+
+/* Whether "table|field" has a word of this number, from 0. */
+static bool mcor_has_word(const char* words, double number)
+{
+  for (double i = 0; words && i < number; ++i)
+  {
+    words = strchr(words, '|');
+    words = words ? words + 1 : NULL;
+  }
+  return words && *words && number >= 0 && number == floor(number);
+}
+
+static mcor_status mcor_check_number(
+  mcor_context* context, const char* member, double value, mcor_legal legal, const char* words)
+{
+  const bool within = isfinite(value) &&
+    (legal.excludes_low ? value > legal.low : value >= legal.low) &&
+    (legal.excludes_high ? value < legal.high : value <= legal.high);
+  if (legal.is_word ? mcor_has_word(words, value) : within || mcor_has_word(words, -1 - value))
+  {
+    return MCOR_OK;
+  }
+  char name[40], most[40] = "";
+  for (int i = 0; i == 0 || member[i - 1]; ++i)
+  {
+    name[i] = member[i];
+    if (member[i] == '_')
+    {
+      name[i] = ' ';
+    }
+  }
+  if (legal.is_word)
+  {
+    return mcor_fail(context, MCOR_INVALID_ARGUMENT,
+      "The %s is %g; it must be the number of one of these, from 0: %s.", name, value, words);
+  }
+  if (isfinite(legal.high))
+  {
+    snprintf(most, sizeof most, " and %s %g", legal.excludes_high ? "below" : "at most", legal.high);
+  }
+  return mcor_fail(context, MCOR_INVALID_ARGUMENT, "The %s is %.15g; it must be %s %g%s%s%s.", name,
+    value, legal.excludes_low ? "above" : "at least", legal.low, most,
+    *words ? ", or the number, from -1 down, of one of these: " : "", words);
+}
+
+/* Enumerations are unsigned where no value is negative. */
+#define MCOR_NUMBER(value) _Generic((value), unsigned: (double)(int)(value), default: (double)(value))
+
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
+#define OPTION(member, usual, legal, words, scope, property)                                       \
+  MCOR_TRY(mcor_check_number(                                                                      \
+    context, #member, MCOR_NUMBER(options->member), (mcor_legal)legal, words));
+#include "mcor_options.def"
 #define MCOR_NEED(condition, ...)                                                                  \
   MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
-  MCOR_NEED((unsigned)options->sph_kernel < MCOR_SPH_KERNEL_COUNT,
-    "sph_kernel is %d; there is no such SPH kernel.", (int)options->sph_kernel);
-  MCOR_NEED((unsigned)options->field <= MCOR_WEIGHT_SUM, "field is %d; there is no such field.",
-    (int)options->field);
-  MCOR_NEED((unsigned)options->seeds <= MCOR_PAIRS, "seeds is %d; there is no such seed mode.",
-    (int)options->seeds);
-  MCOR_NEED((unsigned)options->topology <= MCOR_TOPOLOGY_FIELD,
-    "topology is %d; there is no such topology.", (int)options->topology);
-  MCOR_NEED(options->level_limit >= 0 && options->level_limit < MCOR_CUBE_LEVELS,
-    "The level limit is %d; it must be from 0 (uniform cubes) to %d.", options->level_limit,
-    MCOR_CUBE_LEVELS - 1);
-  MCOR_NEED((unsigned)options->boundary_detection <= MCOR_BOUNDARY_EIGENVALUE,
-    "boundary_detection is %d; there is no such boundary detection.",
-    (int)options->boundary_detection);
-  MCOR_NEED((unsigned)options->precision <= MCOR_FLOAT64,
-    "precision is %d; there is no such precision.", (int)options->precision);
-  MCOR_NEED(isfinite(options->h_scale) && options->h_scale > 0,
-    "The h scale factor is %g; it must be above 0.", options->h_scale);
-  MCOR_NEED(isfinite(options->cube_size) && options->cube_size >= 0,
-    "The cube size is %g; it must be positive, or 0 to use the cube size factor.",
-    options->cube_size);
-  MCOR_NEED(options->cube_size > 0 ||
-      (isfinite(options->cube_size_factor) && options->cube_size_factor > 0),
-    "The cube size factor is %g; it must be above 0.", options->cube_size_factor);
-  MCOR_NEED(isfinite(options->node_threshold) && options->node_threshold >= 0 &&
-      isfinite(options->vertex_threshold) && options->vertex_threshold >= 0,
-    "The node threshold is %g and the vertex threshold %g; neither may be negative.",
-    options->node_threshold, options->vertex_threshold);
-  MCOR_NEED((options->wall_share >= 0 && options->wall_share < 1) ||
-      options->wall_share == MCOR_WALL_SHARE_MEASURED ||
-      options->wall_share == MCOR_WALL_SHARE_AUTO,
-    "The wall share is %g; it must be at least 0 (the surface does not end at solids) and below 1, "
-    "or MCOR_WALL_SHARE_MEASURED (-1) or MCOR_WALL_SHARE_AUTO (-2).",
-    options->wall_share);
-  MCOR_NEED(isfinite(options->tolerance) && options->tolerance > 0,
-    "The tolerance is %g; it must be above 0.", options->tolerance);
-  MCOR_NEED(options->iteration_limit >= 1 && options->iteration_limit <= 255,
-    "The iteration limit is %d; it must be from 1 to 255.", options->iteration_limit);
-  MCOR_NEED(options->memory_limit >= 0,
-    "The memory limit is %lld bytes; it must be positive, or 0 for no limit.",
-    (long long)options->memory_limit);
   MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
     "iso_count is %d; it must match iso_values and not be negative.", options->iso_count);
   for (int i = 0; i < options->iso_count; ++i)

@@ -275,8 +275,8 @@ public:
   /**
    * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1, unit L;
    * sides may be infinite. The result is exactly that part of the whole surface, so boxes side by side
-   * make up the whole. Only the particles that reach the box are evaluated (with pairs as seeds: all,
-   * except in the correction). The lattice is that of all particles.
+   * make up the whole. Only the particles that reach the box are evaluated. The lattice is
+   * that of all particles.
    */
   vtkSPHFlagMacro(UseBox);
   vtkSetVector6Macro(Box, double);
@@ -311,7 +311,8 @@ public:
   /**
    * How the march is seeded, see SeedModeType; COMPLETE by default, which misses nothing that
    * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
-   * pair of particles lies on both sides of the fluid's surface.
+   * pair of particles lies on both sides of the fluid's surface. PAIRS is for comparisons with the paper: an error
+   * with cubes of several sizes, a box, caps or several processes.
    */
   vtkSPHClampMacro(SeedMode, int, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }

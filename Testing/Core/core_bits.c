@@ -60,8 +60,6 @@ static const bits_case cases[] = {
     MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0.2, 0 },
   { "mixed", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE, MCOR_BOUNDARY_EIGENVALUE,
     1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 1 },
-  { "mixed_pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS,
-    MCOR_BOUNDARY_WEIGHT_SUM, 1, 1, -14, MCOR_TOPOLOGY_TABLE, 0, 1 },
 };
 
 /* Gives some particles a far larger support, and as much weight as the others have. */

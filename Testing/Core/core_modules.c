@@ -413,7 +413,6 @@ static int modules_tank(mcor_context* context, const mcor_input* input)
     { "tank_levels_box", MCOR_SHEPARD, TANK_LEVELS | TANK_BOX },
     { "tank_levels_period", MCOR_WEIGHT_SUM, TANK_LEVELS | TANK_PERIOD },
     { "tank_levels_topology", MCOR_SHEPARD, TANK_LEVELS | TANK_TOPOLOGY },
-    { "tank_levels_pairs", MCOR_SHEPARD, TANK_LEVELS | TANK_PAIRS },
     { "tank_plane", MCOR_SHEPARD, TANK_FLAT },
     { "tank_plane_wall", MCOR_WEIGHT_SUM, TANK_FLAT | TANK_WALL },
     { "tank_plane_caps", MCOR_SHEPARD, TANK_FLAT | TANK_BOX | TANK_CAPS },

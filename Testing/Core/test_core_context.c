@@ -461,7 +461,7 @@ static void extract_lines(mcor_context* context, core_set* set, mcor_options opt
   {
     options.level_limit = way & 1 ? MCOR_CUBE_LEVELS - 1 : 0;
     options.filled = way == 2;
-    options.seeds = way == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
+    options.seeds = way == 0 ? MCOR_PAIRS : MCOR_COMPLETE;
     mcor_surface lines = core_extract(context, &input, &options);
     assert_true(lines.line_count > 0);
     mcor_free_surface(&lines);
@@ -488,7 +488,7 @@ static void test_everything(void** state)
   CORE_OK(context, mcor_derive(context, &input, &options, MCOR_GRADIENT_CORRECTED, &derivatives));
   for (int way = 0; way < 16; ++way)
   {
-    options.level_limit = way & 1 ? MCOR_CUBE_LEVELS - 1 : 0;
+    options.level_limit = way % 4 == 1 ? MCOR_CUBE_LEVELS - 1 : 0;
     options.seeds = way & 2 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.topology = way & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
     options.boundary_detection = way & 8 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;

@@ -80,7 +80,7 @@ static void fuzz_halves(const fuzz_call* call)
   mcor_context* context = fuzz_context(call, 1);
   mcor_options options = call->options;
   int64_t triangles[3] = { 0 }, cells[3] = { 0 };
-  options.seeds = MCOR_COMPLETE; /* pairs go with boxes where there are ranks */
+  options.seeds = MCOR_COMPLETE; /* pairs do not go with boxes */
   options.capping = options.capping && options.field == MCOR_SHEPARD; /* empty space is not above */
   for (int part = 0; part < 3; ++part)
   {
@@ -135,13 +135,6 @@ static int fuzz_gather(void* user, const void* records, int64_t count, size_t wi
   return fuzz_exchange(user);
 }
 
-static int fuzz_pass(void* user, const void* records, int64_t count, size_t width,
-  const double* places, double reach, const void** all, int64_t* all_count)
-{
-  FUZZ_CHECK((places || count == 0) && reach >= 0);
-  return fuzz_gather(user, records, count, width, all, all_count);
-}
-
 /* What a rank alone measures and extracts is what no rank does; without particles it can measure nothing. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
@@ -150,15 +143,11 @@ static void fuzz_ranks(unsigned failing, const fuzz_call* call)
   const mcor_ranks ranks = { .reduce_doubles = fuzz_reduce_doubles,
     .reduce_counts = fuzz_reduce_counts,
     .gather = fuzz_gather,
-    .pass = failing % 2 == 0 ? fuzz_pass : NULL,
     .user = &rank };
   mcor_options options = call->options;
   mcor_globals globals;
   mcor_surface alone, surface;
-  if (options.seeds == MCOR_PAIRS)
-  {
-    memset(options.box, 0, sizeof options.box); /* without ranks there is none */
-  }
+  options.seeds = MCOR_COMPLETE;
   mcor_status expected = mcor_extract(context, &call->input, &options, &alone);
   expected = expected == MCOR_OK && call->input.count == 0 ? MCOR_INVALID_DATA : expected;
   options.ranks = &ranks;

@@ -131,12 +131,6 @@ const std::vector<Case> Cases = {
       ContourSpeed(f);
       f->SetPartitionToByParticles();
     } },
-  { "pairs", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourSpeed(f);
-      f->SetSeedModeToPairs();
-    } },
   { "periods", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
     {
@@ -182,15 +176,6 @@ const std::vector<Case> Cases = {
       f->SetCubeSizeModeToAdaptive();
       f->SetPeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
     } },
-  { "adaptive cubes, pairs", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourDamBreak(f);
-      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      f->SetCubeSizeFactor(0.8);
-      f->SetCubeSizeModeToAdaptive();
-      f->SetSeedModeToPairs();
-    } },
   { "smoothing lengths that differ", "dam_break_45k",
     [](vtkMarchingCorrectors* f)
     {
@@ -216,11 +201,10 @@ const std::vector<Case> Cases = {
       f->SetBoundaryDetectionToEigenvalue();
       f->ComputeBoundaryEigenvalueOn();
     } },
-  { "lines, pairs, topology of the field, double precision", InPlane,
+  { "lines, topology of the field, double precision", InPlane,
     [](vtkMarchingCorrectors* f)
     {
       ContourInPlane(f);
-      f->SetSeedModeToPairs();
       f->SetTopologyToField();
       f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
     } },

@@ -419,7 +419,7 @@ static int case_run_modes(oracle_suite* suite, const oracle_case* at, case_run* 
     row.counts[6] = run->comparison.trim_vertices;
     case_release(run);
   }
-  if (!at->skip_pairs)
+  if (!at->skip_pairs && at->options.level_limit == 0) /* pairs need cubes of one size */
   {
     run->mode = "pairs";
     good = case_extract(suite, run, 0, 1) && good;

@@ -192,7 +192,6 @@ static void run_entry(oracle_suite* suite, const adaptive_entry* entry)
   at.options.level_limit = MCOR_CUBE_LEVELS - 1;
   at.input.ignore_solids = entry->solids == SOLIDS_IGNORE;
   at.options.wall_share = entry->solids == SOLIDS_WALL ? 0.5 : 0.0;
-  at.skip_pairs = entry->field == MCOR_WEIGHT_SUM || entry->make == particle_set_basin;
   snprintf(at.name, sizeof(at.name), "adaptive/%s/%g/%s/%s%s%s", entry->name, entry->ratio,
     entry->field == MCOR_WEIGHT_SUM ? "weight"
       : entry->field == MCOR_SUM    ? "sum"

@@ -92,7 +92,6 @@ static void run_seed(oracle_suite* suite, uint64_t seed, int adaptive)
   if (adaptive)
   {
     at.options.level_limit = MCOR_CUBE_LEVELS - 1;
-    at.skip_pairs = 1;
   }
   snprintf(at.name, sizeof(at.name), "random/%llu/%s/f%d%s", (unsigned long long)seed,
     mcor_sph_kernel_name(at.options.sph_kernel), (int)at.options.field,

@@ -86,7 +86,8 @@ extern "C"
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
     /* The paper's: cells between pairs of particles that are at most an (unscaled) smoothing length apart and
-     * straddle the iso value. MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
+     * straddle the iso value; for comparisons, with cubes of one size, without a box, caps and ranks.
+     * MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
     MCOR_PAIRS = 1
   } mcor_seed_mode;
 
@@ -268,8 +269,7 @@ extern "C"
     /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the surface is that of the cells whose centres are in the box,
      * box[2 a] <= x < box[2 a + 1] along axis a, to the last bit; boxes side by side make up the whole surface.
      * Sides may be infinite. A box may be flat (y0 = y1) only around particles in that plane. Lattice, ranges and
-     * smallest h are measured over all particles; only those that reach the box are evaluated. With MCOR_PAIRS and
-     * no ranks, the whole surface is evaluated up to the correction, because cells grow from wherever pairs are.
+     * smallest h are measured over all particles; only those that reach the box are evaluated.
      * mcor_probe and mcor_derive read the box only with globals. */
     double box[6];
 
@@ -295,8 +295,7 @@ extern "C"
     /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, of
      * which the input needs to hold only those whose supports miss the box by no more than
      * mcor_reach_margin; with computed volumes, also all particles within the (unscaled) support of
-     * those; with MCOR_PAIRS, also all within one (unscaled) smoothing length of the box or of those. The
-     * surface is, to the last bit, that of all particles. Borrowed until return. For mcor_probe and
+     * those. The surface is, to the last bit, that of all particles. Borrowed until return. For mcor_probe and
      * mcor_derive: the result of mcor_measure_probe_globals. Their results are valid in the box and on its
      * sides; elsewhere they are meaningless, or 0 for particles two cubes or more away from the box. */
     const mcor_globals* globals;
@@ -305,9 +304,8 @@ extern "C"
      * the inputs of all ranks; each particle must be in exactly one of them. (A rank without particles has
      * count 0, and data that are not NULL where the other ranks have data.) The result is, to the last
      * bit, that of all particles in one input, except for not_finite, the lowest number that such a
-     * particle has on its rank. mcor_extract needs these globals, and with MCOR_PAIRS lets cells grow from
-     * box to box; each cell must be in the box of exactly one rank. Other functions do not read ranks.
-     * Borrowed until return. */
+     * particle has on its rank. mcor_extract needs these globals; each cell must be in the box of exactly
+     * one rank. Other functions do not read ranks. Borrowed until return. */
     const mcor_ranks* ranks;
 
     /* Arrays that the surface carries besides points and triangles. */
@@ -359,8 +357,8 @@ extern "C"
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
     /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not exclude; with
-     * adaptive cubes, the cells of leaves through which the surface passes. Pairs: the cells between them
-     * (with adaptive cubes, in such leaves only). And how many of these cells the surface does not use.
+     * adaptive cubes, the cells of leaves through which the surface passes. Pairs: the cells between them.
+     * And how many of these cells the surface does not use.
      * These and the following counts are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;

@@ -71,7 +71,6 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_trim(context);
   mcor_release_attributes(context);
   mcor_release_box(context);
-  mcor_end_rounds(context);
   mcor_release_adaptive(context);
   mcor_release_pairs(context);
   mcor_release(context, &context->sort.sums);
@@ -177,7 +176,6 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   context->cl.observer = NULL;
   context->run = (mcor_run){ .fraction = context->run.fraction };
   mcor_end_box(context);
-  mcor_end_rounds(context);
   mcor_end_caps(context);
   if (status != MCOR_OK)
   {

@@ -86,11 +86,6 @@ extern "C"
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* Gathers records that matter only near their places ([count][3], L): at least those records of all
-     * ranks, this one included, that are within `reach` of this rank's box along each axis, or of a
-     * periodic image of it. May be NULL: gather is called instead. */
-    int (*pass)(void* user, const void* records, int64_t count, size_t width, const double* places,
-      double reach, const void** all, int64_t* all_count);
     /* The box that the boxes of all ranks are parts of, as mcor_options.box; all 0: it has no end but that
      * of a period. Vertices that several ranks have are counted by one of them. */
     double whole_box[6];

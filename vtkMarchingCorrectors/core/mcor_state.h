@@ -157,13 +157,10 @@ typedef struct mcor_adaptive
 /* Which cells pairs reach; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
-  int place_count, bucket_shift;
-  mcor_buffer keys, index;                      /* while places are found */
-  mcor_buffer place_keys, buckets, place_slots; /* ulong, sorted; int */
-  mcor_buffer marked, reached, grown; /* ulong, by place: by pairs; by now; when last looked at */
+  mcor_buffer marked, reached, grown; /* ulong, by a brick's number in its block: by pairs; by now; when last looked
+                                         at */
   mcor_buffer cells, seeds;           /* ulong, by slot: those that are reached; that are marked */
   mcor_buffer domain;                 /* ulong, by slot: where growth may go */
-  mcor_buffer heard;                  /* int4: cells that other boxes have reached */
   mcor_buffer found;                  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
@@ -236,15 +233,12 @@ typedef struct mcor_box
   bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
   int halves[6];          /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
-  int near[6];            /* the same of those whose particles are on the device */
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
   double points[6];
-  int begin[3], end[3]; /* the same of those whose particles are on the device */
   int whole_first[3], whole_last[3], whole_halves[6]; /* cells that any rank owns */
   mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
   mcor_buffer clipped; /* ulong per brick, of mcor_count_cells */
   uint8_t* kept;       /* per triangle of the surface: 1 of an owned cell; NULL: all are */
-  cl_ulong* told;      /* by place, cells that others know of; see mcor_pair_rounds.c */
 } mcor_box;
 
 /* The call under way; options are NULL between calls. */

@@ -9,7 +9,6 @@
 
 vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route)
   : Ranks(ranks)
-  , Route(route)
 {
   this->Core.user = this;
   this->Core.reduce_doubles = Reduce<double>;
@@ -17,7 +16,6 @@ vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* r
   this->Core.gather = Gather;
   if (route)
   {
-    this->Core.pass = Pass;
     std::copy(route->Whole.begin(), route->Whole.end(), this->Core.whole_box);
   }
 }
@@ -66,33 +64,6 @@ int vtkSPHRanksCalls::Gather(void* user, const void* records, std::int64_t count
   const std::size_t size = static_cast<std::size_t>(count) * width;
   return self->Deliver(
     self->Ranks.Gather(Bytes(first, first + (first ? size : 0))), width, all, allCount);
-}
-
-int vtkSPHRanksCalls::Pass(void* user, const void* records, std::int64_t count, std::size_t width,
-  const double* places, double reach, const void** all, std::int64_t* allCount)
-{
-  auto* self = static_cast<vtkSPHRanksCalls*>(user);
-  if (!self->AllGoOn(true))
-  {
-    return 1;
-  }
-  std::vector<Bytes> messages(static_cast<std::size_t>(self->Ranks.GetCount()));
-  const auto* record = static_cast<const char*>(records);
-  std::vector<int> found;
-  for (std::int64_t i = 0; i < count; ++i, record += width)
-  {
-    self->Route->FindReached(places + 3 * i, reach, found);
-    found.push_back(self->Ranks.GetRank());
-    for (const int rank : found)
-    {
-      if (rank != self->Ranks.GetRank() || &rank == &found.back())
-      {
-        Bytes& message = messages[static_cast<std::size_t>(rank)];
-        message.insert(message.end(), record, record + width);
-      }
-    }
-  }
-  return self->Deliver(self->Ranks.Exchange(std::move(messages)), width, all, allCount);
 }
 
 int vtkSPHRanksCalls::Deliver(

@@ -39,15 +39,11 @@ private:
   static int Reduce(void* user, mcor_reduction reduction, T* values, int count);
   static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
     const void** all, std::int64_t* allCount);
-
-  static int Pass(void* user, const void* records, std::int64_t count, std::size_t width,
-    const double* places, double reach, const void** all, std::int64_t* allCount);
   using Bytes = std::vector<char>;
   int Deliver(const std::vector<Bytes>& received, std::size_t width, const void** all,
     std::int64_t* allCount);
 
   vtkSPHRanks& Ranks;
-  const vtkSPHRanksRoute* Route;
   mcor_ranks Core = {};
   bool Stopped = false;
   Bytes Gathered;

@@ -169,7 +169,7 @@ private:
 
   /**
    * How far around its box each rank needs all particles, whatever their supports are: for volumes
-   * that are computed, nearest particles and pairs.
+   * that are computed, and nearest particles.
    */
   std::vector<double> FindRadii(vtkSPHRanks& ranks) const
   {
@@ -191,17 +191,12 @@ private:
         });
       ranks.Reduce(vtkSPHRanks::GREATEST, radii.data(), ranks.GetCount());
     }
-    const double h = this->Globals.measured.h_max;
-    const double pairs = o.seeds == MCOR_PAIRS && o.field != MCOR_WEIGHT_SUM
-      ? h + std::max(h, this->Globals.measured.support_max) +
-        mcor_reach_margin(&this->Options, &this->Globals, h) - this->LeastMargin
-      : 0.0;
     for (double& radius : radii)
     {
       const double cubes = this->LeastMargin;
       const double volumes = this->ComputesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
       const double nearest = (o.outputs & MCOR_OUT_NEAREST_PARTICLE) ? radius + cubes : 0.0;
-      radius = std::max({ radius > 0.0 ? volumes : 0.0, radius > 0.0 ? nearest : 0.0, pairs });
+      radius = radius > 0.0 ? std::max(volumes, nearest) : 0.0;
     }
     return radii;
   }

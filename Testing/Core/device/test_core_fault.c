@@ -406,7 +406,6 @@ static void test_adaptive_cubes(void** state)
   s.options.level_limit = MCOR_CUBE_LEVELS - 1;
   sweep_room(*state, &s, 7, 150);
   s.options.field = MCOR_SHEPARD;
-  s.options.seeds = MCOR_PAIRS;
   s.options.periodic[0] = -8;
   s.options.periodic[1] = 8;
   sweep_room(*state, &s, 11, 100);
@@ -420,7 +419,6 @@ static void test_ranks(void** state)
   core_set set = core_make_block(6, 0.3, 3, flat);
   sweep s = { .call = extract_as_rank, .input = core_input(&set), .options = core_options(&iso) };
   s.options.ranks = &alone;
-  s.options.seeds = MCOR_PAIRS;
   const double sides[6] = { -9, 9, -9, 9, -9, 9 };
   memcpy(s.options.box, sides, sizeof sides);
   sweep_room(context, &s, 23, 100);

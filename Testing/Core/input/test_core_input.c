@@ -130,6 +130,29 @@ static void test_options(void** state)
   expect_good(*state);
 }
 
+static int reduce_none(void* user, mcor_reduction reduction, double* values, int count)
+{
+  (void)user, (void)reduction, (void)values, (void)count;
+  return 0;
+}
+
+/* They are for comparisons with the paper. */
+static void test_pairs(void** state)
+{
+  const mcor_ranks ranks = { .reduce_doubles = reduce_none };
+  const double levels[4] = { 1, 1, 1, 5 };
+  ARGUMENT("A box|pair seeds|complete", call.options.seeds = MCOR_PAIRS; call.options.box[1] = 1);
+  ARGUMENT("Capping|pair seeds|complete", call.options.seeds = MCOR_PAIRS;
+           call.options.capping = MCOR_CAP_PERIOD);
+  ARGUMENT("Several processes|pair seeds|complete", call.options.seeds = MCOR_PAIRS;
+           call.options.ranks = &ranks);
+  ARGUMENT("air seeds|cubes of one size|up to 3|uniform", call.options.seeds = MCOR_PAIRS;
+           call.options.level_limit = MCOR_CUBE_LEVELS - 1;
+           for (int64_t i = 0; i < call.set.count;
+                ++i) call.set.smoothing_length[i] *= levels[i % 4]);
+  expect_good(*state);
+}
+
 static void test_missing_arrays(void** state)
 {
   ARGUMENT("no particle positions", call.input.positions.data = NULL);
@@ -569,7 +592,8 @@ static void test_outliers(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_enumerations),
-    cmocka_unit_test(test_options), cmocka_unit_test(test_missing_arrays),
+    cmocka_unit_test(test_options), cmocka_unit_test(test_pairs),
+    cmocka_unit_test(test_missing_arrays),
     cmocka_unit_test(test_components), cmocka_unit_test(test_bad_elements),
     cmocka_unit_test(test_particles), cmocka_unit_test(test_lattice_limits),
     cmocka_unit_test(test_null_arguments), cmocka_unit_test(test_empty_results),

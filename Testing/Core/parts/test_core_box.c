@@ -51,7 +51,7 @@ static void trimmed_surfaces(void** state)
   core_free_set(&set);
 }
 
-/* Noise, so that faces are ambiguous, edges pinched and seeds far from each other. */
+/* Noise, so that faces are ambiguous and edges pinched. */
 static void rough_surfaces(void** state)
 {
   const double iso = 0.1;
@@ -69,9 +69,6 @@ static void rough_surfaces(void** state)
   core_ask_for_all(&options);
   options.triangle_normals = 1;
   core_check_cuts(*state, "noise", &input, &options);
-  options.seeds = MCOR_PAIRS;
-  core_check_cuts(*state, "pairs", &input, &options);
-  options.seeds = MCOR_COMPLETE;
   options.topology = MCOR_TOPOLOGY_FIELD;
   core_check_cuts(*state, "topology", &input, &options);
   core_free_set(&set);
@@ -220,7 +217,6 @@ static void kept_particles(void** state)
     options.box[1] = options.box[3] = options.box[5] = call == 1 ? 0 : call == 6 ? 2.5 : 3;
     options.outputs = call >= 3 ? options.outputs | MCOR_OUT_NEAREST_PARTICLE
                                 : options.outputs & ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
-    options.seeds = call == 4 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.iso_values = iso + (call == 2);
     mcor_surface surface = core_extract(*state, &kept, &options);
     mcor_context* other = NULL;

@@ -135,6 +135,7 @@ static void check_images(mcor_context* context, const char* name, const core_set
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
   memset(plain.periodic, 0, sizeof plain.periodic);
+  plain.seeds = MCOR_COMPLETE; /* what pairs grow to is whole */
   plain.cube_size = surface.statistics.cube_size;
   plain.level_limit = surface.statistics.highest_level;
   for (int a = 0; a < 3; ++a)
@@ -224,34 +225,6 @@ static void adaptive_cubes(void** state)
     check_images(*state, i == 0 ? "adaptive" : i == 1 ? "free" : "fewer levels", &set, &options, 0);
     core_free_set(&set);
   }
-}
-
-/* Pairs in one place alone, off the sides, as of uniform cubes; from there across sides, and levels. */
-static void adaptive_pairs(void** state)
-{
-  const double iso = 0.27;
-  const int length[3] = { 16, 16, 8 };
-  const double along[6] = { 0, 16, 0, 16, 0, 0 };
-  core_set set = core_make_period(length, 6);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    const double x = set.position[3 * i];
-    set.smoothing_length[i] = x > 4 && x < 6 ? 1.3 : x > 13 || x < 1 ? 0.3 : 0.6;
-    set.scalar[i] = sin(2 * PI * (x + set.position[3 * i + 1]) / 16);
-  }
-  mcor_options options = core_period_options(&iso, along);
-  options.level_limit = MCOR_CUBE_LEVELS - 1;
-  options.seeds = MCOR_PAIRS;
-  options.h_scale = 3;
-  options.cube_size = 0.25;
-  const mcor_input input = core_input(&set);
-  mcor_surface surface = core_extract(*state, &input, &options);
-  const mcor_statistics* s = &surface.statistics;
-  assert_true(s->cells_of_level[0] > 100 && s->cells_of_level[1] > 100);
-  assert_true(s->seed_cells - s->seed_cells_not_intersected < s->cells_used / 4);
-  mcor_free_surface(&surface);
-  check_images(*state, "pairs, adaptive", &set, &options, 0);
-  core_free_set(&set);
 }
 
 /* Particles shifted by whole cubes, and taken out of the period by some: the same surface, shifted.
@@ -402,7 +375,7 @@ static void adaptive_unequal(void** state)
 {
   const double iso = 0.2, half = 0.5;
   const int length[3] = { 16, 16, 16 };
-  for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 3; ++i)
   {
     double around[6] = { 0, 16, 0, 16, 0, 16 };
     core_set set = core_make_period(length, 5);
@@ -421,7 +394,6 @@ static void adaptive_unequal(void** state)
     options.cube_size = 0.3;
     options.field = i == 1 ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
     options.precision = i == 2 ? MCOR_FLOAT64 : MCOR_FLOAT32;
-    options.seeds = i == 3 ? MCOR_PAIRS : MCOR_COMPLETE;
     const mcor_input input = core_input(&set);
     mcor_surface surface = core_extract(*state, &input, &options);
     const double* edge = surface.statistics.cube_edges;
@@ -510,7 +482,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
     cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_unequal),
-    cmocka_unit_test(adaptive_pairs), cmocka_unit_test(shifts), cmocka_unit_test(boxes),
+    cmocka_unit_test(shifts), cmocka_unit_test(boxes),
     cmocka_unit_test(lengths), cmocka_unit_test(rounded_length), cmocka_unit_test(large_sides) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

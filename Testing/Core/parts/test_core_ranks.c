@@ -268,7 +268,7 @@ static void faults(void** state)
   core_free_set(&set);
 }
 
-/* ---- Pairs in rounds ---- */
+/* ---- Surfaces of parts ---- */
 
 /* Corners of triangles: positions and normals. */
 typedef struct triangle
@@ -329,7 +329,7 @@ static int compare_triangles(const void* a, const void* b)
   return memcmp(a, b, sizeof(triangle));
 }
 
-typedef struct pairs_job
+typedef struct parts_job
 {
   const core_set* set;
   const mcor_options* options;
@@ -338,8 +338,7 @@ typedef struct pairs_job
   mcor_surface surface[CORE_MOST_RANKS];
   mcor_status status[CORE_MOST_RANKS];
   double margin; /* of particles beside a box */
-  int thirsty;   /* a rank whose memory does not suffice; -1: none */
-} pairs_job;
+} parts_job;
 
 static core_set take_near(const core_set* set, const double box[6], double margin)
 {
@@ -361,7 +360,7 @@ static core_set take_near(const core_set* set, const double box[6], double margi
 
 static void extract_part(core_rank* rank, void* data)
 {
-  pairs_job* job = data;
+  parts_job* job = data;
   const int r = rank->number, last = rank->world->count - 1;
   mcor_options options = *job->options;
   const double box[6] = { r > 0 ? job->sides[r - 1] : -INFINITY,
@@ -369,7 +368,6 @@ static void extract_part(core_rank* rank, void* data)
   memcpy(options.box, box, sizeof box);
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
-  options.memory_limit = r == job->thirsty ? 300000 : 0;
   core_set near = take_near(job->set, box, job->margin);
   const mcor_input input = core_input(&near);
   mcor_context* context = NULL;
@@ -387,15 +385,13 @@ static void extract_part(core_rank* rank, void* data)
   core_free_set(&near);
 }
 
-/* Only at one end have particles another one within the smoothing length: from there, all of the
- * surface is grown to, which winds. */
+/* A surface that winds. */
 static core_set make_band(void)
 {
   core_set set = core_make_block(14, 0.2, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     const double* x = set.position + 3 * i;
-    set.smoothing_length[i] = x[0] < -5.6 && x[1] < 0 ? 1.3 : 0.6;
     set.scalar[i] = 4 * sin(0.7 * x[0]) + 3 * sin(0.9 * x[1]) + x[2];
   }
   return set;
@@ -406,9 +402,7 @@ static void check_parts(mcor_context* context, const core_set* set, const mcor_o
 {
   const mcor_input input = core_input(set);
   triangle_list whole = { 0 }, all = { 0 };
-  pairs_job job = {
-    .set = set, .options = options, .sides = sides, .margin = margin, .thirsty = -1
-  };
+  parts_job job = { .set = set, .options = options, .sides = sides, .margin = margin };
   mcor_surface surface = core_extract(context, &input, options);
   CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
   add_triangles(&whole, &surface);
@@ -419,7 +413,6 @@ static void check_parts(mcor_context* context, const core_set* set, const mcor_o
   {
     assert_int_equal(job.status[r], MCOR_OK);
     add_triangles(&all, &job.surface[r]);
-    sum.seed_cells += job.surface[r].statistics.seed_cells;
     sum.cells_used += job.surface[r].statistics.cells_used;
     assert_int_equal(world.calls[r], world.calls[0]);
     mcor_free_surface(&job.surface[r]);
@@ -427,7 +420,6 @@ static void check_parts(mcor_context* context, const core_set* set, const mcor_o
   CORE_CHECK(whole.count > least && all.count == whole.count,
     "%d ranks: %lld triangles or lines, not %lld", ranks, (long long)all.count,
     (long long)whole.count);
-  assert_int_equal(sum.seed_cells, surface.statistics.seed_cells);
   assert_int_equal(sum.cells_used, surface.statistics.cells_used);
   qsort(whole.triangles, (size_t)whole.count, sizeof(triangle), compare_triangles);
   qsort(all.triangles, (size_t)all.count, sizeof(triangle), compare_triangles);
@@ -438,31 +430,7 @@ static void check_parts(mcor_context* context, const core_set* set, const mcor_o
   mcor_free_globals(&job.globals);
 }
 
-static void check_pairs(mcor_context* context, const core_set* set, const mcor_options* options,
-  int ranks, const double* sides)
-{
-  const mcor_input input = core_input(set);
-  mcor_surface surface = core_extract(context, &input, options);
-  assert_true(surface.statistics.seed_cells < surface.statistics.cells_used / 8);
-  mcor_free_surface(&surface);
-  check_parts(context, set, options, ranks, sides, 9, 1000);
-}
-
-/* A rank without memory: the other is told. */
-static void check_thirsty(
-  mcor_context* context, const core_set* set, const mcor_options* options, const double* side)
-{
-  pairs_job job = { .set = set, .options = options, .sides = side, .margin = 9, .thirsty = 1 };
-  const mcor_input input = core_input(set);
-  CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
-  core_world world;
-  core_run_ranks(2, extract_part, &job, &world);
-  assert_int_equal(job.status[0], MCOR_CANCELLED);
-  assert_int_equal(job.status[1], MCOR_OUT_OF_CAPACITY);
-  mcor_free_globals(&job.globals);
-}
-
-static void pairs_in_rounds(void** state)
+static void parts_of_a_band(void** state)
 {
   const double iso[2] = { 0.3, 2 };
   const double two[] = { 0.4 }, three[] = { -1.2, -1.0 },
@@ -470,40 +438,14 @@ static void pairs_in_rounds(void** state)
   core_set set = make_band();
   mcor_options options = core_options(iso);
   options.iso_count = 2;
-  options.seeds = MCOR_PAIRS;
-  options.h_scale = 2.5;
-  check_pairs(*state, &set, &options, 1, NULL);
-  check_pairs(*state, &set, &options, 2, two);
-  check_pairs(*state, &set, &options, 3, three);
-  check_pairs(*state, &set, &options, 8, eight);
-  check_thirsty(*state, &set, &options, two);
+  check_parts(*state, &set, &options, 1, NULL, 9, 1000);
+  check_parts(*state, &set, &options, 2, two, 9, 1000);
+  check_parts(*state, &set, &options, 3, three, 9, 1000);
+  check_parts(*state, &set, &options, 8, eight, 9, 1000);
   core_free_set(&set);
 }
 
-/* The same of adaptive cubes: across sides that cut cells, of three levels. */
-static void adaptive_pairs_in_rounds(void** state)
-{
-  const double iso[2] = { 0.3, 2 };
-  const double two[] = { 0.4 }, eight[] = { -1000, -7, -3, -0.05, 0.1, 4.4, 1000 };
-  core_set set = make_band();
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.smoothing_length[i] *= set.position[3 * i] > 3 ? 0.5 : 1;
-  }
-  mcor_options options = core_options(iso);
-  options.iso_count = 2;
-  options.seeds = MCOR_PAIRS;
-  options.level_limit = MCOR_CUBE_LEVELS - 1;
-  options.cube_size_factor = 1;
-  options.h_scale = 3.5;
-  check_pairs(*state, &set, &options, 1, NULL);
-  check_pairs(*state, &set, &options, 2, two);
-  check_pairs(*state, &set, &options, 8, eight);
-  check_thirsty(*state, &set, &options, two);
-  core_free_set(&set);
-}
-
-/* Lines in the plane, on squares of one size and of several, from all seeds. */
+/* Lines in the plane, on squares of one size and of several. */
 static void lines_of_parts(void** state)
 {
   const double iso = 0.3, two[] = { 0.4 }, three[] = { -3.1, 2.9 };
@@ -522,7 +464,6 @@ static void lines_of_parts(void** state)
   for (int i = 0; i < 6; ++i)
   {
     mcor_options options = core_options(&iso);
-    options.seeds = i & 1 ? MCOR_PAIRS : MCOR_COMPLETE;
     options.level_limit = i < 2 ? 0 : MCOR_CUBE_LEVELS - 1;
     options.topology = i & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
     options.h_scale = i < 4 ? 1 : 0.8;
@@ -548,7 +489,6 @@ int main(int argc, char** argv)
   }
   const struct CMUnitTest tests[] = { cmocka_unit_test(global_values),
     cmocka_unit_test(not_finite_attributes), cmocka_unit_test(faults),
-    cmocka_unit_test(pairs_in_rounds), cmocka_unit_test(adaptive_pairs_in_rounds),
-    cmocka_unit_test(lines_of_parts) };
+    cmocka_unit_test(parts_of_a_band), cmocka_unit_test(lines_of_parts) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -343,7 +343,7 @@ static void test_pairs_and_reuse(void** state)
     {
       mcor_options options = plane_options(&isos[i % 2]);
       options.level_limit = i < 2 ? 0 : MCOR_CUBE_LEVELS - 1;
-      options.seeds = k == 1 ? MCOR_PAIRS : MCOR_COMPLETE;
+      options.seeds = k == 1 && i < 2 ? MCOR_PAIRS : MCOR_COMPLETE;
       mcor_input fresh = core_input(&set);
       mcor_surface surface = core_extract(*state, k == 2 ? &fresh : &input, &options);
       assert_int_equal(surface.line_count, 1);

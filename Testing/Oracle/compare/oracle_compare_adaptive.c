@@ -359,9 +359,7 @@ static void adaptive_compare_segments(
   {
     const int64_t from = adaptive->segments[s].from;
     const int64_t to = adaptive->segments[s].to;
-    const int left_out = state->options->seeds == MCOR_PAIRS &&
-      adaptive_pinched(&adaptive->edges[from]) && adaptive_pinched(&adaptive->edges[to]);
-    if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 || left_out ||
+    if (state->edge_vertex[from] < 0 || state->edge_vertex[to] < 0 ||
       !adaptive_certain_pair(state, from, to))
     {
       continue;
@@ -431,8 +429,7 @@ static void adaptive_totals(compare_state* state)
   }
   /* A tunnel of loops of a and b sides has a + b triangles; the loops alone, a - 2 and b - 2. */
   const int64_t triangles = adaptive->triangle_count + 4 * state->surface->statistics.tunnels;
-  if (!state->trimmed && state->options->seeds != MCOR_PAIRS && result->unsettled == 0 &&
-    result->rounding == 0 && state->surface->triangle_count != triangles)
+  if (!state->trimmed && result->unsettled == 0 && result->rounding == 0 && state->surface->triangle_count != triangles)
   {
     ++result->segments_missing;
     compare_note(state, "%lld triangles, not %lld", (long long)state->surface->triangle_count,

@@ -6,7 +6,6 @@
  * is crossed that has them. */
 
 #include "mcor_adaptive.h"
-#include "mcor_pair.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
 
@@ -201,7 +200,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   if (context->tree.leaf_count == 0) /* none is in the box */
   {
     context->bricks.now.count = 0;
-    return mcor_uses_pairs(context) ? mcor_find_reached(context, iso) : MCOR_OK;
+    return MCOR_OK;
   }
   MCOR_TRY(mcor_find_side_flags(context, iso));
   const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
@@ -216,8 +215,7 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   MCOR_RELEASE(context, &found.value, &found.weight);
   MCOR_TRY(status);
   MCOR_TRY(mcor_evaluate_slots(context, iso));
-  MCOR_TRY(mcor_complete_leaves(context, iso));
-  return mcor_uses_pairs(context) ? mcor_find_reached(context, iso) : MCOR_OK;
+  return mcor_complete_leaves(context, iso);
 }
 
 void mcor_release_adaptive(mcor_context* context)

@@ -37,7 +37,7 @@ static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const
   {
     const int64_t edge = (int64_t)(2 * MCOR_BRICK) << level, ring = INT64_C(2) << cell_level;
     const int64_t low = brick[a] * edge;
-    wanted = wanted && low + edge + ring >= box->near[a] && low - ring <= box->near[3 + a];
+    wanted = wanted && low + edge + ring >= box->halves[a] && low - ring <= box->halves[3 + a];
   }
   return wanted;
 }

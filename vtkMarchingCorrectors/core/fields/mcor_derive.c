@@ -79,12 +79,12 @@ static bool mcor_bound_particles(const mcor_context* context, int first[3], int 
   bool bounded = box->of_points;
   for (int a = 0; a < 3; ++a)
   {
-    first[a] = box->begin[a] - (box->of_points ? 1 : 0);
-    last[a] = box->end[a] + (box->of_points ? 1 : 0);
+    first[a] = box->first[a] - (box->of_points ? 1 : 0);
+    last[a] = box->last[a] + (box->of_points ? 1 : 0);
     if (lattice->period[a] > 0)
     {
       const int from = lattice->period_first[a], to = from + lattice->period[a];
-      const int end = box->begin[a] > from ? to + 1 : to;
+      const int end = box->first[a] > from ? to + 1 : to;
       first[a] = first[a] > from ? first[a] : from;
       last[a] = last[a] < end ? last[a] : end;
       bounded = true;

@@ -46,9 +46,9 @@ static double mcor_wrap_point(const mcor_context* context, int axis, double at)
   const double fixed = floor(at * step + 0.5);
   const bool beyond = !(fixed >= first && fixed <= first + period);
   const double within = beyond ? fixed - floor((fixed - first) / period) * period : fixed;
-  const bool off_lower = within == first && context->box.begin[axis] > lattice->period_first[axis];
+  const bool off_lower = within == first && context->box.first[axis] > lattice->period_first[axis];
   const bool off_upper = within == first + period &&
-    context->box.end[axis] < lattice->period_first[axis] + lattice->period[axis];
+    context->box.last[axis] < lattice->period_first[axis] + lattice->period[axis];
   return (within + (off_lower ? period : off_upper ? -period : 0)) / step;
 }
 

@@ -139,9 +139,13 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       "The iso value of the free surface is %g; it must be above 0 (usually 0.5).",
       options->iso_values[i]);
   }
-  /* The cells of pairs may miss what a cap would need. */
-  MCOR_NEED(!options->capping || !mcor_wants_pairs(options),
-    "Capping cannot be combined with pair seeds. Turn one of them off.");
+  /* The cells of pairs may miss what a cap would need; in a box, the pairs may be elsewhere. */
+  const char* other = options->capping ? "Capping"
+    : mcor_has_box(options)            ? "A box"
+    : options->ranks                   ? "Several processes"
+                                       : NULL;
+  MCOR_NEED(!other || !mcor_wants_pairs(options),
+    "%s cannot be combined with pair seeds. Choose complete seeds.", other);
 #undef MCOR_NEED
   MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
   return mcor_check_box(context, options);

@@ -14,11 +14,7 @@
  * were, but what they say of nodes within holds. Nothing is examined there: cubes and bricks are
  * made void.
  *
- * A probe whose search grid nobody keeps owns the cells around its points.
- *
- * Pairs [III-C] find their cells from cell to cell, from seeds that may be anywhere: alone, their cells
- * are found on the whole lattice, and only the rest is the box's; ranks tell each other, see
- * mcor_pair_rounds.c. */
+ * A probe whose search grid nobody keeps owns the cells around its points. */
 
 #include "mcor_box.h"
 #include "mcor_adaptive.h"
@@ -62,7 +58,7 @@ int mcor_has_box(const mcor_options* options)
 /* How far apart particles of a pair may be, in smoothing lengths, and a little more. */
 #define MCOR_PAIR_REACH 1.001
 
-#define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->begin, (r)->end, MCOR_BOX_RING, MCOR_BOX_RING)
+#define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, MCOR_BOX_RING, MCOR_BOX_RING)
 
 /* ---- Cells ---- */
 
@@ -146,7 +142,6 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
   mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
-  const bool everywhere = mcor_uses_pairs(context) && !options->ranks && !box->of_points;
   box->is_part = box->is_empty = false;
   for (int a = 0; a < 3; ++a)
   {
@@ -167,9 +162,6 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->last[a] = (int)side[1];
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
     mcor_place_whole(context, options, a, first, last);
-    box->begin[a] = everywhere ? (int)first : box->first[a];
-    box->end[a] = everywhere ? (int)last : box->last[a];
-    mcor_place_halves(lattice, a, everywhere ? NULL : sides, box->begin[a], box->end[a], box->near);
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
     box->is_empty = box->is_empty || side[0] >= side[1];
   }
@@ -182,8 +174,8 @@ bool mcor_is_limited(const mcor_context* context)
   bool limited = box->is_empty;
   for (int a = 0; a < 3; ++a)
   {
-    limited = limited || lattice->period[a] > 0 || box->begin[a] > lattice->first[a] ||
-      box->end[a] < lattice->last[a];
+    limited = limited || lattice->period[a] > 0 || box->first[a] > lattice->first[a] ||
+      box->last[a] < lattice->last[a];
   }
   return limited;
 }
@@ -233,7 +225,7 @@ static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lowe
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
 {
   return mcor_is_limited(context)
-    ? mcor_clip(context, context->box.near, MCOR_BOX_RING, MCOR_BOX_RING, cells, cells)
+    ? mcor_clip(context, context->box.halves, MCOR_BOX_RING, MCOR_BOX_RING, cells, cells)
     : MCOR_OK;
 }
 
@@ -381,8 +373,8 @@ void mcor_find_evaluated(const mcor_context* context, double low[3], double high
   for (int a = 0; a < 3; ++a)
   {
     const double edge = mcor_edge_of(&context->lattice, a);
-    low[a] = limited ? (box->begin[a] - margin) * edge : -1e30;
-    high[a] = limited ? (box->end[a] + margin) * edge : 1e30;
+    low[a] = limited ? (box->first[a] - margin) * edge : -1e30;
+    high[a] = limited ? (box->last[a] + margin) * edge : 1e30;
   }
 }
 

@@ -53,13 +53,3 @@ mcor_status mcor_gather(mcor_context* context, const void* records, int64_t coun
     ? mcor_heard(context, ranks->gather(ranks->user, records, count, width, all, all_count))
     : MCOR_OK;
 }
-
-mcor_status mcor_pass(mcor_context* context, const void* records, int64_t count, size_t width,
-  const double* places, double reach, const void** all, int64_t* all_count)
-{
-  const mcor_ranks* ranks = context->run.options->ranks;
-  return ranks && ranks->pass
-    ? mcor_heard(
-        context, ranks->pass(ranks->user, records, count, width, places, reach, all, all_count))
-    : mcor_gather(context, records, count, width, all, all_count);
-}

@@ -18,10 +18,6 @@ mcor_status mcor_reduce_counts(
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count);
 
-/* Gathers at least those of all ranks' records within `reach` of this rank's box; see mcor_ranks. */
-mcor_status mcor_pass(mcor_context* context, const void* records, int64_t count, size_t width,
-  const double* places, double reach, const void** all, int64_t* all_count);
-
 /* The least and the greatest over ranks, one number. */
 mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value);
 mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value);

@@ -342,7 +342,6 @@ mcor_status mcor_flatten(
   if (options->ranks)
   {
     flat->ranks = *options->ranks;
-    flat->ranks.pass = NULL; /* places would be turned */
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }

@@ -2,78 +2,19 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The paper's seed selection [III-C]: pairs of particles closer than the smoothing length with
- * values on both sides, and all cells on the straight line between them; then the growth from cell
- * to cell through crossed faces, also to larger and smaller ones. Of each level's lattice the cells on the line are
- * found; those that may be used are marked. Of bricks where there is certainly no surface nothing is known: they have
- * no used cells. */
+ * values on both sides, and all cells on the straight line between them. Where there is certainly no surface, there
+ * are no blocks: cells there are not marked. */
 
-/* Places of bricks, by which cells are noted. Without levels these are the numbers of the blocks' bricks, most of which
- * have no slot. With levels they are slots, found by sorted keys: of bricks with cells that may be used, and of those
- * that such bricks are parts of. */
-#define MCOR_PLACE_PARAMS                                                                          \
-  MCOR_BLOCK_PARAMS, const int by_level, const int place_count, const int place_shift,             \
-    __global const ulong *place_keys, __global const int *place_buckets,                           \
-    __global const mcor_rung *rungs, __global const int *place_slots
-#define MCOR_PLACE_ARGS                                                                            \
-  MCOR_BLOCK_ARGS, by_level, place_count, place_shift, place_keys, place_buckets, rungs, place_slots
-
-/* What a brick is that has no cells which may be used. */
-#define MCOR_PLACE_SPLIT (-1)
-#define MCOR_PLACE_NONE (-2)
-
-int mcor_find_place(MCOR_PLACE_PARAMS, int level, int x, int y, int z)
+/* Adds a cell to those of its brick, if that is one; `reached` is by the bricks' numbers. Whether it is new. */
+bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reached)
 {
-  if (!by_level)
-  {
-    const int number = mcor_brick_number(MCOR_BLOCK_ARGS, x, y, z);
-    return number < 0 ? MCOR_PLACE_NONE : number;
-  }
-  __global const mcor_rung* rung = rungs + level;
-  if (x < 0 || y < 0 || z < 0 || x >= rung->n[0] || y >= rung->n[1] || z >= rung->n[2])
-  {
-    return MCOR_PLACE_NONE;
-  }
-  const int at = mcor_adaptive_find(
-    place_count, place_shift, place_keys, place_buckets, mcor_adaptive_key(rungs, level, x, y, z));
-  return at < 0 ? MCOR_PLACE_NONE : place_slots[at];
-}
-
-/* The place of a brick that has a slot. */
-int mcor_place_of_slot(MCOR_PLACE_PARAMS, int slot, int4 brick)
-{
-  return by_level ? slot : mcor_find_place(MCOR_PLACE_ARGS, 0, brick.x, brick.y, brick.z);
-}
-
-/* Adds a cell of a level to those of its brick, if that is one. flags: 1 where it is new. */
-void mcor_pair_reach(
-  MCOR_PLACE_PARAMS, int level, int x, int y, int z, __global uint* reached, __global int* flags)
-{
-  const int place = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
-  const ulong cell = 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-  if (place >= 0 && mcor_add_cells(reached, place, cell))
-  {
-    atomic_or(flags, 1);
-  }
+  const int number = mcor_brick_number(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
+  return number >= 0 &&
+    mcor_add_cells(reached, number, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Where its `cells` may be used, writes its key, and those of the bricks that it is part
- * of: of each level one, of the levels up to its own that of itself; else a key beyond all. */
-__kernel void mcor_pair_keys(const int count, const int top, __global const mcor_rung* rungs,
-  __global const int4* bricks, __global const ulong* cells, __global ulong* keys)
-{
-  const int i = get_global_id(0);
-  const ulong none = mcor_adaptive_key(rungs, top + 1, 0, 0, rungs[top + 1].n[2]);
-  for (int l = 0; l <= top && i < count; ++l)
-  {
-    const int4 b = bricks[i];
-    const int up = max(l - b.w, 0);
-    keys[i * (top + 1L) + l] =
-      cells[i] ? mcor_adaptive_key(rungs, b.w + up, b.x >> up, b.y >> up, b.z >> up) : none;
-  }
-}
-
-/* One work-item = one brick of a block, without levels. Requests the bricks that have nodes of its reached cells; flags:
+/* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells; flags:
  * 1 where one is new. */
 __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
@@ -91,63 +32,43 @@ __kernel void mcor_pair_request(
     }
   }
 }
-
-/* One work-item = one brick. Enters its slot at its key, of which `index` has the place. */
-__kernel void mcor_pair_places(const int count, const int top, __global const int* index,
-  __global const ulong* cells, __global int* place_slots)
-{
-  MCOR_ITEM(i, i < count && cells[i]);
-  place_slots[index[i * (top + 1L)]] = i;
-}
 #endif
 
 /* ---- Cells between pairs ---- */
 
 #if MCOR_OF_FIELD
-/* What marking takes, last among a kernel's parameters. top: the highest level. */
-#define MCOR_MARK_PARAMS MCOR_PLACE_PARAMS, const int top, __global uint *reached
-#define MCOR_MARK_ARGS MCOR_PLACE_ARGS, top, reached
-
-/* Marks a cell of a level if it may be used; whether smaller ones may be there. */
-bool mcor_pair_seed_cell(MCOR_MARK_PARAMS, int level, int x, int y, int z)
-{
-  const int place = mcor_find_place(MCOR_PLACE_ARGS, level, x >> 2, y >> 2, z >> 2);
-  if (place >= 0)
-  {
-    mcor_add_cells(reached, place, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
-  }
-  return place == MCOR_PLACE_SPLIT;
-}
+/* What marking takes, last among a kernel's parameters. */
+#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint *reached
+#define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
 /* Where a line, of which 1 / gap is the extent along an axis, crosses the side by which it leaves the cell
- * from `low` on: as a share of the line; beyond it where it ends in the cell. Of all levels that have
- * this side the same. */
+ * from `low` on: as a share of the line; beyond it where it ends in the cell. */
 real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool ends)
 {
   const long side = step < 0 ? from - low : low + edge - from;
   return ends ? (real)2 : (real)side * gap;
 }
 
-/* Marks cells of a level on the line between two places, fixed-point numbers. Where the line passes an edge
- * or a corner of a cell to within rounding, the cells on both sides are found. Whether smaller ones may
- * be there: those found on a finer lattice are all within these. */
-bool mcor_pair_seed_line(
-  MCOR_MARK_PARAMS, const fix* from, const fix* to, int level, const fix step_of[3])
+/* Marks the cells on the line between particles j and k. Where it passes an edge or a corner of a cell to within
+ * rounding, the cells on both sides are found. */
+void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
 {
+  const fix from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
+  const fix to[3] = { grid->px[k], grid->py[k], grid->pz[k] };
   real next[3], gap[3];
   int c[3], end[3], step[3], steps = 0;
   long edge[3];
   for (int a = 0; a < 3; ++a)
   {
-    edge[a] = (long)step_of[a] << level;
-    c[a] = (int)(from[a] / step_of[a]) >> level;
-    end[a] = (int)(to[a] / step_of[a]) >> level;
+    edge[a] = grid->step[a];
+    c[a] = (int)(from[a] / grid->step[a]);
+    end[a] = (int)(to[a] / grid->step[a]);
     step[a] = to[a] < from[a] ? -1 : 1;
     gap[a] = to[a] == from[a] ? 0 : 1 / (real)abs(to[a] - from[a]);
     next[a] = mcor_pair_crossing(from[a], c[a] * edge[a], edge[a], step[a], gap[a], c[a] == end[a]);
     steps += abs(end[a] - c[a]);
   }
-  bool split = mcor_pair_seed_cell(MCOR_MARK_ARGS, level, c[0], c[1], c[2]);
+  mcor_pair_reach(MCOR_BLOCK_ARGS, c[0], c[1], c[2], reached);
   for (; steps > 0; --steps)
   {
     int axis = next[1] < next[0] ? 1 : 0;
@@ -156,27 +77,14 @@ bool mcor_pair_seed_line(
     {
       if (a != axis && c[a] != end[a] && next[a] - next[axis] < (real)1e-5f)
       {
-        split |= mcor_pair_seed_cell(MCOR_MARK_ARGS, level, c[0] + (a == 0 ? step[0] : 0),
-          c[1] + (a == 1 ? step[1] : 0), c[2] + (a == 2 ? step[2] : 0));
+        mcor_pair_reach(MCOR_BLOCK_ARGS, c[0] + (a == 0 ? step[0] : 0),
+          c[1] + (a == 1 ? step[1] : 0), c[2] + (a == 2 ? step[2] : 0), reached);
       }
     }
     c[axis] += step[axis];
     next[axis] = mcor_pair_crossing(
       from[axis], c[axis] * edge[axis], edge[axis], step[axis], gap[axis], c[axis] == end[axis]);
-    split |= mcor_pair_seed_cell(MCOR_MARK_ARGS, level, c[0], c[1], c[2]);
-  }
-  return split;
-}
-
-/* Marks the cells between particles j and k: of large leaves first. */
-void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
-{
-  const fix from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
-  const fix to[3] = { grid->px[k], grid->py[k], grid->pz[k] };
-  bool split = true;
-  for (int level = top; level >= 0 && split; --level)
-  {
-    split = mcor_pair_seed_line(MCOR_MARK_ARGS, from, to, level, grid->step);
+    mcor_pair_reach(MCOR_BLOCK_ARGS, c[0], c[1], c[2], reached);
   }
 }
 

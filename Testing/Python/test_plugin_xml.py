@@ -132,24 +132,6 @@ class TestPluginXml(unittest.TestCase):
             self.assertEqual(found, kind("" if text in NO_NAMES else text))
         self.for_each_scalar(check)
 
-    def test_texts_say_the_defaults(self):
-        """The guide's table of parameters, and the program's help, where they name a number."""
-        sources = pathlib.Path(__file__).resolve().parents[2]
-        table = (sources / "Documentation" / "Guide" / "parameters.md").read_text(encoding="utf-8")
-        options = (sources / "Examples" / "CommandLine" / "options" / "OptionTable.cxx").read_text(encoding="utf-8")
-        helps = {name: "".join(re.findall('"([^"]*)"', text)) for name, text in
-                 re.findall(r'\{ "(--[\w-]+)", "[^"]*",\s*((?:"[^"]*"\s*)+),', options)}
-        said = 0
-        for words, number in re.findall(r"^\| [^|(]*\(([^|)]*)\) \| ([-\d.e]+)\b", table, re.M):
-            name = words.split("; ")[-1]
-            with self.subTest(name):
-                default = float(get(vtkMarchingCorrectors(), "Set" + name))
-                self.assertEqual(float(number), default)
-                in_help = re.search(r"default:? ([-\d.e]+)", helps.get(words.split("`")[1], "")) if "`" in words else None
-                self.assertEqual(float(in_help.group(1)) if in_help else default, default)
-                said += 1 + bool(in_help)
-        self.assertGreater(said, 10)
-
     def test_box(self):
         """The widget's position is the lower corner, its scale the lengths, in any order."""
         group = self.proxy.find("PropertyGroup[@panel_widget='InteractiveBox']")

@@ -4,8 +4,8 @@
 
     make_structs.py mcor_parts.h mcor.h FOLDER
 
-_structs.py: the structures and enumerations of mcor.h for ctypes, and what its comments say of the shapes
-of arrays. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
+_structs.py: the structures and enumerations of mcor.h for ctypes, what its comments say of the shapes of arrays, and
+the rows of mcor_statistics.def and mcor_options.def, which lie beside it, with the options' types. check_structs.c: that the C compiler lays the structures out alike. exports.map, .def, .txt:
 the functions that the library shows, for the linkers of Linux, Windows and macOS.
 """
 import ctypes
@@ -108,6 +108,39 @@ class Header:
         return f"{kind} * {length}" if length else kind
 
 
+class Rows:
+    """The core's lists of statistics and of options.
+
+    statistics: (how, when, member, name); options: {member: ({word: number}, scope, property)}; types: {member: as
+    Python has it}
+    """
+
+    def __init__(self, folder, header):
+        statistics = (folder / "mcor_statistics.def").read_text(encoding="utf-8")
+        options = (folder / "mcor_options.def").read_text(encoding="utf-8")
+        kernels = (folder / "grid" / "mcor_sph_kernel.h").read_text(encoding="utf-8")
+        kinds = {field: base for field, base, *_ in header.structs["mcor_options"]}
+        self.statistics = re.findall(r'^STATISTIC\((\w+), (\w+), (\w+), "(\w*)"\)', statistics, re.M)
+        self.options, self.types = {}, {}
+        for member, legal, words, scope, name in re.findall(
+                r'^OPTION\((\w+), .*, (\w+(?:\([^)]*\))?), "([^"]*)", ([A-Z| ]+), "(\w*)"\)', options, re.M):
+            if member == "sph_kernel":
+                legal, words = "WORD", "|".join(re.findall(r"ENTRY\(MCOR_\w+, (\w+),", kernels))
+            words = words.split("|") if words else []
+            literal = f"Literal[{', '.join(map(repr, words))}]"
+            kind = "float" if kinds[member] == "double" else "bool" if legal == "FLAG" else "int"
+            self.types[member] = literal if legal == "WORD" else f"Union[{kind}, {literal}]" if words else kind
+            numbers = {word: i if legal == "WORD" else -1 - i for i, word in enumerate(words)}
+            self.options[member] = numbers, scope.split(" | "), name
+        for member, scope, name in re.findall(r'^BOUNDS\((\w+), ([A-Z| ]+), "(\w*)"\)', options, re.M):
+            self.options[member], self.types[member] = ({}, scope.split(" | "), name), "Optional[Sequence[float]]"
+        if len(self.options) != len(re.findall(r"^(?:OPTION|BOUNDS)\(", options, re.M)):
+            fail("cannot read all rows of mcor_options.def")
+        self.options["capping"][0].clear()  # True or False in Python, where the number depends on the box
+        self.types["capping"] = "bool"
+        self.types.update((name[len("MCOR_OUT_"):].lower(), "bool") for name in header.enums["mcor_output"])
+
+
 def shape_of(struct, name, comment, constants):
     """"[count][3], unit L" is ("count", 3); "[attribute_count] -> [count][components]" is a list."""
     match = re.search(r"\[\w+\](?:\[\w+\])*(?: -> \[\w+\](?:\[\w+\])*)?", comment)
@@ -117,9 +150,9 @@ def shape_of(struct, name, comment, constants):
                  for part in re.findall(r"->|\w+", match.group()))
 
 
-def python_module(header):
+def python_module(header, rows):
     lines = ['"""Made by make_structs.py from mcor.h; not to be edited."""',
-             "import ctypes", "", f"VERSION = {header.version!r}", "",
+             "import ctypes", "from typing import Literal, Optional, Sequence, TypedDict, Union", "", f"VERSION = {header.version!r}", "",
              "Progress = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_char_p)", ""]
     for struct, fields in header.structs.items():
         lines += ["", f"class {struct}(ctypes.Structure):", "    _fields_ = ["]
@@ -132,8 +165,10 @@ def python_module(header):
     kinds = {struct: {name: f"{base}[{length}]" if length else base
                       for name, base, pointers, length, _ in header.structs[struct] if not pointers}
              for struct in ("mcor_options", "mcor_input")}
-    statistics = re.findall(r'^STATISTIC\((\w+), (\w+), (\w+), "(\w*)"\)', header.statistics, re.M)
-    for label, value in (("STATISTICS", statistics), ("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds)):
+    lines += ["", "class CoreOptions(TypedDict, total=False):",
+              *(f"    {name}: {kind}" for name, kind in rows.types.items()), ""]
+    for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds),
+                         ("STATISTICS", rows.statistics), ("OPTIONS", rows.options)):
         lines += ["", f"{label} = {value!r}"]
     return "\n".join(lines) + "\n"
 
@@ -154,10 +189,9 @@ def c_checks(module, header):
 
 def main():
     header = Header("".join(Path(name).read_text(encoding="utf-8") for name in sys.argv[1:-1]))
-    header.statistics = Path(sys.argv[1]).with_name("mcor_statistics.def").read_text(encoding="utf-8")
     folder = Path(sys.argv[-1])
     folder.mkdir(parents=True, exist_ok=True)
-    module = python_module(header)
+    module = python_module(header, Rows(Path(sys.argv[1]).parent, header))
     (folder / "_structs.py").write_text(module, encoding="utf-8")
     (folder / "check_structs.c").write_text(c_checks(module, header), encoding="utf-8")
     exports = header.functions

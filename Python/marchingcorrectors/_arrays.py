@@ -15,11 +15,9 @@ FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
 WORDS = {int: "whole number", float: "number"}
 # As the header spells them: "cubic_spline" is "cubic".
-OTHER_WORDS = {"mcor_type": {"single": "float32", "double": "float64"},
-               "mcor_sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
-                                           words_of("mcor_sph_kernel")))}
-# Numbers with a word, as mcor.h defines them.
-SPECIAL = {("scalar_component", "magnitude"): -1, ("wall_share", "measured"): -1, ("wall_share", "auto"): -2}
+OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
+               "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
+                                      words_of("sph_kernel")))}
 _double = ctypes.POINTER(ctypes.c_double)
 lib.mcor_place_period.restype, lib.mcor_place_period.argtypes = None, [_double, _double, _double]
 
@@ -227,18 +225,17 @@ def convert(to, name, value):
 
 
 def number(name, kind, value):
-    """An option's value for the core; of an enumeration, a word or its number."""
-    if isinstance(value, str) and (name, value) in SPECIAL:
-        return SPECIAL[name, value]
+    """An option's value for the core: a word or its number, or any number."""
+    words = words_of(name)
+    if isinstance(value, str) and (words or kind in c.ENUMS):
+        word = value.lower().replace(" ", "_").replace("-", "_")
+        word = OTHER_WORDS.get(name, {}).get(word, word)
+        if word in words:
+            return words[word]
+        if kind in c.ENUMS:
+            raise InvalidArgument(f"{name} is one of {', '.join(words)}, not '{value}'.{did_you_mean(word, words)}")
     if kind not in c.ENUMS:
         return convert(float if kind == "double" else int, name, value)
-    if isinstance(value, str):
-        word = value.lower().replace(" ", "_").replace("-", "_")
-        word = OTHER_WORDS.get(kind, {}).get(word, word)
-        words = words_of(kind)
-        if word not in words:
-            raise InvalidArgument(f"{name} is one of {', '.join(words)}, not '{value}'.{did_you_mean(word, words)}")
-        return words.index(word)
     if kind == "mcor_type" and not isinstance(value, (int, np.integer)):
         try:
             return FLOATS.get(np.dtype(value), -1)

@@ -5,7 +5,9 @@ import ctypes
 import difflib
 import inspect
 import textwrap
-from typing import Callable, Literal, Optional, Sequence, TypedDict, TypeVar, Union
+from pathlib import Path
+from typing import Callable, Literal, Sequence, TypeVar, Union
+from xml.etree import ElementTree
 
 from . import _structs as c
 from ._library import lib
@@ -27,44 +29,10 @@ for _name, _bit in OUTPUTS.items():
     setattr(c.mcor_options, _name, output_property(_bit))
 
 
-class Options(TypedDict, total=False):
-    """Keywords of isosurface(); the other functions take those of them that matter there."""
+class Options(c.CoreOptions, total=False):
+    """Keywords of isosurface(); the other functions take those of them that matter there. Those of
+    core/mcor_options.def are CoreOptions."""
 
-    sph_kernel: Literal["cubic", "quadratic", "mprime4", "quintic", "wendland", "quartic", "wendland_c4",
-                        "wendland_c6", "sinc6"]
-    field: Literal["shepard", "sum", "weight_sum"]
-    seeds: Literal["complete", "pairs"]
-    topology: Literal["table", "field"]
-    dimension: Literal[0, 2, 3]
-    h_scale: float
-    cube_size_factor: float
-    cube_size: float
-    level_limit: int
-    node_threshold: float
-    boundary_detection: Literal["weight_sum", "eigenvalue"]
-    vertex_threshold: float
-    wall_share: Union[float, Literal["auto", "measured"]]
-    preview: bool
-    filled: bool
-    tolerance: float
-    iteration_limit: int
-    precision: Literal["float32", "float64"]
-    memory_limit: int
-    box: Optional[Sequence[float]]
-    periodic: Optional[Sequence[float]]
-    capping: bool
-    normals: bool
-    gradients: bool
-    weight_sum: bool
-    boundary_eigenvalue: bool
-    correction_length: bool
-    residual: bool
-    boundary_flag: bool
-    iso_value: bool
-    nearest_particle: bool
-    point_keys: bool
-    triangle_keys: bool
-    triangle_normals: bool
     smoothing_length_is_support_radius: bool
     estimate_smoothing_length: bool
     scalar_component: Union[int, Literal["magnitude"]]
@@ -74,37 +42,24 @@ class Options(TypedDict, total=False):
     attributes_version: int
 
 
+def of_panel(name):
+    """What the panel says of a property, without its default."""
+    text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
+    return text.split(" Default: ")[0]
+
+
+PANEL = ElementTree.parse(Path(__file__).with_name("MarchingCorrectors.xml"))
+# What options mean; of the others, what the panel says.
 WORDS = {
-    "sph_kernel": "the SPH kernel of the simulation: the cubic spline M4, the quadratic kernel, M'4 as a product "
-                  "over the axes, the quintic spline M6, Wendland C2, the quartic spline M5, Wendland C4 or C6, or "
-                  "the sixth power of the sinc, SPH-EXA's.",
     "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
-    "seeds": "where the surface is looked for: everywhere, so that no part of it is missed, or between pairs of "
-             "particles on both sides of the iso value, as in the paper.",
-    "topology": "how nodes are connected where their values are ambiguous: by a fixed table, or by the field there.",
     "dimension": "2: the particles lie in a plane of constant x, y or z; lines take the place of a surface, and "
                  "volumes are areas. 0: 2 if exactly one coordinate is the same for all particles, else 3.",
-    "h_scale": "the kernel uses this times the smoothing length; below 1 it smooths less. Volumes do not change.",
-    "cube_size_factor": "edge of the smallest cubes of the marching grid / smallest smoothing length.",
-    "cube_size": "the edge itself, in the unit of the positions; 0: by the factor.",
-    "level_limit": "how often cubes may double in size where smoothing lengths are larger, 0 to 24; 0: all cubes "
-                   "have the smallest size.",
     "node_threshold": "cubes with a corner of a lower weight sum are left out; probe(): points with a lower weight sum "
                       "are not valid.",
-    "boundary_detection": "how the end of the fluid is detected: by the sum of the weights, or by the smallest "
-                          "eigenvalue of the inverse renormalisation matrix (Marrone et al. 2010), with "
-                          "vertex_threshold=0.3.",
-    "vertex_threshold": "the surface is cut where boundary_detection falls below this; 0: nowhere.",
     "wall_share": "above 0, the surface also ends where solids have a greater share of the weight: with 0.5 where they "
                   "weigh more than the fluid, with \"measured\" on the layer of solids that faces it. 0: it does not "
                   "end at solids. \"auto\": \"measured\" for a scalar, 0 for the free surface.",
-    "preview": "True: vertices by linear interpolation on the edges of the grid, which is faster but not exact.",
-    "filled": "True: in two dimensions, triangles fill the region above the lowest iso value, in bands from each value "
-              "to the next.",
-    "tolerance": "the field at a vertex differs from the iso value by at most this share of the scalar's range.",
-    "iteration_limit": "Newton iterations of a vertex, 1 to 255.",
-    "precision": "of the evaluation on the device.",
     "memory_limit": "maximum bytes of device memory; 0: no limit.",
     "box": "(x0, x1, y0, y1, z0, z1): only the cells with their centres in this box; sides may be infinite.",
     "periodic": "(x0, x1, y0, y1, z0, z1): the particles repeat along each axis with x0 < x1; or three lengths, 0 "
@@ -132,28 +87,22 @@ WORDS = {
     "scalar_version": "the same promise for the scalar.",
     "attributes_version": "the same promise for probe()'s attributes.",
 }
+WORDS = {**{name: of_panel(panel) for name, (_, _, panel) in c.OPTIONS.items() if panel and name not in WORDS}, **WORDS}
 
 # Those that each function takes.
 ISOSURFACE = tuple(Options.__annotations__)
 FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
     "scalar_version", "attributes_version"))
-DERIVATIVES = ("sph_kernel", "dimension", "h_scale", "precision", "memory_limit", "periodic",
-               "smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids",
-               "particles_version")
-GAUGE = DERIVATIVES
-PROBE = ("field", "gradients", "node_threshold", "attributes_version") + DERIVATIVES
+EVERY = ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids", "particles_version")
+DERIVATIVES, GAUGE, PROBE = (
+    more + tuple(name for name, (_, scope, _) in c.OPTIONS.items() if {"ALL", kind} & set(scope)) + EVERY
+    for kind, more in (("DERIVE", ()), ("GAUGE", ()), ("PROBE", ("gradients", "attributes_version"))))
 
 
-def words_of(kind):
-    """An enumeration's words, in the order of its numbers: MCOR_TOPOLOGY_TABLE is "table"."""
-    names = [name for name in c.ENUMS[kind] if not name.endswith("_COUNT")]
-    if kind == "mcor_sph_kernel":
-        return [lib.mcor_sph_kernel_name(i).decode() for i in range(len(names))]
-    parts = [name.lower().split("_")[1:] for name in names]
-    while all(len(part) > 1 for part in parts) and len({part[0] for part in parts}) == 1:
-        parts = [part[1:] for part in parts]
-    return ["_".join(part) for part in parts]
+def words_of(name):
+    """{word: number} of an option."""
+    return {"magnitude": -1} if name == "scalar_component" else c.OPTIONS.get(name, ({},))[0]
 
 
 def kind_of(name):
@@ -166,13 +115,10 @@ def default_of(name):
     """As a user would write it."""
     options = c.mcor_options()
     lib.mcor_set_default_options(ctypes.byref(options))
-    if name in ("scalar_component", "wall_share"):
-        return "magnitude" if name == "scalar_component" else "auto"
-    if name == "precision":
-        return "float32"
-    value, kind = getattr(options, name, 0), kind_of(name)
-    if kind in c.ENUMS:
-        return words_of(kind)[value]
+    value = -1 if name == "scalar_component" else getattr(options, name, 0)
+    for word, number in words_of(name).items():
+        if number == value:
+            return word
     if isinstance(value, ctypes.Array):
         return None
     return bool(value) if Options.__annotations__[name] is bool else value
@@ -209,9 +155,8 @@ def describe(names):
     """A line or more for each option."""
     lines = []
     for name in names:
-        kind = kind_of(name)
-        choices = " | ".join(f'"{word}"' for word in words_of(kind)) + ": " if kind in c.ENUMS \
-            and kind != "mcor_type" else '"float32" | "float64": ' if kind == "mcor_type" else ""
+        choices = " | ".join(f'"{word}"' for word in words_of(name))
+        choices += ": " if choices else ""
         lines += textwrap.wrap(f"{name}: {choices}{WORDS[name]}", 100, subsequent_indent="    ")
     return lines
 

@@ -19,6 +19,9 @@ NAMES = "mcor_parts.h", "mcor.h"
 def made_of(texts, folder):
     """All that is written, by the files' names."""
     folder.mkdir()
+    (folder / "grid").mkdir()
+    for name in ("mcor_statistics.def", "mcor_options.def", "grid/mcor_sph_kernel.h"):
+        shutil.copy(core / name, folder / name)
     for name, text in zip(NAMES, texts):
         (folder / name).write_text(text, encoding="utf-8")
     subprocess.run([sys.executable, sources / "Python" / "make_structs.py", *(folder / name for name in NAMES),
@@ -40,9 +43,20 @@ def formatted(text, columns):
                               stdout=subprocess.PIPE, check=True, encoding="utf-8").stdout
 
 
+def rows_lack(folder):
+    """Members of mcor_options and mcor_statistics that stand in no row: an option of which reuse does not know."""
+    scope = {}
+    exec((folder / "_structs.py").read_text(encoding="utf-8"), scope)  # what was just written
+    rows = {*scope["OPTIONS"], *(member for _, _, member, _ in scope["STATISTICS"])}
+    members = {name for kind in ("mcor_options", "mcor_statistics") for name, _ in scope[kind]._fields_}
+    return members - rows - {"iso_values", "iso_count", "globals", "ranks", "outputs", "progress", "progress_user",
+                             "device", "platform"}
+
+
 texts = [(core / name).read_text(encoding="utf-8") for name in NAMES]
 with tempfile.TemporaryDirectory() as scratch:
     expected = made_of(texts, Path(scratch) / "0")
+    assert not rows_lack(Path(scratch) / "0" / "made"), rows_lack(Path(scratch) / "0" / "made")
     others = [[with_other_lines(text) for text in texts]]
     if shutil.which("clang-format"):
         others += [[formatted(text, columns) for text in texts] for columns in (60, 180)]

@@ -44,7 +44,7 @@ def find_kernel(name):
 def support_factor(name):
     """Support radius / smoothing length of what a file calls its kernel; of one that is unknown, 2, as of most."""
     known = find_kernel(name)
-    return lib.mcor_support_factor(words_of("mcor_sph_kernel").index(known)) if known else 2.0
+    return lib.mcor_support_factor(words_of("sph_kernel")[known]) if known else 2.0
 
 
 class Lazy(Mapping):

@@ -161,7 +161,6 @@ static int modules_plane(mcor_context* context, const mcor_input* input)
     flat.solid = set.solid;
     mcor_options options = modules_options((mcor_field)field);
     options.level_limit = levels ? MCOR_CUBE_LEVELS - 1 : 0;
-    options.seeds = levels && field == MCOR_SHEPARD ? MCOR_PAIRS : MCOR_COMPLETE;
     options.topology = MCOR_TOPOLOGY_FIELD;
     options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
     options.vertex_threshold = 0.2;

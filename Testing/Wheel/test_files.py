@@ -494,10 +494,13 @@ class Layouts(Case):
         particles = io.read(self.at("body.vtp"))
         self.assertEqual((particles.density, particles.smoothing_length, particles.mass), ("Rhop", "hsml", None))
         wanted = quietly(mc.free_surface, X, smoothing_length=H, mass=0.001, density=DENSITY)
-        found = quietly(mc.free_surface, particles, mass=0.001)
-        self.assertEqual(found.points.tobytes(), wanted.points.tobytes())
+        for words in ({"mass": 0.001}, {"mass": 0.001, "density": "Rhop", "smoothing_length": "hsml"}):
+            found = quietly(mc.free_surface, particles, **words)
+            self.assertEqual(found.points.tobytes(), wanted.points.tobytes())
+        self.assertEqual(quietly(mc.gauge, particles, ((0, 0, 0), (0, 0, 2)), mass=0.001).last.tolist(), quietly(
+            mc.gauge, X, ((0, 0, 0), (0, 0, 2)), smoothing_length=H, mass=0.001, density=DENSITY).last.tolist())
         wanted = quietly(mc.free_surface, X, smoothing_length=H, mass=MASS, density=DENSITY)
-        self.assertEqual(quietly(mc.free_surface, particles, mass=MASS).points.tobytes(), wanted.points.tobytes())
+        self.assertEqual(quietly(mc.free_surface, particles, mass="m1").points.tobytes(), wanted.points.tobytes())
         with self.assertRaisesRegex(io.FileError, "the array 'Velocity' has the shape"):
             particles.smoothing_length = "Velocity"
             particles.quantity("smoothing_length")

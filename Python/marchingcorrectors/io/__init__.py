@@ -10,20 +10,24 @@ import os
 from pathlib import Path
 from typing import Optional, Sequence, Union
 
+from . import bodies
 from ._particles import FileError, Particles
+from .gadget_binary import is_gadget_binary
 
-ENDINGS = (".hdf5", ".h5", ".bi4", ".bgeo", ".vtp", ".vtu", ".vtk")
+ENDINGS = (".hdf5", ".h5", ".bi4", ".bgeo", *bodies.ENDINGS)
 PathName = Union[str, "os.PathLike[str]"]
 __all__ = ["ENDINGS", "FileError", "Particles", "read"]
 
 
-def read(path: Union[PathName, Sequence[PathName]], *, types: Optional[Sequence[Union[str, int]]] = None,
-         walls: Sequence[PathName] = ()) -> Particles:
+def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, int, Sequence[Union[str, int]]] = None,
+         walls: Sequence[PathName] = (), step: int = 0) -> Particles:
     """Particles of one time.
 
-    path: a file, or a list of files of bodies (.vtp, .vtu, .vtk) that are one set.
+    path: a file, or a list of files of bodies (VTK's, tables) that are one set.
     types: of GADGET-like files, names as "gas", "dark_matter", "stars", or numbers; by default gas.
     walls: those of the listed files that hold walls; by default names tell (Wall, Boundary, ...).
+    step: which of those that a file holds (.vtkhdf, .xyz, LAMMPS' dumps); -1 is the last one. Times are in
+        the result's times.
 
     Raises FileError. No code that a file may hold is run.
     """
@@ -34,7 +38,7 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Optional[Sequence[
     if not paths:
         raise FileError("No file was given.")
     try:
-        return _read(paths, types, [Path(each) for each in walls])
+        return _read(paths, types, [Path(each) for each in walls], step)
     except FileError:
         raise
     except ImportError as error:
@@ -46,24 +50,29 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Optional[Sequence[
         raise FileError(f"{paths[0].name} cannot be read: {' '.join(str(error).split())[:200]}") from None
 
 
-def _read(paths, types, walls):
+def _read(paths, types, walls, step):
     for path in paths + walls:
         if not path.is_file():
             raise FileError(f"There is no file '{path}'.")
         if path.stat().st_size == 0:
             raise FileError(f"{path.name} is empty.")
     path, ending = paths[0], paths[0].suffix.lower()
-    if ending in (".vtp", ".vtu", ".vtk"):
-        from .bodies import read_bodies
-        return read_bodies(paths, walls)
+    with open(path, "rb") as file:
+        head = file.read(64)
+    is_hdf5, is_gadget = head.startswith(b"\x89HDF\r\n\x1a\n"), is_gadget_binary(head)
+    if ending == ".vtkhdf" or head.startswith(b"ITEM:") or (ending in bodies.ENDINGS and not is_hdf5 and not is_gadget):
+        return bodies.read_bodies(paths, walls, step)
     if len(paths) > 1 or walls:
-        raise FileError("Several files are one set only where they are bodies: .vtp, .vtu or .vtk.")
+        raise FileError("Several files are one set only where they are bodies: VTK's, or tables.")
+    if step not in (0, -1):
+        raise FileError(f"{path.name} has one step, number 0, not {step}.")
     if ending in (".npz", ".npy", ".pkl", ".pickle"):
         raise FileError(f"{path.name} is not opened: such files of solvers hold pickles, which can run code. Let the "
                         "solver write HDF5 (PySPH: install h5py).")
-    with open(path, "rb") as file:
-        head = file.read(64)
-    if head.startswith(b"\x89HDF\r\n\x1a\n"):
+    if is_gadget:
+        from .gadget_binary import read_gadget_binary
+        return read_gadget_binary(path, types)
+    if is_hdf5:
         from .snapshot import read_snapshot
         return read_snapshot(path, types)
     if head.startswith(b"#FileJBD "):
@@ -75,5 +84,5 @@ def _read(paths, types, walls):
     if head[4:8] in (b"\x61\xed\0\0", b"\0\0\xed\x61") or head[4:12] == b"\x61\xed\0\0\0\0\0\0":
         from .phantom import read_native
         return read_native(path)
-    raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, Phantom's dumps), or its "
-                    "beginning is damaged.")
+    raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, dumps of "
+                    "LAMMPS and Phantom, GADGET), or its beginning is damaged.")

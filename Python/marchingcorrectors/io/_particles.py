@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, Callable, Dict, Iterator, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
@@ -98,7 +98,8 @@ class Particles:
 
     smoothing_length, volume, mass, density: the name of an array, one value, or None. support_radius: whether
     the smoothing length is the radius at which the kernel ends. h_factor: what it is multiplied with.
-    solid: None, or for each particle whether it is a wall. parameters: all else that the file says
+    solid: None, or for each particle whether it is a wall. times: of a file that holds several, all of
+    them. parameters: all else that the file says
     (time, units, box_size, scale_factor, ...), as it stands there: nothing is applied.
     """
 
@@ -117,6 +118,7 @@ class Particles:
         self.solid: Optional[np.ndarray] = None
         self.period: Optional[Sequence[float]] = None
         self.time: Optional[float] = None
+        self.times: Optional[Sequence[float]] = None
         self.dimension: int = 3
         self.parameters: Dict[str, Any] = {}
         for name, value in more.items():
@@ -209,6 +211,22 @@ def by_name(file, pairs):
             warn(f"{file} has several arrays '{name}'; the last one is taken.")
         found[name] = thing
     return found
+
+
+class Body(NamedTuple):
+    """What a file of points holds at one of its times; times: those of all steps, None where it is no film."""
+    points: np.ndarray
+    arrays: Dict[str, np.ndarray]
+    time: Optional[float] = None
+    period: Optional[Sequence[float]] = None
+    times: Optional[Sequence[float]] = None
+
+
+def choose_step(file, step, times):
+    """Its number from the first one on; as in lists, -1 is the last one."""
+    if not -len(times) <= step < len(times):
+        raise FileError(f"{file} has no step {step}: it has {len(times)} of them.")
+    return step % len(times)
 
 
 def check_claim(file, thing, claimed, there):

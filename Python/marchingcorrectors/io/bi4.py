@@ -5,39 +5,15 @@
 items, bytes of values; "\\nVALUES", number, (name, type, value); arrays, each: size of its definition, "\\nARRAY", name,
 hidden, type, count, bytes, data; items. Text: length, letters. Arrays stay in the file until they are used."""
 import os
-from typing import NamedTuple
 
 import numpy as np
 
 from ._particles import FileError, Particles, by_name
+from ._raw import RawArray, state_of
 
 PLAIN = {2: "i4", 3: "i1", 4: "u1", 5: "i2", 6: "u2", 7: "i4", 8: "u4", 9: "i8", 10: "u8", 11: "f4", 12: "f8",
          20: "i4", 21: "u4", 22: "f4", 23: "f8"}
 TEXT, DEPTH = 1, 8
-
-
-def state_of(file):
-    """Another one where the file was written anew."""
-    status = os.fstat(file.fileno())
-    return status.st_ino, status.st_size, status.st_mtime_ns
-
-
-class Array(NamedTuple):
-    """Where an array lies in a file."""
-    path: os.PathLike
-    state: tuple
-    begin: int
-    kind: np.dtype
-    count: int
-    columns: int
-
-    def load(self):
-        with open(self.path, "rb") as file:
-            values = np.fromfile(file, self.kind, self.count * self.columns, offset=self.begin)
-            if state_of(file) != self.state:
-                raise FileError(f"{self.path.name} was written anew after it had been opened: read it once more.")
-        values = values.astype(self.kind.newbyteorder("="), copy=False)
-        return values.reshape(self.count, self.columns) if self.columns > 1 else values
 
 
 class Reader:
@@ -93,7 +69,7 @@ class Reader:
         dtype, columns = np.dtype(self.order + PLAIN[kind]), 3 if kind >= 20 else 1
         if count * columns * dtype.itemsize != size:
             raise FileError(f"{self.name}: the array '{name}' has {size} bytes for {count} values.")
-        return name, Array(self.path, self.state, begin, dtype, count, columns)
+        return name, RawArray(self.path, self.state, begin, dtype, count, columns)
 
     def item(self, depth=0):
         """(values, arrays, [items])."""

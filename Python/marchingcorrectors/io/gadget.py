@@ -27,8 +27,8 @@ def text(value):
 
 
 def files_of(path, count):
-    """All files of a snapshot that is in several, NAME.0.hdf5, ..."""
-    found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5)", path.name)
+    """All files of a snapshot that is in several, NAME.0.hdf5, ..., or NAME.0, ..."""
+    found = re.fullmatch(r"(.*)\.(\d+)(\.h(?:df)?5|)", path.name)
     if count <= 1 or not found:  # 0 in some that are whole
         return [path]
     if count > 65536:

@@ -8,7 +8,7 @@ from urllib.parse import unquote_to_bytes
 import numpy as np
 
 from .._warnings import warn
-from ._particles import TIMES, FileError
+from ._particles import TIMES, Body, FileError
 from ._text import parse_numbers
 
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
@@ -143,7 +143,6 @@ class Legacy:
 
 
 def read_legacy(path):
-    """Points, arrays, time."""
     try:
         legacy = Legacy(path)
     except (FileError, MemoryError):
@@ -152,5 +151,5 @@ def read_legacy(path):
         raise FileError(f"{path.name} is damaged, or ends too early.") from None
     count = len(legacy.points)
     time = next((legacy.field[name] for name in TIMES if name in legacy.field), ())
-    return (legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
-            float(np.ravel(time)[0]) if len(time) else None)
+    return Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
+                float(np.ravel(time)[0]) if len(time) else None)

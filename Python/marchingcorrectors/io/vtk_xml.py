@@ -13,7 +13,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from ._particles import TIMES, FileError, by_name, check_claim
+from ._particles import TIMES, Body, FileError, by_name, check_claim
 from ._text import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
@@ -159,7 +159,6 @@ class XmlFile:
 
 
 def read_xml(path):
-    """Points, arrays, time."""
     try:
         file = XmlFile(path)
         pieces = [piece for piece in file.pieces if piece["count"]]
@@ -174,4 +173,4 @@ def read_xml(path):
         raise
     except Exception as error:
         raise FileError(f"{path.name} has no points, ends too early, or is damaged: {error}.") from None
-    return points, arrays, float(time[0]) if len(time) else None
+    return Body(points, arrays, float(time[0]) if len(time) else None)

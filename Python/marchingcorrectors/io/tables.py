@@ -1,0 +1,277 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Particles as text, one in each line: .csv (commas, semicolons or tabs), columns between blanks with comments behind #,
+.xyz and extended XYZ, dumps of LAMMPS. Columns whose names end as :0, _x, .x, [0] or X, ... are one array."""
+import csv
+import re
+
+import numpy as np
+
+from ._particles import Body, FileError, choose_step
+
+POSITIONS = ("points", "point", "position", "positions", "pos", "coordinates", "coordinate", "coords", "coord", "xyz", "r")
+MOST_COLUMNS = 10000
+COMPONENT = re.compile(r"(.+?)(?:[:_.]([0-8xyzXYZ])|[\[(]([0-8])[\])]|(?<=[a-z])([XYZ]))")
+IS_IDENTIFIER = re.compile(r"(id|idp|ids|types?|index|mk|tag|mol|iorig)$")
+
+
+def lines_of(path):
+    data = path.read_bytes()
+    if b"\0" in data:
+        raise FileError(f"{path.name} is no text.")
+    return data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").rstrip("\n").split("\n")
+
+
+def to_number(cell):
+    """As tables have them: nothing, a D of Fortran, a decimal comma; None where it is none."""
+    try:
+        return float(cell) if cell.strip() else np.nan
+    except ValueError:
+        pass
+    try:
+        return float(re.sub("[dD]", "e", cell.replace(",", "."), count=1))
+    except ValueError:
+        return None
+
+
+def split(line, separator):
+    return line.split() if separator is None else [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+
+
+def columns_of(file, lines, names, separator=None):
+    """{name: array} of rows of values."""
+    if not 0 < len(names) <= MOST_COLUMNS:
+        raise FileError(f"{file} has {len(names)} columns; at most {MOST_COLUMNS} are read.")
+    try:
+        values = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2).T if lines else np.empty((len(names), 0))
+        if values.shape != (len(names), len(lines)):
+            raise ValueError
+    except ValueError:  # words, gaps, commas, or lines of different lengths
+        rows = [split(line, separator) for line in lines]
+        odd = next((i for i, row in enumerate(rows) if len(row) != len(names)), None)
+        if odd is not None:
+            raise FileError(f"{file}: row {odd + 1} has {len(rows[odd])} values for {len(names)} columns.") from None
+        values = [numbers_or_words([row[i] for row in rows]) for i in range(len(names))]
+    found = {}
+    for i, (name, column) in enumerate(zip(names, values)):
+        letters = "".join(letter for letter in name.lower() if letter.isalpha())
+        if column.dtype.kind == "f" and IS_IDENTIFIER.search(letters):
+            column = as_integers(column, lambda: [split(line, separator)[i] for line in lines])
+        found[name] = column
+    return found
+
+
+def numbers_or_words(cells):
+    numbers = [to_number(cell) for cell in cells]
+    if numbers and numbers[0] is None:
+        return np.array([cell[:64] for cell in cells])
+    return np.array([np.nan if number is None else number for number in numbers], float)
+
+
+def as_integers(values, cells):
+    """Where they are; beyond 2^53 by their own digits, which no double has."""
+    if not np.isfinite(values).all() or (values != np.floor(values)).any() or (len(values) and np.abs(values).max() >= 2 ** 63):
+        return values
+    if len(values) and np.abs(values).max() >= 2 ** 53:
+        return np.array([int(cell) if re.fullmatch(r"[+-]?\d+", cell) else int(float(cell)) for cell in cells()], np.int64)
+    return values.astype(np.int64)
+
+
+def join_vectors(columns):
+    """Columns that are components of one array, by their names."""
+    groups = {}
+    for name in columns:
+        found = COMPONENT.fullmatch(name)
+        if found and columns[name].dtype.kind in "fi":
+            letter = found[2] or found[3] or found[4]
+            groups.setdefault(found[1], {})[int(letter) if letter.isdigit() else "xyz".index(letter.lower())] = name
+    groups = {base: [parts[i] for i in range(len(parts))] for base, parts in groups.items()
+              if len(parts) in (2, 3, 6, 9) and max(parts) == len(parts) - 1 and base not in columns}
+    of = {name: base for base, names in groups.items() for name in names}
+    joined = {}
+    for name in columns:
+        if name not in of:
+            joined[name] = columns[name]
+        elif of[name] not in joined:
+            joined[of[name]] = np.stack([columns[part] for part in groups[of[name]]], axis=1)
+    return joined
+
+
+def body_of(file, columns, positions=(), **more):
+    """positions: names of their columns, where names do not tell."""
+    arrays, points = join_vectors({name: column for name, column in columns.items() if name not in positions}), None
+    if not positions:
+        usual = [name for wanted in POSITIONS for name in arrays
+                 if name.lower() == wanted and arrays[name].ndim == 2 and arrays[name].shape[1] <= 3]
+        positions = [name for axis in "xyz" for name in arrays if name.lower() == axis and arrays[name].ndim == 1]
+        points = arrays.pop(usual[0]) if usual else None
+    if points is None:
+        if len(positions) < 2:
+            raise FileError(f"{file} has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
+                            f"Points:2; there are {', '.join(columns)}.")
+        points = np.stack([columns[name] for name in positions], axis=1)
+        arrays = {name: array for name, array in arrays.items() if name not in positions}
+    if points.dtype.kind not in "fi":
+        raise FileError(f"{file}: its positions are no numbers.")
+    points = np.pad(points.astype(float), ((0, 0), (0, 3 - points.shape[1])))
+    return Body(points, arrays, **more)
+
+
+def name_columns(cells):
+    """Without units in brackets; each another."""
+    names = []
+    for cell in cells:
+        name = cell.split(" [")[0].strip(' "') or f"Column{len(names) + 1}"
+        while name in names:
+            name += "_"
+        names.append(name)
+    return names
+
+
+def number_columns(count):
+    return [*"xyz"[:count], *(f"Column{i + 1}" for i in range(3, count))]
+
+
+def read_table(path):
+    """Rows of values, after one of names, which may stand in a comment."""
+    comment, rows = "", []
+    for line in lines_of(path):
+        start = line.lstrip()[:1]
+        if start and start in "#%!":
+            comment = line.strip("#%! \t") if not rows else comment
+        elif start:
+            rows.append(line)
+    if not rows:
+        raise FileError(f"{path.name} has no row of values.")
+    separator = next((letter for letter in ";\t," if letter in rows[0]), None)
+    if separator == "\t" and path.suffix.lower() != ".csv":
+        separator = None
+    if separator is None:
+        rows = [row.partition("#")[0] if "#" in row else row for row in rows]
+    first = split(rows[0], separator)
+    if any(to_number(cell) is None for cell in first):
+        names, rows = name_columns(first), rows[1:]
+    else:
+        in_brackets = re.findall(r"\[\s*\d+\s+([^\]]*?)\s*\]", comment)
+        words = in_brackets if len(in_brackets) == len(first) else split(comment, "," if "," in comment else None)
+        told = len(words) == len(first) and any(to_number(word) is None for word in words)
+        names = name_columns(words) if told else number_columns(len(first))
+    if not rows:
+        raise FileError(f"{path.name} has no row of values.")
+    columns = columns_of(path.name, rows, names, separator)
+    try:
+        return body_of(path.name, columns)
+    except FileError:
+        if separator is not None or any(columns[name].dtype.kind not in "fi" for name in names[:3]):
+            raise
+        return body_of(path.name, columns, names[:3])
+
+
+def whole_number(file, lines, i):
+    try:
+        found = int(lines[i])
+    except (ValueError, IndexError):
+        found = -1
+    if found < 0:
+        raise FileError(f"{file}: line {i + 1} does not say how many particles a step has.")
+    return found
+
+
+def rows_of(file, lines, begin, count):
+    if begin + count > len(lines):
+        raise FileError(f"{file} ends too early: its step at line {begin} claims {count} particles.")
+    return lines[begin:begin + count]
+
+
+def value_of(comment, key):
+    """What stands behind KEY= in the second line of extended XYZ, with or without quotes."""
+    found = re.search(rf'(?:^|\s){key}=(?:"([^"]*)"|(\S*))', comment, re.I)
+    return (found[1] if found[1] is not None else found[2]) if found else ""
+
+
+def numbers_of(text):
+    numbers = [to_number(word) for word in text.split()]
+    return [] if None in numbers else numbers
+
+
+def read_xyz(path, step):
+    lines, at, starts, times = lines_of(path), 0, [], []
+    while at < len(lines):
+        if lines[at].strip():
+            count = whole_number(path.name, lines, at)
+            rows_of(path.name, lines, at + 2, count)
+            time = numbers_of(value_of(lines[at + 1], "time"))
+            times.append(time[0] if len(time) == 1 else float(len(times)))
+            starts.append(at)
+            at += 1 + count
+        at += 1
+    begin = starts[choose_step(path.name, step, times)]
+    count, comment, properties = whole_number(path.name, lines, begin), lines[begin + 1], []
+    parts = value_of(comment, "properties").split(":")
+    for name, width in zip(parts[0::3], parts[2::3]):
+        if not width.isdigit() or not 0 < int(width) <= 100:
+            raise FileError(f"{path.name}: its Properties give '{name}' {width} columns.")
+        properties += [name] if width == "1" else [f"{name}:{i}" for i in range(int(width))]
+    rows = rows_of(path.name, lines, begin + 2, count)
+    if not properties:
+        width = len(rows[0].split()) if rows else 3
+        properties = ["species", *number_columns(width - 1)] if width > 3 else number_columns(width)
+    lattice, origin = numbers_of(value_of(comment, "lattice")), numbers_of(value_of(comment, "origin"))
+    period, flags = None, value_of(comment, "pbc").split()
+    if len(lattice) == 9 and not any(lattice[i] for i in range(9) if i % 4):
+        low = origin if len(origin) == 3 else [0.0] * 3
+        period = period_of([(low[a], low[a] + lattice[4 * a]) for a in range(3)],
+                           [flag in ("T", "1", "True") for flag in flags] if len(flags) == 3 else [True] * 3)
+    time = times[choose_step(path.name, step, times)]
+    return body_of(path.name, columns_of(path.name, rows, properties), time=time, period=period, times=times)
+
+
+def period_of(bounds, is_periodic):
+    """Six bounds; of axes without a period 0."""
+    good = [flag and np.isfinite(side).all() and side[0] < side[1] for side, flag in zip(bounds, is_periodic)]
+    return [bound for side, flag in zip(bounds, good) for bound in (side if flag else (0.0, 0.0))] if any(good) else None
+
+
+def read_lammps(path, step):
+    """Items, each a line of its name, and lines of what it says. TIME is in the run's unit, TIMESTEP a number."""
+    lines, at, steps, head = lines_of(path), 0, [], {}
+    while at < len(lines):
+        words, at = lines[at].split(), at + 1
+        if not words:
+            continue
+        if words[0] != "ITEM:" or len(words) < 2:
+            raise FileError(f"{path.name}: line {at} is none of a dump of LAMMPS.")
+        if words[1] in ("TIMESTEP", "TIME"):
+            time = to_number(lines[at]) if at < len(lines) else None
+            if time is None:
+                raise FileError(f"{path.name}: line {at + 1} is no time.")
+            head[words[1]] = time
+        elif words[1:3] == ["NUMBER", "OF"]:
+            head["count"] = whole_number(path.name, lines, at)
+        elif words[1:3] == ["BOX", "BOUNDS"]:
+            head["periodic"] = [word == "pp" for word in words[-3:]]
+            head["bounds"] = [(*numbers_of(line), 0.0, 0.0)[:2] for line in rows_of(path.name, lines, at, 3)]
+            at += 2
+        elif words[1] == "ATOMS":
+            rows_of(path.name, lines, at, head.get("count", 0))
+            steps.append((at, words[2:], head))
+            at, head = at + head.get("count", 0) - 1, {}
+        at += 1
+    if not steps:
+        raise FileError(f"{path.name} has no particles.")
+    times = [head.get("TIME", head.get("TIMESTEP", float(i))) for i, (_, _, head) in enumerate(steps)]
+    i = choose_step(path.name, step, times)
+    begin, words, head = steps[i]
+    names, bounds = name_columns(words), head.get("bounds", [(0.0, 1.0)] * 3)
+    columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
+    positions = ()
+    for kind in ("", "u", "s", "su"):  # as they are, unwrapped, in units of the box
+        positions = [axis + kind for axis in "xyz" if axis + kind in columns]
+        if len(positions) > 1:
+            break
+    if positions and positions[0][1:2] == "s":
+        for name in positions:
+            low, high = bounds["xyz".index(name[0])]
+            columns[name] = low + columns[name] * (high - low)
+    period = period_of(bounds, head["periodic"]) if "periodic" in head and len(head["periodic"]) == 3 else None
+    return body_of(path.name, columns, positions, time=times[i], period=period, times=times)

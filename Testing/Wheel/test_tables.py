@@ -1,0 +1,308 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""marchingcorrectors.io: tables, .xyz, dumps of LAMMPS, GADGET's binary formats and films in .vtkhdf. Random files against
+NumPy's own reading of the same bytes; damaged ones against a sentence."""
+import re
+import struct
+import unittest
+
+import h5py
+import numpy as np
+
+import marchingcorrectors as mc
+from marchingcorrectors import io
+from test_files import Case, quietly
+
+WORDS = ("O", "H2", "Ar")
+
+
+def random_rows(random, columns, least=1):
+    """Text of numbers as programs write them."""
+    count = random.integers(least, 60)
+    form = random.choice(["%.17g", "%.6e", "%12.5f"])
+    return [[form % value for value in row] for row in random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))]
+
+
+def write_csv(path, random):
+    """ParaView's, DualSPHysics', a plain one: (names, columns of positions, vectors, separator)."""
+    names, positions, vectors, separator = (
+        (["Vel:0", "Vel:1", "Vel:2", "id", "Points:0", "Points:1", "Points:2", "Rhop"], (4, 5, 6), {"Vel": (0, 1, 2)}, ","),
+        (["Pos.x [m]", "Pos.y [m]", "Pos.z [m]", "Idp", "Vel.x [m/s]", "Vel.y [m/s]", "Vel.z [m/s]"], (0, 1, 2),
+         {"Vel": (4, 5, 6)}, ";"),
+        (["x", "y", "z", "h", "particle_id"], (0, 1, 2), {}, ","),
+        (["Points_0", "Points_1", "Points_2", "F_0", "F_1"], (0, 1, 2), {"F": (3, 4)}, "\t"))[random.integers(4)]
+    rows = random_rows(random, len(names))
+    for i, name in enumerate(names):
+        for row in rows if name.lower() in ("id", "idp", "particle_id") else ():
+            row[i] = str(random.integers(2 ** 62))
+    quote = '"' if random.integers(2) else ""
+    end = "\r\n" if random.integers(2) else "\n"
+    text = end.join([separator.join(quote + name + quote for name in names), *(separator.join(row) for row in rows)])
+    path.write_bytes((text + end * random.integers(2)).encode())
+    return names, positions, vectors, separator
+
+
+def write_columns(path, random):
+    names = ["x", "y", "z", "rho", "h"]
+    rows = random_rows(random, 5)
+    kind = random.integers(3)
+    head = ["# made by a program\n# x y z rho h\n", "# [01 x] [02 y] [03 z] [04 rho] [05 h]\n", "# no names\n\n"][kind]
+    lines = [" ".join(row) + ("  # a remark" if random.integers(9) == 0 else "") for row in rows]
+    path.write_text(head + "\n".join(lines) + "\n")
+    return names if kind < 2 else ["x", "y", "z", "Column4", "Column5"]
+
+
+def write_xyz(path, random, steps, extended):
+    text = ""
+    for i in range(steps):
+        rows = random_rows(random, 7)
+        if extended:
+            text += f'{len(rows)}\nLattice="2 0 0 0 3 0 0 0 4" Properties=species:S:1:pos:R:3:velo:R:3:h:R:1 Time={i / 4} pbc="T F T"\n'
+        else:
+            text += f"{len(rows)}\na remark\n"
+        for row in rows:
+            text += " ".join([random.choice(WORDS), *(row if extended else row[:3])]) + "\n"
+    path.write_text(text)
+
+
+def write_lammps(path, random, steps, scaled):
+    text = ""
+    for i in range(steps):
+        rows = random_rows(random, 5)
+        text += f"ITEM: TIMESTEP\n{100 * i}\nITEM: NUMBER OF ATOMS\n{len(rows)}\nITEM: BOX BOUNDS pp ff pp\n-1 3\n0 2\n0.5 4.5\n"
+        text += "ITEM: ATOMS id type " + ("xs ys zs" if scaled else "x y z") + " vx c_rho[1]\n"
+        text += "".join(f"{k + 1} {k % 3} " + " ".join(row) + "\n" for k, row in enumerate(rows))
+    path.write_text(text)
+
+
+def write_gadget_binary(path, random, named=False, order="<", double=False, files=1):
+    """As GADGET-2 does: gas, dark matter and stars; masses of dark matter in the header. Returns {label: of all types}."""
+    counts, table = [int(random.integers(5, 40)), int(random.integers(1, 9)), 0, 0, int(random.integers(1, 9)), 0], [0, 2.5, 0, 0, 0, 0]
+    total, real = sum(counts), order + ("f8" if double else "f4")
+    arrays = {"POS": random.normal(size=(total, 3)).astype(real), "VEL": random.normal(size=(total, 3)).astype(real),
+              "ID": np.arange(total, dtype=order + ("u8" if double else "u4")),
+              "MASS": random.random(counts[0] + counts[4]).astype(real),
+              **{name: random.random(counts[0]).astype(real) for name in ("U", "RHO", "HSML")}}
+    header = struct.pack(order + "6i6d2d2i6I2i4d", *counts, *table, 0.25, 3.0, 0, 0, *counts, 0, files, 8.0, 0.3, 0.7, 0.7)
+
+    def record(data):
+        return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
+
+    data = b""
+    for label, block in (("HEAD", header.ljust(256, b"\0")), *((label, array.tobytes()) for label, array in arrays.items())):
+        data += record(label.ljust(4).encode() + struct.pack(order + "I", len(block) + 8)) if named else b""
+        data += record(block)
+    path.write_bytes(data)
+    return counts, arrays
+
+
+def write_vtkhdf(path, random, steps):
+    counts = random.integers(1, 50, max(steps, 1))
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = [2, 0]
+        root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
+        root["NumberOfPoints"], root["Points"] = counts, random.normal(size=(counts.sum(), 3))
+        root["PointData/Density"] = random.random(counts.sum())
+        root["PointData/Constant"] = random.random(counts.max()) if steps else random.random(counts.sum())
+        if steps:
+            begins = np.cumsum(counts) - counts
+            root["Steps/Values"], root["Steps/PartOffsets"] = np.arange(steps) / 4, np.arange(steps)
+            root["Steps/NumberOfParts"], root["Steps/PointOffsets"] = np.ones(steps, int), begins
+            root["Steps/PointDataOffsets/Density"], root["Steps/PointDataOffsets/Constant"] = begins, np.zeros(steps, int)
+    return counts
+
+
+class AgainstNumPy(Case):
+    """40 random files of each kind."""
+
+    def randoms(self):
+        return (np.random.default_rng([44, seed]) for seed in range(40))
+
+    def assert_same(self, found, wanted):
+        self.assertEqual(np.shape(found), np.shape(wanted))
+        self.assertTrue(np.array_equal(found, wanted))
+
+    def test_csv(self):
+        for random in self.randoms():
+            names, positions, vectors, separator = write_csv(self.at("p.csv"), random)
+            particles = io.read(self.at("p.csv"))
+            wanted = np.genfromtxt(self.at("p.csv"), delimiter=separator, skip_header=1, ndmin=2)
+            self.assert_same(particles.positions, wanted[:, list(positions)])
+            for name, columns in vectors.items():
+                self.assert_same(particles.arrays[name], wanted[:, list(columns)])
+            for i, name in enumerate(names):
+                if name in particles.arrays:
+                    ids = name.lower() in ("id", "idp", "particle_id")
+                    text = np.genfromtxt(self.at("p.csv"), str, delimiter=separator, skip_header=1, ndmin=2)[:, i]
+                    self.assert_same(particles.arrays[name], np.array([int(word) for word in text]) if ids else wanted[:, i])
+
+    def test_columns(self):
+        for random in self.randoms():
+            names = write_columns(self.at("p.txt"), random)
+            particles, wanted = io.read(self.at("p.txt")), np.loadtxt(self.at("p.txt"), ndmin=2)
+            self.assert_same(particles.positions, wanted[:, :3])
+            self.assertEqual(list(particles.arrays), names[3:])
+            for i in (3, 4):
+                self.assert_same(particles.arrays[names[i]], wanted[:, i])
+
+    def test_xyz(self):
+        for random in self.randoms():
+            steps, extended = int(random.integers(1, 4)), bool(random.integers(2))
+            write_xyz(self.at("p.xyz"), random, steps, extended)
+            lines, at = self.at("p.xyz").read_text().split("\n"), 0
+            for step in range(steps):
+                particles, count = io.read(self.at("p.xyz"), step=step), int(lines[at])
+                wanted = np.loadtxt(lines[at + 2:at + 2 + count], usecols=range(1, 8 if extended else 4), ndmin=2)
+                self.assert_same(particles.positions, wanted[:, :3])
+                self.assertEqual(particles.arrays["species"].tolist(), [line.split()[0] for line in lines[at + 2:at + 2 + count]])
+                self.assertEqual(len(particles.times), steps)
+                if extended:
+                    self.assert_same(particles.arrays["velo"], wanted[:, 3:6])
+                    self.assert_same(particles.arrays["h"], wanted[:, 6])
+                    self.assertEqual((particles.smoothing_length, particles.time), ("h", step / 4))
+                    self.assertEqual(list(particles.period), [0, 2, 0, 0, 0, 4])
+                at += 2 + count
+            self.assert_same(io.read(self.at("p.xyz"), step=-1).positions, particles.positions)
+            self.assert_refused(f"has no step {steps}", self.at("p.xyz"), step=steps)
+
+    def test_lammps(self):
+        for random in self.randoms():
+            steps, scaled = int(random.integers(1, 4)), bool(random.integers(2))
+            write_lammps(self.at("p.dump"), random, steps, scaled)
+            frames = self.at("p.dump").read_text().split("ITEM: TIMESTEP\n")[1:]
+            for step, frame in enumerate(frames):
+                particles = io.read(self.at("p.dump"), step=step)
+                wanted = np.loadtxt(frame.split("\n")[8:], ndmin=2)
+                low, size = np.array([-1, 0, 0.5]), np.array([4, 2, 4])
+                self.assert_same(particles.positions, low + wanted[:, 2:5] * size if scaled else wanted[:, 2:5])
+                self.assertEqual(list(particles.period), [-1, 3, 0, 0, 0.5, 4.5])
+                self.assertEqual((particles.time, list(particles.times)), (100 * step, [100.0 * i for i in range(steps)]))
+                self.assert_same(particles.arrays["id"], wanted[:, 0])
+                self.assertEqual(particles.arrays["id"].dtype.kind, "i")
+                self.assert_same(particles.arrays["c_rho[1]"], wanted[:, 6])
+
+    def test_gadget(self):
+        for i, random in enumerate(self.randoms()):
+            path = self.at("snapshot_000")
+            counts, arrays = write_gadget_binary(path, random, named=i % 2, order="<>"[i // 2 % 2], double=i // 4 % 2)
+            raw = path.read_bytes()
+            for kind, begin in ((0, 0), (1, counts[0]), (4, counts[0] + counts[1])):
+                chosen = slice(begin, begin + counts[kind])
+                particles = io.read(path, types=kind)
+                at = raw.index(arrays["POS"].tobytes())
+                wanted = np.frombuffer(raw, arrays["POS"].dtype, 3 * sum(counts), at).reshape(-1, 3)
+                self.assert_same(particles.positions, wanted[chosen])
+                self.assert_same(particles.arrays["Velocities"], arrays["VEL"][chosen])
+                self.assert_same(particles.arrays["ParticleIDs"], arrays["ID"][chosen])
+                masses = {0: arrays["MASS"][:counts[0]], 1: np.full(counts[1], 2.5), 4: arrays["MASS"][counts[0]:]}
+                self.assert_same(particles.arrays["Masses"], masses[kind])
+            gas = io.read(path)
+            for label, name in (("U", "InternalEnergy"), ("RHO", "Density"), ("HSML", "SmoothingLength")):
+                self.assert_same(gas.arrays[name], arrays[label])
+            self.assertEqual((gas.time, gas.parameters["box_size"], gas.support_radius), (0.25, [8.0] * 3, True))
+
+    def test_vtkhdf(self):
+        for random in self.randoms():
+            steps = int(random.integers(0, 5))
+            counts = write_vtkhdf(self.at("p.vtkhdf"), random, steps)
+            with h5py.File(self.at("p.vtkhdf"), "r") as file:
+                for step in range(max(steps, 1)):
+                    begin, count = counts[:step].sum(), counts[step]
+                    particles = io.read(self.at("p.vtkhdf"), step=step)
+                    self.assert_same(particles.positions, file["VTKHDF/Points"][begin:begin + count])
+                    self.assert_same(particles.arrays["Density"], file["VTKHDF/PointData/Density"][begin:begin + count])
+                    self.assert_same(particles.arrays["Constant"], file["VTKHDF/PointData/Constant"][:count])
+                    self.assertEqual(particles.time, step / 4 if steps else None)
+
+
+class Tables(Case):
+    def test_names(self):
+        self.at("p.csv").write_text("X;Y;VelX;VelY;VelZ;rho;Type\n1,5;2;1;2;3;1000;0\n2,5;3;4;5;6;;3\n")
+        particles = io.read(self.at("p.csv"))
+        self.assertEqual(particles.positions.tolist(), [[1.5, 2, 0], [2.5, 3, 0]])
+        self.assertEqual(particles.arrays["Vel"].tolist(), [[1, 2, 3], [4, 5, 6]])
+        self.assertEqual((particles.density, particles.arrays["rho"][0]), ("rho", 1000))
+        self.assertTrue(np.isnan(particles.arrays["rho"][1]))
+        self.assertEqual(particles.arrays["Type"].tolist(), [0, 3])
+        self.at("p.dat").write_text("1.5D+00 0 0\n-2d0 1 1\n")
+        self.assertEqual(io.read(self.at("p.dat")).positions.tolist(), [[1.5, 0, 0], [-2, 1, 1]])
+        self.at("p.txt").write_text("x y z vx vy vz\n1 2 3 4 5 6\n")
+        self.assertEqual(io.read(self.at("p.txt")).arrays["Velocity"].tolist(), [[4, 5, 6]])
+
+    def test_surface(self):
+        """From a file alone, as from arrays; walls of a file of their own."""
+        line = np.arange(-4, 5) * 0.1
+        x = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
+        np.savetxt(self.at("water.csv"), np.column_stack([x, np.full(len(x), 0.13), np.full(len(x), 1e-3)]), "%.17g", ",",
+                   header="x,y,z,h,volume", comments="")
+        wanted = quietly(mc.free_surface, x, smoothing_length=0.13, volume=1e-3)
+        self.assertEqual(quietly(mc.free_surface, io.read(self.at("water.csv"))).points.tobytes(), wanted.points.tobytes())
+        self.at("wall.csv").write_text("x,y,z\n9,9,9\n")
+        both = io.read([self.at("water.csv"), self.at("wall.csv")])
+        self.assertEqual(both.solid.tolist(), [False] * len(x) + [True])
+
+    def test_sentences(self):
+        for name, text, words in (
+                ("p.csv", "a,b\n1,2\n", "p.csv has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
+                                        "Points:2; there are a, b."),
+                ("p.csv", "x,y,z\n1,2,3\n1,2\n", "row 2 has 2 values for 3 columns"),
+                ("p.csv", "x,y,z\n", "has no row of values"),
+                ("p.txt", "# x y z\n", "has no row of values"),
+                ("p.txt", "1 2 3\0", "is no text"),
+                ("p.xyz", "5\n\nO 1 2 3\n", "claims 5 particles"),
+                ("p.xyz", "99999999999999\n\nO 1 2 3\n", "claims 99999999999999 particles"),
+                ("p.xyz", "water\n", "line 1 does not say how many"),
+                ("p.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n9\nITEM: ATOMS x y z\n1 2 3\n", "claims 9 particles"),
+                ("p.dump", "ITEM: TIMESTEP\n", "is no time")):
+            self.at(name).write_text(text)
+            self.assert_refused(words, self.at(name))
+
+    def test_gadget_in_several_files(self):
+        random = np.random.default_rng(1)
+        made = [write_gadget_binary(self.at(f"snap.{i}"), random, files=2)[1] for i in range(2)]
+        gas = io.read(self.at("snap.1"))
+        self.assertEqual(gas.arrays["Density"].tolist(), np.concatenate([arrays["RHO"] for arrays in made]).tolist())
+        self.at("snap.1").unlink()
+        self.assert_refused("snap.1 is missing", self.at("snap.0"))
+
+    def test_links(self):
+        write_vtkhdf(self.at("p.vtkhdf"), np.random.default_rng(1), 0)
+        with h5py.File(self.at("p.vtkhdf"), "a") as file:
+            file["VTKHDF/PointData/Secret"] = h5py.ExternalLink("other.h5", "Secret")
+        self.assert_refused("is a link", self.at("p.vtkhdf"))
+
+    def test_fuzz(self):
+        """Cut off, bits turned, other numbers: a FileError of one line, or particles."""
+        random, refused = np.random.default_rng(44), 0
+        makers = {"a.csv": write_csv, "a.txt": write_columns, "a.xyz": lambda path, r: write_xyz(path, r, 3, True),
+                  "b.xyz": lambda path, r: write_xyz(path, r, 2, False), "a.dump": lambda path, r: write_lammps(path, r, 2, True),
+                  "a.gadget": write_gadget_binary, "b.gadget": lambda path, r: write_gadget_binary(path, r, True, ">", True),
+                  "a.vtkhdf": lambda path, r: write_vtkhdf(path, r, 3), "b.vtkhdf": lambda path, r: write_vtkhdf(path, r, 0)}
+        for name, make in makers.items():
+            make(self.at(name), random)
+            whole = self.at(name).read_bytes()
+            for i in range(90):
+                data = bytearray(whole[:random.integers(1, len(whole))] if i % 3 == 0 else whole)
+                numbers = list(re.finditer(rb"\d+", bytes(data[:4000])))
+                for _ in range(0 if i % 3 == 0 else random.integers(1, 9)):
+                    if i % 3 == 1 or not numbers:
+                        data[random.integers(min(len(data), 4000))] ^= 1 << random.integers(8)
+                    else:
+                        found = numbers[random.integers(len(numbers))]
+                        data[found.start():found.end()] = random.choice([b"-1", b"99999999999", b"1e300", b"nan", b"0"]).ljust(
+                            found.end() - found.start())
+                self.at(name).write_bytes(data)
+                try:
+                    for step in (0, -1):
+                        particles = quietly(io.read, self.at(name), step=step)
+                        particles.positions, dict(particles.arrays), len(particles)
+                except io.FileError as error:
+                    refused += 1
+                    self.assertNotIn("\n", str(error))
+                    self.assertLess(len(str(error)), 400)
+        self.assertGreater(refused, 200)
+
+
+if __name__ == "__main__":
+    unittest.main()

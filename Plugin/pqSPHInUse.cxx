@@ -4,13 +4,23 @@
 
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
+#include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
 #include "pqProxy.h"
 #include "pqProxyWidget.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "vtkCommand.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVDataSetAttributesInformation.h"
+#include "vtkSMArrayListDomain.h"
 #include "vtkSMDocumentation.h"
 #include "vtkSMDoubleVectorProperty.h"
+#include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
@@ -19,8 +29,11 @@
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSmartPointer.h"
 
+#include <QComboBox>
 #include <QFormLayout>
 #include <QLabel>
+#include <QRegularExpression>
+#include <QSignalBlocker>
 #include <QStringList>
 #include <QTableView>
 #include <QToolButton>
@@ -30,6 +43,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace
@@ -46,8 +60,17 @@ const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComp
 
 // What the next update would find, and the panel shows elsewhere, or begins with.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
-  "NextFluid", "NextCells" };
-const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents" };
+  "NextDimension", "NextFluid", "NextCells" };
+const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension" };
+
+// ParaView's, of the items of its lists of arrays: association and name.
+constexpr int ASSOCIATION = Qt::UserRole + 1, ARRAY_NAME = Qt::UserRole + 2;
+
+// With six digits, as the rest of the panel.
+double rounded(double value)
+{
+  return QString::number(value).toDouble();
+}
 
 // "-" for what is not known: nothing was drawn, or the free surface has no such thing.
 QString textOf(vtkSMProperty* property)
@@ -62,7 +85,8 @@ QString textOf(vtkSMProperty* property)
                        : QString::fromUtf8(values.GetAsString(i)));
     isKnown = isKnown || (isNumber ? values.GetAsDouble(i) != 0.0 : !texts.back().isEmpty());
   }
-  return isKnown ? texts.join(" to ") : QString("-");
+  const bool isFluid = QLatin1String(property->GetXMLName()) == QLatin1String("NextFluid");
+  return isKnown ? texts.join(" to ") : isFluid ? QString("all particles") : QString("-");
 }
 
 bool isShownElsewhere(vtkSMProperty* property)
@@ -155,6 +179,17 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     this->Rows << qMakePair(property, value);
   }
   pqCoreUtilities::connect(proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()));
+  for (const char* name : { "FluidArray", "SelectInputScalars" })
+  {
+    vtkSMProperty* property = proxy->GetProperty(name);
+    auto* domain = property ? property->FindDomain<vtkSMArrayListDomain>() : nullptr;
+    if (domain)
+    {
+      pqCoreUtilities::connect(
+        domain, vtkCommand::DomainModifiedEvent, this, SLOT(offerMore()), Qt::QueuedConnection);
+    }
+  }
+  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel is there
   if (!proxy->GetProperty(NEXT[0]))
   {
     this->showValues();
@@ -169,15 +204,126 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
       &this->Pause, SLOT(start()));
   }
   this->showValues();
-  QTimer::singleShot(0, this, SLOT(beginNew())); // it is called new when its panel is there
 }
 
 void pqSPHInUse::beginNew()
 {
-  if (isNew(this->proxy()))
+  vtkSMProxy* filter = this->proxy();
+  this->offerMore();
+  if (!isNew(filter))
+  {
+    return;
+  }
+  SCOPED_UNDO_EXCLUDE();
+  // The pipeline has the filter's name without the words in brackets, which are for ParaView's search.
+  auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
+  const QRegularExpression others("[^A-Za-z0-9]");
+  QString name = item->getSMName(), label = filter->GetXMLLabel();
+  const QString brief = label.section('(', 0, 0).remove(others);
+  item->rename(name.remove(others).replace(label.remove(others), brief));
+  if (filter->GetProperty("NextBounds"))
+  {
+    this->beginPlace();
+  }
+  if (vtkSMPropertyHelper(filter, "NextEstimate").GetAsInt() != 0)
+  {
+    vtkSMUncheckedPropertyHelper(filter, "EstimateSmoothingLength").Set(1);
+    this->Button->setText("What was found, and what is used (the smoothing length is estimated)");
+  }
+  if (filter->GetProperty(NEXT[0]))
   {
     this->Given << std::numeric_limits<double>::quiet_NaN(); // none yet
     this->lookAhead();
+    // Where there are walls, what most want to see is the water.
+    const char* fluid = vtkSMPropertyHelper(filter, "NextFluid").GetAsString();
+    if (fluid && *fluid)
+    {
+      vtkSMUncheckedPropertyHelper(filter, "FreeSurface").Set(1);
+    }
+  }
+}
+
+// A slice through the middle, or the particles' own plane; a line along the longest side, or upright. All reach
+// somewhat beyond the particles, where the fluid ends.
+void pqSPHInUse::beginPlace()
+{
+  vtkSMProxy* filter = this->proxy();
+  const vtkSMPropertyHelper fluid(filter, "NextBounds");
+  double low[3], high[3], middle[3], normal[3] = { 0.0, 0.0, 1.0 };
+  int longest = 0, up = 2;
+  for (int a = 0; a < 3; ++a)
+  {
+    low[a] = fluid.GetAsDouble(2 * a);
+    high[a] = fluid.GetAsDouble(2 * a + 1);
+    middle[a] = rounded(0.5 * low[a] + 0.5 * high[a]);
+    longest = high[a] - low[a] > high[longest] - low[longest] ? a : longest;
+  }
+  const double length = high[longest] - low[longest];
+  if (!(length > 0.0))
+  {
+    return; // not known
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    if (low[a] == high[a])
+    {
+      middle[a] = low[a];
+      std::fill_n(normal, 3, 0.0);
+      normal[a] = 1.0;
+      up = a == 2 ? 1 : 2;
+    }
+  }
+  const bool isGauge = filter->GetProperty("Level") != nullptr;
+  const int along = isGauge ? up : longest;
+  double from[3], to[3];
+  std::copy_n(middle, 3, from);
+  std::copy_n(middle, 3, to);
+  from[along] = rounded(low[along] - 0.05 * length);
+  to[along] = rounded(high[along] + 0.05 * length);
+  const std::pair<const char*, const double*> places[] = { { "Origin", middle },
+    { "Normal", normal }, { "Point1", from }, { "Point2", to } };
+  for (const auto& place : places)
+  {
+    if (filter->GetProperty(place.first))
+    {
+      vtkSMPropertyHelper(filter, place.first).Set(place.second, 3);
+    }
+  }
+}
+
+void pqSPHInUse::offerMore()
+{
+  QWidget* panel = this->parentWidget();
+  vtkSMProxy* filter = this->proxy();
+  const auto offer = [panel](const char* list, const QString& name)
+  {
+    auto* widget = panel ? panel->findChild<QWidget*>(list) : nullptr;
+    auto* combo = widget ? widget->findChild<QComboBox*>() : nullptr;
+    if (combo && combo->findData(name, ARRAY_NAME) < 0)
+    {
+      const QSignalBlocker block(combo);
+      const bool isScalar = QLatin1String(list) == QLatin1String("SelectInputScalars");
+      combo->addItem(name);
+      combo->setItemData(combo->count() - 1, isScalar ? vtkDataObject::POINT : -1, ASSOCIATION);
+      combo->setItemData(combo->count() - 1, name, ARRAY_NAME);
+    }
+  };
+  if (filter->GetProperty("NextBlocks"))
+  {
+    filter->UpdatePropertyInformation(filter->GetProperty("NextBlocks"));
+    const QString blocks = vtkSMPropertyHelper(filter, "NextBlocks").GetAsString();
+    for (const QString& block : blocks.split('\n', QString::SkipEmptyParts))
+    {
+      offer("FluidArray", block);
+    }
+  }
+  vtkSMProperty* scalars = filter->GetProperty("SelectInputScalars");
+  auto* arrays = scalars ? scalars->FindDomain<vtkSMArrayListDomain>() : nullptr;
+  unsigned int at;
+  if (arrays && arrays->IsInDomain("vx", at) && arrays->IsInDomain("vy", at) &&
+    arrays->IsInDomain("vz", at) && !arrays->IsInDomain("Velocity", at))
+  {
+    offer("SelectInputScalars", "Velocity");
   }
 }
 
@@ -186,6 +332,38 @@ void pqSPHInUse::showValues()
   this->Pause.stop();
   this->proxy()->UpdatePropertyInformation();
   this->showRows();
+  this->colourLate();
+}
+
+// ParaView chooses colours when something is shown first, even if there is nothing to see: after an error, or with an iso
+// value beside the range. It is the same choice, as soon as there is something.
+void pqSPHInUse::colourLate()
+{
+  auto* source =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
+      this->proxy());
+  pqOutputPort* port = source ? source->getOutputPort(0) : nullptr;
+  vtkPVDataInformation* data = port && !isNew(this->proxy()) ? port->getDataInformation() : nullptr;
+  if (!data)
+  {
+    return;
+  }
+  const bool isEmpty = data->GetNumberOfPoints() == 0;
+  vtkPVArrayInformation* active =
+    data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::SCALARS);
+  for (pqDataRepresentation* shown : port->getRepresentations(nullptr))
+  {
+    auto* proxy = vtkSMPVRepresentationProxy::SafeDownCast(shown->getProxy());
+    if (this->WasEmpty && active && proxy && !proxy->GetUsingScalarColoring())
+    {
+      proxy->SetScalarColoring(active->GetName(), vtkDataObject::POINT);
+      proxy->RescaleTransferFunctionToDataRange();
+      shown->renderViewEventually();
+    }
+  }
+  this->WasEmpty = isEmpty;
+  this->Button->setText(isEmpty ? "The output is empty: what was found, and what is used"
+                                : "What was found, and what is used");
 }
 
 // The range is the domain of the list of iso values, which shows it and follows it.
@@ -211,7 +389,11 @@ void pqSPHInUse::lookAhead()
 void pqSPHInUse::begin()
 {
   vtkSMProxy* filter = this->proxy();
-  const double iso = vtkSMPropertyHelper(filter, "NextIsoValue").GetAsDouble();
+  const double found = vtkSMPropertyHelper(filter, "NextIsoValue").GetAsDouble();
+  const vtkSMPropertyHelper range(filter, "NextScalarRange");
+  const bool isWithin =
+    rounded(found) > range.GetAsDouble(0) && rounded(found) < range.GetAsDouble(1);
+  const double iso = isWithin ? rounded(found) : found;
   vtkSMUncheckedPropertyHelper array(filter, "SelectInputScalars");
   const char* first = vtkSMPropertyHelper(filter, "NextArray").GetAsString();
   if (isNew(filter) && first && *first && QLatin1String(array.GetAsString(4)) == "(automatic)")

@@ -8,6 +8,10 @@
  * What the next update would find (the properties that begin with Next, where the filter has them) is told as
  * soon as something is changed on the panel, before Apply. The list of iso values begins with the one that
  * would be taken, and follows it until the user has others.
+ *
+ * The panel of a new filter begins with what suits its particles: the free surface where walls are found, an estimate
+ * where there are no smoothing lengths, and a plane, line or box that spans the fluid. Lists of arrays offer, too, what
+ * the filter takes for arrays: blocks as fluid, vx, vy and vz as velocity.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h
@@ -38,14 +42,18 @@ private Q_SLOTS:
   void showValues();
   void lookAhead();
   void beginNew();
+  void offerMore();
 
 private: // NOLINT(readability-redundant-access-specifiers)
   void showRows();
   void begin();
+  void beginPlace();
+  void colourLate();
   void dropEmptyRows();
 
   QToolButton* Button;
-  QList<double> Given; // the iso value that the panel chose last; none: it does not choose
+  bool WasEmpty = false; // the last output
+  QList<double> Given;   // the iso value that the panel chose last; none: it does not choose
 
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;
   QTimer Pause; // between the last change and the look ahead

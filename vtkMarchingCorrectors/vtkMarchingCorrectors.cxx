@@ -295,8 +295,11 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
   this->FillChoice(choice, particles);
   this->FindFluid(choice, particles);
   choice.InterpolateAttributes = false;
-  next.Array = next.Array.empty() ? vtkSPHChooseArray(particles->GetPointData()) : next.Array;
   vtkMarchingCorrectorsInput contoured(choice, particles);
+  const bool isJoined = contoured.JoinVelocity() != nullptr;
+  next.Array = !next.Array.empty() ? next.Array
+    : isJoined                     ? "Velocity"
+                                   : vtkSPHChooseArray(particles->GetPointData());
   double range[2], value;
   if (!choice.FreeSurface && contoured.CollectContoured() &&
     mcor_find_iso_value(&contoured.Core, nullptr, range, &value))
@@ -311,6 +314,7 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
   vtkMarchingCorrectorsInput input(choice, particles);
   if (input.Collect())
   {
+    next.Dimension = mcor_find_dimension(&input.Core, nullptr, this->Dimension);
     next.Fluid = input.DescribeFluid();
     next.Cells +=
       mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));

@@ -462,14 +462,15 @@ public:
   ///@{
   /**
    * What an update with the present properties and input would find: FluidScalarRange, the default iso value
-   * (NaN: not known), the number of components of the chosen array (1 for a dot product), EstimatedCells (of
-   * all blocks), UsedFluid, and the array that is contoured if none is chosen. The input is not updated. 0 to
+   * (NaN: not known), the number of components of the chosen array (1 for a dot product), the dimension, EstimatedCells
+   * (of all blocks), UsedFluid, and the array that is contoured if none is chosen. The input is not updated. 0 to
    * 0, 0, or empty: not known, without particles or a scalar. If processes share a run, these are those of
    * the last update, because one process cannot ask the others without waiting for them.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
   double GetNextIsoValue() { return this->LookAhead().IsoValue; }
   int GetNextComponents() { return this->LookAhead().Components; }
+  int GetNextDimension() { return this->LookAhead().Dimension; }
   double GetNextCells() { return this->LookAhead().Cells; }
   const char* GetNextFluid() { return this->LookAhead().Fluid.c_str(); }
   const char* GetNextArray() { return this->LookAhead().Array.c_str(); }
@@ -551,7 +552,7 @@ private:
   {
     double ScalarRange[2] = { 0.0, 0.0 };
     double IsoValue = std::numeric_limits<double>::quiet_NaN();
-    int Components = 0;
+    int Components = 0, Dimension = 0;
     double Cells = 0.0;
     std::string Fluid, Array;
   };

@@ -211,7 +211,11 @@ vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
   if (request.Name.empty() && (!active || !vtkSPHIsFit(active, merge)))
   {
     const std::string best = vtkSPHChooseArray(data, merge);
-    if (!best.empty())
+    if (auto velocity = vtkSPHParticles(*this, particles).JoinVelocity())
+    {
+      request.Array = velocity;
+    }
+    else if (!best.empty())
     {
       request.Array = data->GetAbstractArray(best.c_str());
     }

@@ -92,6 +92,9 @@ struct vtkSPHParticlesChoice
   vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
   int Kernel = 0;
   std::vector<std::string> ExcludedArrays;
+
+  /** Whether the fluid array is a block of composite data, "Block: NAME". */
+  bool IsBlock() const { return this->FluidArrayName.compare(0, 7, "Block: ") == 0; }
 };
 
 /** Makes ranges, each a least and a greatest value, those of all processes that share a run; empty: of one alone. */
@@ -346,6 +349,17 @@ public:
    */
   void ReleaseDeviceMemory();
 
+  ///@{
+  /**
+   * What a panel begins with, from the particles as they are now: FindFluidBounds(), 0 where it is not known; whether
+   * they have no smoothing length, by name or as chosen, so that it is to be estimated; and what there is to choose from
+   * as fluid array beside point arrays: the blocks, one a line.
+   */
+  double* GetNextBounds() VTK_SIZEHINT(6);
+  int GetNextEstimate();
+  const char* GetNextBlocks();
+  ///@}
+
   /**
    * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default): no
    * limit. An update that would need more fails, and the error says how much.
@@ -475,6 +489,16 @@ protected:
     vtkSPHRanksRun& run, vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
   ///@}
 
+  /**
+   * The box of the fluid's particles, without the few (0.1 %, or 8) that are farther from the others' box than it is
+   * long. Collective where processes share a run. False where no particle is fluid.
+   */
+  bool FindFluidBounds(vtkPointSet* particles, double bounds[6]);
+
+  /** The input that has the particles, and its port. */
+  vtkDataObject* GetParticles();
+  virtual int GetParticlesPort() { return 0; }
+
   /** Names the fluid in the choice, where it is to be found, and is. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
     const vtkSPHMergeRanges& merge = nullptr);
@@ -496,6 +520,8 @@ protected:
     ostream& os, vtkIndent indent, const char* name, const double* values, int count);
   bool IsAborted();
 
+  double NextBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  std::string NextBlocks;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   vtkTypeBool DetectPeriod = 0;
   std::string UsedSmoothingLengthArrayName;

@@ -17,9 +17,40 @@
 #include "vtkSPHParticles.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHRanks.h"
+#include "vtkSPHRanksParticles.h"
 #endif
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <numeric>
 #include <vector>
+
+namespace
+{
+/** The lowest numbers of many, one more than may be far from the others. */
+struct Lowest
+{
+  std::size_t Far = 0;
+  std::vector<double> Numbers; ///< a heap, the greatest first
+
+  void Add(double number)
+  {
+    if (this->Numbers.size() <= this->Far || number < this->Numbers.front())
+    {
+      this->Numbers.push_back(number);
+      std::push_heap(this->Numbers.begin(), this->Numbers.end());
+    }
+    if (this->Numbers.size() > this->Far + 1)
+    {
+      std::pop_heap(this->Numbers.begin(), this->Numbers.end());
+      this->Numbers.pop_back();
+    }
+  }
+};
+}
 
 // Each block is a run that all processes take part in.
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
@@ -79,10 +110,12 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
     return vtkPointSet::SafeDownCast(data);
   }
   if (!kept.Joined || kept.JoinedFrom.GetPointer() != data ||
+    kept.JoinedFluid != this->FluidArrayName ||
     vtkSPHTimeOfBlocks(tree) > kept.JoinedTime.GetMTime())
   {
-    kept.Joined = vtkSPHJoinBlocks(tree);
+    kept.Joined = vtkSPHJoinBlocks(tree, this->FluidArrayName);
     kept.JoinedFrom = data;
+    kept.JoinedFluid = this->FluidArrayName;
     kept.JoinedTime.Modified();
   }
   return kept.Joined;
@@ -109,10 +142,130 @@ void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* out
 void vtkSPHAlgorithm::FindFluid(
   vtkSPHParticlesChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
-  if (this->DetectFluid)
+  if (this->DetectFluid || choice.IsBlock())
   {
     vtkSPHParticles::FindFluid(choice, particles, merge);
   }
+}
+
+bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
+{
+  using List = std::vector<double>;
+  vtkSPHParticlesChoice choice(*this);
+  vtkSmartPointer<vtkPointSet> own = particles;
+  std::function<List(const List&)> gather = [](const List& mine) { return mine; };
+#if MCOR_HAS_RANKS
+  std::unique_ptr<vtkSPHRanks> ranks;
+  if (this->IsShared())
+  {
+    ranks.reset(new vtkSPHRanks(this->Controller));
+    own = vtkSPHTakeParticles(*ranks, particles);
+    this->FindFluid(choice, own, ranks->MergeRanges());
+    gather = [&ranks](const List& mine)
+    {
+      List all;
+      for (const List& theirs : ranks->Gather(mine))
+      {
+        all.insert(all.end(), theirs.begin(), theirs.end());
+      }
+      return all;
+    };
+  }
+  else
+#endif
+  {
+    this->FindFluid(choice, own);
+  }
+  vtkDataArray* fluid = own->GetPointData()->GetArray(choice.FluidArrayName.c_str());
+  const auto forEach = [&choice, &own, fluid](auto&& visit)
+  {
+    double x[3];
+    for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+    {
+      own->GetPoint(i, x);
+      if ((!fluid || fluid->GetComponent(i, 0) == choice.FluidValue) && std::isfinite(x[0]) &&
+        std::isfinite(x[1]) && std::isfinite(x[2]))
+      {
+        visit(x);
+      }
+    }
+  };
+  double count = 0.0;
+  forEach([&count](const double*) { count += 1.0; });
+  const List counts = gather({ count });
+  const auto total = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0.0));
+  if (total == 0)
+  {
+    return false;
+  }
+  std::array<Lowest, 6> ends; // along each axis; every other is that of what is below 0 as above it
+  for (Lowest& end : ends)
+  {
+    end.Far = std::min(std::max<std::size_t>(8, total / 1000), (total - 1) / 4);
+  }
+  forEach(
+    [&ends](const double* x)
+    {
+      for (std::size_t e = 0; e < 6; ++e)
+      {
+        ends[e].Add(e % 2 ? -x[e / 2] : x[e / 2]);
+      }
+    });
+  double longest = 0.0;
+  for (std::size_t e = 0; e < 6; ++e)
+  {
+    const List all = gather(ends[e].Numbers);
+    ends[e].Numbers.clear();
+    std::for_each(all.begin(), all.end(), [&ends, e](double number) { ends[e].Add(number); });
+    std::sort_heap(ends[e].Numbers.begin(), ends[e].Numbers.end());
+    longest = std::max(longest, e % 2 ? -ends[e].Numbers.back() - ends[e - 1].Numbers.back() : 0.0);
+  }
+  for (std::size_t e = 0; e < 6; ++e)
+  {
+    const List& lowest = ends[e].Numbers;
+    const double end = *std::lower_bound(lowest.begin(), lowest.end(), lowest.back() - longest);
+    bounds[e] = e % 2 ? -end : end;
+  }
+  return true;
+}
+
+// Processes that share a run would all have to ask.
+double* vtkSPHAlgorithm::GetNextBounds()
+{
+  const vtkSmartPointer<vtkPointSet> particles =
+    this->IsShared() ? nullptr : this->TakeParticles(this->GetParticles());
+  if (!particles || !this->FindFluidBounds(particles, this->NextBounds))
+  {
+    std::fill_n(this->NextBounds, 6, 0.0);
+  }
+  return this->NextBounds;
+}
+
+int vtkSPHAlgorithm::GetNextEstimate()
+{
+  const std::vector<vtkPointSet*> sets = vtkSPHListPointSets(this->GetParticles());
+  vtkSPHParticlesChoice choice(*this);
+  choice.EstimateSmoothingLength = 0;
+  return !sets.empty() && !vtkSPHParticles(choice, sets.front()).CollectSmoothingLength();
+}
+
+const char* vtkSPHAlgorithm::GetNextBlocks()
+{
+  this->NextBlocks.clear();
+  if (auto* tree = vtkDataObjectTree::SafeDownCast(this->GetParticles()))
+  {
+    for (const std::string& choice : vtkSPHListFluidBlocks(tree))
+    {
+      this->NextBlocks += choice + "\n";
+    }
+  }
+  return this->NextBlocks.c_str();
+}
+
+vtkDataObject* vtkSPHAlgorithm::GetParticles()
+{
+  const int port = this->GetParticlesPort();
+  return this->GetNumberOfInputConnections(port) > 0 ? this->GetInputDataObject(port, 0) : nullptr;
 }
 
 int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)

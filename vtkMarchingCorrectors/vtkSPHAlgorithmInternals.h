@@ -46,6 +46,7 @@ public:
   mcor_context* Context = nullptr;
   vtkSmartPointer<vtkPointSet> Joined; // blocks that are one set of particles
   vtkWeakPointer<vtkDataObject> JoinedFrom;
+  std::string JoinedFluid; // the fluid array, which may be a block
   vtkTimeStamp JoinedTime;
 
 private:

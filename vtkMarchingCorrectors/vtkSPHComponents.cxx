@@ -30,6 +30,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace
 {
@@ -55,7 +56,7 @@ void CopyTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes
   to->CopyData(from, ids, places);
 }
 
-/** Adds the ids of the pieces that are not left out. */
+/** Adds the ids of the pieces that are not left out, as active scalars: most want to tell pieces by colour. */
 void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
 {
   vtkNew<vtkIdTypeArray> ids;
@@ -68,6 +69,7 @@ void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
     }
   }
   data->AddArray(ids);
+  data->SetActiveScalars(IdName);
 }
 
 /** A sum whose bits do not depend on the order of its numbers, each of which is expected first: they are rounded to
@@ -154,7 +156,7 @@ std::vector<vtkIdType> vtkSPHComponents::ListFluid(vtkPointSet* particles) const
   {
     choice.FluidArrayName = this->FluidArrayName;
   }
-  if (this->DetectFluid)
+  if (this->DetectFluid || choice.IsBlock())
   {
     vtkSPHParticles::FindFluid(choice, particles);
   }
@@ -245,8 +247,10 @@ void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<C
     "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx", "vy",
     "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
+  constexpr size_t withoutParticles = 15; // the others tell of particles, which may not be there
+  const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];
-  for (size_t c = 0; c < columnCount; ++c)
+  for (size_t c = 0; c < used; ++c)
   {
     vtkNew<vtkDoubleArray> column;
     column->SetName(names[c]);
@@ -270,7 +274,7 @@ void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<C
       has ? std::cbrt(6.0 * std::abs(piece.Volume) / vtkMath::Pi()) : NoNumber,
       filled ? content.Particles : NoNumber, content.HasMass ? content.Mass.Sum : NoNumber,
       content.Velocity(0), content.Velocity(1), content.Velocity(2) };
-    for (size_t c = 0; c < columnCount; ++c)
+    for (size_t c = 0; c < used; ++c)
     {
       columns[c]->InsertNextValue(row[c]);
     }
@@ -347,6 +351,10 @@ std::string vtkSPHComponents::FindProblem(vtkPolyData* mesh)
            "pieces. Turn Filled on to get triangles, and put vtkTriangleFilter with PassLines off "
            "before this filter.";
   }
+  if (mesh->GetNumberOfPoints() > 0 && mesh->GetNumberOfPolys() + mesh->GetNumberOfStrips() == 0)
+  {
+    return "Choose a surface, such as that of SPH Contour, as Surface: the input has no triangles.";
+  }
   const bool hasOthers = mesh->GetNumberOfCells() != mesh->GetNumberOfPolys() ||
     (mesh->GetNumberOfPolys() > 0 && mesh->GetPolys()->IsHomogeneous() != 3);
   return hasOthers ? "The surface has cells that are not triangles. Put vtkTriangleFilter, with "
@@ -361,7 +369,7 @@ int vtkSPHComponents::RequestData(
   vtkSmartPointer<vtkPointSet> particles = vtkPointSet::GetData(inputVector[1]);
   if (auto* blocks = vtkDataObjectTree::GetData(inputVector[1]))
   {
-    particles = vtkSPHJoinBlocks(blocks);
+    particles = vtkSPHJoinBlocks(blocks, this->FluidArrayName);
   }
   vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
   vtkTable* table = vtkTable::GetData(outputVector, 1);
@@ -375,6 +383,11 @@ int vtkSPHComponents::RequestData(
   else
 #endif
   {
+    auto* other = vtkPolyData::SafeDownCast(particles);
+    if (other && other->GetNumberOfPolys() > 0 && mesh->GetNumberOfPolys() == 0)
+    {
+      particles = std::exchange(mesh, other); // chosen the wrong way round
+    }
     problem = FindProblem(mesh);
     if (problem.empty())
     {

@@ -53,6 +53,13 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   }
   vtkSPHAddArray(data, (this->GradientName + "Corrected").c_str(),
     vtkSPHAdopt(derivatives.corrected, 1, derivatives.count));
+  for (const Quantity& quantity : this->Quantities)
+  {
+    if (quantity.Values == &mcor_flow::vorticity && quantity.IsWanted && from.Components == 3)
+    {
+      data->SetActiveScalars(quantity.Name.c_str()); // what most want to see
+    }
+  }
   return true;
 }
 

@@ -178,6 +178,8 @@ int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
 {
   if (port == this->GetParticlesPort())
   {
+    info->Set(
+      vtkAlgorithm::INPUT_IS_OPTIONAL(), port > 0 ? 1 : 0); // what is missing is told in words
     return this->Superclass::FillInputPortInformation(port, info);
   }
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
@@ -215,6 +217,11 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* points = vtkDataSet::SafeDownCast(data);
   this->SetUsedNames(nullptr);
+  if (this->GetNumberOfInputConnections(this->GetParticlesPort()) == 0)
+  {
+    this->Fail("Choose the particles, the second input: there are none to probe.");
+    return;
+  }
 #if MCOR_HAS_RANKS
   if (this->IsShared())
   {

@@ -131,7 +131,7 @@ protected:
   std::string ValidPointMaskArrayName = "vtkValidPointMask";
 
   /** Behind the points, where these are an input. */
-  int GetParticlesPort() { return this->GetNumberOfInputPorts() - 1; }
+  int GetParticlesPort() override { return this->GetNumberOfInputPorts() - 1; }
 
   vtkSmartPointer<vtkPointSet> Particles; // while a run lasts
 

@@ -2,27 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHResample.h"
 
-#include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkSPHParticles.h"
 #include "vtkSPHShapes.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#if MCOR_HAS_RANKS
-#include "vtkSPHRanks.h"
-#include "vtkSPHRanksParticles.h"
-#endif
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace
 {
@@ -31,28 +22,20 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 /** A share of the longest side of the fluid's box, added around it: the fluid ends somewhat beyond its particles. */
 constexpr double Margin = 0.03;
 
-/** The fluid's particles are within; infinite the wrong way where there are none. */
-void FindEnds(const vtkSPHParticlesChoice& choice, vtkPointSet* particles, double ends[6])
+/** Points of a volume whose dimensions nobody has set. */
+constexpr double UsualPoints = 1e6;
+
+/** The axis along which the fluid is flat, if there is one; else -1. */
+int FindFlatAxis(const double bounds[6])
 {
-  const double none = std::numeric_limits<double>::infinity();
+  int axis = -1, count = 0;
   for (int a = 0; a < 3; ++a)
   {
-    ends[2 * a] = none;
-    ends[2 * a + 1] = -none;
+    const bool flat = bounds[2 * a] == bounds[2 * a + 1];
+    axis = flat ? a : axis;
+    count += flat ? 1 : 0;
   }
-  vtkDataArray* fluid = particles->GetPointData()->GetArray(choice.FluidArrayName.c_str());
-  for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    particles->GetPoint(i, x);
-    const bool counts = (!fluid || fluid->GetComponent(i, 0) == choice.FluidValue) &&
-      std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
-    for (int a = 0; counts && a < 3; ++a)
-    {
-      ends[2 * a] = std::min(ends[2 * a], x[a]);
-      ends[2 * a + 1] = std::max(ends[2 * a + 1], x[a]);
-    }
-  }
+  return count == 1 ? axis : -1;
 }
 }
 
@@ -71,14 +54,20 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-// Origin and spacing depend on the particles, and come with the data.
+// Origin and spacing depend on the particles, and come with the data; dimensions that follow the shape of the fluid are
+// those of the particles as they are now.
 int vtkSPHResample::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkInformation* info = outputVector->GetInformationObject(0);
   if (this->Shape == VOLUME)
   {
-    const int* d = this->Dimensions;
+    int* d = this->UsedDimensions;
+    std::copy_n(this->Dimensions, 3, d);
+    if (std::min({ d[0], d[1], d[2] }) == 0)
+    {
+      this->ChooseDimensions(vtkDataObject::GetData(inputVector[0]));
+    }
     info->Set(Pipeline::WHOLE_EXTENT(), 0, d[0] - 1, 0, d[1] - 1, 0, d[2] - 1);
     info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   }
@@ -89,11 +78,45 @@ int vtkSPHResample::RequestInformation(
   return 1;
 }
 
+// About cubes, and one layer where the fluid is flat.
+void vtkSPHResample::ChooseDimensions(vtkDataObject* data)
+{
+  double bounds[6];
+  std::copy_n(this->Bounds, 6, bounds);
+  if (this->FitBounds)
+  {
+    auto* points = vtkPointSet::SafeDownCast(data);
+    if (!this->IsShared() && points && points->GetNumberOfPoints() == 0)
+    {
+      this->GetInputAlgorithm(0, 0)->Update(); // not read so far
+    }
+    this->Particles = this->TakeParticles(data);
+    const bool isFound = (this->Particles || this->IsShared()) && this->FindBounds(bounds);
+    this->Particles = nullptr;
+    std::fill_n(bounds, isFound ? 0 : 6, 0.0);
+  }
+  double product = 1.0;
+  int axes = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double length = bounds[2 * a + 1] - bounds[2 * a];
+    product *= length > 0.0 ? length : 1.0;
+    axes += length > 0.0 ? 1 : 0;
+  }
+  const double spacing = std::pow(product / UsualPoints, 1.0 / std::max(axes, 1));
+  for (int a = 0; a < 3; ++a)
+  {
+    const double count = (bounds[2 * a + 1] - bounds[2 * a]) / spacing;
+    const int fitting = count > 0.0 ? static_cast<int>(std::min(count, UsualPoints)) + 2 : 1;
+    this->UsedDimensions[a] = this->Dimensions[a] > 0 ? this->Dimensions[a] : fitting;
+  }
+}
+
 int vtkSPHResample::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkInformation* info = outputVector->GetInformationObject(0);
-  const int* d = this->Dimensions;
+  const int* d = this->UsedDimensions;
   const int whole[6] = { 0, d[0] - 1, 0, d[1] - 1, 0, d[2] - 1 };
   std::copy(whole, whole + 6, this->UpdateExtent);
   if (this->Shape == VOLUME && info->Has(Pipeline::UPDATE_EXTENT()))
@@ -108,37 +131,23 @@ int vtkSPHResample::RequestData(
   return done;
 }
 
-// False where no particle is fluid.
+// With a margin, but along the axis of a plane. False where no particle is fluid.
 bool vtkSPHResample::FindBounds(double bounds[6])
 {
-  vtkSPHParticlesChoice choice(*this);
-  double ends[6];
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
+  if (!this->FindFluidBounds(this->Particles, bounds))
   {
-    vtkSPHRanks ranks(this->Controller);
-    const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, this->Particles);
-    this->FindFluid(choice, own, ranks.MergeRanges());
-    FindEnds(choice, own, ends);
-    ranks.ReduceRanges(ends, 3);
+    return false;
   }
-  else
-#endif
-  {
-    this->FindFluid(choice, this->Particles);
-    FindEnds(choice, this->Particles, ends);
-  }
-  double longest = 0.0;
+  this->FlatAxis = this->Dimension == DIMENSION_3 ? -1 : FindFlatAxis(bounds);
+  const double longest =
+    std::max({ bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] });
   for (int a = 0; a < 3; ++a)
   {
-    longest = std::max(longest, ends[2 * a + 1] - ends[2 * a]);
+    const double margin = a == this->FlatAxis ? 0.0 : Margin * longest;
+    bounds[2 * a] -= margin;
+    bounds[2 * a + 1] += margin;
   }
-  for (int a = 0; a < 3; ++a)
-  {
-    bounds[2 * a] = ends[2 * a] - Margin * longest;
-    bounds[2 * a + 1] = ends[2 * a + 1] + Margin * longest;
-  }
-  return std::isfinite(ends[0]);
+  return true;
 }
 
 vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
@@ -151,7 +160,8 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
     double spacing[3];
     for (int a = 0; a < 3; ++a)
     {
-      spacing[a] = (box[2 * a + 1] - box[2 * a]) / std::max(this->Dimensions[a] - 1, 1);
+      const double length = box[2 * a + 1] - box[2 * a];
+      spacing[a] = length > 0.0 ? length / std::max(this->UsedDimensions[a] - 1, 1) : 1.0;
     }
     image->SetOrigin(box[0], box[2], box[4]);
     image->SetSpacing(spacing);
@@ -161,8 +171,12 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
   auto made = vtkSmartPointer<vtkPolyData>::New();
   if (this->HasPoints && this->Shape == SLICE)
   {
-    vtkSPHMakeSlice(
-      b, this->FitBounds ? middle : this->Origin, this->Normal, this->Resolution, made);
+    // A plane of particles is cut by itself alone in more than a line.
+    const bool isFlat = this->FlatAxis >= 0;
+    const double along[3] = { this->FlatAxis == 0 ? 1.0 : 0.0, this->FlatAxis == 1 ? 1.0 : 0.0,
+      this->FlatAxis == 2 ? 1.0 : 0.0 };
+    vtkSPHMakeSlice(b, isFlat || this->FitBounds ? middle : this->Origin,
+      isFlat ? along : this->Normal, this->Resolution, made);
   }
   else if (this->HasPoints)
   {

@@ -11,7 +11,8 @@
  *     VOLUME            a vtkImageData around that box
  *
  * With FitBounds (the default) the slice goes through the middle of the fluid, the line through the middle
- * along the longest side of its box, and the volume is that box, all with a margin of 3 % of that side.
+ * along the longest side of its box, and the volume is that box, all with a margin of 3 % of that side. The box is that
+ * of FindFluidBounds(). A slice of particles in a plane is always that plane.
  *
  * Where there is no fluid (less than WeightThreshold) arrays are NaN, see SetNaNOutside(), and a slice has
  * no quads, see SetOnlyFluid(). Active scalars are velocities, else the first vector or scalar that varies.
@@ -94,7 +95,8 @@ public:
 
   ///@{
   /**
-   * How many points a volume has along x, y and z; 100 each by default.
+   * How many points a volume has along x, y and z. 0, the default: as many as its shape wants, about a million in
+   * all, one along the axis of particles in a plane.
    */
   vtkSetVector3Macro(Dimensions, int);
   vtkGetVector3Macro(Dimensions, int);
@@ -125,7 +127,7 @@ protected:
   double Point2[3] = { 1.0, 0.0, 0.0 };
   double Bounds[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   int Resolution = 500;
-  int Dimensions[3] = { 100, 100, 100 };
+  int Dimensions[3] = { 0, 0, 0 };
   vtkTypeBool OnlyFluid = 1;
 
 private:
@@ -133,8 +135,11 @@ private:
   void operator=(const vtkSPHResample&) = delete;
 
   bool FindBounds(double bounds[6]);
+  void ChooseDimensions(vtkDataObject* data);
   vtkSmartPointer<vtkDataSet> MakePoints(const double bounds[6]);
 
+  int UsedDimensions[3] = { 1, 1, 1 };
+  int FlatAxis = -1;
   int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // of a volume, asked of this process
   bool HasPoints = true;                         // of a slice or a line
 };

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles as a .vtp file, for the scripts beside this one."""
+import numpy
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 
 def poly_data(positions, arrays):
@@ -11,6 +12,9 @@ def poly_data(positions, arrays):
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(positions, deep=1))
     particles.SetPoints(points)
+    vertices = vtk.vtkCellArray()  # without them ParaView shows nothing
+    vertices.SetData(1, numpy_to_vtkIdTypeArray(numpy.arange(len(positions)), deep=1))
+    particles.SetVerts(vertices)
     for name, values in arrays.items():
         array = numpy_to_vtk(values, deep=1)
         array.SetName(name)

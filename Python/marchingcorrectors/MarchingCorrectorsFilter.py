@@ -88,7 +88,7 @@ def with_properties(kind):
                  "UsedCubeSize", "SurfaceMeasures", "EstimatedCells", "Box", "PeriodicBounds", "ErrorMessage",
                  "RunStatistics", "UsedFluid"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
-    for name in ("ScalarRange", "IsoValue", "Components", "Cells", "Fluid", "Array"):
+    for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "Cells", "Fluid", "Array"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
     for quantity in ("SmoothingLength", "Volume", "Mass", "Density"):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))

@@ -1,10 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """What an update of the VTK filter would find, without it."""
+import ctypes
+
 from vtkmodules.vtkCommonCore import vtkTimeStamp
 from vtkmodules.vtkCommonDataModel import vtkDataObjectTree, vtkPointSet
 
-from ._vtk_particles import Particles, Request, Unusable, choose_array, name_of
+from ._library import lib
+from ._vtk_particles import Particles, Request, Unusable, choose_array, join_velocity, name_of
 from ._vtk_summary import estimate_cells
 
 
@@ -31,7 +34,7 @@ class Ahead:
         if data is not None and max(self.GetMTime(), data.GetMTime()) < self._look_time.GetMTime():
             return self._ahead
         ahead = self._ahead = {"ScalarRange": (0.0, 0.0), "IsoValue": float("nan"), "Components": 0, "Cells": 0.0,
-                               "Fluid": "", "Array": ""}
+                               "Dimension": 0, "Fluid": "", "Array": ""}
         for points in list_point_sets(self._take_particles(data)):
             self._look_at(points, ahead)
         self._look_time.Modified()
@@ -39,7 +42,8 @@ class Ahead:
 
     def _look_at(self, points, ahead):
         """What is known does not wait for the rest: the range needs no smoothing length, the cells no scalar."""
-        fittest = choose_array(points.GetPointData())
+        joined = join_velocity(points.GetPointData(), points.GetNumberOfPoints())
+        fittest = choose_array(points.GetPointData()) if joined is None else joined
         ahead["Array"] = ahead["Array"] or name_of(fittest)
         choice = self._choice()
         choice.InterpolateAttributes = False
@@ -64,6 +68,8 @@ class Ahead:
         particles = Particles(choice, points)
         try:
             particles.collect((None, None), [])
-            ahead["Cells"] += estimate_cells(particles.arguments(), self._options(choice))
+            given = particles.arguments()
+            ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(given.input), None, choice.Dimension)
+            ahead["Cells"] += estimate_cells(given, self._options(choice))
         except Unusable:
             pass

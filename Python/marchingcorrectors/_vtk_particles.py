@@ -352,5 +352,6 @@ class Request:
 
     def _take_fittest(self, index, points):
         """Nobody has chosen the active scalars of a file: they are taken if they are fit."""
-        best = choose_array(points.GetPointData()) if index == 0 else None
+        velocity = join_velocity(points.GetPointData(), points.GetNumberOfPoints()) if index == 0 else None
+        best = velocity if velocity is not None else choose_array(points.GetPointData()) if index == 0 else None
         self.array = best if best is not None else self.array

@@ -30,6 +30,15 @@ def add(data, name, values):
     return array
 
 
+def varies(array, on_surface):
+    """Whether there is more of it than the noise of what is contoured. Colours are those of magnitudes."""
+    if on_surface is None or on_surface.GetNumberOfTuples() == 0:
+        return False
+    kind = -1 if array.GetNumberOfComponents() > 1 else 0
+    (low, high), (least, most) = on_surface.GetRange(kind), array.GetRange(kind)
+    return high - low > 1e-3 * (most - least)
+
+
 def build_mesh(surface, particles, output, as_float):
     arrays = take_all("mcor_surface", surface,
                       {"point_count": surface.point_count, "triangle_count": surface.triangle_count})
@@ -52,7 +61,8 @@ def build_mesh(surface, particles, output, as_float):
     if arrays["iso_value"] is not None:
         single = particles.scalar is not None and particles.scalar.GetDataTypeAsString() == "float"
         add(data, particles.iso_value_name, arrays["iso_value"].astype(np.float32 if single else np.float64))
-    best = choose_array(data, [name_of(array) for array in particles.interpolated] + [particles.iso_value_name])
+    varying = [name_of(array) for array in particles.interpolated if varies(array, data.GetArray(name_of(array)))]
+    best = choose_array(data, varying + [particles.iso_value_name])
     if best is not None:
         data.SetActiveScalars(name_of(best))
 

@@ -124,7 +124,7 @@ class TestFieldXml(unittest.TestCase):
             proxy = root.find(f".//ProxyGroup[@name='filters']/SourceProxy[@name='{name}']")
             self.assertEqual(proxy.get("base_proxyname"), "SPHResample")
             defaults = {e.get("name"): e.get("default_values") for e in proxy if e.get("override")}
-            self.assertEqual(defaults, {"Shape": str(shape), **({"FitBounds": "0"} if name != "SPHVolume" else {})})
+            self.assertEqual(defaults, {"Shape": str(shape), "NaNOutside" if name == "SPHVolume" else "FitBounds": "0"})
             self.assertEqual(proxy.find("Hints/ShowInMenu").get("category"), "Point Interpolation")
 
 

@@ -26,7 +26,7 @@ CHOICES = {
                  "ExcludedArrays": ["Velocity"], "WeightThreshold": 0.25},
     "SPHDerivatives": {"Array": ["POINTS", "Velocity"], "ComputeStrainRate": 1, "ResultArrayName": "J",
                        "FluidArray": "Kind", "FluidValue": 1.0, "Kernel": "Quintic spline (M6)"},
-    "SPHTemporalInterpolator": {"NumberArray": "Idp", "VelocityArray": "Velocity", "ResampleFactor": 4},
+    "SPHTemporalInterpolator": {"IdArray": "Idp", "VelocityArray": "Velocity", "ResampleFactor": 4},
 }
 
 
@@ -123,12 +123,15 @@ def check_slices(reader):
     data, found = arrays_of(line)
     assert data.GetNumberOfPoints() == 50 and abs(found["arc_length"][-1] - numpy.linalg.norm(high - low)) < 1e-6
     Delete(line)
-    volume = SPHVolume(Input=reader, Dimensions=[20, 21, 22], WeightThreshold=0.4)  # noqa: F821
+    volume = SPHVolume(Input=reader, WeightThreshold=0.4)  # noqa: F821
+    data, found = arrays_of(volume)  # to be drawn as a volume, with about a million cubes
+    assert data.IsA("vtkImageData") and 0.8e6 < data.GetNumberOfPoints() < 1.3e6, data.GetDimensions()
+    assert not numpy.isnan(found["Height"]).any()
+    volume.Dimensions = [20, 21, 22]
+    volume.NaNOutsideOfTheFluid = 1
     data, found = arrays_of(volume)
-    assert data.IsA("vtkImageData") and data.GetDimensions() == (20, 21, 22)
+    assert data.GetDimensions() == (20, 21, 22)
     assert 0 < numpy.isnan(found["Height"]).sum() < data.GetNumberOfPoints()
-    volume.NaNOutsideOfTheFluid = 0
-    assert not numpy.isnan(arrays_of(volume)[1]["Height"]).any()
     Delete(volume)
 
 

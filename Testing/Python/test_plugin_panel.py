@@ -76,6 +76,8 @@ def first_apply(folder):
     """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
     return [
         APPLY, FILTERS, ADVANCED, PAUSE,
+        *greyed("ContourValues", "Filled"),  # walls are found, so the water is what is shown first
+        change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE,
         shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
         shown("sph_in_use/Values", "visible", "false"),
         change("sph_in_use/Show", "set_boolean", "true"),

@@ -104,7 +104,7 @@ class TestPluginXml(unittest.TestCase):
     def test_information(self):
         """What the panel shows of the last update has the type and size of its getter."""
         empty = vtkMarchingCorrectors()
-        self.assertEqual(len(self.information), 15)
+        self.assertEqual(len(self.information), 18)
         for element in self.information:
             with self.subTest(element.get("name")):
                 self.assertEqual(element.get("command"), "Get" + element.get("name"))

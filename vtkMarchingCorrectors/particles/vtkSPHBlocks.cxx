@@ -120,16 +120,25 @@ vtkPointSet* PointsOf(vtkDataObject* data)
   return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
 }
 
-/** Which of the blocks with points have names that tell of walls; nothing where none of all that the tree has,
- * or all do. Empty ones count, so that processes that have but some agree. */
-std::vector<bool> MarkWalls(vtkDataObjectTree* tree)
+/** What a block of this name is as a fluid array. */
+std::string FluidArrayOf(const std::string& name)
 {
+  return "Block: " + name;
+}
+
+/** Which of the blocks with points are walls: all but the one that was chosen as fluid, or those with names that tell
+ * of walls; nothing where none of all that the tree has, or all are. Empty ones count, so that processes that have but
+ * some agree. */
+std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
+{
+  const std::vector<std::string> choices = vtkSPHListFluidBlocks(tree);
+  const bool isChosen = std::find(choices.begin(), choices.end(), fluidArray) != choices.end();
   std::vector<bool> walls;
   const std::vector<Leaf> leaves = ListLeaves(tree);
   std::size_t count = 0;
   for (const Leaf& leaf : leaves)
   {
-    const bool isWall = TellsOfWalls(leaf.Name);
+    const bool isWall = isChosen ? FluidArrayOf(leaf.Name) != fluidArray : TellsOfWalls(leaf.Name);
     count += isWall ? 1 : 0;
     if (PointsOf(leaf.Data))
     {
@@ -225,10 +234,25 @@ vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree)
   return time;
 }
 
-vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree)
+std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree)
+{
+  std::vector<std::string> list;
+  for (const Leaf& leaf : ListLeaves(tree))
+  {
+    const std::string choice = FluidArrayOf(leaf.Name);
+    if (!leaf.Name.empty() && std::find(list.begin(), list.end(), choice) == list.end())
+    {
+      list.push_back(choice);
+    }
+  }
+  return list.size() > 1 ? list : std::vector<std::string>();
+}
+
+vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
+  vtkDataObjectTree* tree, const std::string& fluidArray)
 {
   const Blocks blocks = vtkSPHListPointSets(tree);
-  const std::vector<bool> walls = MarkWalls(tree);
+  const std::vector<bool> walls = MarkWalls(tree, fluidArray);
   auto joined = vtkSmartPointer<vtkPolyData>::New();
   vtkIdType total = 0;
   for (vtkPointSet* block : blocks)

@@ -33,9 +33,16 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
  * The points of all blocks that are point sets, one block after the other, with the point arrays
  * that all of them have: same name, type and number of components. Where the names of some blocks, but
  * not of all, tell of walls, there is an array MCOR_WALL_BLOCK too, 1 for particles of these; and what these
- * lack that all others have is there, with a value that means nothing. Field data are those of all.
+ * lack that all others have is there, with a value that means nothing. A fluid array that is a block, see
+ * vtkSPHListFluidBlocks(), makes all others walls. Field data are those of all.
  */
-vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(vtkDataObjectTree* tree);
+vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
+  vtkDataObjectTree* tree, const std::string& fluidArray = "");
+
+/**
+ * "Block: NAME" of each name that blocks have, if there are several: what stands for a fluid array.
+ */
+std::vector<std::string> vtkSPHListFluidBlocks(vtkDataObjectTree* tree);
 
 /**
  * Gives the blocks, as they are, the point arrays that `joined`, made of vtkSPHJoinBlocks(), has and

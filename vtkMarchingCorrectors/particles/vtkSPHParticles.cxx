@@ -98,9 +98,10 @@ bool vtkSPHParticles::CollectSmoothingLength()
   }
   if (!mcor_is_given(&this->Core.smoothing_length))
   {
-    this->Error = "The particles have no smoothing length: no point array has one of its usual "
-                  "names (SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask "
-                  "for an estimate. " +
+    this->Error =
+      "The particles have no smoothing length. Turn Estimate Smoothing Length on, or choose "
+      "Smoothing Length Array; no point array has one of its usual names "
+      "(SmoothingLength, hsml, h, ...). " +
       (this->FindLayout() == "DualSPHysics"
           ? std::string("DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ")
           : std::string()) +
@@ -235,7 +236,10 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
       " is not a point array; SPH particles are points. " + this->ListPointArrays();
     return false;
   }
-  vtkDataArray* array = this->Check("derivatives", request.Name, request.Array);
+  const vtkSmartPointer<vtkDataArray> velocity =
+    request.Name == "Velocity" && !request.Array ? this->JoinVelocity() : nullptr;
+  vtkDataArray* array =
+    velocity ? velocity.Get() : this->Check("derivatives", request.Name, request.Array);
   if (array)
   {
     this->Interpolate(array);

@@ -52,6 +52,9 @@ public:
    */
   bool CollectParticles();
 
+  /** The part of it that is about smoothing lengths. */
+  bool CollectSmoothingLength();
+
   /**
    * As mcor_find_dimension(), of all particles if nothing marks the fluid.
    */
@@ -95,7 +98,8 @@ public:
     const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
   /**
-   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such.
+   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such. Those
+   * of a block that it names, too.
    */
   static void FindFluid(
     vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge = nullptr);
@@ -145,7 +149,6 @@ protected:
   vtkSmartPointer<vtkPointSet> Points;
 
 private:
-  bool CollectSmoothingLength();
   bool CollectVolume();
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
   void Sign();

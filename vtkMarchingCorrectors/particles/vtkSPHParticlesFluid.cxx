@@ -77,6 +77,11 @@ void FindWholeRange(vtkDataArray* array, double range[2])
 void vtkSPHParticles::FindFluid(
   vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge)
 {
+  if (choice.IsBlock() && points->GetPointData()->HasArray(MCOR_WALL_BLOCK))
+  {
+    choice.FluidArrayName = MCOR_WALL_BLOCK;
+    choice.FluidValue = 0.0;
+  }
   for (const std::string& name : ListTypes(choice, points))
   {
     double range[2];

@@ -25,6 +25,9 @@
 
 namespace
 {
+/// Of an array's range among the particles: on a surface it varies by more, or it is noise.
+constexpr double LeastShare = 1e-3;
+
 // As it was when the run began.
 void AddArrayName(vtkFieldData* data, const char* name, const mcor_array& array)
 {
@@ -232,22 +235,37 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
     vtkSPHAdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
 }
 
-// Of what the particles carry, or the iso value where there are several; which is on all surfaces, too.
+// What the particles carry, if it varies on the surface, which what is contoured does by rounding alone; or the iso value
+// where there are several. Colours are those of magnitudes.
 void vtkMarchingCorrectorsOutput::ChooseActive(
   vtkPolyData* output, const vtkSPHMergeRanges& merge) const
 {
   vtkPointData* data = output->GetPointData();
   const std::vector<vtkSPHAttribute>& attributes = this->Input.Interpolated;
-  std::vector<std::pair<vtkDataArray*, int>> arrays;
+  std::vector<double> ranges; // of each array on the surface and of the particles
   for (const vtkSPHAttribute& attribute : attributes)
   {
-    arrays.emplace_back(data->GetArray(attribute.Name.c_str()), attribute.Components);
+    for (vtkDataArray* array : { data->GetArray(attribute.Name.c_str()),
+           vtkArrayDownCast<vtkDataArray>(attribute.Array.Get()) })
+    {
+      double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
+      if (array && array->GetNumberOfTuples() > 0)
+      {
+        array->GetRange(range, attribute.Components > 1 ? -1 : 0);
+      }
+      ranges.insert(ranges.end(), range, range + 2);
+    }
   }
-  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
+  if (merge)
+  {
+    merge(ranges.data(), static_cast<int>(ranges.size() / 2));
+  }
   vtkSPHArrayChoice choice;
   for (size_t i = 0; i < attributes.size(); ++i)
   {
-    choice.Consider(attributes[i].Name, attributes[i].Components, true, varying[i]);
+    const double* r = ranges.data() + 4 * i;
+    choice.Consider(attributes[i].Name, attributes[i].Components, true,
+      r[1] - r[0] > LeastShare * (r[3] - r[2]) && r[1] > r[0]);
   }
   choice.Consider(this->Input.IsoValueName, 1, true, this->Options.iso_count > 1);
   if (data->HasArray(choice.Best.c_str()))

@@ -191,8 +191,8 @@ std::string WithOptions(const Job& job, const std::string& sentence)
 {
   const bool hasTimes = !job.Inputs.empty() && IsCollectionFile(job.Inputs.front());
   const std::pair<const char*, const char*> words[] = {
-    { "Name the array, give a constant, or ask for an estimate.",
-      "Give --smoothing-length NAME, VALUE or estimate." },
+    { "Turn Estimate Smoothing Length on, or choose Smoothing Length Array",
+      "Give --smoothing-length NAME, VALUE or estimate" },
     { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh." },
     { "set the time scale", hasTimes ? "change those in the .pvd file" : "use --time-step" },
   };

@@ -1,0 +1,202 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What filters choose where nobody has: places, resolutions, arrays and colours; what becomes of a forgotten input."""
+import unittest
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
+
+from marchingcorrectors import (vtkMarchingCorrectors, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe,
+                                vtkSPHResample)
+
+SPACING = 0.1
+
+
+def particles_of(points, **arrays):
+    result = vtkPolyData()
+    result.SetPoints(vtkPoints())
+    result.GetPoints().SetData(numpy_to_vtk(numpy.asarray(points, float), deep=1))
+    for name, values in arrays.items():
+        array = numpy_to_vtk(numpy.asarray(values, float), deep=1)
+        array.SetName(name)
+        result.GetPointData().AddArray(array)
+    return result
+
+
+def lattice(nx, ny, nz):
+    return SPACING * numpy.stack(numpy.meshgrid(range(nx), range(ny), range(nz), indexing="ij"), -1).reshape(-1, 3)
+
+
+def block(points=None, **arrays):
+    """With smoothing lengths, and a velocity whose curl is (0, 0, 2)."""
+    x = lattice(20, 12, 8) if points is None else points
+    h = numpy.full(len(x), 1.3 * SPACING)
+    return particles_of(x, h=h, Velocity=numpy.stack((-x[:, 1], x[:, 0], 0 * x[:, 0]), 1), Height=x[:, 2] + 2, **arrays)
+
+
+def run(made, particles, **settings):
+    """The output, and errors and warnings in the order in which they came."""
+    told = []
+
+    def keep(_, event, text):
+        told.append(text)
+
+    keep.CallDataType = VTK_STRING
+    for event in ("ErrorEvent", "WarningEvent"):
+        made.AddObserver(event, keep)
+    if particles is not None:
+        made.SetInputData(particles)
+    for name, value in settings.items():
+        getattr(made, "Set" + name)(*(value if isinstance(value, tuple) else (value,)))
+    made.Update()
+    return made.GetOutputDataObject(0), told
+
+
+def active(data):
+    scalars = data.GetPointData().GetScalars()
+    return scalars.GetName() if scalars else None
+
+
+class TestPlaces(unittest.TestCase):
+    def test_far_particles(self):
+        """Few particles far away do not stretch what spans the fluid."""
+        near = lattice(20, 12, 8)
+        for far in ([], [[1e5, 0, 0]], [[0, 0, -3e4], [50, 60, 70]]):
+            particles = block(numpy.concatenate([near, numpy.array(far).reshape(-1, 3)]))
+            gauge = vtkSPHGauge()
+            gauge.SetInputData(particles)
+            self.assertTrue(numpy.allclose(gauge.GetNextBounds(), [0, 1.9, 0, 1.1, 0, 0.7]), gauge.GetNextBounds())
+            cut, _ = run(vtkSPHResample(), particles, Resolution=100)
+            self.assertLess(max(abs(b) for b in cut.GetBounds()), 2.1)
+        # A splash is no longer than the fluid: all of it counts.
+        gauge.SetInputData(block(numpy.concatenate([near, [[0, 0, 2.5]]])))
+        self.assertAlmostEqual(gauge.GetNextBounds()[5], 2.5)
+
+    def test_plane(self):
+        """Particles in a plane have but one slice, and a volume of one layer."""
+        for axis in range(3):
+            points = numpy.insert(lattice(20, 12, 1)[:, :2], axis, 0.25, axis=1)
+            for fit in (0, 1):
+                cut, told = run(vtkSPHResample(), block(points), Resolution=60, FitBounds=fit)
+                self.assertEqual(told, [])
+                self.assertGreater(cut.GetNumberOfCells(), 500)
+                self.assertEqual(set(vtk_to_numpy(cut.GetPoints().GetData())[:, axis]), {0.25})
+            image, _ = run(vtkSPHResample(), block(points), Shape=2)
+            self.assertEqual(image.GetDimensions()[axis], 1)
+            self.assertGreater(vtk_to_numpy(image.GetPointData().GetArray("vtkValidPointMask")).mean(), 0.5)
+
+    def test_resolution_follows_the_shape(self):
+        image, _ = run(vtkSPHResample(), block(), Shape=2)
+        spacing = numpy.array(image.GetSpacing())
+        self.assertLess(spacing.max() / spacing.min(), 1.03)
+        self.assertTrue(0.8e6 < image.GetNumberOfPoints() < 1.3e6, image.GetDimensions())
+        image, _ = run(vtkSPHResample(), block(), Shape=2, Dimensions=(10, 0, 0))
+        self.assertEqual(image.GetDimensions()[0], 10)
+
+
+class TestColours(unittest.TestCase):
+    def test_not_what_is_contoured(self):
+        """On an isosurface of the speed the speed is noise, as an array of its own, too."""
+        particles = block()
+        speed = numpy.linalg.norm(vtk_to_numpy(particles.GetPointData().GetArray("Velocity")), axis=1)
+        particles = block(Speed=speed)
+        surface = vtkMarchingCorrectors()
+        surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")
+        one, _ = run(surface, particles, Value=(0, 1.0))
+        self.assertEqual(active(one), "Height")
+        several, _ = run(surface, particles, Value=(1, 1.5))
+        self.assertEqual(active(several), "Velocity")
+        component, _ = run(surface, particles, NumberOfContours=1, ScalarComponent=0)
+        self.assertEqual(active(component), "Velocity")
+
+    def test_vorticity(self):
+        derived, _ = run(vtkSPHDerivatives(), block())
+        self.assertEqual(active(derived), "Vorticity")
+
+    def test_pieces(self):
+        surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
+        particles = block()
+        for inputs in ((surface, particles), (particles, surface)):  # the other way round, too
+            pieces = vtkSPHComponents()
+            pieces.SetInputData(1, inputs[1])
+            found, told = run(pieces, inputs[0])
+            self.assertEqual((told, active(found)), ([], "ComponentId"))
+            self.assertEqual(pieces.GetTable().GetColumnByName("particles").GetValue(0), 1920)
+
+
+class TestForgotten(unittest.TestCase):
+    def test_pieces(self):
+        """Without particles there is nothing to tell of them; without a surface a sentence says so."""
+        surface, _ = run(vtkMarchingCorrectors(), block(), FreeSurface=1)
+        pieces = vtkSPHComponents()
+        _, told = run(pieces, surface)
+        table = pieces.GetTable()
+        names = [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())]
+        self.assertEqual((told, names[-1], table.GetNumberOfRows()), ([], "diameter", 1))
+        _, told = run(vtkSPHComponents(), block())
+        self.assertEqual(len(told), 1)
+        self.assertRegex(told[0], "Choose a surface, such as that of SPH Contour")
+
+    def test_probe(self):
+        probe = vtkSPHProbe()
+        probe.SetInputConnection(vtkPlaneSource().GetOutputPort())
+        _, told = run(probe, None)
+        self.assertEqual(len(told), 1)
+        self.assertRegex(told[0], "Choose the particles")
+
+    def test_smoothing_length(self):
+        """The remedy comes first, in the words of the panel."""
+        bare = particles_of(lattice(10, 10, 10))
+        surface = vtkMarchingCorrectors()
+        _, told = run(surface, bare, FreeSurface=1)
+        self.assertRegex(told[0], "no smoothing length. Turn Estimate Smoothing Length on, or choose Smoothing Length Array")
+        self.assertEqual(surface.GetNextEstimate(), 1)
+        surface.SetInputData(block())
+        self.assertEqual(surface.GetNextEstimate(), 0)
+
+
+class TestChoices(unittest.TestCase):
+    def test_blocks_are_fluid(self):
+        """A block of any name is the fluid where it is chosen."""
+        x = lattice(20, 12, 8)
+        wall = x[:, 2] < 0.25
+        blocks = vtkMultiBlockDataSet()
+        for i, (name, points) in enumerate((("water", x[~wall]), ("tank", x[wall]))):
+            blocks.SetBlock(i, block(points))
+            blocks.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
+        surface = vtkMarchingCorrectors()
+        surface.SetInputData(blocks)
+        self.assertEqual(surface.GetNextBlocks().split(), ["Block:", "water", "Block:", "tank"])
+        counts = []
+        for choice in ("", "Block: water", "Block: tank", "Block: water"):
+            _, told = run(surface, None, FreeSurface=1, FluidArrayName=choice)
+            self.assertEqual(told, [])
+            counts.append(surface.GetRunStatistics().GetArray("FluidParticles").GetValue(0))
+        self.assertEqual(counts, [1920, (~wall).sum(), wall.sum(), (~wall).sum()])
+        gauge, _ = run(vtkSPHGauge(), blocks, FluidArrayName="Block: water", Point1=(1, 0.5, -1), Point2=(1, 0.5, 2))
+        self.assertTrue(abs(gauge.GetColumnByName("depth").GetValue(0) - 0.5) < 0.1)
+
+    def test_velocity_of_three_arrays(self):
+        particles = block()
+        velocity = vtk_to_numpy(particles.GetPointData().GetArray("Velocity"))
+        apart = particles_of(lattice(20, 12, 8), h=numpy.full(1920, 0.13), rho=numpy.arange(1920.0),
+                             **{name: velocity[:, a].copy() for a, name in enumerate(("vx", "vy", "vz"))})
+        surface = vtkMarchingCorrectors()
+        surface.SetInputData(apart)
+        self.assertEqual((surface.GetNextArray(), surface.GetNextComponents()), ("Velocity", 3))
+        derived, told = run(vtkSPHDerivatives(), apart)
+        self.assertEqual(told, [])
+        self.assertTrue(numpy.allclose(vtk_to_numpy(derived.GetPointData().GetArray("Vorticity")), [0, 0, 2], atol=1e-4))
+
+    def test_dimension(self):
+        surface = vtkMarchingCorrectors()
+        for points, dimension in ((lattice(20, 12, 8), 3), (lattice(20, 12, 1), 2)):
+            surface.SetInputData(block(points))
+            self.assertEqual(surface.GetNextDimension(), dimension)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -26,6 +26,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMSourceProxy.h"
 #include "vtkSMUncheckedPropertyHelper.h"
 #include "vtkSmartPointer.h"
 
@@ -234,9 +235,9 @@ void pqSPHInUse::beginNew()
   {
     this->Given << std::numeric_limits<double>::quiet_NaN(); // none yet
     this->lookAhead();
-    // Where there are walls, what most want to see is the water.
-    const char* fluid = vtkSMPropertyHelper(filter, "NextFluid").GetAsString();
-    if (fluid && *fluid)
+    // Where there are walls, what most want to see is the water; or there is nothing else.
+    if (*vtkSMPropertyHelper(filter, "NextFluid").GetAsString() ||
+      !*vtkSMPropertyHelper(filter, "NextArray").GetAsString())
     {
       vtkSMUncheckedPropertyHelper(filter, "FreeSurface").Set(1);
     }
@@ -274,6 +275,18 @@ void pqSPHInUse::beginPlace()
     }
   }
   const bool isGauge = filter->GetProperty("Level") != nullptr;
+  if (isGauge && up == 2)
+  {
+    // z, unless walls are higher than the water along y.
+    const vtkSMPropertyHelper input(filter, "Input");
+    double all[6];
+    vtkSMSourceProxy::SafeDownCast(input.GetAsProxy())
+      ->GetDataInformation(input.GetOutputPort())
+      ->GetBounds(all);
+    const auto above = [&all, &low, &high](int a)
+    { return all[2 * a + 1] - high[a] - (low[a] - all[2 * a]); };
+    up = above(1) > 0.01 * (high[1] - low[1]) && above(1) > above(2) ? 1 : 2;
+  }
   const int along = isGauge ? up : longest;
   double from[3], to[3];
   std::copy_n(middle, 3, from);
@@ -312,9 +325,12 @@ void pqSPHInUse::offerMore()
   {
     filter->UpdatePropertyInformation(filter->GetProperty("NextBlocks"));
     const QString blocks = vtkSMPropertyHelper(filter, "NextBlocks").GetAsString();
-    for (const QString& block : blocks.split('\n', QString::SkipEmptyParts))
+    for (const QString& block : blocks.split('\n'))
     {
-      offer("FluidArray", block);
+      if (!block.isEmpty())
+      {
+        offer("FluidArray", block);
+      }
     }
   }
   vtkSMProperty* scalars = filter->GetProperty("SelectInputScalars");

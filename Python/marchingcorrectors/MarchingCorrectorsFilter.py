@@ -391,7 +391,8 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             single = particles.positions.GetDataTypeAsString() == "float"
             precision = choice.OutputPointsPrecision
             build_mesh(surface, particles, output, as_float=precision == vtkAlgorithm.SINGLE_PRECISION
-                       or (precision == vtkAlgorithm.DEFAULT_PRECISION and single))
+                       or (precision == vtkAlgorithm.DEFAULT_PRECISION and single),
+                       iso_count=arguments.options.iso_count)
         except Cancelled:
             pass
         except Error as sentence:

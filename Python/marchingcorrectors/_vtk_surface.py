@@ -39,7 +39,7 @@ def varies(array, on_surface):
     return high - low > 1e-3 * (most - least)
 
 
-def build_mesh(surface, particles, output, as_float):
+def build_mesh(surface, particles, output, as_float, iso_count):
     arrays = take_all("mcor_surface", surface,
                       {"point_count": surface.point_count, "triangle_count": surface.triangle_count})
     points, data = vtkPoints(), output.GetPointData()
@@ -61,7 +61,11 @@ def build_mesh(surface, particles, output, as_float):
     if arrays["iso_value"] is not None:
         single = particles.scalar is not None and particles.scalar.GetDataTypeAsString() == "float"
         add(data, particles.iso_value_name, arrays["iso_value"].astype(np.float32 if single else np.float64))
-    varying = [name_of(array) for array in particles.interpolated if varies(array, data.GetArray(name_of(array)))]
+    scalar = particles.scalar
+    one = scalar is not None and particles.dot is None and iso_count == 1 and (
+        scalar.GetNumberOfComponents() == 1 or particles.choice.ScalarComponent == -1)
+    varying = [name_of(array) for array in particles.interpolated if varies(array, data.GetArray(name_of(array)))
+               and not (one and name_of(array) == name_of(scalar))]
     best = choose_array(data, varying + [particles.iso_value_name])
     if best is not None:
         data.SetActiveScalars(name_of(best))

@@ -141,9 +141,9 @@ class TestForgotten(unittest.TestCase):
         self.assertRegex(told[0], "Choose a surface, such as that of SPH Contour")
 
     def test_probe(self):
-        probe = vtkSPHProbe()
-        probe.SetInputConnection(vtkPlaneSource().GetOutputPort())
-        _, told = run(probe, None)
+        plane = vtkPlaneSource()
+        plane.Update()
+        _, told = run(vtkSPHProbe(), plane.GetOutput())
         self.assertEqual(len(told), 1)
         self.assertRegex(told[0], "Choose the particles")
 

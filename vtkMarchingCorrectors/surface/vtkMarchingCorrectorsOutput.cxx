@@ -260,12 +260,17 @@ void vtkMarchingCorrectorsOutput::ChooseActive(
   {
     merge(ranges.data(), static_cast<int>(ranges.size() / 2));
   }
+  const vtkMarchingCorrectorsInput& input = this->Input;
+  const bool isOne = input.Scalar && input.Scalar->GetName() && !input.ScalarDot &&
+    this->Options.iso_count == 1 &&
+    (input.Core.scalar.components == 1 || input.Core.scalar_component == MCOR_MAGNITUDE);
   vtkSPHArrayChoice choice;
   for (size_t i = 0; i < attributes.size(); ++i)
   {
     const double* r = ranges.data() + 4 * i;
+    const bool isContoured = isOne && attributes[i].Name == input.Scalar->GetName();
     choice.Consider(attributes[i].Name, attributes[i].Components, true,
-      r[1] - r[0] > LeastShare * (r[3] - r[2]) && r[1] > r[0]);
+      r[1] - r[0] > LeastShare * (r[3] - r[2]) && r[1] > r[0] && !isContoured);
   }
   choice.Consider(this->Input.IsoValueName, 1, true, this->Options.iso_count > 1);
   if (data->HasArray(choice.Best.c_str()))

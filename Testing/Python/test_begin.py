@@ -109,7 +109,7 @@ class TestColours(unittest.TestCase):
         self.assertEqual(active(one), "Height")
         several, _ = run(surface, particles, Value=(1, 1.5))
         self.assertEqual(active(several), "Velocity")
-        component, _ = run(surface, particles, NumberOfContours=1, ScalarComponent=0)
+        component, _ = run(surface, particles, NumberOfContours=1, ScalarComponent=0, Value=(0, -0.5))
         self.assertEqual(active(component), "Velocity")
 
     def test_vorticity(self):

@@ -67,6 +67,7 @@ class Header:
         """[(field, C type, pointers, array length, comment)]. A comment that is not behind a declaration belongs to
         the one that follows."""
         fields, before, behind = [], "", []
+        body = re.sub(r", @<?(\d+) ([^@;]*;)", r", \2 @<\1", body)  # in the midst of a declaration: as if behind it
         for is_behind, number, declaration in re.findall(r"@(<?)(\d+)|([^@;]+) ;", body):
             if declaration:
                 behind = self.read_fields(declaration.strip(), before)

@@ -101,7 +101,9 @@ DERIVATIVES, GAUGE, PROBE = (
 
 
 def words_of(name):
-    """{word: number} of an option."""
+    """{word: number} of an option, or of derivatives()' form."""
+    if name == "form":
+        return {word[len("MCOR_GRADIENT_"):].lower(): number for word, number in c.ENUMS["mcor_gradient"].items()}
     return {"magnitude": -1} if name == "scalar_component" else c.OPTIONS.get(name, ({},))[0]
 
 

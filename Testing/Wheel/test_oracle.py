@@ -97,7 +97,8 @@ def hand_back(surface, found):
 def extract(given, options, surface):
     try:
         positions = array_of(given.contents.positions, given.contents.count)
-        found = mc.isosurface(positions, **keywords(given.contents, options.contents))
+        # Points of float32 positions would be rounded.
+        found = mc.isosurface(positions.astype(np.float64), **keywords(given.contents, options.contents))
         hand_back(surface.contents, found)
         seen["calls"] += 1
         seen["triangles"] += len(found.triangles)

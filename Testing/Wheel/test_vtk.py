@@ -157,7 +157,8 @@ class Test(unittest.TestCase):
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 text.split("protected:")[0], re.M))
         self.assertGreater(len(names), 100)
-        names -= {"SetPartition", "GetPartition"}  # the wheel's filter runs in one process
+        # The wheel's filter runs in one process; the others are what panels of the C++ plugin begin with.
+        names -= {"SetPartition", "GetPartition", "GetNextBounds", "GetNextEstimate"}
         lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [], "add them to the plugin's XML, or to MarchingCorrectorsFilter.py")
         for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):

@@ -6,6 +6,7 @@ This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
 """
 import ctypes
 import sys
+from contextlib import contextmanager
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,8 +20,9 @@ if __package__ in (None, "") and "marchingcorrectors" not in sys.modules:
     sys.modules["marchingcorrectors"] = module_from_spec(_spec)
     _spec.loader.exec_module(sys.modules["marchingcorrectors"])
 
+import numpy as np
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import vtkObject, vtkOutputWindow
+from vtkmodules.vtkCommonCore import vtkObject, vtkOutputWindow, vtkTimeStamp
 from vtkmodules.vtkCommonDataModel import (vtkDataObject, vtkDataObjectTree, vtkDataSetAttributes, vtkFieldData,
                                            vtkPointSet, vtkPolyData)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
@@ -28,14 +30,15 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
-from marchingcorrectors._library import lib
+from marchingcorrectors._arrays import camel
+from marchingcorrectors._functions import called, take_surface
 from marchingcorrectors._library import devices as list_devices
-from marchingcorrectors._vtk_ahead import Ahead
-from marchingcorrectors._vtk_particles import Particles, Request, Unusable, name_of, period_of
-from marchingcorrectors._vtk_summary import Box, Summary, estimate_cells
+from marchingcorrectors._library import lib
+from marchingcorrectors._options import OUTPUTS
 from marchingcorrectors._vtk_blocks import find_walls, join_blocks, list_all, name_blocks
-from marchingcorrectors._vtk_surface import (add_iso_values, add_run, build_mesh, computed_arrays, describe,
-                                             left_out)
+from marchingcorrectors._vtk_particles import (NO_PERIOD, Particles, Request, Unusable, choose_array, describe_unused_types,
+                                               find_fittest, find_period, is_single, name_of, varies)
+from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
 from marchingcorrectors._warnings import describe_warnings, take_text
 
 BIG = 2147483647
@@ -66,6 +69,9 @@ def read_properties():
 
 
 PROPERTIES = read_properties()
+# What a run has found and used; told again by the panel.
+NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
+           "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
 
 
 def with_properties(kind):
@@ -84,9 +90,7 @@ def with_properties(kind):
         if is_flag:
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
-    for name in ("FluidScalarRange", "UsedIsoValues", "IsoValueArrayName", "UsedSmoothingLength", "UsedVolume",
-                 "UsedCubeSize", "SurfaceMeasures", "EstimatedCells", "Box", "PeriodicBounds", "ErrorMessage",
-                 "RunStatistics", "UsedFluid"):
+    for name in (*NOTHING, "Box", "PeriodicBounds", "ErrorMessage", "RunStatistics"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "Cells", "Fluid", "Array"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
@@ -94,17 +98,25 @@ def with_properties(kind):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
     for number, name in enumerate(KERNELS):
         setattr(kind, name, number)
-    values = {"Kernel": ["".join(part.capitalize() for part in name.split("_")) for name in KERNELS],
-              "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"), "Blocks": ("Together", "Apart"),
-              "CubeSizeMode": ("Uniform", "Adaptive"), "BoundaryDetection": ("WeightSum", "Eigenvalue")}
-    for name, words in values.items():
-        for value, word in enumerate(words):
-            setattr(kind, f"Set{name}To{word}", lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
+    words = {"Kernel": map(camel, KERNELS), "SeedMode": ("Complete", "Pairs"), "Topology": ("Table", "Field"),
+             "Blocks": ("Together", "Apart"), "CubeSizeMode": ("Uniform", "Adaptive"),
+             "BoundaryDetection": ("WeightSum", "Eigenvalue")}
+    words = [(name, word, value) for name in words for value, word in enumerate(words[name])]
+    for name, word, value in [*words, ("ScalarComponent", "Magnitude", -1)]:
+        setattr(kind, f"Set{name}To{word}", lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
+    for name in ("Box", "PeriodicBounds"):
+        setattr(kind, "Set" + name, lambda self, *sides, name=name: self._set_sides(name, sides))
+    for values, called_here in (("ContourValues", "NumberOfContours"), ("FreeSurfaceValues", "NumberOfFreeSurfaceValues")):
+        setattr(kind, "Get" + called_here, lambda self, values=values: getattr(self, values).GetNumberOfContours())
+        setattr(kind, "Set" + called_here, lambda self, n, values=values: self._change(values, "SetNumberOfContours", n))
+    for method in ("SetValue", "GenerateValues"):
+        setattr(kind, method, lambda self, *a, method=method: self._change("ContourValues", method, *a))
+    kind.SetInputData, kind.GetOutput = kind.SetInputDataObject, lambda self, port=0: self.GetOutputDataObject(port)
     return kind
 
 
 @with_properties
-class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
+class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     """An isosurface directly from SPH particles; see vtkMarchingCorrectors.h of the sources."""
 
     COMPLETE, PAIRS = range(2)
@@ -114,35 +126,29 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
     SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL, SOLIDS_AUTO = range(4)
     TOGETHER, APART = range(2)
     MAGNITUDE = -1
+    Box, PeriodicBounds = (0.0, 1.0) * 3, (0.0,) * 6
 
     def __init__(self):
         VTKPythonAlgorithmBase.__init__(self, nInputPorts=1, nOutputPorts=1, outputType="vtkDataObject")
+        vars(self).update(NOTHING)
         for name, (default, *_) in PROPERTIES.items():
             setattr(self, name, default)
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
         self._joined = None, None, 0
-        self.clear_summary()
-        self.ExcludedArrays, self.UsedNames, self.UsedFluid = [], {}, ""
-        self.ErrorMessage, self.BlockName = "", ""
+        self.ExcludedArrays, self.ErrorMessage, self.BlockName = [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
         self._signatures, self._versions = (None, None), [0, 0]
-        self.forget_ahead()
+        self._ahead, self._look_time = None, vtkTimeStamp()
         self.SetInputArrayToProcess(
             0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes.SCALARS)
 
     # -- as every poly data algorithm --
 
-    def SetInputData(self, *arguments):
-        self.SetInputDataObject(*arguments)
-
     def GetInput(self, port=0):
         return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) else None
-
-    def GetOutput(self, port=0):
-        return self.GetOutputDataObject(port)
 
     def FillInputPortInformation(self, port, info):
         info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet")
@@ -161,51 +167,45 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
 
     # -- properties that are more than a value --
 
-    def SetValue(self, i, value):
-        self._contours(self.ContourValues.SetValue, i, value)
+    def _change(self, name, method, *arguments):
+        values = getattr(self, name)
+        before = values.GetMTime()
+        getattr(values, method)(*arguments)
+        if before != values.GetMTime():
+            self.Modified()
 
     def GetValue(self, i):
         return self.ContourValues.GetValue(i) if self.GetNumberOfContours() > 0 else 0.0
 
     def GetValues(self, into=None):
-        values = [self.ContourValues.GetValue(i) for i in range(self.GetNumberOfContours())]
+        values = tuple(self.ContourValues.GetValue(i) for i in range(self.GetNumberOfContours()))
         if into is None:
-            return tuple(values)
+            return values
         into[:len(values)] = values
-        return None
-
-    def SetNumberOfContours(self, number):
-        self._contours(self.ContourValues.SetNumberOfContours, number)
-
-    def GetNumberOfContours(self):
-        return self.ContourValues.GetNumberOfContours()
-
-    def GenerateValues(self, number, *ends):
-        first, last = ends if len(ends) == 2 else ends[0]
-        self._contours(self.ContourValues.GenerateValues, number, first, last)
 
     def SetFreeSurfaceValue(self, *arguments):
         if len(arguments) == 1:
-            self._contours(self.FreeSurfaceValues.SetNumberOfContours, 1)
-        self._contours(self.FreeSurfaceValues.SetValue, *((0,) * (len(arguments) == 1) + arguments))
+            self.SetNumberOfFreeSurfaceValues(1)
+        self._change("FreeSurfaceValues", "SetValue", *((0,) * (len(arguments) == 1) + arguments))
 
     def GetFreeSurfaceValue(self, i=0):
         return self.FreeSurfaceValues.GetValue(i) if self.GetNumberOfFreeSurfaceValues() > 0 else 0.5
 
-    def SetNumberOfFreeSurfaceValues(self, number):
-        self._contours(self.FreeSurfaceValues.SetNumberOfContours, number)
-
-    def GetNumberOfFreeSurfaceValues(self):
-        return self.FreeSurfaceValues.GetNumberOfContours()
-
-    def _contours(self, change, *arguments):
-        before = self.ContourValues.GetMTime(), self.FreeSurfaceValues.GetMTime()
-        change(*arguments)
-        if before != (self.ContourValues.GetMTime(), self.FreeSurfaceValues.GetMTime()):
+    def _set_sides(self, name, sides):
+        sides = tuple(float(side) for side in (sides[0] if len(sides) == 1 else sides))
+        if len(sides) != 6:
+            raise TypeError(f"{name} has six sides: x0, x1, y0, y1, z0, z1")
+        if sides != getattr(self, name):
+            setattr(self, name, sides)
             self.Modified()
 
-    def SetScalarComponentToMagnitude(self):
-        self.SetScalarComponent(self.MAGNITUDE)
+    def SetPanelBoxPosition(self, *corner):
+        b = self.Box
+        self.SetBox([side for axis, low in enumerate(corner) for side in (low, low + b[2 * axis + 1] - b[2 * axis])])
+
+    def SetPanelBoxLength(self, *lengths):
+        b = self.Box
+        self.SetBox([side for axis, length in enumerate(lengths) for side in (b[2 * axis], b[2 * axis] + length)])
 
     def SetPanelComponent(self, component):
         """ScalarComponent for ParaView's panel, where 3 stands for the magnitude."""
@@ -251,6 +251,51 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             words = "".join(" " + letter if letter.isupper() else letter for letter in name).strip()
             lines.append(f"  {words}: {getattr(self, name)}")
         return "\n".join(lines) + "\n"
+
+    # -- what an update would find --
+
+    def _look_ahead(self):
+        data = self.GetInput()
+        if data is not None and max(self.GetMTime(), data.GetMTime()) < self._look_time.GetMTime():
+            return self._ahead
+        self._ahead = {"ScalarRange": (0.0, 0.0), "IsoValue": float("nan"), "Components": 0, "Cells": 0.0, "Dimension": 0,
+                       "Fluid": "", "Array": ""}
+        data = self._take_particles(data)
+        for each in list_all(data) if isinstance(data, vtkDataObjectTree) else [data]:
+            if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0:
+                self._look_at(each, self._ahead)
+        self._look_time.Modified()
+        return self._ahead
+
+    def _look_at(self, points, ahead):
+        """What is known does not wait for the rest: the range needs no smoothing length, the cells no scalar."""
+        ahead["Array"] = ahead["Array"] or name_of(find_fittest(points))
+        choice = self._choice()
+        choice.InterpolateAttributes = False
+        particles = Particles(choice, points)
+        try:
+            particles.collect_solids()
+            ahead["Fluid"] = particles.describe_fluid()
+            if not choice.FreeSurface:
+                particles.collect_scalar(Request(self, 0, points), Request(self, 1, points))
+                ends, value = particles.find_iso_value() or ((), 0.0)
+                if ends:
+                    before = ahead["ScalarRange"] if ahead["IsoValue"] == ahead["IsoValue"] else ()
+                    ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
+                    ahead["IsoValue"] = ahead["IsoValue"] if before else value
+                    ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
+        except Unusable:
+            pass
+        choice = self._choice()
+        choice.FreeSurface, choice.InterpolateAttributes = True, False
+        particles = Particles(choice, points)
+        try:
+            particles.collect((None, None), [])
+            given = particles.arguments()
+            ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(given.input), None, choice.Dimension)
+            ahead["Cells"] += particles.estimate_cells(given, self._options(choice))
+        except Unusable:
+            pass
 
     # -- a run --
 
@@ -298,8 +343,7 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         if data is not None and not isinstance(data, vtkPointSet):
             self._say(f"A {data.GetClassName()} has no points of its own, and so no surface.", "Warning")
             return
-        self.UsedNames, self.UsedFluid = {}, ""
-        self.clear_summary()
+        vars(self).update(NOTHING)
         if data is None or data.GetNumberOfPoints() == 0 or self._is_aborted():
             return
         choice = self._choice()
@@ -307,21 +351,30 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         particles = Particles(choice, data)
         try:
             if choice.DetectPeriod:
-                options.periodic[:] = period_of(data)
-            particles.collect((Request(self, 0, data), Request(self, 1, data)), computed_arrays(options))
+                period = find_period(data)
+                if not period:
+                    raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
+                options.periodic[:] = period
+            particles.collect((Request(self, 0, data), Request(self, 1, data)),
+                              [camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"])
         except Unusable as sentence:
             self._fail(str(sentence))
             return
         finally:
-            self.UsedNames = {"".join(part.capitalize() for part in quantity.split("_")): name_of(array)
-                              for quantity, array in particles.used.items()}
+            self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
             self.UsedFluid = particles.describe_fluid()
-        self._warn_once("type", particles.describe_unused_type())
+        if particles.fluid is None:
+            self._warn_once("type", (describe_unused_types(data.GetPointData()) or ("",))[0])
         if particles.solid is not None and particles.solid.all():
             self._say(f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}, so there is no fluid and "
                       "no surface.", "Warning")
             return
-        self._extract(particles, options, output)
+        try:
+            self._extract(particles, options, output)
+        except Cancelled:
+            pass
+        except Error as sentence:
+            self._fail(str(sentence))
 
     def _choice(self):
         return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Box=self.Box,
@@ -331,41 +384,37 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
 
     @staticmethod
     def _options(choice):
+        """The core's options, where a property says more than their values."""
         options, fields = c.mcor_options(), c.ENUMS["mcor_field"]
         lib.mcor_set_default_options(ctypes.byref(options))
-        options.sph_kernel, options.h_scale = choice.Kernel, choice.HScaleFactor
-        options.dimension = choice.Dimension
+        for member, (_, _, name) in c.OPTIONS.items():
+            if name and isinstance(getattr(options, member), ctypes.Array):
+                getattr(options, member)[:] = getattr(choice, name) if name != "Box" or choice.UseBox else [0] * 6
+            elif name:
+                setattr(options, member, getattr(choice, name))
+        for name in OUTPUTS:
+            setattr(options, name, getattr(choice, "Compute" + camel(name), 0))
+        options.iso_value = choice.ComputeScalars
         options.field = fields["MCOR_WEIGHT_SUM" if choice.FreeSurface else
                                "MCOR_SHEPARD" if choice.ShepardNormalization else "MCOR_SUM"]
-        options.seeds = 0 if choice.FreeSurface else choice.SeedMode
-        options.topology = choice.Topology
-        options.boundary_detection = choice.BoundaryDetection if choice.Trim else 0
-        options.cube_size_factor, options.cube_size = choice.CubeSizeFactor, choice.CubeSize
-        options.level_limit = choice.CubeLevelLimit if choice.CubeSizeMode else 0  # adaptive
-        if choice.UseBox:
-            options.box[:] = choice.Box if any(choice.Box) else (5e-324, 0, 0, 0, 0, 0)  # refused, see the C++ filter
-        options.periodic[:] = choice.PeriodicBounds
+        if choice.FreeSurface:
+            options.seeds = 0
+        if not choice.Trim:
+            options.boundary_detection, options.vertex_threshold = 0, 0.0
+        if not choice.CubeSizeMode:  # uniform
+            options.level_limit = 0
+        if choice.UseBox and not any(choice.Box):
+            options.box[0] = 5e-324  # refused, see the C++ filter
         options.capping = (2 if choice.UseBox else 1) if choice.Capping else 0  # MCOR_CAP_BOX, MCOR_CAP_PERIOD
-        options.filled = choice.Filled
-        options.node_threshold = choice.NodeThreshold
-        options.vertex_threshold = choice.VertexThreshold if choice.Trim else 0.0
         ends = (choice.Trim or choice.FreeSurface) and (choice.Solids == 2 or (
             choice.Solids == 3 and not choice.FreeSurface))  # SOLIDS_WALL, SOLIDS_AUTO
-        options.wall_share = choice.WallShare if ends else 0.0
-        options.preview, options.tolerance = choice.Preview, choice.Tolerance
-        options.iteration_limit = choice.IterationLimit
+        if not ends:
+            options.wall_share = 0.0
         options.memory_limit = choice.DeviceMemoryLimit << 20
-        options.precision = choice.Precision
-        options.normals, options.gradients = choice.ComputeNormals, choice.ComputeGradients
-        options.weight_sum = choice.ComputeWeightSum
-        options.boundary_eigenvalue = choice.ComputeBoundaryEigenvalue
-        options.correction_length, options.residual = choice.ComputeCorrectionLength, choice.ComputeResidual
-        options.boundary_flag, options.iso_value = choice.ComputeBoundaryFlag, choice.ComputeScalars
         return options
 
     def _extract(self, particles, options, output):
-        choice, surface = particles.choice, c.mcor_surface()
-        arguments = particles.arguments()
+        choice, arguments = particles.choice, particles.arguments()
         arguments.options = options
         values = self.FreeSurfaceValues if choice.FreeSurface else self.ContourValues
         iso = [values.GetValue(i) for i in range(values.GetNumberOfContours())]
@@ -375,32 +424,22 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
             iso = [0.5 if choice.FreeSurface else found[1] if found else 0.0]
         arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
-        self.EstimatedCells = estimate_cells(arguments, options)
-        huge = take_text(lib.mcor_describe_estimate(self.EstimatedCells))
-        if huge:
-            self._say(huge, "Warning")
-        try:
-            self._call_core(particles, arguments, surface)
-            self.summarize(arguments, particles.iso_value_name, surface)
-            for sentence in left_out(surface, particles):
-                self._say(sentence, "Warning")
+        self.EstimatedCells = particles.estimate_cells(arguments, options)
+        self._warn_once("cells of " + self.BlockName, take_text(lib.mcor_describe_estimate(self.EstimatedCells)))
+        with self._called(particles, arguments) as surface:
+            found = take_surface(surface, arguments, [name_of(array) for array in particles.interpolated])
+            self._summarize(particles, arguments, surface)
+            for name, particle in found.left_out.items():
+                self._say(f"The point array '{name}' is NaN or infinite at particle {particle} and was left out of the "
+                          "surface. Correct its values, or exclude it.", "Warning")
             for kind, sentence in describe_warnings(arguments, surface).items():
                 self._warn_once(kind, sentence)
-            add_iso_values(output.GetFieldData(), arguments.options)
-            add_run(self.RunStatistics, surface, particles, arguments)
-            single = particles.positions.GetDataTypeAsString() == "float"
-            precision = choice.OutputPointsPrecision
-            build_mesh(surface, particles, output, as_float=precision == vtkAlgorithm.SINGLE_PRECISION
-                       or (precision == vtkAlgorithm.DEFAULT_PRECISION and single),
-                       iso_count=arguments.options.iso_count)
-        except Cancelled:
-            pass
-        except Error as sentence:
-            self._fail(str(sentence))
-        finally:
-            lib.mcor_free_surface(ctypes.byref(surface))
+        add_iso_values(output.GetFieldData(), options)
+        add_run(self.RunStatistics, found, particles, arguments)
+        self._build(found, particles, options, output)
 
-    def _call_core(self, particles, arguments, surface):
+    @contextmanager
+    def _called(self, particles, arguments):
         choice = particles.choice
         try:
             if self._context is None or self._context_device != choice.Device:
@@ -408,9 +447,9 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
             if choice.KeepDeviceData:
                 self._set_versions(particles, arguments)
-            self._context.run(lambda handle: lib.mcor_extract(
-                handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options), ctypes.byref(surface)),
-                arguments.options, self._report)
+            with called(lib.mcor_extract, c.mcor_surface, arguments,
+                        {"context": self._context, "progress": self._report}) as surface:
+                yield surface
         except BaseException as failure:
             self._signatures = (None, None)
             if isinstance(failure, DeviceError):
@@ -419,6 +458,42 @@ class vtkMarchingCorrectors(Summary, Ahead, Box, VTKPythonAlgorithmBase):
         finally:
             if self._context and not choice.KeepDeviceData:
                 self._context.release_memory()
+
+    def _summarize(self, particles, arguments, surface):
+        options, statistics = arguments.options, surface.statistics
+        given, used = ctypes.byref(arguments.input), ctypes.byref(statistics)
+        if particles.scalar is not None:
+            self.FluidScalarRange = (statistics.scalar_min, statistics.scalar_max)
+        self.UsedIsoValues = ", ".join(f"{value:g}" for value in options.iso_values[:options.iso_count])
+        self.IsoValueArrayName = particles.iso_value_name if options.iso_value else ""
+        self.UsedSmoothingLength = take_text(lib.mcor_describe_smoothing_length(given, used))
+        self.UsedVolume = take_text(lib.mcor_describe_volume(given))
+        self.UsedCubeSize = statistics.cube_size
+        self.SurfaceMeasures = take_text(lib.mcor_describe_measures(used))
+
+    def _build(self, found, particles, options, output):
+        precision, data, arrays = particles.choice.OutputPointsPrecision, output.GetPointData(), found.point_arrays()
+        if precision == vtkAlgorithm.SINGLE_PRECISION or (
+                precision == vtkAlgorithm.DEFAULT_PRECISION and is_single(particles.positions)):
+            found.points = found.points.astype(np.float32)
+        nearest, iso = arrays.pop("NearestParticle", None), arrays.pop("IsoValue", None)
+        if iso is not None:
+            single = particles.scalar is not None and is_single(particles.scalar)
+            arrays[particles.iso_value_name] = iso.astype(np.float32 if single else np.float64)
+        build_mesh(output, found, arrays)
+        for array in particles.interpolated:
+            if name_of(array) in arrays:
+                data.GetArray(name_of(array)).CopyComponentNames(array)
+        for array in particles.from_nearest if nearest is not None else ():
+            add_nearest(data, array, nearest)
+        scalar = particles.scalar
+        is_one = scalar is not None and particles.dot is None and options.iso_count == 1 and (
+            scalar.GetNumberOfComponents() == 1 or particles.choice.ScalarComponent == -1)
+        names = [name_of(array) for array in particles.interpolated if varies(array, data.GetArray(name_of(array)))
+                 and not (is_one and name_of(array) == name_of(scalar))]
+        best = choose_array([data.GetArray(name) for name in (*names, particles.iso_value_name) if data.HasArray(name)])
+        if best is not None:
+            data.SetActiveScalars(name_of(best))
 
     def _set_versions(self, particles, arguments):
         """The scalar is kept in the order of the particles: new particles make a new scalar."""

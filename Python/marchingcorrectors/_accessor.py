@@ -15,9 +15,8 @@ from ._library import InvalidArgument
 from ._options import (DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, Function, Options, check_names,
                        did_you_mean, with_options)
 from ._vtk_blocks import join_blocks
-from ._vtk_particles import (GHOSTS, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect, join_velocity,
-                             name_of)
-from ._vtk_period import NO_PERIOD, find_period
+from ._vtk_particles import (GHOSTS, NO_PERIOD, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect,
+                             find_period, join_velocity, name_of)
 from ._warnings import warn
 
 if TYPE_CHECKING:

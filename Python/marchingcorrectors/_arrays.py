@@ -22,6 +22,11 @@ _double = ctypes.POINTER(ctypes.c_double)
 lib.mcor_place_period.restype, lib.mcor_place_period.argtypes = None, [_double, _double, _double]
 
 
+def camel(name):
+    """As VTK spells it: "cube_size" is CubeSize."""
+    return "".join(part.capitalize() for part in name.split("_"))
+
+
 def is_real(array):
     return array.dtype.kind == "f"
 

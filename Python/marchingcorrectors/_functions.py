@@ -211,8 +211,14 @@ def _extract(given, options):
     wanted = bool(arguments.options.nearest_particle)
     from_nearest = _from_nearest(attributes, real, arguments)
     with called(lib.mcor_extract, c.mcor_surface, arguments, given) as surface:
-        found = _surface(surface, arguments, names, attributes, from_nearest, wanted)
+        found = take_surface(surface, arguments, names)
         sentences = describe_warnings(arguments, surface)
+    found.points = found.points.astype(arguments.positions.dtype, copy=False)
+    for name in from_nearest:
+        found.attributes[name] = attributes[name][[] if found.nearest_particle is None else found.nearest_particle]
+    found.attributes = {name: found.attributes[name] for name in attributes if name in found.attributes}
+    if not wanted:
+        found.nearest_particle = None
     _warn_of(found.left_out)
     for sentence in list(sentences.values()) or [_describe_empty(arguments, found)]:
         if sentence:
@@ -244,29 +250,17 @@ def _from_nearest(attributes, real, arguments):
     return names
 
 
-def _surface(surface, arguments, names, attributes, from_nearest, nearest_wanted):
+def take_surface(surface, arguments, names):
+    """A Surface of the core's, with the attributes of these names."""
     count = surface.point_count
     arrays = take_all("mcor_surface", surface,
                       {"point_count": count, "triangle_count": surface.triangle_count})
     if arrays["points"] is None:
         arrays["points"] = np.empty((0, 3))
-    arrays["points"] = arrays["points"].astype(arguments.positions.dtype, copy=False)
     if arrays["triangles"] is None:
         arrays["triangles"] = np.empty((0, 3), np.int32)
-    arrays.update(take_lines(surface))
-    means = take_each(surface.attributes, names, arguments.kinds, (count,))
-    carried = {}
-    for name in attributes:
-        if name in means:
-            carried[name] = means[name]
-        elif name in from_nearest and arrays["nearest_particle"] is not None:
-            carried[name] = attributes[name][arrays["nearest_particle"]]
-        elif name in from_nearest:
-            carried[name] = attributes[name][:0]
-    if not nearest_wanted:
-        arrays["nearest_particle"] = None
-    return Surface(**arrays, attributes=carried, left_out=left_out(surface, names),
-                   statistics=statistics(surface.statistics))
+    return Surface(**arrays, **take_lines(surface), attributes=take_each(surface.attributes, names, arguments.kinds, (count,)),
+                   left_out=left_out(surface, names), statistics=statistics(surface.statistics))
 
 
 @of_files

@@ -114,22 +114,14 @@ class Surface(Result):
         """A pyvista.PolyData with all arrays of the surface."""
         import pyvista
 
-        if not len(self.points):
-            return _empty_pyvista(self.point_arrays(), self.triangle_keys)
-        faces = np.insert(self.triangles.astype(np.int64), 0, 3, axis=1).ravel()
-        mesh = pyvista.PolyData(self.points, faces) if len(faces) else pyvista.PolyData(self.points)
-        if self.line_offsets is not None:
-            lines = np.concatenate([[0]] + [part for line in self.lines for part in ([len(line)], line)])[1:]
-            mesh = pyvista.PolyData(self.points, faces=faces if len(faces) else None,
-                                    lines=lines.astype(np.int64) if len(lines) or not len(faces) else None)
-        for name, array in self.point_arrays().items():
-            mesh.point_data[name] = array
-        if self.triangle_keys is not None and self.line_offsets is None:
-            mesh.cell_data["TriangleKeys"] = self.triangle_keys
-        if self.band_value is not None:
-            mesh.cell_data["BandValue"] = np.concatenate([self.line_values(), self.band_value])
-        if self.normals is not None and (self.line_offsets is None or self.band_value is not None):  # lines were dark
-            mesh.point_data.active_normals_name = "Normals"
+        from ._vtk_surface import build_mesh
+
+        mesh, arrays = pyvista.PolyData(), self.point_arrays()
+        build_mesh(mesh, self, {name: array for name, array in arrays.items() if array.dtype.kind in "fiu" or not len(array)
+                                and array.dtype.kind == "b"})
+        for name, array in arrays.items():
+            if name not in mesh.point_data and len(array):
+                mesh.point_data[name] = array  # text, and what is true or false
         mesh.set_active_scalars(None)  # colours are for the user to choose
         return mesh
 
@@ -189,25 +181,6 @@ class Surface(Result):
         if lost and ending in (".stl", ".obj", ".off"):
             warn(f"A file {ending} holds no arrays: {', '.join(lost)} {'is' if len(lost) == 1 else 'are'} not in "
                  f"{path.name}. Formats that hold them are .ply, .vtp and .npz.")
-
-
-def _empty_pyvista(point_arrays, triangle_keys):
-    """PyVista takes no arrays without elements; VTK does."""
-    import pyvista
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-
-    mesh = pyvista.PolyData()
-    cells = {} if triangle_keys is None else {"TriangleKeys": triangle_keys}
-    for data, arrays in ((mesh.GetPointData(), point_arrays), (mesh.GetCellData(), cells)):
-        for name, array in arrays.items():
-            if array.dtype.kind in "fiub":
-                made = numpy_to_vtk(array.astype(np.uint8) if array.dtype == bool else array, deep=True)
-                made.SetNumberOfComponents(array.shape[1] if array.ndim > 1 else 1)
-                made.SetName(name)
-                data.AddArray(made)
-    if "Normals" in point_arrays:
-        mesh.GetPointData().SetActiveNormals("Normals")
-    return mesh
 
 
 PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "char", "u4": "uint", "u2": "ushort",

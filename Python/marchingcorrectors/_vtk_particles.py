@@ -9,15 +9,20 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _structs as c
-from ._arrays import Arguments
+from ._arrays import Arguments, camel, place_period
 from ._library import lib
-from ._vtk_period import NO_PERIOD, find_period
 from ._warnings import describe_unused_type
 
 lib.mcor_find_layout.restype, lib.mcor_find_layout.argtypes = ctypes.c_char_p, [ctypes.c_char_p]
+lib.mcor_find_period.restype = lib.mcor_tells_of_period.restype = ctypes.c_int
+lib.mcor_tells_of_period.argtypes = [ctypes.c_char_p]
+lib.mcor_find_period.argtypes = [ctypes.POINTER(c.mcor_field_data), ctypes.c_int, ctypes.POINTER(ctypes.c_double),
+                                 ctypes.POINTER(ctypes.c_int)]
 
 GHOSTS = "vtkGhostType"
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
+NO_PERIOD = ("The field data of the particles give no period: there is no array PeriodicBounds, BoxSize, or box "
+             "with boundaryType.")
 WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls
 
 
@@ -34,6 +39,19 @@ def name_of(array):
     return (array.GetName() if array is not None else None) or ""
 
 
+def names_of(data):
+    return [name_of(data.GetAbstractArray(i)) for i in range(data.GetNumberOfArrays())]
+
+
+def arrays_of(data):
+    """Those that hold numbers."""
+    return [array for array in map(data.GetArray, range(data.GetNumberOfArrays())) if array is not None]
+
+
+def is_single(array):
+    return array.GetDataTypeAsString() == "float"
+
+
 def is_real(array):
     return array.GetDataTypeAsString() in ("float", "double")
 
@@ -44,22 +62,19 @@ def to_numpy(array):
         copy = vtkDoubleArray()
         copy.DeepCopy(array)
         array = copy
-    values = vtk_to_numpy(array)
-    return values.reshape(array.GetNumberOfTuples(), array.GetNumberOfComponents())
+    return vtk_to_numpy(array)
+
+
+def rank(data, quantity, count=None):
+    """Point arrays of one component with usual names for a quantity, the most usual first. The core has the names."""
+    number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
+    ranks = [(lib.mcor_name_priority(number, name_of(array).encode(errors="replace")), array) for array in arrays_of(data)
+             if array.GetNumberOfComponents() == 1 and count in (None, array.GetNumberOfTuples())]
+    return [array for place, array in sorted(ranks, key=lambda pair: pair[0]) if place >= 0]
 
 
 def detect(data, count, quantity):
-    """The point array with the most usual name for a quantity. The core has the names."""
-    number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
-    best = None
-    for i in range(data.GetNumberOfArrays()):
-        array = data.GetArray(i)
-        if array is None or array.GetNumberOfComponents() != 1 or array.GetNumberOfTuples() != count:
-            continue
-        rank = lib.mcor_name_priority(number, name_of(array).encode())
-        if rank >= 0 and (best is None or rank < best[0]):
-            best = (rank, array)
-    return best[1] if best else None
+    return next(iter(rank(data, quantity, count)), None)
 
 
 def join_velocity(data, count):
@@ -70,7 +85,7 @@ def join_velocity(data, count):
             part is not None and is_real(part) and part.GetNumberOfComponents() == 1
             and part.GetNumberOfTuples() == count for part in parts):
         return None
-    joined = (vtkFloatArray if all(part.GetDataTypeAsString() == "float" for part in parts) else vtkDoubleArray)()
+    joined = (vtkFloatArray if all(map(is_single, parts)) else vtkDoubleArray)()
     joined.SetName("Velocity")
     joined.SetNumberOfComponents(3)
     joined.SetNumberOfTuples(count)
@@ -81,8 +96,7 @@ def join_velocity(data, count):
 
 def describe_missing_length(data):
     """What to do where no smoothing length is found."""
-    names = "\n".join(name_of(data.GetAbstractArray(i)) for i in range(data.GetNumberOfArrays()))
-    dual = lib.mcor_find_layout(names.encode(errors="replace")) == b"DualSPHysics"
+    dual = lib.mcor_find_layout("\n".join(names_of(data)).encode(errors="replace")) == b"DualSPHysics"
     return "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual
 
 
@@ -92,27 +106,29 @@ def rank_of(array):
     return lib.mcor_view_priority(name_of(array).encode(), array.GetNumberOfComponents(), is_real(array), varies)
 
 
-def choose_array(data, names=None):
+def choose_array(arrays):
     """The fittest one; None where none is."""
-    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())] if names is None else \
-        [data.GetArray(name) for name in names]
-    ranks = [(rank_of(array), i) for i, array in enumerate(arrays) if array is not None]
-    best = min(((rank, i) for rank, i in ranks if rank >= 0), default=None)
-    return arrays[best[1]] if best else None
+    ranks = [(place, i) for i, place in enumerate(map(rank_of, arrays)) if place >= 0]
+    return arrays[min(ranks)[1]] if ranks else None
 
 
-def list_types(data):
-    """Arrays that tell kinds of particles apart, by their names, the most usual first."""
-    number = c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"]
-    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
-    ranks = [(lib.mcor_name_priority(number, name_of(array).encode()), i) for i, array in enumerate(arrays)
-             if array is not None and array.GetNumberOfComponents() == 1]
-    return [arrays[i] for rank, i in sorted(ranks) if rank >= 0]
+def find_fittest(points):
+    joined = join_velocity(points.GetPointData(), points.GetNumberOfPoints())
+    return choose_array(arrays_of(points.GetPointData())) if joined is None else joined
+
+
+def varies(array, on_surface):
+    """Whether there is more of it than the noise of what is contoured. Colours are those of magnitudes."""
+    if on_surface is None or on_surface.GetNumberOfTuples() == 0:
+        return False
+    kind = -1 if array.GetNumberOfComponents() > 1 else 0
+    (low, high), (least, most) = on_surface.GetRange(kind), array.GetRange(kind)
+    return high - low > 1e-3 * (most - least)
 
 
 def find_fluid(data):
     """The array and its value that clearly tell which particles are fluid; None where none does."""
-    for array in list_types(data):
+    for array in rank(data, "particle_type"):
         values, fluid = np.unique(to_numpy(array)), ctypes.c_double()
         if 0 < len(values) <= 8 and (values == np.floor(values)).all() and lib.mcor_find_fluid_value(
                 name_of(array).encode(), values[0], values[-1], ctypes.byref(fluid)):
@@ -122,19 +138,25 @@ def find_fluid(data):
 
 def describe_unused_types(data):
     """(A sentence about the first array that does, although all particles count as fluid, its name); or None."""
-    for array in list_types(data):
-        sentence = describe_unused_type(name_of(array), to_numpy(array)[:, 0])
+    for array in rank(data, "particle_type"):
+        sentence = describe_unused_type(name_of(array), to_numpy(array))
         if sentence:
             return sentence, name_of(array)
     return None
 
 
-def period_of(points):
-    """Six bounds that the field data tell of; raises Unusable where they tell of none."""
-    period = find_period(points)
-    if not period:
-        raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
-    return period
+def find_period(points):
+    """Six bounds that the field data tell of; None where they tell of none."""
+    found, period = [], (ctypes.c_double * 6)()
+    for array in arrays_of(points.GetFieldData()):
+        name, count = name_of(array).encode(errors="replace"), array.GetNumberOfValues()
+        if lib.mcor_tells_of_period(name) and count <= 6:
+            values = (ctypes.c_double * max(count, 1))(*to_numpy(array).ravel())
+            found.append(c.mcor_field_data(name=name, values=values, count=count))
+    count = lib.mcor_find_period((c.mcor_field_data * max(len(found), 1))(*found), len(found), period, None)
+    if count == 3:
+        return place_period(period[:3], points.GetBounds())
+    return list(period) if count else None
 
 
 class Particles:
@@ -166,7 +188,7 @@ class Particles:
     # -- arrays --
 
     def list_point_arrays(self):
-        names = [name_of(self.data.GetAbstractArray(i)) for i in range(self.data.GetNumberOfArrays())]
+        names = names_of(self.data)
         return f"Point arrays: {', '.join(names)}." if names else "The input has no point arrays."
 
     def check(self, role, name, array):
@@ -209,54 +231,45 @@ class Particles:
 
     def collect_quantities(self):
         choice = self.choice
-        if not choice.EstimateSmoothingLength:
-            self.collect_quantity("smoothing_length", choice.SmoothingLengthArrayName, choice.SmoothingLength)
-            if "smoothing_length" not in self.values:
-                raise Unusable("The particles have no smoothing length: no point array has one of its usual names "
-                               "(SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask for an "
-                               f"estimate. {describe_missing_length(self.data)}{self.list_point_arrays()}")
-        mass_or_density_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName)
-                               or choice.Mass or choice.Density)
-        self.collect_quantity("volume", choice.VolumeArrayName, 0.0, may_detect=not mass_or_density_set)
-        if "volume" in self.values:
-            return
-        self.collect_quantity("mass", choice.MassArrayName, choice.Mass)
-        self.collect_quantity("density", choice.DensityArrayName, choice.Density)
-        if "mass" not in self.values:  # a density alone says nothing of volumes
-            self.values.pop("density", None)
-            self.used["density"] = None
+        if not choice.EstimateSmoothingLength and not self.collect_quantity("smoothing_length"):
+            raise Unusable("The particles have no smoothing length: no point array has one of its usual names "
+                           "(SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask for an "
+                           f"estimate. {describe_missing_length(self.data)}{self.list_point_arrays()}")
+        is_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName) or choice.Mass or choice.Density)
+        # A density alone says nothing of volumes.
+        if not self.collect_quantity("volume", may_detect=not is_set) and self.collect_quantity("mass"):
+            self.collect_quantity("density")
 
-    def collect_quantity(self, quantity, set_name, constant, may_detect=True):
-        """A constant goes before a name, a name before the usual names."""
-        name = real_name(set_name)
-        if constant:
-            self.values[quantity] = constant
-            return
-        if name:
-            self.used[quantity] = self.find(quantity.replace("_", " "), name)
-        elif self.choice.DetectArrays and may_detect:
-            self.used[quantity] = detect(self.data, self.count, quantity)
-        if self.used[quantity] is not None:
-            self.values[quantity] = self.used[quantity]
+    def collect_quantity(self, quantity, may_detect=True):
+        """A constant goes before a name, a name before the usual names. Whether there is one."""
+        word = camel(quantity)
+        name, value = real_name(getattr(self.choice, word + "ArrayName")), getattr(self.choice, word, 0.0)
+        if not value and name:
+            self.used[quantity] = value = self.find(quantity.replace("_", " "), name)
+        elif not value and self.choice.DetectArrays and may_detect:
+            self.used[quantity] = value = detect(self.data, self.count, quantity)
+        if value is None or isinstance(value, float) and not value:
+            return False
+        self.values[quantity] = value
+        return True
 
     def collect_solids(self):
         name = real_name(self.choice.FluidArrayName)
         if name:
             self.fluid = self.find("fluid", name)
-            self.solid = to_numpy(self.fluid)[:, 0] != self.choice.FluidValue
+            self.solid = to_numpy(self.fluid) != self.choice.FluidValue
 
     def name_scalar(self, taken):
         """Computed arrays keep their names, which users look for."""
-        if self.choice.FreeSurface:
+        if self.scalar is None:
             return
-        self.scalar_name = name_of(self.scalar)
-        component = self.choice.ScalarComponent
+        self.scalar_name, component = name_of(self.scalar), self.choice.ScalarComponent
         if self.dot is not None:
             self.scalar_name += "_Dot_" + name_of(self.dot)
         elif self.scalar.GetNumberOfComponents() > 1:
             label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
-            label = label or ("XYZ"[component] if self.scalar.GetNumberOfComponents() <= 3 else str(component))
-            self.scalar_name += "_" + label
+            few = self.scalar.GetNumberOfComponents() <= 3
+            self.scalar_name += "_" + (label or ("XYZ"[component] if few else str(component)))
         if self.scalar_name and self.scalar_name not in taken:
             self.iso_value_name = self.scalar_name
 
@@ -269,37 +282,32 @@ class Particles:
                 real = isinstance(array, vtkDataArray) and is_real(array)
                 (self.interpolated if real else self.from_nearest).append(array)
 
-    def describe_unused_type(self):
-        """A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else ""."""
-        found = None if self.fluid is not None else describe_unused_types(self.data)
-        return found[0] if found else ""
-
     # -- for the core --
 
     def arguments(self):
         result = Arguments(to_numpy(self.positions))
+
+        def view(array):
+            return result.view(to_numpy(array), name_of(array))
+
         result.set_solid(self.solid)
         for quantity, value in self.values.items():
-            view = c.mcor_array(constant=value) if isinstance(value, float) else self.view(result, value)
-            setattr(result.input, quantity, view)
+            setattr(result.input, quantity, c.mcor_array(constant=value) if isinstance(value, float) else view(value))
         if self.scalar is not None:
-            result.input.scalar = self.view(result, self.scalar)
+            result.input.scalar = view(self.scalar)
             several = self.scalar.GetNumberOfComponents() > 1
             result.input.scalar_component = self.choice.ScalarComponent if several else 0
         if self.dot is not None:
-            result.input.scalar_dot = self.view(result, self.dot)
-        views = [self.view(result, array) for array in self.interpolated]
-        array = (c.mcor_array * max(len(views), 1))(*views)
-        result.kept.append(array)
-        result.input.attributes, result.input.attribute_count = array, len(views)
-        result.input.smoothing_length_is_support_radius = bool(self.choice.SmoothingLengthIsSupportRadius)
-        result.input.estimate_smoothing_length = bool(self.choice.EstimateSmoothingLength)
-        result.input.ignore_solids = bool(self.choice.IgnoreSolids)
+            result.input.scalar_dot = view(self.dot)
+        result.set_attributes({name_of(array): to_numpy(array) for array in self.interpolated})
+        for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids"):
+            setattr(result.input, name, bool(getattr(self.choice, camel(name))))
         return result
 
     @staticmethod
-    def view(arguments, array):
-        return arguments.view(to_numpy(array), name_of(array))
+    def estimate_cells(arguments, options):
+        given = ctypes.byref(arguments.input)
+        return lib.mcor_estimate_cells(given, ctypes.byref(options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
         """What tells one state of particles and scalar from another. The data set's own time is part
@@ -352,6 +360,5 @@ class Request:
 
     def _take_fittest(self, index, points):
         """Nobody has chosen the active scalars of a file: they are taken if they are fit."""
-        velocity = join_velocity(points.GetPointData(), points.GetNumberOfPoints()) if index == 0 else None
-        best = velocity if velocity is not None else choose_array(points.GetPointData()) if index == 0 else None
+        best = find_fittest(points) if index == 0 else None
         self.array = best if best is not None else self.array

@@ -1,88 +1,35 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A surface of the core as vtkPolyData, as vtkMarchingCorrectorsOutput builds it in C++."""
+"""A surface as vtkPolyData, and what a run found, used and cost as field data, as vtkMarchingCorrectorsOutput builds them."""
 import ctypes
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import (vtkAbstractArray, vtkDataArray, vtkDoubleArray, vtkIdList, vtkPoints,
-                                      vtkStringArray, vtkTypeInt64Array)
+from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray, vtkIdList, vtkPoints, vtkStringArray, vtkTypeInt64Array
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import _structs as c
-from ._arrays import statistics, take, take_all, take_lines
-from ._library import lib
-from ._vtk_particles import choose_array, is_real, name_of
+from ._arrays import camel
 
-COMPUTED = {"normals": "Normals", "gradients": "Gradients", "weight_sum": "WeightSum",
-            "boundary_eigenvalue": "BoundaryEigenvalue", "correction_length": "CorrectionLength",
-            "residual": "Residual", "boundary_flag": "BoundaryFlag"}
-
-
-def computed_arrays(options):
-    return [name for option, name in COMPUTED.items() if getattr(options, option)]
+# Those of mcor_options whose names users do not look for, or which statistics tell.
+NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 
 
 def add(data, name, values):
-    array = numpy_to_vtk(values, deep=True)
+    """An array of these values; of one text, number or tuple, with one tuple."""
+    if isinstance(values, str):
+        array = vtkStringArray()
+        array.InsertNextValue(values)
+    else:
+        values = np.asarray(values)
+        array = numpy_to_vtk(values.astype(np.uint8) if values.dtype == bool else values, deep=True)
     array.SetName(name)
     data.AddArray(array)
     return array
 
 
-def varies(array, on_surface):
-    """Whether there is more of it than the noise of what is contoured. Colours are those of magnitudes."""
-    if on_surface is None or on_surface.GetNumberOfTuples() == 0:
-        return False
-    kind = -1 if array.GetNumberOfComponents() > 1 else 0
-    (low, high), (least, most) = on_surface.GetRange(kind), array.GetRange(kind)
-    return high - low > 1e-3 * (most - least)
-
-
-def build_mesh(surface, particles, output, as_float, iso_count):
-    arrays = take_all("mcor_surface", surface,
-                      {"point_count": surface.point_count, "triangle_count": surface.triangle_count})
-    points, data = vtkPoints(), output.GetPointData()
-    where = arrays["points"] if arrays["points"] is not None else np.empty((0, 3))
-    points.SetData(numpy_to_vtk(where.astype(np.float32 if as_float else np.float64, copy=False), deep=True))
-    output.SetPoints(points)
-    build_triangles(arrays["triangles"], output)
-    lines = take_lines(surface)
-    build_lines(lines, output)
-    if arrays["band_value"] is not None:
-        of_lines = arrays["iso_value"][lines["line_points"][lines["line_offsets"][:-1]]] if surface.line_count else []
-        add(output.GetCellData(), "BandValue", np.concatenate([of_lines, arrays["band_value"]]))
-    build_carried(surface, particles, data, arrays["nearest_particle"])
-    for option, name in COMPUTED.items():
-        if arrays[option] is not None:
-            add(data, name, arrays[option])
-    if arrays["normals"] is not None and (surface.statistics.dimension != 2 or surface.band_value):  # lines were dark
-        data.SetActiveNormals("Normals")
-    if arrays["iso_value"] is not None:
-        single = particles.scalar is not None and particles.scalar.GetDataTypeAsString() == "float"
-        add(data, particles.iso_value_name, arrays["iso_value"].astype(np.float32 if single else np.float64))
-    scalar = particles.scalar
-    one = scalar is not None and particles.dot is None and iso_count == 1 and (
-        scalar.GetNumberOfComponents() == 1 or particles.choice.ScalarComponent == -1)
-    varying = [name_of(array) for array in particles.interpolated if varies(array, data.GetArray(name_of(array)))
-               and not (one and name_of(array) == name_of(scalar))]
-    best = choose_array(data, varying + [particles.iso_value_name])
-    if best is not None:
-        data.SetActiveScalars(name_of(best))
-
-
-def build_triangles(triangles, output):
-    """With ids as vtkContourFilter's: some filters take a mesh with others for non-manifold."""
-    corners = np.empty(0) if triangles is None else triangles.ravel()
-    output.SetPolys(build_cells(np.arange(0, len(corners) + 1, 3), corners))
-
-
-def build_lines(lines, output):
-    if lines["line_offsets"] is not None:
-        output.SetLines(build_cells(lines["line_offsets"], lines["line_points"]))
-
-
 def build_cells(first, corners):
+    """With ids as vtkContourFilter's: some filters take a mesh with others for non-manifold."""
     offsets, connectivity, cells = vtkTypeInt64Array(), vtkTypeInt64Array(), vtkCellArray()
     for array, values in ((offsets, first), (connectivity, corners)):
         array.SetNumberOfValues(len(values))
@@ -91,185 +38,104 @@ def build_cells(first, corners):
     return cells
 
 
-def build_carried(surface, particles, data, nearest):
-    for i, array in enumerate(particles.interpolated):
-        if surface.attributes and surface.attributes[i]:
-            components = array.GetNumberOfComponents()
-            values = take(surface.attributes[i], (surface.point_count, components))
-            single = array.GetDataTypeAsString() == "float"
-            made = add(data, name_of(array), (values[:, 0] if components == 1 else values).astype(
-                np.float32 if single else np.float64, copy=False))
-            made.CopyComponentNames(array)
-    if nearest is None:
-        return
-    for array in particles.from_nearest:
-        made = from_nearest(array, nearest)
-        made.SetName(name_of(array))
-        made.CopyComponentNames(array)
-        data.AddArray(made)
+def build_mesh(output, surface, arrays):
+    """Points, cells and arrays of a Surface; arrays: {name: array} for the points."""
+    points, data = vtkPoints(), output.GetPointData()
+    points.SetData(numpy_to_vtk(surface.points, deep=True))
+    output.SetPoints(points)
+    corners = surface.triangles.ravel()
+    output.SetPolys(build_cells(np.arange(0, len(corners) + 1, 3), corners))
+    if surface.line_offsets is not None:
+        output.SetLines(build_cells(surface.line_offsets, surface.line_points))
+    if surface.band_value is not None:
+        add(output.GetCellData(), "BandValue",
+            np.concatenate([surface.line_values() if len(surface.points) else [], surface.band_value]))
+    elif surface.triangle_keys is not None and surface.line_offsets is None:
+        add(output.GetCellData(), "TriangleKeys", surface.triangle_keys)
+    for name, values in arrays.items():
+        add(data, name, values)
+    if "Normals" in arrays and (surface.line_offsets is None or surface.band_value is not None):  # lines were dark
+        data.SetActiveNormals("Normals")
 
 
-def from_nearest(array, nearest):
+def add_nearest(data, array, nearest):
+    """What each point has from its nearest particle, whatever type it is."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
-        return numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
-    made, ids = vtkAbstractArray.CreateArray(array.GetDataType()), vtkIdList()
-    made.SetNumberOfComponents(array.GetNumberOfComponents())
-    made.SetNumberOfTuples(len(nearest))
-    ids.SetNumberOfIds(len(nearest))
-    for i, particle in enumerate(nearest.tolist()):
-        ids.SetId(i, particle)
-    array.GetTuples(ids, made)
-    return made
-
-
-def left_out(surface, particles):
-    for i, array in enumerate(particles.interpolated):
-        particle = surface.attribute_not_finite[i] if surface.attribute_not_finite else -1
-        if particle >= 0:
-            yield (f"The point array '{name_of(array)}' is NaN or infinite at particle {particle} and was left "
-                   "out of the surface. Correct its values, or exclude it.")
+        made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
+    else:
+        made, ids = vtkAbstractArray.CreateArray(array.GetDataType()), vtkIdList()
+        made.SetNumberOfComponents(array.GetNumberOfComponents())
+        made.SetNumberOfTuples(len(nearest))
+        for particle in nearest.tolist():
+            ids.InsertNextId(particle)
+        array.GetTuples(ids, made)
+    made.SetName(array.GetName())
+    made.CopyComponentNames(array)
+    data.AddArray(made)
 
 
 # -- field data --
 
-def add_real(data, name, *values):
-    array = vtkDoubleArray()
-    array.SetNumberOfComponents(len(values))
-    array.InsertNextTuple(values)
-    array.SetName(name)
-    data.AddArray(array)
-
-
-def add_count(data, name, *values):
-    array = vtkTypeInt64Array()
-    array.SetNumberOfComponents(len(values))
-    array.SetNumberOfTuples(1)
-    for i, value in enumerate(values):
-        array.SetValue(i, int(value))
-    array.SetName(name)
-    data.AddArray(array)
-
-
-def add_text(data, name, text):
-    array = vtkStringArray()
-    array.InsertNextValue(text or "")
-    array.SetName(name)
-    data.AddArray(array)
-
-
-def add_levels(data, name, counts):
-    """Counts of adaptive cubes, up to the last level that has any."""
-    counts = list(counts)
-    while len(counts) > 1 and counts[-1] == 0:
-        counts.pop()
-    array = numpy_to_vtk(np.array(counts, np.int64), deep=True)
-    array.SetName(name)
-    data.AddArray(array)
+def add_run(run, found, particles, arguments):
+    """What a run found, used and cost. Costs are added to those that are there, of other blocks."""
+    s, o = found.statistics, arguments.options
+    for name in ("Device", "Platform"):
+        add(run, name, s[name.lower()])
+    plane, shut = s["dimension"] == 2, s["is_closed"]
+    when = {"always": True, "is_plane": plane, "has_levels": o.level_limit > 0, "has_scalar": particles.scalar is not None,
+            "has_caps": o.capping > 0, "has_area": not plane or shut or o.filled, "has_volume": not plane and shut}
+    for how, condition, member, name in c.STATISTICS:
+        value = s[member]
+        if condition == "is_run":
+            before = run.GetArray(name).GetComponent(0, 0) if run.HasArray(name) and how != "SAME" else 0
+            add(run, name, [type(value)(max(before, value) if how == "MOST" else before + value)])
+        elif name and when[condition] and isinstance(value, tuple) and len(value) > 3:  # counts of levels
+            add(run, name, value[:max(1 + np.max(np.nonzero(value), initial=0), 1)])
+        elif name and when[condition]:
+            add(run, name, [value])
+    for name in ["smoothing_length"] + ["scalar"] * when["has_scalar"]:
+        add(run, camel(name) + "Range", [[s[name + "_min"], s[name + "_max"]]])
+    for name, count in (("Points", found.points), ("Triangles", found.triangles), ("Lines", found.lines if plane else None)):
+        if count is not None:
+            add(run, name, [len(count)])
+    seconds = {**s["seconds"], "program build": s["build_seconds"]}
+    seconds["total"] = sum(seconds.values())
+    before = vtk_to_numpy(run.GetArray("Seconds")) if run.HasArray("Seconds") else 0
+    array = add(run, "Seconds", np.array([list(seconds.values())]) + before)
+    for i, name in enumerate(seconds):
+        array.SetComponentName(i, name)
+    add_iso_values(run, o)
+    add_parameters(run, particles, arguments, s["wall_share"])
 
 
 def add_iso_values(data, options):
-    array = numpy_to_vtk(np.ctypeslib.as_array(options.iso_values, (options.iso_count,)) if options.iso_count
-                         else np.empty(0), deep=True)
-    array.SetName("IsoValues")
-    data.AddArray(array)
-
-
-def add_run(data, surface, particles, arguments):
-    """What a run found, used and cost."""
-    s = statistics(surface.statistics)
-    add_text(data, "Device", s["device"])
-    add_text(data, "Platform", s["platform"])
-    add_statistics(data, s, surface, arguments.options)
-    add_iso_values(data, arguments.options)
-    add_parameters(data, particles, arguments, s["wall_share"])
-    add_run_statistics(data, surface)
-
-
-def add_statistics(data, s, surface, options):
-    plane = s["dimension"] == 2
-    when = {"always": True, "is_run": False, "is_plane": plane, "has_levels": options.level_limit > 0,
-            "has_scalar": options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"], "has_caps": options.capping > 0,
-            "has_area": not plane or s["is_closed"] or options.filled, "has_volume": not plane and s["is_closed"]}
-    for _, condition, member, name in c.STATISTICS:
-        if name and when[condition]:
-            values = s[member] if isinstance(s[member], tuple) else (s[member],)
-            if len(values) > 3:
-                add_levels(data, name, values)
-            else:
-                (add_real if isinstance(values[0], float) else add_count)(data, name, *values)
-    add_real(data, "SmoothingLengthRange", s["smoothing_length_min"], s["smoothing_length_max"])
-    if when["has_scalar"]:
-        add_real(data, "ScalarRange", s["scalar_min"], s["scalar_max"])
-    add_count(data, "Points", surface.point_count)
-    add_count(data, "Triangles", surface.triangle_count)
-    if plane:
-        add_count(data, "Lines", surface.line_count)
-
-
-def add_quantity(data, name, array):
-    """The array's name, or the value for all particles where it was used."""
-    add_text(data, name + "Array", (array.name or b"").decode())
-    if not array.data and array.constant:
-        add_real(data, name, array.constant)
+    add(data, "IsoValues", np.array(options.iso_values[:options.iso_count], float))
 
 
 def add_parameters(data, particles, arguments, wall_share):
-    o, core, choice = arguments.options, arguments.input, particles.choice
-    add_text(data, "Field", ("shepard", "sum", "weight_sum")[o.field])
-    add_text(data, "Scalar", particles.scalar_name)
-    add_text(data, "SmoothingLengthArray", (core.smoothing_length.name or b"").decode())
-    add_count(data, "SmoothingLengthIsSupportRadius", core.smoothing_length_is_support_radius)
-    add_count(data, "EstimateSmoothingLength", core.estimate_smoothing_length)
-    add_text(data, "VolumeArray", (core.volume.name or b"").decode())
-    add_quantity(data, "Mass", core.mass)
-    add_quantity(data, "Density", core.density)
-    add_text(data, "FluidArray", choice.FluidArrayName if particles.fluid is not None else "")
-    if particles.fluid is not None:
-        add_real(data, "FluidValue", choice.FluidValue)
-        add_count(data, "IgnoreSolids", core.ignore_solids)
-        add_real(data, "WallShare", wall_share)
-    add_text(data, "Kernel", lib.mcor_sph_kernel_name(o.sph_kernel).decode())
-    add_text(data, "SeedMode", ("complete", "pairs")[o.seeds])
-    add_text(data, "Topology", ("table", "field")[o.topology])
-    add_text(data, "Precision", ("single", "double")[o.precision])
-    add_real(data, "CubeSizeFactor", o.cube_size_factor)
-    add_text(data, "CubeSizeMode", "adaptive" if o.level_limit else "uniform")
-    add_count(data, "CubeLevelLimit", o.level_limit)
-    add_count(data, "Filled", o.filled)
-    if any(o.box):
-        add_real(data, "Box", *o.box)
-    periodic = any(o.periodic[2 * axis] < o.periodic[2 * axis + 1] for axis in range(3))
-    if periodic:
-        add_real(data, "PeriodicBounds", *o.periodic)
-    if periodic or o.capping:
-        add_count(data, "Capping", o.capping > 0)
-    add_real(data, "HScaleFactor", o.h_scale)
-    add_real(data, "NodeThreshold", o.node_threshold)
-    add_text(data, "BoundaryDetection", ("weight_sum", "eigenvalue")[o.boundary_detection])
-    add_real(data, "VertexThreshold", o.vertex_threshold)
-    add_real(data, "Tolerance", o.tolerance)
-    add_count(data, "IterationLimit", o.iteration_limit)
-    add_count(data, "Preview", o.preview)
-
-
-def add_run_statistics(run, surface):
-    """Sums over the blocks of composite data."""
-    s = statistics(surface.statistics)
-    seconds = {**s["seconds"], "program build": s["build_seconds"]}
-    seconds["total"] = sum(seconds.values())
-    array = run.GetArray("Seconds")
-    if array is None:
-        add_real(run, "Seconds", *[0.0] * len(seconds))
-        array = run.GetArray("Seconds")
-    for i, (name, value) in enumerate(seconds.items()):
-        array.SetComponentName(i, name)
-        array.SetComponent(0, i, array.GetComponent(0, i) + value)
-
-    for how, when, member, name in c.STATISTICS:
-        if when == "is_run":
-            before = run.GetArray(name).GetComponent(0, 0) if run.HasArray(name) and how != "SAME" else 0
-            add_it = add_real if how == "SAME" else add_count
-            add_it(run, name, max(before, s[member]) if how == "MOST" else before + s[member])
+    o, given, has_fluid = arguments.options, arguments.input, particles.fluid is not None
+    for name in ("smoothing_length", "volume", "mass", "density"):
+        array = getattr(given, name)
+        add(data, camel(name) + "Array", (array.name or b"").decode())
+        if name in ("mass", "density") and not array.data and array.constant:
+            add(data, camel(name), [array.constant])
+    for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", *["ignore_solids"] * has_fluid):
+        add(data, camel(name), [getattr(given, name)])
+    add(data, "Scalar", particles.scalar_name)
+    add(data, "FluidArray", particles.choice.FluidArrayName if has_fluid else "")
+    if has_fluid:
+        add(data, "FluidValue", [float(particles.choice.FluidValue)])
+        add(data, "WallShare", [wall_share])
+    add(data, "CubeSizeMode", "adaptive" if o.level_limit else "uniform")
+    if o.capping or any(low < high for low, high in zip(o.periodic[::2], o.periodic[1::2])):
+        add(data, "Capping", [int(o.capping > 0)])
+    for member, (words, _, name) in c.OPTIONS.items():
+        value, name = getattr(o, member), "Field" if member == "field" else name
+        if isinstance(value, ctypes.Array):
+            if any(low < high for low, high in zip(value[::2], value[1::2])):
+                add(data, name, [value[:]])
+        elif name not in NOT_TOLD:
+            add(data, name, {number: word for word, number in words.items()}.get(value, [value]))
 
 
 def describe(run):

@@ -21,7 +21,7 @@ COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS"
 class Legacy:
     def __init__(self, path):
         self.name, self.data, self.at = path.name, path.read_bytes(), 0
-        self.points, self.arrays, self.field, self.cell_types, self.twice = None, {}, {}, False, None
+        self.points, self.arrays, self.field, self.cell_types = None, {}, {}, False
         head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\nDATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n",
                         self.data)
         if not head:
@@ -36,8 +36,6 @@ class Legacy:
             into = self.section(words, into)
         if self.points is None or not len(self.points) or self.cell_types != (head[3] != b"POLYDATA"):
             raise self.damaged()
-        if self.twice is not None:
-            warn(f"{self.name} has several arrays '{self.twice}'; the last one is taken.")
 
     def damaged(self):
         return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
@@ -88,7 +86,7 @@ class Legacy:
         """As VTK, which writes blanks and the like as %20, and of two arrays of one name keeps the last."""
         name = unquote_to_bytes(name).decode(errors="replace")
         if name in self.arrays and into is self.arrays:
-            self.twice = name
+            warn(f"{self.name} has several arrays '{name}'; the last one is taken.")
         into[name] = values
 
     def section(self, words, into):

@@ -1,12 +1,83 @@
-# Completes the plugin's XML: puts what filters have in common in place. Lists the files in `files`.
+# Completes the plugin's XML: puts what filters have in common in place, and writes out options. Lists the files in
+# `files`.
+#
+#   <Option name="NodeThreshold" real="0.1" range="0 1" show="advanced" if="FreeSurface=0 Trim!=1">text</Option>
+#
+# is a property of one value, set by SetNodeThreshold. Its kind and default: flag="1", whole="24", real="0.1", or
+# choice="0" of="0 Table|1 Field". label: shown in place of the name. range: of a slider, the second number may be
+# missing. if: it is greyed unless all of this holds.
+
+# An attribute of the option whose attributes are `all`; "" if it has none of this name.
+function (mcor_option_attribute variable name all)
+  string(REGEX MATCH "[ \n]${name}=\"([^\"]*)\"" found "${all}")
+  set("${variable}" "${CMAKE_MATCH_1}" PARENT_SCOPE)
+endfunction ()
+
+function (mcor_expand_option variable all documentation)
+  foreach (part IN ITEMS name label range show if of)
+    mcor_option_attribute("${part}" "${part}" "${all}")
+  endforeach ()
+  set(kind Int)
+  if (all MATCHES "[ \n](flag|whole|real|choice)=\"([^\"]*)\"")
+    set(default "${CMAKE_MATCH_2}")
+  else ()
+    message(FATAL_ERROR "Option ${name} has no flag, whole, real or choice.")
+  endif ()
+  set(domain "<BooleanDomain name=\"bool\"/>")
+  if (CMAKE_MATCH_1 STREQUAL "choice")
+    string(REGEX REPLACE "([^ |]+) ([^|]+)[|]?" "<Entry text=\"\\2\" value=\"\\1\"/>" entries "${of}")
+    set(domain "<EnumerationDomain name=\"enum\">${entries}</EnumerationDomain>")
+  elseif (NOT CMAKE_MATCH_1 STREQUAL "flag")
+    if (CMAKE_MATCH_1 STREQUAL "real")
+      set(kind Double)
+    endif ()
+    string(REGEX REPLACE "^([^ ]+)" " min=\"\\1\"" limits "${range}")
+    string(REGEX REPLACE "\" ([^ ]+)$" "\" max=\"\\1\"" limits "${limits}")
+    set(domain "<${kind}RangeDomain name=\"range\"${limits}/>")
+  endif ()
+  set(hints "")
+  if (if)
+    set(greyed "<PropertyWidgetDecorator type=\"GenericDecorator\" mode=\"enabled_state\" property=\"\\1\" value=\"\\2\"")
+    string(REGEX REPLACE "([A-Za-z]+)!=([^ ]+)" "${greyed} inverse=\"1\"/>" hints "${if}")
+    string(REGEX REPLACE "([A-Za-z]+)=([^ \"]+)" "${greyed}/>" hints "${hints}")
+    set(hints "<Hints>${hints}</Hints>")
+  endif ()
+  string(STRIP "${documentation}" documentation)
+  string(REGEX REPLACE "\n +" "\n" documentation "${documentation}")
+  if (label)
+    string(PREPEND label " label=\"")
+    string(APPEND label "\"")
+  endif ()
+  if (show)
+    set(show " panel_visibility=\"${show}\"")
+  endif ()
+  set("${variable}" "<${kind}VectorProperty name=\"${name}\"${label} command=\"Set${name}\" \
+number_of_elements=\"1\" default_values=\"${default}\"${show}>
+        ${domain}${hints}
+        <Documentation>${documentation}</Documentation>
+      </${kind}VectorProperty>" PARENT_SCOPE)
+endfunction ()
+
+# Writes out the options of the text in `variable`.
+function (mcor_expand_options variable)
+  set(whole "${${variable}}")
+  while (whole MATCHES "<Option([^>]*)>([^<]*)</Option>")
+    set(option "${CMAKE_MATCH_0}")
+    mcor_expand_option(property "${CMAKE_MATCH_1}" "${CMAKE_MATCH_2}")
+    string(REPLACE "${option}" "${property}" whole "${whole}")
+  endwhile ()
+  set("${variable}" "${whole}" PARENT_SCOPE)
+endfunction ()
+
 function (mcor_complete_xml files)
   set(folder "${PROJECT_SOURCE_DIR}/Plugin")
   set(made "${PROJECT_BINARY_DIR}/Plugin")
   set(list)
   file(READ "${folder}/shared.xml" shared)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/shared.xml")
+  file(GLOB sources "${folder}/*.xml*")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${sources}")
   string(REGEX MATCHALL "<!-- [A-Z_]+ -->" parts "${shared}")
-  foreach (name IN ITEMS MarchingCorrectors SPHComponents SPHDerivatives SPHGauge SPHProbe SPHResample)
+  foreach (name IN ITEMS MarchingCorrectors SPHComponents SPHDerivatives SPHGauge SPHProbe SPHResample SPHTemporalInterpolator)
     set(INPUT Input)
     set(INPUT_LABEL Input)
     if (name MATCHES "SPHComponents|SPHGauge|SPHProbe")
@@ -23,10 +94,12 @@ function (mcor_complete_xml files)
       string(REGEX REPLACE "\n<!--.*" "" ${part} "${${part}}")
       string(CONFIGURE "${${part}}" ${part} @ONLY)
     endforeach ()
-    configure_file("${folder}/${name}.xml.in" "${made}/${name}.xml" @ONLY)
+    file(READ "${folder}/${name}.xml.in" text)
+    string(CONFIGURE "${text}" text @ONLY)
+    mcor_expand_options(text)
+    file(CONFIGURE OUTPUT "${made}/${name}.xml" CONTENT "${text}" @ONLY) # written where it is new
     list(APPEND list "${made}/${name}.xml")
   endforeach ()
-  configure_file("${folder}/SPHTemporalInterpolator.xml" "${made}" COPYONLY)
-  set(${files} "${list}" "${made}/SPHTemporalInterpolator.xml" PARENT_SCOPE)
+  set(${files} "${list}" PARENT_SCOPE)
 endfunction ()
 mcor_complete_xml(mcor_plugin_xml)

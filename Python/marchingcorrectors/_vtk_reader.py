@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Solvers' own files by ParaView's File > Open, a series as time steps: part of the plugin in MarchingCorrectorsFilter.py.
+"""Solvers' own files and tables by ParaView's File > Open, a series, or what one file holds, as time steps: part of the
+plugin in MarchingCorrectorsFilter.py.
 
 HDF5 wants h5py in ParaView's Python."""
 from paraview.util.vtkAlgorithm import VTKPythonAlgorithmBase, smdomain, smhint, smproperty, smproxy
@@ -11,16 +12,16 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from . import io
 from .io.convert import to_vtk
 
-# Those of VTK have their readers.
-ENDINGS = ["hdf5", "h5", "bi4", "bgeo"]
+# Those of VTK have their readers; ParaView's own of tables and molecules make no particles: it asks which one to take.
+ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk")] + ["gadget"]
 
 
 @smproxy.reader(name="SPHParticleReader", label="SPH Particle Reader", extensions=ENDINGS,
-                file_description="SPH particles (GADGET, SWIFT, Phantom, PySPH, DualSPHysics, bgeo)")
+                file_description="SPH particles (GADGET, SWIFT, Phantom, PySPH, DualSPHysics, bgeo, tables, XYZ, LAMMPS)")
 class SPHParticleReader(VTKPythonAlgorithmBase):
     def __init__(self):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkPolyData")
-        self._names, self._types, self._times, self._kept = [], "gas", None, (None, None)
+        self._names, self._types, self._steps, self._kept = [], "gas", None, (None, None)
 
     @smproperty.stringvector(name="FileNames", command="AddFileName", clean_command="ClearFileNames",
                              repeat_command="1", number_of_elements="1", panel_visibility="never")
@@ -29,11 +30,11 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
     def AddFileName(self, name):
         if name and name != "None":
             self._names.append(name)
-            self._times = None
+            self._steps = None
             self.Modified()
 
     def ClearFileNames(self):
-        self._names, self._times = [], None
+        self._names, self._steps = [], None
         self.Modified()
 
     @smproperty.stringvector(name="Types", default_values="gas")
@@ -46,35 +47,41 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
     @smproperty.doublevector(name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty")
     def GetTimestepValues(self):
         try:
-            return self._times_of() if self._names else None
+            return [time for time, _, _ in self._list_steps()] or None
         except io.FileError:  # RequestInformation says it
             return None
 
-    def _read(self, i):
-        if self._kept[0] != i:
-            self._kept = (i, self._open(self._names[i]))
+    def _read(self, name, step):
+        if self._kept[0] != (name, step):
+            self._kept = ((name, step), self._open(name, step))
         return self._kept[1]
 
-    def _open(self, name):
+    def _open(self, name, step=0):
         types = [int(word) if word.isdigit() else word for word in (self._types or "gas").replace(",", " ").split()]
         try:
-            return io.read(name, types=types)
+            return io.read(name, types=types, step=step)
         except io.FileError as error:
             if "no types to choose" not in str(error):
                 raise
-            return io.read(name)
+            return io.read(name, step=step)
 
-    def _times_of(self):
-        """What the files say where that rises from one to the next; else their numbers."""
-        if self._times is None:
-            times = [self._open(name).time for name in self._names]
-            rising = None not in times and all(a < b for a, b in zip(times, times[1:]))
-            self._times = times if rising else [float(i) for i in range(len(times))]
-        return self._times
+    def _list_steps(self):
+        """(time, file, number in it) of each. Times are what the files say where that rises from one to the next; else
+        numbers."""
+        if self._steps is None:
+            found = []
+            for name in self._names:
+                particles = self._open(name)
+                found += [(time, name, i) for i, time in enumerate(particles.times or [particles.time])]
+            times = [time for time, _, _ in found]
+            if None in times or any(a >= b for a, b in zip(times, times[1:])):
+                found = [(float(i), name, step) for i, (_, name, step) in enumerate(found)]
+            self._steps = found
+        return self._steps
 
     def RequestInformation(self, request, inputs, outputs):
         try:
-            times = self._times_of()
+            times = [time for time, _, _ in self._list_steps()]
         except io.FileError as error:
             self._fail(error)
             return 0
@@ -86,17 +93,18 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
     def RequestData(self, request, inputs, outputs):
         information = outputs.GetInformationObject(0)
         try:
-            times, step = self._times_of(), 0
+            steps, i = self._list_steps(), 0
             if information.Has(Pipeline.UPDATE_TIME_STEP()):
                 wanted = information.Get(Pipeline.UPDATE_TIME_STEP())
-                step = max((i for i, time in enumerate(times) if time <= wanted), default=0)
-            data = to_vtk(self._read(step))
+                i = max((i for i, (time, _, _) in enumerate(steps) if time <= wanted), default=0)
+            time, name, step = steps[i]
+            data = to_vtk(self._read(name, step))
         except io.FileError as error:
             self._fail(error)
             return 0
         output = vtkPolyData.GetData(outputs, 0)
         output.ShallowCopy(data)
-        output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), times[step])
+        output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
         return 1
 
     def _fail(self, error):

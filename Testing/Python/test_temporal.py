@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles between stored steps: vtkSPHTemporalInterpolator against paths that are known."""
 import math
+import os
 import pathlib
 import random
 import unittest
@@ -17,7 +18,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 
 from marchingcorrectors import vtkMarchingCorrectors, vtkSPHTemporalInterpolator
 
-XML = pathlib.Path(__file__).resolve().parents[2] / "Plugin" / "SPHTemporalInterpolator.xml"
+XML = pathlib.Path(os.environ["MCOR_PLUGIN_XML"]) / "SPHTemporalInterpolator.xml"
 RATE = 2.0  # of the rotation, radians per unit of time
 
 

@@ -78,6 +78,29 @@ for time in times:
     cells.append(servermanager.Fetch(surface).GetNumberOfCells())
 assert min(cells) > 300, cells
 
+# Tables, and files that hold several times.
+with open(os.path.join(folder, "steps.xyz"), "w") as file:
+    for i in range(3):
+        file.write(f"{len(cube)}\nProperties=species:S:1:pos:R:3:h:R:1 Time={0.5 * i}\n")
+        file.writelines(f"O {x} {y} {z * (1 + 0.1 * i)} 0.13\n" for x, y, z in cube)
+with open(os.path.join(folder, "steps.dump"), "w") as file:
+    for i in range(3):
+        file.write(f"ITEM: TIMESTEP\n{i}\nITEM: NUMBER OF ATOMS\n{len(cube)}\nITEM: ATOMS x y z h\n")
+        file.writelines(f"{x} {y} {z * (1 + 0.1 * i)} 0.13\n" for x, y, z in cube)
+with open(os.path.join(folder, "table.csv"), "w") as file:
+    file.write('"Points:0","Points:1","Points:2","h"\n' + "".join(f"{x},{y},{z},0.13\n" for x, y, z in cube))
+for name, wanted in (("steps.xyz", [0, 0.5, 1]), ("steps.dump", [0, 1, 2]), ("table.csv", [0])):
+    reader = SPHParticleReader(FileNames=[os.path.join(folder, name)])  # noqa: F821
+    times = np.ravel(reader.TimestepValues).tolist()
+    assert times == wanted, (name, times)
+    surface = MarchingCorrectors(Input=reader)  # noqa: F821
+    surface.FreeSurface = 1
+    for i, time in enumerate(times):
+        surface.UpdatePipeline(time)
+        data = servermanager.Fetch(reader)
+        assert abs(data.GetBounds()[5] - 0.6 * (1 + 0.1 * i)) < 1e-6 and data.GetNumberOfVerts() == len(cube), data
+        assert servermanager.Fetch(surface).GetNumberOfCells() > 300
+
 damaged = os.path.join(folder, "damaged.bi4")
 with open(damaged, "wb") as file:
     file.write(b"#FileJBD JPartDataBi4")

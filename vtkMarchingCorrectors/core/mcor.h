@@ -542,7 +542,7 @@ extern "C"
    * range if these are one value; or the logarithmic middle of the range if all values are positive and span three
    * decades (without the lowest and highest 2 %), but no more than six with the median at their end. Reads only the
    * scalar and the solids of the input; over all ranks unless `ranks` is NULL. Returns 0 and changes nothing if there
-   * is no such value or another rank failed. */
+   * is no such value, if mcor_extract would refuse the form of the scalar, or if another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 

@@ -29,6 +29,7 @@
     }                                                                                              \
   } while (0)
 
+/* The context keeps the sentence; it may be NULL where nobody asks for one. */
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 3, 4)))
@@ -183,6 +184,7 @@ bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* mcor_check.c, mcor_measure.c */
+mcor_status mcor_check_scalar_form(mcor_context* context, const mcor_input* input);
 mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 mcor_status mcor_measure_input(

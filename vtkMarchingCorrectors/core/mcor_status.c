@@ -66,7 +66,10 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 {
   va_list args;
   va_start(args, format);
-  vsnprintf(context->error, sizeof context->error, format, args);
+  if (context)
+  {
+    vsnprintf(context->error, sizeof context->error, format, args);
+  }
   va_end(args);
   return status;
 }

@@ -205,11 +205,12 @@ def usual(names, quantity):
 
 def by_name(file, pairs):
     """{name: thing}; of several of one name the last, as in VTK, with a warning."""
-    found = {}
+    found, twice = {}, None
     for name, thing in pairs:
-        if name in found:
-            warn(f"{file} has several arrays '{name}'; the last one is taken.")
+        twice = twice or (name if name in found else None)
         found[name] = thing
+    if twice is not None:
+        warn(f"{file} has several arrays '{twice}'; the last one is taken.")
     return found
 
 

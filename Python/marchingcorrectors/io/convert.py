@@ -15,13 +15,18 @@ def to_vtk(particles):
     package means it (half of the support radius, of the quintic spline a third, of the quartic 2/5), Mass and ParticleType
     (0 fluid, 1 wall) where the file tells them in another way."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
     def array(values, name):
         values = np.ascontiguousarray(values)
         values = values.astype(np.uint8) if values.dtype == bool else values
-        made = numpy_to_vtk(values, deep=True)
+        if values.dtype.kind == "U":
+            made = vtkStringArray()
+            for word in values:
+                made.InsertNextValue(word)
+        else:
+            made = numpy_to_vtk(values, deep=True)
         made.SetName(name)
         return made
 

@@ -21,7 +21,7 @@ COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS"
 class Legacy:
     def __init__(self, path):
         self.name, self.data, self.at = path.name, path.read_bytes(), 0
-        self.points, self.arrays, self.field, self.cell_types = None, {}, {}, False
+        self.points, self.arrays, self.field, self.cell_types, self.twice = None, {}, {}, False, None
         head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\nDATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n",
                         self.data)
         if not head:
@@ -36,6 +36,8 @@ class Legacy:
             into = self.section(words, into)
         if self.points is None or not len(self.points) or self.cell_types != (head[3] != b"POLYDATA"):
             raise self.damaged()
+        if self.twice is not None:
+            warn(f"{self.name} has several arrays '{self.twice}'; the last one is taken.")
 
     def damaged(self):
         return FileError(f"{self.name} has no points, ends too early, or is damaged (at byte {self.at}).")
@@ -86,7 +88,7 @@ class Legacy:
         """As VTK, which writes blanks and the like as %20, and of two arrays of one name keeps the last."""
         name = unquote_to_bytes(name).decode(errors="replace")
         if name in self.arrays and into is self.arrays:
-            warn(f"{self.name} has several arrays '{name}'; the last one is taken.")
+            self.twice = name
         into[name] = values
 
     def section(self, words, into):

@@ -19,7 +19,8 @@ def lines_of(path):
     data = path.read_bytes()
     if b"\0" in data:
         raise FileError(f"{path.name} is no text.")
-    return data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").rstrip("\n").split("\n")
+    text = data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n")
+    return (text[:-1] if text.endswith("\n") else text).split("\n")
 
 
 def to_number(cell):
@@ -38,10 +39,13 @@ def split(line, separator):
     return line.split() if separator is None else [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
 
 
+def check_width(file, count):
+    if not 0 < count <= MOST_COLUMNS:
+        raise FileError(f"{file} has {count} columns; 1 to {MOST_COLUMNS} are read.")
+
+
 def columns_of(file, lines, names, separator=None):
     """{name: array} of rows of values."""
-    if not 0 < len(names) <= MOST_COLUMNS:
-        raise FileError(f"{file} has {len(names)} columns; at most {MOST_COLUMNS} are read.")
     try:
         values = np.loadtxt(lines, delimiter=separator, comments=None, ndmin=2).T if lines else np.empty((len(names), 0))
         if values.shape != (len(names), len(lines)):
@@ -117,15 +121,14 @@ def body_of(file, columns, positions=(), **more):
     return Body(points, arrays, **more)
 
 
-def name_columns(cells):
+def name_columns(file, cells):
     """Without units in brackets; each another."""
-    names = []
-    for cell in cells:
-        name = cell.split(" [")[0].strip(' "') or f"Column{len(names) + 1}"
-        while name in names:
-            name += "_"
-        names.append(name)
-    return names
+    check_width(file, len(cells))
+    names = {}
+    for i, cell in enumerate(cells):
+        name = cell.split(" [")[0].strip(' "') or f"Column{i + 1}"
+        names[name if name not in names else f"{name}_{i + 1}"] = i
+    return list(names)
 
 
 def number_columns(count):
@@ -149,13 +152,15 @@ def read_table(path):
     if separator is None:
         rows = [row.partition("#")[0] if "#" in row else row for row in rows]
     first = split(rows[0], separator)
+    check_width(path.name, len(first))
     if any(to_number(cell) is None for cell in first):
-        names, rows = name_columns(first), rows[1:]
+        names, rows = name_columns(path.name, first), rows[1:]
     else:
-        in_brackets = re.findall(r"\[\s*\d+\s+([^\]]*?)\s*\]", comment)
-        words = in_brackets if len(in_brackets) == len(first) else split(comment, "," if "," in comment else None)
+        numbered = [part.partition("]")[0].split(None, 1)[-1:] for part in comment.split("[")[1:]]  # [01 x] [02 y]
+        words = [word.strip() for part in numbered for word in part] if len(numbered) == len(first) else \
+            split(comment, "," if "," in comment else None)
         told = len(words) == len(first) and any(to_number(word) is None for word in words)
-        names = name_columns(words) if told else number_columns(len(first))
+        names = name_columns(path.name, words) if told else number_columns(len(first))
     if not rows:
         raise FileError(f"{path.name} has no row of values.")
     columns = columns_of(path.name, rows, names, separator)
@@ -168,13 +173,9 @@ def read_table(path):
 
 
 def whole_number(file, lines, i):
-    try:
-        found = int(lines[i])
-    except (ValueError, IndexError):
-        found = -1
-    if found < 0:
+    if i >= len(lines) or not re.fullmatch(r"\s*\d{1,18}\s*", lines[i][:40]):
         raise FileError(f"{file}: line {i + 1} does not say how many particles a step has.")
-    return found
+    return int(lines[i])
 
 
 def rows_of(file, lines, begin, count):
@@ -212,9 +213,11 @@ def read_xyz(path, step):
         if not width.isdigit() or not 0 < int(width) <= 100:
             raise FileError(f"{path.name}: its Properties give '{name}' {width} columns.")
         properties += [name] if width == "1" else [f"{name}:{i}" for i in range(int(width))]
+        check_width(path.name, len(properties))
     rows = rows_of(path.name, lines, begin + 2, count)
     if not properties:
         width = len(rows[0].split()) if rows else 3
+        check_width(path.name, width)
         properties = ["species", *number_columns(width - 1)] if width > 3 else number_columns(width)
     lattice, origin = numbers_of(value_of(comment, "lattice")), numbers_of(value_of(comment, "origin"))
     period, flags = None, value_of(comment, "pbc").split()
@@ -262,7 +265,7 @@ def read_lammps(path, step):
     times = [head.get("TIME", head.get("TIMESTEP", float(i))) for i, (_, _, head) in enumerate(steps)]
     i = choose_step(path.name, step, times)
     begin, words, head = steps[i]
-    names, bounds = name_columns(words), head.get("bounds", [(0.0, 1.0)] * 3)
+    names, bounds = name_columns(path.name, words), head.get("bounds", [(0.0, 1.0)] * 3)
     columns = columns_of(path.name, rows_of(path.name, lines, begin, head.get("count", 0)), names)
     positions = ()
     for kind in ("", "u", "s", "su"):  # as they are, unwrapped, in units of the box

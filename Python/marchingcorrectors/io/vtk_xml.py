@@ -6,6 +6,7 @@ base64 in the file, or base64 or bytes behind an underscore in <AppendedData>, a
 are their number; of packed ones: number of blocks, bytes of a block, bytes of the last one if it is shorter (else 0),
 packed bytes of each."""
 import binascii
+import bisect
 import lzma
 import re
 import zlib
@@ -69,7 +70,7 @@ class XmlFile:
     def __init__(self, path):
         self.data = path.read_bytes()
         self.pieces, self.field, self.file = [], [], {}  # a piece: {"Points": arrays, "PointData": arrays, "count": number}
-        self.offsets, self.path, self.array = set(), [], None
+        self.offsets, self.path, self.array = [], [], None
         appended = re.search(rb"<AppendedData\b([^>]*)>\s*_", self.data)
         self.begin = appended.end() if appended else len(self.data)
         self.is_raw = bool(appended and re.search(rb"encoding\s*=\s*[\"']raw", appended[1]))
@@ -79,6 +80,7 @@ class XmlFile:
         parser.StartElementHandler, parser.EndElementHandler = self.start, self.end
         parser.CharacterDataHandler = self.add_text
         parser.Parse(self.data[:appended.start()] if appended else self.data, not appended)
+        self.offsets.sort()
         if self.file.get("type") not in ("PolyData", "UnstructuredGrid"):
             raise ValueError("it holds no poly data and no unstructured grid")
         self.order = ">" if self.file.get("byte_order") == "BigEndian" else "<"
@@ -100,7 +102,7 @@ class XmlFile:
             self.pieces.append({"Points": [], "PointData": [], "count": int(attributes["NumberOfPoints"])})
         elif tag == "DataArray":
             if "offset" in attributes:
-                self.offsets.add(int(attributes["offset"]))
+                self.offsets.append(int(attributes["offset"]))
             parent = self.path[-2] if len(self.path) > 1 else ""
             if attributes.get("type") in KINDS and (parent == "FieldData" or parent in ("Points", "PointData")):
                 self.array = Array(attributes, None if parent == "FieldData" else self.pieces[-1]["count"])
@@ -128,8 +130,8 @@ class XmlFile:
             data = decode_base64("".join(array.text).encode())
         else:
             begin = self.begin + array.offset
-            after = [offset for offset in self.offsets if offset > array.offset]
-            end = self.begin + min(after) if after else len(self.data)
+            after = bisect.bisect(self.offsets, array.offset)
+            end = self.begin + self.offsets[after] if after < len(self.offsets) else len(self.data)
             data = memoryview(self.data)[begin:end]
             data = data if self.is_raw else decode_base64(bytes(data).partition(b"<")[0])
         width, wanted = self.header.itemsize, array.bytes()

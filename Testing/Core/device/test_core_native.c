@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -257,6 +258,51 @@ static void test_fork(void** state)
   mcor_free_context(context);
 }
 
+/* Where drivers would end the process: the built-in device works, named or not, and a driver's is refused in a
+ * sentence. Processes are limited where the test may not start all that it likes, as root may. */
+static void test_little_room_for_drivers(void** state)
+{
+  (void)state;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  skip(); /* sanitizers take all address space */
+#endif
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    alarm(120); /* a driver may wait for its threads for ever */
+    long pages = 0;
+    FILE* file = fopen("/proc/self/statm", "r");
+    const int read = file && fscanf(file, "%ld", &pages) == 1;
+    const rlim_t room =
+      (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + ((rlim_t)192 << 20); /* bytes */
+    const struct rlimit limit = { room, room };
+    if (!read || setrlimit(RLIMIT_AS, &limit) != 0)
+    {
+      _exit(1);
+    }
+    unsetenv("MCOR_DEVICE");
+    static const char* const names[] = { "built in", "0", "", "pocl" };
+    for (int i = 0; i < 4; ++i)
+    {
+      mcor_context* context = NULL;
+      const int status = mcor_create_context(names[i], &context);
+      const int refused = status == MCOR_DEVICE_ERROR &&
+        strstr(mcor_last_error(context), "no OpenCL device \"pocl\"") &&
+        strstr(mcor_last_error(context), "too little address space. Raise these limits (ulimit");
+      if (i < 3 ? status != MCOR_OK || extract(context) == 0 : !refused)
+      {
+        fprintf(stderr, "\"%s\": %d, %s\n", names[i], status, mcor_last_error(context));
+        _exit(2);
+      }
+      mcor_free_context(context);
+    }
+    _exit(0);
+  }
+  int status = -1;
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_int_equal(status, 0);
+}
+
 static void* extract_alone(void* hash)
 {
   mcor_context* context = make_native();
@@ -337,7 +383,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
     cmocka_unit_test(test_loops), cmocka_unit_test(test_fork),
-    cmocka_unit_test(test_contexts_side_by_side), cmocka_unit_test(test_threads_of_environment),
-    cmocka_unit_test(test_shares), cmocka_unit_test(test_what_was_not_compiled) };
+    cmocka_unit_test(test_little_room_for_drivers), cmocka_unit_test(test_contexts_side_by_side),
+    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
+    cmocka_unit_test(test_what_was_not_compiled) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

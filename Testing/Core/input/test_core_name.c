@@ -194,10 +194,56 @@ static void test_iso_values(void** state)
   free(solid);
 }
 
+static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, int count)
+{
+  *(int*)user += reduction == MCOR_SUM_OF && count == 1 && values[0] != 0;
+  return 0;
+}
+
+/* A scalar whose form mcor_extract refuses is not read; other ranks hear of it. Arrays end where the heap
+ * does, for sanitizers. */
+static void test_iso_value_of_wrong_scalars(void** state)
+{
+  (void)state;
+  double* three = malloc(2 * 3 * sizeof *three);
+  assert_non_null(three);
+  for (int i = 0; i < 6; ++i)
+  {
+    three[i] = i;
+  }
+  const mcor_array vector = { three, MCOR_FLOAT64, 3, 0, "v" },
+                   scalar = { three, MCOR_FLOAT64, 1, 0, "s" },
+                   unknown = { three, (mcor_type)7, 1, 0, "u" },
+                   negative = { three, MCOR_FLOAT64, -3, 0, "n" };
+  const mcor_input wrong[] = { { .count = 2, .scalar = vector, .scalar_component = 3 },
+    { .count = 2, .scalar = vector, .scalar_component = 1 << 30 },
+    { .count = 2, .scalar = vector, .scalar_component = -2 },
+    { .count = 2, .scalar = scalar, .scalar_dot = vector },
+    { .count = 2, .scalar = vector, .scalar_dot = scalar }, { .count = 2, .scalar = unknown },
+    { .count = 2, .scalar = negative }, { .count = 2, .scalar = vector, .scalar_dot = unknown },
+    { .count = 2 } };
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i)
+  {
+    int heard = 0;
+    const mcor_ranks ranks = { .reduce_counts = count_wrong, .user = &heard };
+    double range[2] = { 1, 2 }, iso = 3;
+    CORE_CHECK(!mcor_find_iso_value(&wrong[i], NULL, range, &iso) &&
+        !mcor_find_iso_value(&wrong[i], &ranks, range, &iso),
+      "input %d has the iso value %g", (int)i, iso);
+    assert_true(range[0] == 1 && range[1] == 2 && iso == 3 && heard == 1);
+  }
+  double range[2], iso;
+  const mcor_input last = { .count = 2, .scalar = vector, .scalar_component = 2 };
+  assert_true(mcor_find_iso_value(&last, NULL, range, &iso));
+  assert_true(range[0] == 2 && range[1] == 5 && iso >= 2 && iso <= 5);
+  free(three);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_names),
     cmocka_unit_test(test_period_of_field_data), cmocka_unit_test(test_fluid_values),
-    cmocka_unit_test(test_view_ranks), cmocka_unit_test(test_iso_values) };
+    cmocka_unit_test(test_view_ranks), cmocka_unit_test(test_iso_values),
+    cmocka_unit_test(test_iso_value_of_wrong_scalars) };
   return cmocka_run_group_tests_name("name", tests, NULL, NULL);
 }

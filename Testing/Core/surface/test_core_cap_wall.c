@@ -22,8 +22,8 @@ static mcor_options wall_options(double share)
   return options;
 }
 
-/* A tank with a step in its ground, half full, with waves, a hole and a drop; particles are a bit off a lattice. */
-static core_set make_tank(void)
+/* A tank with a step in its ground, half full, with waves, a hole and a drop; particles are off a lattice. */
+static core_set make_tank(double noise)
 {
   enum
   {
@@ -43,7 +43,7 @@ static core_set make_tank(void)
     {
       for (int a = 0; a < 3; ++a)
       {
-        set.position[3 * n + a] = x[a] + 0.2 * (random_unit(&seed) - 0.5);
+        set.position[3 * n + a] = x[a] + noise * (random_unit(&seed) - 0.5);
       }
       set.smoothing_length[n] = 1.3;
       set.volume[n] = 1;
@@ -57,7 +57,7 @@ static core_set make_tank(void)
 
 static void check_tank(mcor_context* context, double share, mcor_topology topology)
 {
-  core_set set = make_tank();
+  core_set set = make_tank(0.2);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(share);
   options.topology = topology;
@@ -92,15 +92,15 @@ static void test_tank(void** state)
 }
 
 /* Points of caps alone are where solids have the share, and in fluid. */
-static void test_share(void** state)
+static void check_share(mcor_context* context, double noise)
 {
-  core_set set = make_tank();
+  core_set set = make_tank(noise);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.35);
   options.capping = MCOR_CAP_PERIOD;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface;
-  CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
+  CORE_OK(context, mcor_extract(context, &input, &options, &surface));
   const oracle_particles particles = core_oracle(&set);
   oracle_field field;
   assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
@@ -118,9 +118,16 @@ static void test_share(void** state)
     }
   }
   CORE_CHECK(caps > 500, "%lld points", (long long)caps);
+  assert_int_equal(surface.statistics.trim_vertices_linear, 0);
   oracle_free_field(&field);
   mcor_free_surface(&surface);
   core_free_set(&set);
+}
+
+static void test_share(void** state)
+{
+  check_share(*state, 0.2);
+  check_share(*state, 0.9);
 }
 
 /* Full to the lid: caps alone, somewhat inside of half the way to the solids. */
@@ -152,7 +159,7 @@ static void test_full(void** state)
 /* Boxes make the whole, with all that its points carry; sides of boxes and of a period are closed beside walls. */
 static void test_parts(void** state)
 {
-  core_set set = make_tank();
+  core_set set = make_tank(0.2);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.5);
   options.capping = MCOR_CAP_PERIOD;

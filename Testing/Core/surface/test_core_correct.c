@@ -5,6 +5,7 @@
 
 #include "core_fixture.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -207,7 +208,8 @@ static void test_bracket_is_kept(void** state)
   core_free_set(&set);
 }
 
-/* The reported residuals and lengths are those of the points, and what rounded positions may add. */
+/* The reported residuals and lengths are those of the points, and what rounded positions and sums may add; true ones
+ * are not greater. */
 static void test_reported_numbers(void** state)
 {
   core_set set = core_make_block(8, 0.3, 4, core_ball);
@@ -241,8 +243,20 @@ static void test_reported_numbers(void** state)
       fabs(most - s->correction_max) < 1e-6,
     "mean %g, max %g; statistics %g, %g", sum / (double)corrected.point_count, most,
     s->correction_mean, s->correction_max);
+  worst += 2 * FLT_EPSILON * fmax(iso - s->scalar_min, s->scalar_max - iso);
   CORE_CHECK(fabs(worst - s->residual_max) <= 1e-6 * worst, "residual %g, statistics %g", worst,
     s->residual_max);
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  for (int64_t i = 0; i < corrected.point_count; ++i)
+  {
+    oracle_sample sample;
+    oracle_evaluate(&field, NULL, corrected.points + 3 * i, &sample);
+    CORE_CHECK(fabs(sample.value - iso) <= s->residual_max, "residual %g, statistics %g",
+      fabs(sample.value - iso), s->residual_max);
+  }
+  oracle_free_field(&field);
   assert_int_equal(preview.statistics.vertices_corrected, 0);
   CORE_CHECK(preview.statistics.correction_max == 0, "a preview corrects nothing");
   mcor_free_surface(&preview);

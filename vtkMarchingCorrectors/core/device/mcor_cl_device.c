@@ -5,6 +5,7 @@
 
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
+#include "mcor_system.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,18 +17,30 @@
 typedef struct mcor_device_list
 {
   int count;
+  bool drivers_fail; /* so they were not listed */
   cl_platform_id platforms[MCOR_DEVICE_LIMIT];
   cl_device_id devices[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
 
-static void mcor_find_devices(mcor_device_list* list)
+/* The built-in device comes first. Drivers are not listed where they would end the process, as PoCL does
+ * where it cannot start its threads. */
+static void mcor_find_devices(mcor_device_list* list, bool drivers)
 {
   cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
   cl_uint platform_count = 0;
   list->count = 0;
-  if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
+  list->drivers_fail = drivers && !mcor_system_bears_drivers();
+  if (drivers && !list->drivers_fail)
   {
-    return;
+    if (clGetPlatformIDs(MCOR_PLATFORM_LIMIT, platforms, &platform_count) != CL_SUCCESS)
+    {
+      return;
+    }
+  }
+  else
+  {
+    platforms[0] = mcor_native_platform();
+    platform_count = platforms[0] != NULL;
   }
   for (cl_uint p = 0; p < platform_count && p < MCOR_PLATFORM_LIMIT; ++p)
   {
@@ -77,7 +90,7 @@ mcor_status mcor_list_devices(char** text)
     return MCOR_INVALID_ARGUMENT;
   }
   mcor_device_list list;
-  mcor_find_devices(&list);
+  mcor_find_devices(&list, true);
   const size_t room = (size_t)list.count * 300 + 2;
   *text = calloc(room, 1);
   if (!*text)
@@ -287,6 +300,16 @@ static mcor_status mcor_start_device(
   return MCOR_OK;
 }
 
+/* A sentence behind another. */
+static const char* mcor_driver_fault(const mcor_device_list* list)
+{
+  return list->drivers_fail
+    ? " OpenCL drivers were not listed, as they would end the process: it may not start as many "
+      "threads as there are processors, or has too little address space. Raise these limits "
+      "(ulimit -u, ulimit -v), or use the built-in device."
+    : "";
+}
+
 static mcor_status mcor_fail_without_device(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {
@@ -298,11 +321,13 @@ static mcor_status mcor_fail_without_device(
   MCOR_RETURN_IF(mcor_choose_device(list, &usual) >= 0, context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. %s "
     "an OpenCL driver (PoCL, Debian package pocl-opencl-icd, runs on the CPU), or build with "
-    "MCOR_AHEAD=all. " MCOR_POCL_HINT,
-    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install");
+    "MCOR_AHEAD=all. " MCOR_POCL_HINT "%s",
+    missing, mcor_choose_device(list, &single) >= 0 ? "Use single precision, install" : "Install",
+    mcor_driver_fault(list));
   return mcor_fail(context, MCOR_DEVICE_ERROR,
     "No OpenCL device was found. Install an OpenCL driver; PoCL (Debian package pocl-opencl-icd) "
-    "runs on the CPU. " MCOR_POCL_HINT);
+    "runs on the CPU. " MCOR_POCL_HINT "%s",
+    mcor_driver_fault(list));
 }
 
 /* A device where none was named. */
@@ -327,23 +352,28 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   mcor_cl* cl = &context->cl;
   const char* wanted = device && *device ? device : getenv("MCOR_DEVICE");
   mcor_device_list list;
-  mcor_find_devices(&list);
   cl->place = place;
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
+  mcor_find_devices(&list, cl->is_default);
   if (cl->is_default)
   {
     const mcor_build usual = { 0 };
     return mcor_start_default(context, &list, &usual);
   }
-  const int chosen = mcor_find_device(&list, wanted);
+  int chosen = mcor_find_device(&list, wanted);
+  if (chosen < 0)
+  {
+    mcor_find_devices(&list, true);
+    chosen = mcor_find_device(&list, wanted);
+  }
   if (chosen < 0)
   {
     char devices[300];
     mcor_write_devices(&list, ", ", devices, sizeof devices);
     return mcor_fail(context, MCOR_DEVICE_ERROR,
-      "There is no OpenCL device \"%s\". Give the number of a device, or part of its name: %s.",
-      wanted, devices);
+      "There is no OpenCL device \"%s\". Give the number of a device, or part of its name: %s.%s",
+      wanted, devices, mcor_driver_fault(&list));
   }
   return mcor_start_device(context, &list, chosen, place, count);
 }
@@ -383,7 +413,7 @@ mcor_status mcor_settle_device(
     return MCOR_OK;
   }
   mcor_device_list list;
-  mcor_find_devices(&list);
+  mcor_find_devices(&list, true);
   const int chosen = mcor_choose_device(&list, build);
   if (chosen < 0)
   {

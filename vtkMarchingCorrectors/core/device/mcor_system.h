@@ -24,6 +24,9 @@ void mcor_system_want_large_pages(void* memory, size_t bytes);
 /* clGetPlatformIDs of the system's OpenCL loader, which stays open: drivers do not bear being closed.
  * NULL where there is none. */
 typedef void (*mcor_function)(void);
+/* Whether drivers can start: as many threads as the machine has processors, and map what they load. PoCL ends
+ * the process where it cannot. */
+bool mcor_system_bears_drivers(void);
 mcor_function mcor_system_opencl(void);
 
 #endif

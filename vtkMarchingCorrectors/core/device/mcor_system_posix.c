@@ -8,6 +8,7 @@
 #include "mcor_system.h"
 
 #include <dlfcn.h>
+#include <pthread.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -69,4 +70,40 @@ mcor_function mcor_system_opencl(void)
   }
 #endif
   return found;
+}
+
+/* Address space that a driver's libraries, a compiler among them, take. */
+#define MCOR_DRIVER_BYTES ((size_t)256 << 20)
+
+static void* mcor_wait_at_gate(void* gate)
+{
+  pthread_mutex_lock(gate);
+  pthread_mutex_unlock(gate);
+  return NULL;
+}
+
+bool mcor_system_bears_drivers(void)
+{
+  int usable, started = 0;
+  const int wanted = mcor_system_processors(&usable);
+  pthread_t* threads = malloc((size_t)wanted * sizeof *threads);
+  void* space = mmap(NULL, MCOR_DRIVER_BYTES, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+  pthread_mutex_lock(&gate);
+  while (threads && space != MAP_FAILED && started < wanted &&
+    pthread_create(&threads[started], NULL, mcor_wait_at_gate, &gate) == 0)
+  {
+    ++started;
+  }
+  pthread_mutex_unlock(&gate);
+  for (int i = 0; i < started; ++i)
+  {
+    pthread_join(threads[i], NULL);
+  }
+  if (space != MAP_FAILED)
+  {
+    munmap(space, MCOR_DRIVER_BYTES);
+  }
+  free(threads);
+  return started == wanted;
 }

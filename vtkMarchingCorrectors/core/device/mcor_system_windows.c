@@ -63,3 +63,9 @@ mcor_function mcor_system_opencl(void)
     ? (mcor_function)(void*)GetProcAddress(loader, "clGetPlatformIDs")
     : NULL;
 }
+
+/* PoCL is not for Windows. */
+bool mcor_system_bears_drivers(void)
+{
+  return true;
+}

@@ -187,13 +187,8 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_array* arr
     : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
 }
 
-static mcor_status mcor_check_scalar(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
+mcor_status mcor_check_scalar_form(mcor_context* context, const mcor_input* input)
 {
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    return MCOR_OK;
-  }
   const int components = mcor_components(&input->scalar);
   MCOR_RETURN_IF(!input->scalar.data, context, MCOR_INVALID_ARGUMENT,
     "There is no scalar to contour. Choose a point array, or the free surface, which needs no "
@@ -210,6 +205,20 @@ static mcor_status mcor_check_scalar(
     "The dot product needs two arrays with the same number of components; %s has %d and %s has %d.",
     mcor_array_name(&input->scalar, "the first"), components,
     mcor_array_name(&input->scalar_dot, "the second"), mcor_components(&input->scalar_dot));
+  MCOR_TRY(mcor_check_form(context, &input->scalar, "scalar", components));
+  return input->scalar_dot.data ? mcor_check_form(context, &input->scalar_dot, "scalar", components)
+                                : MCOR_OK;
+}
+
+static mcor_status mcor_check_scalar(
+  mcor_context* context, const mcor_input* input, const mcor_options* options)
+{
+  if (options->field == MCOR_WEIGHT_SUM)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_check_scalar_form(context, input));
+  const int components = mcor_components(&input->scalar);
   MCOR_TRY(mcor_check_array(
     context, &input->scalar, input->solid, "scalar", input->count, components, false));
   return input->scalar_dot.data ? mcor_check_array(context, &input->scalar_dot, input->solid,

@@ -197,7 +197,9 @@ int mcor_find_iso_value(
     return 0;
   }
   job->input = input;
-  const bool found = mcor_choose_iso(job, ranks, range, iso_value);
+  int64_t wrong = input->count > 0 && mcor_check_scalar_form(NULL, input) != MCOR_OK;
+  const bool found = (!ranks || ranks->reduce_counts(ranks->user, MCOR_SUM_OF, &wrong, 1) == 0) &&
+    wrong == 0 && mcor_choose_iso(job, ranks, range, iso_value);
   free(job);
   return found;
 }

@@ -15,7 +15,8 @@ typedef struct mcor_cap_line
   int64_t vertex; /* among the caps' vertices */
   double from[3], to[3];
   double at, side[2], margin[2];
-  int last; /* of the two, that was moved */
+  int last, moves; /* of the two, that was moved; how often the cut was */
+  bool done;
 } mcor_cap_line;
 
 /* Edges that cutting the squares around a cell leaves, from one vertex to another: of a cap at walls. */

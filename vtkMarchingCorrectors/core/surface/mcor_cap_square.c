@@ -302,34 +302,42 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
 
 /* ---- places ---- */
 
-#define MCOR_PLACE_STEPS 6
+/* More than any cut needs that is not in the ends' margins: every fourth move halves what encloses it. */
+#define MCOR_PLACE_STEPS 100
+/* Where a cut stays: some units of rounding in single precision. */
+#define MCOR_PLACE_ROOT 1e-6
 
-/* Moves a cut by the margin found there, within what encloses its root (the Illinois method). */
+/* Moves a cut by the margin found there, unless that is none, within what encloses its root (the Illinois method). */
 static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
   mcor_cap_job* job = data;
   mcor_cap_line* line = &job->lines[points->to[i]];
   mcor_cap_vertex* vertex = &job->vertices[line->vertex];
-  const double margin = mcor_cap_margin(context, points, i);
+  const double margin = mcor_cap_margin(context, points, i), before = line->at;
+  const bool found = fabs(margin) < MCOR_CAP_ROOT, is_cap = vertex->flag & MCOR_CAP_FLAG;
+  vertex->flag = (uint8_t)((is_cap ? MCOR_CAP_FLAG : 0) | (found ? !is_cap : 2));
+  line->done = fabs(margin) < MCOR_PLACE_ROOT;
+  if (line->done)
+  {
+    return;
+  }
   const int moved = (margin > 0) == (line->margin[0] > 0) ? 0 : 1, other = 1 - moved;
   line->side[moved] = line->at;
   line->margin[moved] = margin;
   line->margin[other] *= line->last == moved ? 0.5 : 1;
   line->last = moved;
-  const double s = line->side[0] +
-    (line->side[1] - line->side[0]) * line->margin[0] / (line->margin[0] - line->margin[1]);
+  const double share =
+    ++line->moves % 4 == 0 ? 0.5 : line->margin[0] / (line->margin[0] - line->margin[1]);
+  const double s = line->side[0] + (line->side[1] - line->side[0]) * share;
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
+  line->done = line->at == before; /* in an end's margin, or as near as numbers are */
   double at[3];
   for (int a = 0; a < 3; ++a)
   {
     at[a] = line->from[a] + line->at * (line->to[a] - line->from[a]);
   }
   mcor_put_cap_vertex(vertex, at);
-  if (vertex->flag != MCOR_CAP_FLAG)
-  {
-    vertex->flag = fabs(margin) < MCOR_CAP_ROOT ? 1 : 2;
-  }
 }
 
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
@@ -337,12 +345,17 @@ mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
   mcor_cap_points* points = &job->points;
   points->take = mcor_move_cut;
   points->data = job;
-  for (int step = 0; step < MCOR_PLACE_STEPS; ++step)
+  int64_t left = job->line_count;
+  for (int step = 0; step < MCOR_PLACE_STEPS && left > 0; ++step)
   {
+    left = 0;
     for (int64_t i = 0; i < job->line_count; ++i)
     {
       const mcor_cap_vertex* vertex = &job->vertices[job->lines[i].vertex];
-      MCOR_TRY(mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
+      MCOR_TRY(job->lines[i].done
+          ? MCOR_OK
+          : mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
+      left += !job->lines[i].done;
     }
     MCOR_TRY(mcor_take_cap_points(job->context, points));
   }

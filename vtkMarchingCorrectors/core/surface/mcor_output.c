@@ -11,6 +11,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,7 @@ typedef struct mcor_tally
 typedef struct mcor_download
 {
   mcor_context* context;
-  double iso;
+  double iso, sum_rounding;
   mcor_surface* surface; /* the first vertex put out becomes its point point_count */
   /* Views of the mesh's, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
@@ -133,7 +134,21 @@ static double mcor_rounding_of(const mcor_download* d, int64_t v)
   {
     gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
   }
-  return mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient;
+  return mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient +
+    d->sum_rounding;
+}
+
+/* What the device's rounding of the sums themselves may add to a residual: some units of rounding of the greatest term
+ * against the iso value. For a plain sum weights may be any; there they count as 1, as inside of fluid. */
+static double mcor_sum_rounding(const mcor_context* context, double iso)
+{
+  const double unit = context->cl.real_size == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
+  const double low = context->measure.scalar_min, high = context->measure.scalar_max;
+  const mcor_field field = context->run.options->field;
+  const double most = field == MCOR_WEIGHT_SUM ? iso
+    : field == MCOR_SUM                        ? fmax(fabs(low), fabs(high))
+                                               : fmax(fabs(iso - low), fabs(high - iso));
+  return 2 * unit * most;
 }
 
 static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally* tally)
@@ -246,7 +261,8 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
   }
   if (s->boundary_flag)
   {
-    s->boundary_flag[to] = (uint8_t)mcor_flag_of(d, v);
+    const int flag = mcor_flag_of(d, v);
+    s->boundary_flag[to] = (uint8_t)(flag & MCOR_CAP_FLAG ? MCOR_CAP_FLAG : flag);
   }
   if (s->iso_value)
   {
@@ -271,7 +287,12 @@ static void mcor_deliver_slice(void* data, int slice, int64_t first, int64_t las
       const float* normals = d->surface->normals;
       mcor_store_point(d, v, to);
       tally.normals_lacking += normals && mcor_lacks_normal(normals + 3 * to);
-      if ((!d->owned || d->owned[v] == MCOR_OWN) && !mcor_is_cap(d->context, v))
+      const bool counts = !d->owned || d->owned[v] == MCOR_OWN;
+      if (counts && mcor_is_cap(d->context, v))
+      {
+        tally.linear += mcor_flag_of(d, v) == (MCOR_CAP_FLAG | 2);
+      }
+      else if (counts)
       {
         mcor_count_correction(d, v, &tally);
       }
@@ -406,7 +427,10 @@ static void mcor_release_vertices(mcor_context* context)
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
 {
-  mcor_download download = { .context = context, .iso = iso, .surface = surface };
+  mcor_download download = { .context = context,
+    .iso = iso,
+    .sum_rounding = mcor_sum_rounding(context, iso),
+    .surface = surface };
   mcor_mapping mappings[MCOR_DOWNLOADS];
   mcor_release_construction(context);
   mcor_status status = mcor_append_mesh(context, input, all, &download);

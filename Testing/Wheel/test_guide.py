@@ -12,6 +12,8 @@ import h5py
 import numpy as np
 import pyvista
 
+import marchingcorrectors
+
 SOURCES = Path(os.environ["MCOR_TEST_SOURCES"])
 FENCE = re.compile(r"^```python(?: (\S+))?\n(.*?)^```$", re.M | re.S)
 
@@ -59,21 +61,22 @@ class Test(unittest.TestCase):
         self.assertGreater(np.einsum("ij,ij->i", surface.normals, surface.points).min(), 0)
 
     def test_gadget_and_swift(self):
-        found = {}
         for swift in (False, True):
-            with h5py.File("snapshot.hdf5", "w") as file:
-                gas = file.create_group("PartType0")
-                gas["Coordinates"] = X
-                gas["Densities" if swift else "Density"] = DENSITY.astype(np.float32)
-                gas["Masses"] = MASS
-                gamma = 1.825742
-                h = np.full(len(X), 0.26 / (gamma if swift else 1))
-                gas["SmoothingLengths" if swift else "SmoothingLength"] = h
-                file.create_group("HydroScheme").attrs["Kernel gamma"] = [gamma]
-            with h5py.File("snapshot.hdf5") as file:
-                found[swift] = recipes()["gadget"](file, 1.5)
-            self.assert_ball(found[swift].points, 0.5)
-            self.assertAlmostEqual(found[swift].statistics["smoothing_length_min"], 0.13)
+            for arepo in (False, True):
+                with h5py.File("snapshot.hdf5", "w") as file:
+                    gas = file.create_group("PartType0")
+                    gas["Coordinates"] = X
+                    gas["Densities" if swift else "Density"] = DENSITY.astype(np.float32)
+                    gas["Masses"] = MASS
+                    gamma = 1.825742
+                    h = np.full(len(X), 0.26 / (gamma if swift else 1))
+                    if not arepo:
+                        gas["SmoothingLengths" if swift else "SmoothingLength"] = h
+                    file.create_group("HydroScheme").attrs["Kernel gamma"] = [gamma]
+                found = recipes()["density_surface"]("snapshot.hdf5", 1.5)
+                self.assert_ball(found.points, 0.5)
+                if not arepo:
+                    self.assertAlmostEqual(found.statistics["smoothing_length_min"], 0.13)
 
     def test_phantom(self):
         with h5py.File("dump.h5", "w") as file:
@@ -83,8 +86,7 @@ class Test(unittest.TestCase):
             h = 1.2 * (0.001 / DENSITY) ** (1 / 3)
             gas["xyz"], gas["h"] = X, np.where(np.arange(len(X)) == 7, -h, h)
             gas["itype"] = np.where(X[:, 0] < 0, -1, 1).astype(np.int8)  # Half of them inactive in this step.
-        with h5py.File("dump.h5") as file:
-            points = recipes()["phantom"](file, 1.5).points
+        points = recipes()["density_surface"]("dump.h5", 1.5).points
         self.assert_ball(points, 0.5, tolerance=0.06)
         self.assertAlmostEqual(points[:, 0].min(), -0.5, delta=0.06)
 
@@ -108,6 +110,24 @@ class Test(unittest.TestCase):
         expected = particles.sph.free_surface(mass=0.1, density=1000.0)
         self.assertEqual(surface.n_cells, expected.n_cells)
         self.assertGreater(surface.n_cells, 3000)
+        lost = [int((marchingcorrectors.probe(bare.points, bare.points, smoothing_length=0.05, node_threshold=0, **volumes)
+                     .weight_sum <= 0.5).sum()) for volumes in ({"volume": 0.8 * 0.05 ** 3}, {})]
+        self.assertEqual((lost[0], bare.n_points), (1205, 4732))
+        self.assertLess(lost[1], 100)
+
+    def test_splash(self):
+        """Drops of few particles beside a block."""
+        drops = np.array([[1.5 + i, 0.0, k] for i in range(4) for k in range(3)])
+        particles = pyvista.PolyData(np.concatenate([X, drops, drops + [0, 0, SPACING]]))
+        particles["Rhop"] = np.full(particles.n_points, 1000.0)
+        particles["Type"] = np.full(particles.n_points, 3, np.uint8)
+        for name, size in (("dualsphysics", SPACING), ("splishsplash", SPACING / 2)):
+            found = {spray: bodies_of(recipes()[name](particles, size, spray=spray)) for spray in (False, True)}
+            self.assertEqual(found, {False: 1, True: 1 + len(drops)}, name)
+
+
+def bodies_of(surface):
+    return surface.connectivity()["RegionId"].max() + 1
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Phantom: HDF5, and native dumps by sarracen. Accreted (h <= 0) and inactive (itype < 0) particles are left out."""
+"""Phantom: HDF5, and native dumps by sarracen. Accreted particles (h <= 0) are left out; gas that is
+inactive in a step (itype -1) is gas."""
 import numpy as np
 
 from ._particles import FileError, Particles
@@ -18,7 +19,7 @@ def read_hdf5_dump(path):
                   if is_numbers(get(header, name)) and get(header, name).size <= 64}
     alive = load([part], "h") > 0
     if "itype" in names:
-        alive &= load([part], "itype") == 1
+        alive &= np.abs(load([part], "itype")) == 1
     if not alive.any():
         raise FileError(f"{path.name} has no gas that is alive.")
     there = [part.where(alive)]
@@ -48,7 +49,7 @@ def read_native(path):
                         "pip install sarracen scikit-learn.") from None
 
     frames = sarracen.read_phantom(str(path), separate_types=None)
-    frame = frames[frames["itype"] == 1] if "itype" in frames else frames
+    frame = frames[frames["itype"].abs() == 1] if "itype" in frames else frames
     frame = frame[(frame["h"] > 0)].dropna(subset=["x", "y", "z"])
     if not len(frame):
         raise FileError(f"{path.name} has no gas that is alive.")

@@ -114,6 +114,13 @@ class Hostile(Case):
             for i in range(20):
                 file[f"PartType0/{i}"] = file["PartType0/Coordinates"]
         self.assert_refused("'/PartType0' claims", self.at("few.hdf5"))
+        with h5py.File(self.at("sets.hdf5"), "w", libver="latest") as file:
+            file.create_group("solver_data")
+            for name, kind in (("x", "f4"), ("tag", "u1")):
+                file.create_dataset(f"particles/fluid/arrays/{name}", (2 ** 20,), kind, fillvalue=1)
+            for i in range(20):
+                file[f"particles/fluid{i}"] = file["particles/fluid"]
+        self.assert_refused("claims", self.at("sets.hdf5"))
         write_gadget(self.at("snap.hdf5"))
         with h5py.File(self.at("snap.hdf5"), "a") as file:
             twice = h5py.h5p.create(h5py.h5p.DATASET_CREATE)

@@ -34,7 +34,8 @@ def get(group, place):
 def is_numbers(thing):
     import h5py
 
-    return isinstance(thing, h5py.Dataset) and thing.dtype.kind in "fiub" and thing.dtype.subdtype is None
+    return isinstance(thing, h5py.Dataset) and thing.shape is not None and thing.dtype.kind in "fiub" and \
+        thing.dtype.subdtype is None
 
 
 def data_set(group, place):
@@ -96,9 +97,14 @@ def load(parts, name):
 
 
 def names_of(group, count):
-    """Arrays of numbers with so many rows, which the file must be able to hold together: many names may stand for one."""
-    found = {name: get(group, name) for name in group}
-    names = [name for name, data in found.items() if is_numbers(data) and data.shape[:1] == (count,)]
-    path = group.file.filename
-    check_claim(os.path.basename(path), f"'{group.name}'", sum(found[name].nbytes for name in names), os.path.getsize(path))
-    return names
+    """Arrays of numbers with so many rows."""
+    check_claims([group])
+    return [name for name in group if is_numbers(get(group, name)) and get(group, name).shape[:1] == (count,)]
+
+
+def check_claims(groups):
+    """That the file can hold all arrays of these groups together: many names may stand for one."""
+    claimed = sum(get(group, name).nbytes for group in groups for name in group if is_numbers(get(group, name)))
+    for group in groups:
+        path = group.file.filename
+        check_claim(os.path.basename(path), f"'{group.name}'", claimed, os.path.getsize(path))

@@ -5,7 +5,7 @@
 import numpy as np
 
 from ._particles import WALL, FileError, Particles
-from .hdf5 import Part, data_set, get, load, names_of
+from .hdf5 import Part, check_claims, data_set, get, load, names_of
 
 
 def read_pysph(path):
@@ -13,7 +13,9 @@ def read_pysph(path):
 
     with h5py.File(path, "r") as file:
         particles = get(file, "particles")
-        sets = {name: describe_set(path, get(particles, name)) for name in particles}
+        places = {name: place_of(get(particles, name)) for name in particles}
+        check_claims(places.values())
+        sets = {name: describe_set(path, place) for name, place in places.items()}
         solver = {name: np.ravel(value)[0].item() for name, value in get(file, "solver_data").attrs.items()
                   if np.asarray(value).dtype.kind in "fiub" and np.size(value) == 1}
     sets = {name: (part, names) for name, (part, names) in sets.items() if part.size()}
@@ -56,10 +58,14 @@ def read_pysph(path):
                      parameters={**solver, "sets": dict(zip(sets, counts))})
 
 
-def describe_set(path, group):
+def place_of(group):
+    """Where a set's arrays are."""
+    arrays = get(group, "arrays")
+    return group if arrays is None else arrays
+
+
+def describe_set(path, place):
     """Where its particles are that are this process's own (tag 0), and the names of arrays of one value each."""
-    place = get(group, "arrays")
-    place = group if place is None else place
     part = Part(path, place.name, data_set(place, "x").size if get(place, "x") is not None else 0)
     names = [name for name in names_of(place, part.count) if get(place, name).ndim == 1]
     return part.where(load([part], "tag") == 0) if "tag" in names else part, names

@@ -3,12 +3,10 @@
 """VTK's .vtkhdf: points of poly data or an unstructured grid, and their arrays; of several steps, one. The steps of an array
 stand one behind the other; Steps has where each begins, in parts (PartOffsets, NumberOfParts) and points (PointOffsets),
 and where an array's own values begin, if elsewhere (PointDataOffsets)."""
-import os
-
 import numpy as np
 
-from ._particles import Body, FileError, check_claim, choose_step
-from .hdf5 import data_set, get, is_numbers
+from ._particles import Body, FileError, choose_step
+from .hdf5 import check_claims, data_set, get, is_numbers
 
 
 def integers(group, place):
@@ -46,7 +44,7 @@ def read_vtkhdf(path, step):
 
         points = values(data_set(root, "Points"), offset)
         names = [name for name in arrays or () if is_numbers(get(arrays, name)) and len(get(arrays, name).shape) in (1, 2)]
-        check_claim(path.name, "'PointData'", sum(get(arrays, name).nbytes for name in names), os.path.getsize(path))
+        check_claims([arrays] if names else [])
         for name in names:
             begin = offset
             if steps is not None and get(steps, f"PointDataOffsets/{name}") is not None:

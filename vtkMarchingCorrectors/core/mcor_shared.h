@@ -104,7 +104,8 @@ typedef struct mcor_cell_row
   MCOR_TYPE(uchar) unused;
 } mcor_cell_row;
 
-/* Adaptive cubes: where the keys of one level's bricks begin, and how many there are along x, y, z. */
+/* Where the keys of one level's blocks begin, and how many there are along x, y, z; the rung after the highest
+ * begins behind all keys. The key of a brick: its block's key x MCOR_BLOCK_BRICKS + its number there. */
 typedef struct mcor_rung
 {
   MCOR_TYPE(ulong) base;

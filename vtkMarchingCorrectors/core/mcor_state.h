@@ -122,7 +122,7 @@ typedef struct mcor_tree
   int top;                                    /* highest level of leaves */
   bool is_plane;                              /* all bricks are of the lowest layer */
   int period[3], period_first[3];             /* as in mcor_lattice */
-  mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 2]; /* up to one above */
+  mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 3]; /* up to one above, and the end */
   uint64_t key_limit;
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */

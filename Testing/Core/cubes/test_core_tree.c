@@ -159,8 +159,10 @@ static void leaves_are_those_of_the_definition(void** state)
     const mcor_tree* tree = &context->tree;
     const int top = tree->top;
     assert_in_range(top, 1, 5);
-    const int n = tree->rungs[top + 1].n[0], m = tree->rungs[top + 1].n[1],
-              k = tree->rungs[top + 1].n[2];
+    const int above = MCOR_BRICK << (top + 1);
+    const int n = (int)(context->lattice.last[0] / above) + 2,
+              m = (int)(context->lattice.last[1] / above) + 2,
+              k = (int)(context->lattice.last[2] / above) + 2;
     const int most = n > m ? (n > k ? n : k) : m > k ? m : k;
     plain_levels plain = { .n = most << (top + 1) };
     const size_t count = (size_t)plain.n * (size_t)plain.n * (size_t)plain.n;

@@ -48,7 +48,7 @@ static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
     while (low < high)
     {
       const int middle = low + (high - low) / 2;
-      const bool before = keys[middle] < tree->rungs[l].base;
+      const bool before = keys[middle] / MCOR_BLOCK_BRICKS < tree->rungs[l].base;
       low = before ? middle + 1 : low;
       high = before ? high : middle;
     }

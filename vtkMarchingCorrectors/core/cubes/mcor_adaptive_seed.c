@@ -117,7 +117,7 @@ mcor_status mcor_write_tree(mcor_context* context)
   MCOR_TRY(mcor_write(context, &adaptive->leaf_finer, tree->finer, leaves * sizeof(cl_uint)));
   MCOR_TRY(mcor_write(context, &adaptive->regions, tree->regions, (regions + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_write(
-    context, &adaptive->rungs, tree->rungs, (size_t)(tree->top + 2) * sizeof tree->rungs[0]));
+    context, &adaptive->rungs, tree->rungs, (size_t)(tree->top + 3) * sizeof tree->rungs[0]));
   MCOR_TRY(mcor_reserve(context, &adaptive->region_keys, regions * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_region_keys", MCOR_LIGHT, regions,
     MCOR_INT((int)regions), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->regions),

@@ -25,9 +25,12 @@ bool mcor_are_too_many(const mcor_brick_set* levels);
 /* Where one level's bricks are among the keys. */
 static inline uint64_t mcor_tree_key(const mcor_rung* rung, const int brick[3])
 {
-  return rung->base +
-    ((uint64_t)brick[2] * (uint64_t)rung->n[1] + (uint64_t)brick[1]) * (uint64_t)rung->n[0] +
-    (uint64_t)brick[0];
+  const uint64_t block = rung->base +
+    ((uint64_t)(brick[2] >> 3) * (uint64_t)rung->n[1] + (uint64_t)(brick[1] >> 3)) *
+      (uint64_t)rung->n[0] +
+    (uint64_t)(brick[0] >> 3);
+  return block * MCOR_BLOCK_BRICKS +
+    (uint64_t)((brick[0] & 7) | (brick[1] & 7) << 3 | (brick[2] & 7) << 6);
 }
 
 /* Bricks of a cluster along an axis. */
@@ -36,8 +39,7 @@ static inline uint64_t mcor_tree_key(const mcor_rung* rung, const int brick[3])
 /* The key of a brick's cluster among those of its level, and the brick's bit there. */
 static inline uint64_t mcor_cluster_key(const mcor_rung* rung, const int brick[3])
 {
-  const uint64_t nx = (uint64_t)(rung->n[0] + 3) / MCOR_CLUSTER;
-  const uint64_t ny = (uint64_t)(rung->n[1] + 3) / MCOR_CLUSTER;
+  const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
   return ((uint64_t)(brick[2] / MCOR_CLUSTER) * ny + (uint64_t)(brick[1] / MCOR_CLUSTER)) * nx +
     (uint64_t)(brick[0] / MCOR_CLUSTER);
 }
@@ -49,8 +51,7 @@ static inline int mcor_cluster_bit(const int brick[3])
 /* The first brick of a cluster with a key. */
 static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, int brick[3])
 {
-  const uint64_t nx = (uint64_t)(rung->n[0] + 3) / MCOR_CLUSTER;
-  const uint64_t ny = (uint64_t)(rung->n[1] + 3) / MCOR_CLUSTER;
+  const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
   brick[0] = MCOR_CLUSTER * (int)(key % nx);
   brick[1] = MCOR_CLUSTER * (int)(key / nx % ny);
   brick[2] = MCOR_CLUSTER * (int)(key / nx / ny);

@@ -32,7 +32,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
   const mcor_lattice* lattice = &context->lattice;
   uint64_t base = 0;
-  double most = 1; /* bricks of all levels, nearly */
+  double most = MCOR_BLOCK_BRICKS; /* bricks of all levels, nearly */
   tree->top = lattice->top;
   tree->is_plane = mcor_is_plane(context);
   memcpy(tree->period, lattice->period, sizeof tree->period);
@@ -40,14 +40,13 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
   for (int l = 0; l <= tree->top + 1; ++l)
   {
     mcor_rung* rung = &tree->rungs[l];
-    uint64_t bricks = 1;
+    uint64_t blocks = 1;
     for (int a = 0; a < 3; ++a)
     {
       const int above = MCOR_BRICK << (tree->top + 1);
-      rung->n[a] = tree->is_plane && a == 2
-        ? MCOR_CLUSTER /* of which one is used */
-        : (int)((lattice->last[a] / above + 2) << (tree->top + 1 - l));
-      bricks *= (uint64_t)rung->n[a];
+      const int64_t along = (lattice->last[a] / above + 2) << (tree->top + 1 - l);
+      rung->n[a] = tree->is_plane && a == 2 ? 1 : (int)((along + 7) >> 3);
+      blocks *= (uint64_t)rung->n[a];
       most *= l == 0 ? rung->n[a] : 1;
     }
     MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
@@ -56,9 +55,10 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
       lattice->top + 1);
     rung->base = base;
     rung->unused = 0;
-    base += bricks;
+    base += blocks;
   }
-  tree->key_limit = base;
+  tree->rungs[tree->top + 2].base = base;
+  tree->key_limit = base * MCOR_BLOCK_BRICKS;
   return MCOR_OK;
 }
 
@@ -76,7 +76,7 @@ bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int 
       const int first = tree->period_first[a] / edge, from = brick[a] - first;
       placed[a] = (from % period + period) % period + first;
     }
-    within = within && placed[a] >= 0 && placed[a] < rung->n[a];
+    within = within && placed[a] >= 0 && placed[a] >> 3 < rung->n[a];
   }
   return within;
 }

@@ -102,10 +102,12 @@ mcor_status mcor_list_splits(
 /* The position of a brick with a key. */
 static void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3])
 {
-  const uint64_t number = key - rung->base, nx = (uint64_t)rung->n[0], ny = (uint64_t)rung->n[1];
-  brick[0] = (int)(number % nx);
-  brick[1] = (int)(number / nx % ny);
-  brick[2] = (int)(number / nx / ny);
+  const uint64_t block = key / MCOR_BLOCK_BRICKS - rung->base;
+  const uint64_t nx = (uint64_t)rung->n[0], ny = (uint64_t)rung->n[1];
+  const int number = (int)(key % MCOR_BLOCK_BRICKS);
+  brick[0] = (int)(block % nx) * 8 + (number & 7);
+  brick[1] = (int)(block / nx % ny) * 8 + (number >> 3 & 7);
+  brick[2] = (int)(block / nx / ny) * 8 + (number >> 6);
 }
 
 mcor_status mcor_take_splits(
@@ -115,7 +117,7 @@ mcor_status mcor_take_splits(
   for (int64_t i = 0; i < count; ++i)
   {
     level = i > 0 && keys[i] < keys[i - 1] ? 0 : level;
-    while (level <= tree->top && keys[i] >= tree->rungs[level + 1].base)
+    while (level <= tree->top && keys[i] / MCOR_BLOCK_BRICKS >= tree->rungs[level + 1].base)
     {
       ++level;
     }

@@ -34,7 +34,7 @@ static bool mcor_split_cluster(
   for (int a = 0; a < 3; ++a)
   {
     const int low = tree->period_first[a] / edge, period = tree->period[a] / edge;
-    const int begin = period > 0 ? low : 0, end = period > 0 ? low + period : rung->n[a];
+    const int begin = period > 0 ? low : 0, end = period > 0 ? low + period : 8 * rung->n[a];
     within = within && first[a] >= begin && first[a] + MCOR_CLUSTER <= end;
   }
   if (within)

@@ -72,13 +72,16 @@ __kernel void mcor_adaptive_bricks(const int count, const int top, __global cons
 {
   MCOR_ITEM(i, i < count);
   int level = 0;
-  while (level < top && keys[i] >= rungs[level + 1].base)
+  const ulong key = keys[i] / MCOR_BLOCK_BRICKS;
+  const int number = (int)(keys[i] % MCOR_BLOCK_BRICKS);
+  while (level < top && key >= rungs[level + 1].base)
   {
     ++level;
   }
-  const ulong number = keys[i] - rungs[level].base;
-  const int4 block = mcor_block_of_key(number, rungs[level].n[0], rungs[level].n[1]);
-  bricks[i] = (int4)(block.x, block.y, block.z, level);
+  const int4 block =
+    mcor_block_of_key(key - rungs[level].base, rungs[level].n[0], rungs[level].n[1]);
+  bricks[i] = (int4)(block.x * 8 + (number & 7), block.y * 8 + (number >> 3 & 7),
+    block.z * 8 + (number >> 6), level);
 }
 
 /* One work-item = one slot. Enters the bricks of its level up from it, and it, into each other's lists, see
@@ -92,7 +95,7 @@ __kernel void mcor_adaptive_neighbours(MCOR_SLOT_PARAMS, __global const mcor_run
   for (int d = 1; d < 8; ++d)
   {
     const int x = own.x + (d & 1), y = own.y + (d >> 1 & 1), z = own.z + (d >> 2);
-    const int other = x < rung->n[0] && y < rung->n[1] && z < rung->n[2]
+    const int other = x >> 3 < rung->n[0] && y >> 3 < rung->n[1] && z >> 3 < rung->n[2]
       ? mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, own.w, x, y, z))
       : -1;
     if (other >= 0)

@@ -110,7 +110,9 @@ ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 ulong mcor_adaptive_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
   __global const mcor_rung* rung = rungs + level;
-  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
+  const ulong block =
+    rung->base + ((ulong)(z >> 3) * rung->n[1] + (y >> 3)) * rung->n[0] + (x >> 3);
+  return block * MCOR_BLOCK_BRICKS + (ulong)((x & 7) | (y & 7) << 3 | (z & 7) << 6);
 }
 
 /* Key of a brick that ascends with its slot, with or without levels. */

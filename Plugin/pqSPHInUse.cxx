@@ -14,6 +14,7 @@
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkOutputWindow.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
@@ -360,11 +361,24 @@ void pqSPHInUse::colourLate()
       this->proxy());
   pqOutputPort* port = source ? source->getOutputPort(0) : nullptr;
   vtkPVDataInformation* data = port && !isNew(this->proxy()) ? port->getDataInformation() : nullptr;
+  const bool isFirst = !std::exchange(this->HasLooked, true);
   if (!data)
   {
     return;
   }
-  const bool isEmpty = data->GetNumberOfPoints() == 0;
+  const bool isEmpty = data->GetNumberOfPoints() + data->GetNumberOfRows() == 0;
+  if (isFirst)
+  {
+    this->WasEmpty = isEmpty; // a panel of what there was before
+    return;
+  }
+  if (isEmpty && !this->WasEmpty)
+  {
+    const QString text = "The output of " + source->getSMName() +
+      " is empty: nothing is drawn. See In Use, at the end of its properties, for what was "
+      "found.\n";
+    vtkOutputWindowDisplayWarningText(text.toUtf8().constData());
+  }
   vtkPVArrayInformation* active =
     data->GetPointDataInformation()->GetAttributeInformation(vtkDataSetAttributes::SCALARS);
   for (pqDataRepresentation* shown : port->getRepresentations(nullptr))

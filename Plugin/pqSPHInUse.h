@@ -52,8 +52,8 @@ private: // NOLINT(readability-redundant-access-specifiers)
   void dropEmptyRows();
 
   QToolButton* Button;
-  bool WasEmpty = false; // the last output
-  QList<double> Given;   // the iso value that the panel chose last; none: it does not choose
+  bool HasLooked = false, WasEmpty = false; // at the output, the last one
+  QList<double> Given; // the iso value that the panel chose last; none: it does not choose
 
   QList<QPair<vtkSMProperty*, QLabel*>> Rows;
   QTimer Pause; // between the last change and the look ahead

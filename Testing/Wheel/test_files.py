@@ -426,7 +426,7 @@ class Layouts(Case):
             writer.Write()
             found, wanted = io.read(self.at("body.vtk")), pyvista.read(self.at("body.vtk"))
             self.assertTrue(np.array_equal(found.positions, wanted.points))
-            self.assertEqual(sorted(found.arrays), ["Velocity", "an id", "t"])
+            self.assertEqual(sorted(found.arrays), ["Mass", "Velocity", "an id", "t"])
             for name in found.arrays:
                 self.assertTrue(np.array_equal(found.arrays[name], wanted[name]), (version, text, grid, name))
             self.assertEqual(found.time, 0.75)
@@ -461,12 +461,44 @@ class Layouts(Case):
             writer.Write()
             found, wanted = io.read(path), pyvista.read(path)
             self.assertEqual((found.positions.dtype, found.positions.tolist()), (wanted.points.dtype, wanted.points.tolist()))
-            self.assertEqual(sorted(found.arrays), sorted(wanted.point_data))
+            self.assertEqual(sorted(found.arrays), sorted([*wanted.point_data, "Mass"]))  # that of the vertices
             for name in found.arrays:
-                values = np.asarray(wanted.point_data[name])
+                values = np.asarray(wanted[name])
                 self.assertEqual(found.arrays[name].dtype, values.dtype)
                 self.assertTrue(np.array_equal(found.arrays[name], values, equal_nan=True), (mode, packed, order, header, name))
             self.assertEqual(found.time, 0.75)
+
+    def test_vertices_in_a_mesh(self):
+        """Points that no vertex uses are a mesh's; arrays of the vertices' cells are theirs. As VTK writes them."""
+        import pyvista
+        from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
+
+        box = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
+        order = np.random.default_rng(44).permutation(len(X))
+        cells = np.concatenate([box.cells, np.column_stack([np.ones(len(X), int), box.n_points + order]).ravel()])
+        types = np.concatenate([box.celltypes, np.ones(len(X), np.uint8)])
+        grid = pyvista.UnstructuredGrid(cells, types, np.concatenate([box.points, X]))
+        grid["Velocity"] = grid.points * 2
+        grid.cell_data["rho"] = np.concatenate([np.zeros(box.n_cells), DENSITY[order]])
+        body = pyvista.PolyData(grid.points, verts=np.column_stack([np.ones(len(X), int), box.n_points + order]).ravel(),
+                                faces=np.array([4, 0, 1, 5, 4]))
+        body["Velocity"], body.cell_data["rho"] = grid.points * 2, np.append(DENSITY[order], 0)
+        for name, data in (("grid.vtu", grid), ("body.vtp", body), ("body.vtk", body), ("old.vtk", grid), ("new.vtk", grid)):
+            if name in ("old.vtk", "new.vtk"):
+                writer = vtkUnstructuredGridWriter()
+                writer.SetFileName(str(self.at(name)))
+                writer.SetInputData(data)
+                writer.SetFileVersion(42 if name == "old.vtk" else 51)
+                writer.SetFileTypeToBinary()
+                writer.Write()
+            else:
+                data.save(self.at(name))
+            with self.assertWarnsRegex(mc.InputWarning, f"{name} has vertices and other cells: 64 points without a vertex"):
+                particles = io.read(self.at(name))
+            self.assertTrue(np.array_equal(particles.positions, X), name)
+            self.assertTrue(np.array_equal(particles.arrays["Velocity"], X * 2), name)
+            self.assertTrue(np.array_equal(particles.arrays["rho"], DENSITY), name)
+            self.assertEqual(particles.density, "rho")
 
     def test_xml_in_pieces(self):
         """Arrays that all pieces have, one after the other."""

@@ -8,20 +8,22 @@ from urllib.parse import unquote_to_bytes
 import numpy as np
 
 from .._warnings import warn
+from ._cells import offsets_of, take_vertices
 from ._particles import TIMES, Body, FileError
 from ._text import parse_numbers
 
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
          "int": "i4", "vtkidtype": "i4", "unsigned_long": "u8", "long": "i8", "float": "f4", "double": "f8",
          **{f"vtktype{sign}int{bits}": f"{'u' if sign else 'i'}{bits // 8}" for sign in ("u", "") for bits in (8, 16, 32, 64)}}
-LISTS = ("VERTICES", "LINES", "POLYGONS", "TRIANGLE_STRIPS", "CELLS")
+LISTS = {"VERTICES": 1, "LINES": 3, "POLYGONS": 7, "TRIANGLE_STRIPS": 6, "CELLS": 0}  # and VTK's types of such cells
 COLUMNS = {"VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TENSORS6": 6, "GLOBAL_IDS": 1, "PEDIGREE_IDS": 1, "EDGE_FLAGS": 1}
 
 
 class Legacy:
     def __init__(self, path):
         self.name, self.data, self.at = path.name, path.read_bytes(), 0
-        self.points, self.arrays, self.field, self.cell_types, self.twice = None, {}, {}, False, None
+        self.points, self.arrays, self.field, self.cell_arrays, self.twice = None, {}, {}, {}, None
+        self.cells, self.types = {}, None  # {name: (values, number)}
         head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\nDATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n",
                         self.data)
         if not head:
@@ -34,7 +36,7 @@ class Legacy:
             if not words:
                 break
             into = self.section(words, into)
-        if self.points is None or not len(self.points) or self.cell_types != (head[3] != b"POLYDATA"):
+        if self.points is None or not len(self.points) or (self.types is None) != (head[3] == b"POLYDATA"):
             raise self.damaged()
         if self.twice is not None:
             warn(f"{self.name} has several arrays '{self.twice}'; the last one is taken.")
@@ -97,18 +99,16 @@ class Legacy:
         if word == "POINTS":
             self.points = self.values(rest[1], rest[0], 3)
         elif word in LISTS and not self.offsets:
-            self.values("int", rest[1])
+            self.cells[word] = self.values("int", rest[1]), int(rest[0])
         elif word in LISTS:
-            for count in rest[:2]:
-                self.values(self.line()[1], count)
+            self.cells[word] = [self.values(self.line()[1], count) for count in rest[:2]]
         elif word == "CELL_TYPES":
-            self.values("int", rest[0])
-            self.cell_types = True
+            self.types = self.values("int", rest[0])
         elif word in ("POINT_DATA", "CELL_DATA"):
             self.count = int(rest[0])
             if word == "POINT_DATA" and (self.points is None or self.count != len(self.points)):
                 raise self.damaged()
-            return self.arrays if word == "POINT_DATA" else {}
+            return self.arrays if word == "POINT_DATA" else self.cell_arrays
         elif word == "FIELD":
             for _ in range(int(rest[1])):
                 name, columns, count, kind = self.next_array()
@@ -144,6 +144,18 @@ class Legacy:
         self.at = end.end() if end else len(self.data)
 
 
+def cells_of(legacy):
+    """Types, where the points of each cell begin, and these points; of lists in the order of VTK's cells."""
+    types, offsets, points = [], [np.zeros(1, int)], []
+    for name in LISTS:
+        if name in legacy.cells and len(legacy.cells[name][0]):
+            begins, ids = legacy.cells[name] if legacy.offsets else offsets_of(*legacy.cells[name])
+            types.append(legacy.types if name == "CELLS" else np.full(len(begins) - 1, LISTS[name]))
+            offsets.append(offsets[-1][-1] + begins[1:])
+            points.append(ids)
+    return np.concatenate(types), np.concatenate(offsets), np.concatenate(points)
+
+
 def read_legacy(path):
     try:
         legacy = Legacy(path)
@@ -153,5 +165,9 @@ def read_legacy(path):
         raise FileError(f"{path.name} is damaged, or ends too early.") from None
     count = len(legacy.points)
     time = next((legacy.field[name] for name in TIMES if name in legacy.field), ())
-    return Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
+    body = Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
                 float(np.ravel(time)[0]) if len(time) else None)
+    try:
+        return take_vertices(path.name, body, *cells_of(legacy), legacy.cell_arrays) if legacy.cells else body
+    except (ValueError, IndexError):  # damaged ones tell nothing
+        return body

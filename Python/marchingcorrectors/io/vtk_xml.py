@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """VTK's XML files (.vtp, .vtu): points and their arrays, of all pieces. VTK's own reader believes what a damaged file
-claims, and ends Python; here all lengths are compared with what is there, and cells are not read. Arrays: text, or
+claims, and ends Python; here all lengths are compared with what is there. Arrays: text, or
 base64 in the file, or base64 or bytes behind an underscore in <AppendedData>, at their offset. Of these bytes the first
 are their number; of packed ones: number of blocks, bytes of a block, bytes of the last one if it is shorter (else 0),
 packed bytes of each."""
@@ -14,11 +14,13 @@ from xml.parsers import expat
 
 import numpy as np
 
+from ._cells import VERTICES, take_vertices
 from ._particles import TIMES, Body, FileError, by_name, check_claim
 from ._text import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
          "Float32": "f4", "Float64": "f8"}
+CELLS = {"Verts": 1, "Lines": 3, "Polys": 7, "Strips": 6, "Cells": None}  # in the order of VTK's cells, and types of such
 BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
 
 
@@ -69,7 +71,7 @@ class Array:
 class XmlFile:
     def __init__(self, path):
         self.data = path.read_bytes()
-        self.pieces, self.field, self.file = [], [], {}  # a piece: {"Points": arrays, "PointData": arrays, "count": number}
+        self.pieces, self.field, self.file = [], [], {}  # a piece: {"Points": arrays, ..., "count": number of points}
         self.offsets, self.path, self.array = [], [], None
         appended = re.search(rb"<AppendedData\b([^>]*)>\s*_", self.data)
         self.begin = appended.end() if appended else len(self.data)
@@ -85,8 +87,11 @@ class XmlFile:
             raise ValueError("it holds no poly data and no unstructured grid")
         self.order = ">" if self.file.get("byte_order") == "BigEndian" else "<"
         self.header = np.dtype(self.order + ("u8" if self.file.get("header_type") == "UInt64" else "u4"))
-        arrays = [array for piece in self.pieces for name in ("Points", "PointData") for array in piece[name]]
-        check_claim(path.name, "the arrays", sum(array.bytes() for array in arrays + self.field), len(self.data))
+        arrays = [array for piece in self.pieces for name, arrays in piece.items() if name not in ("count", "counts")
+                  for array in arrays]
+        self.check = lambda arrays: check_claim(path.name, "one of the arrays, or all together,",
+                                                sum(array.bytes() for array in arrays), len(self.data))
+        self.check(arrays + self.field)
 
     @staticmethod
     def refuse(*_):
@@ -99,14 +104,23 @@ class XmlFile:
         if tag == "VTKFile":
             self.file = attributes
         elif tag == "Piece":
-            self.pieces.append({"Points": [], "PointData": [], "count": int(attributes["NumberOfPoints"])})
+            counts = {name: int(attributes.get(f"NumberOf{name}", 0)) for name in CELLS}
+            self.pieces.append({**{name: [] for name in ("Points", "PointData", "CellData", *CELLS)},
+                                "count": int(attributes["NumberOfPoints"]), "counts": counts})
         elif tag == "DataArray":
             if "offset" in attributes:
                 self.offsets.append(int(attributes["offset"]))
             parent = self.path[-2] if len(self.path) > 1 else ""
-            if attributes.get("type") in KINDS and (parent == "FieldData" or parent in ("Points", "PointData")):
-                self.array = Array(attributes, None if parent == "FieldData" else self.pieces[-1]["count"])
-                (self.field if parent == "FieldData" else self.pieces[-1][parent]).append(self.array)
+            if attributes.get("type") not in KINDS:
+                return
+            if parent == "FieldData":
+                self.array = Array(attributes, None)
+                self.field.append(self.array)
+            elif self.pieces and parent in self.pieces[-1]:
+                piece, counts = self.pieces[-1], self.pieces[-1]["counts"]
+                count = piece["count"] if parent in ("Points", "PointData") else counts.get(parent, sum(counts.values()))
+                self.array = Array(attributes, 0 if attributes.get("Name") == "connectivity" and parent in CELLS else count)
+                piece[parent].append(self.array)
 
     def end(self, tag):
         self.path.pop()
@@ -123,6 +137,32 @@ class XmlFile:
         else:
             values = np.frombuffer(self.bytes_of(array), self.order + array.kind).astype(array.kind)
         return values.reshape(array.count, array.columns) if array.columns > 1 else values
+
+    def body(self, file, piece):
+        """The particles of a piece."""
+        arrays = by_name(file, ((array.name, array) for array in piece["PointData"]))
+        body = Body(self.values(piece["Points"][0]), {name: self.values(array) for name, array in arrays.items()})
+        try:
+            return self.without_mesh(file, body, piece)
+        except (ValueError, LookupError):  # damaged cells tell nothing
+            return body
+
+    def without_mesh(self, file, body, piece):
+        sections = {name: {array.name: array for array in piece[name]} for name, count in piece["counts"].items() if count}
+        types = [self.values(arrays["types"]) if name == "Cells" else np.full(arrays["offsets"].count, CELLS[name])
+                 for name, arrays in sections.items()]
+        is_vertex = np.isin(np.concatenate(types), VERTICES) if types else np.zeros(0, bool)
+        if not is_vertex.any() or is_vertex.all() and not piece["CellData"]:
+            return body
+        offsets, points = [np.zeros(1, int)], []
+        for arrays in sections.values():
+            ends, connectivity = self.values(arrays["offsets"]), arrays["connectivity"]
+            connectivity.count = int(ends[-1])
+            self.check([connectivity])
+            offsets.append(offsets[-1][-1] + ends)
+            points.append(self.values(connectivity))
+        return take_vertices(file, body, np.concatenate(types), np.concatenate(offsets), np.concatenate(points),
+                             {array.name: self.values(array) for array in piece["CellData"]})
 
     def bytes_of(self, array):
         """A header, as it stands before the numbers, and what it says of them."""
@@ -166,10 +206,11 @@ def read_xml(path):
         pieces = [piece for piece in file.pieces if piece["count"]]
         if not pieces:
             raise FileError(f"{path.name} has no points.")
-        points = np.concatenate([file.values(piece["Points"][0]) for piece in pieces])
-        each = [by_name(path.name, ((array.name, array) for array in piece["PointData"])) for piece in pieces]
-        names = [name for name in each[0] if all(name in own and own[name].columns == each[0][name].columns for own in each)]
-        arrays = {name: np.concatenate([file.values(own[name]) for own in each]) for name in names}
+        bodies = [file.body(path.name, piece) for piece in pieces]
+        points, first = np.concatenate([body.points for body in bodies]), bodies[0].arrays
+        names = [name for name in first
+                 if all(name in body.arrays and body.arrays[name].shape[1:] == first[name].shape[1:] for body in bodies)]
+        arrays = {name: np.concatenate([body.arrays[name] for body in bodies]) for name in names}
         time = next((file.values(array).ravel() for array in file.field if array.name in TIMES), ())
     except (FileError, ImportError, MemoryError):
         raise

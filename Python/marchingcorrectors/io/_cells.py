@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Particles among the cells of a mesh: the points of its vertices."""
+import numpy as np
+
+from .._warnings import warn
+
+VERTICES = (1, 2)  # VTK's types of cells that are points
+
+
+def offsets_of(cells, count):
+    """Where cells begin in a list that has the number of points of each before them, and the list without these."""
+    width = len(cells) // count if count else 0
+    if count and width * count == len(cells) and (cells[::width] == width - 1).all():
+        return np.arange(count + 1) * (width - 1), cells.reshape(count, width)[:, 1:].ravel()
+    begins, at = [], 0
+    while at < len(cells):
+        begins.append(at)
+        at += 1 + max(int(cells[at]), 0)
+    begins = np.array(begins + [len(cells)], int)
+    if at != len(cells) or len(begins) != count + 1:
+        raise ValueError("a list of cells is damaged")
+    return begins - np.arange(count + 1), np.delete(cells, begins[:-1])
+
+
+def take_vertices(file, body, types, offsets, points, cell_arrays):
+    """Where there are vertices and other cells, the points of the vertices: other points are a mesh's. Arrays of cells are
+    then those of the vertices' points, unless these have one of that name; also where each point has a vertex."""
+    is_vertex, count = np.isin(types, VERTICES), len(body.points)
+    cells = np.repeat(np.arange(len(types)), np.diff(offsets))
+    used = is_vertex[cells] & (points >= 0) & (points < count)
+    cell_of = np.full(count, -1)
+    cell_of[points[used][::-1]] = cells[used][::-1]  # of several the first
+    if not is_vertex.any() or is_vertex.all() and (not cell_arrays or (cell_of < 0).any()):
+        return body
+    if not is_vertex.all():
+        warn(f"{file} has vertices and other cells: {count - np.count_nonzero(cell_of >= 0)} points without a vertex are "
+             "a mesh's, and no particles.")
+    taken = np.flatnonzero(cell_of >= 0)
+    of_cells = {name: array[cell_of[taken]] for name, array in cell_arrays.items() if len(array) == len(types)}
+    return body._replace(points=body.points[taken],
+                         arrays={**of_cells, **{name: array[taken] for name, array in body.arrays.items()}})

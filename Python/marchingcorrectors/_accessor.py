@@ -28,7 +28,7 @@ Quantity = Union[None, str, float, np.ndarray]
 ABOUT_PARTICLES = '''
         smoothing_length, volume, mass, density: the name of a point array, an array, or one value
             for all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass;
-            rho, ...).
+            rho, ...). volume="computed": by the particles' distances, whatever arrays there are.
         fluid: ("ParticleType", 0): where this point array has another value, there are solids.
         attributes: names of the point arrays to be carried along; by default all, and vx, vy, vz as
             one vector "Velocity".
@@ -237,7 +237,8 @@ class SphAccessor:
         """As vtkMarchingCorrectors does: with a mass set, a volume array that is there is not used."""
         given = {quantity for quantity in QUANTITIES if words.get(quantity) is not None}
         for quantity in given:
-            if not np.isscalar(words[quantity]) or isinstance(words[quantity], str):
+            is_name = isinstance(words[quantity], str) and (quantity, words[quantity]) != ("volume", "computed")
+            if not np.isscalar(words[quantity]) or is_name:
                 words[quantity] = self._array(words[quantity])
         if not words.get("estimate_smoothing_length"):
             self._detect(words, "smoothing_length")

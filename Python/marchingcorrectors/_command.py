@@ -88,7 +88,8 @@ def make_parser(command):
     add("--dp", metavar="D", type=float, help="DualSPHysics: the initial particle distance; h is coefh x sqrt(3) x D (sqrt(2) "
         "in 2-D), and volumes are D^3 (D^2) where mass and density do not tell")
     add("--coefh", metavar="C", type=float, default=1.0, help="DualSPHysics: the coefficient in --dp (default 1)")
-    for name in ("volume", "mass", "density"):
+    add("--volume", metavar="NAME|VALUE|computed", type=quantity, help="an array, one value, or by the particles' distances")
+    for name in ("mass", "density"):
         add("--" + name, metavar="NAME|VALUE", type=quantity, help="an array, or one value")
     add("--fluid", metavar="NAME=VALUE", type=named_value, help="where this array has another value, particles are solid")
     add("--walls", metavar="FILE", action="append", default=[], help="the particles of this file are walls, too")
@@ -138,7 +139,8 @@ def find_words(given, names, particles):
     for name in ("volume", "mass", "density"):
         value = getattr(given, name)
         if value is not None:
-            words[name] = particles.array(value) if isinstance(value, str) else value
+            is_name = isinstance(value, str) and (name, value) != ("volume", "computed")
+            words[name] = particles.array(value) if is_name else value
     length = given.smoothing_length
     if length in ("estimate", "neighbours"):
         words["estimate_smoothing_length"] = True if length == "estimate" else length

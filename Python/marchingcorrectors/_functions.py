@@ -44,6 +44,8 @@ QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 
 def prepare(units, attributes, given, options):
     """given: the arguments of the function that was called."""
+    if isinstance(given["volume"], str) and given["volume"] == "computed":
+        given = {**given, "volume": None, "mass": None, "density": None}
     _warn_of_ignored(given, options)
     arguments = Arguments(units.positions)
     arguments.set_quantities(units.quantities(given))
@@ -132,7 +134,7 @@ def of_files(function: Function) -> Function:
             words["attributes"], arguments = arguments[0], arguments[1:]
         given = [positions.array(thing) if isinstance(thing, str) else thing for thing in arguments]
         for name in ("scalar", "scalar_dot", "solid", *QUANTITIES):
-            if isinstance(words.get(name), str):
+            if isinstance(words.get(name), str) and (name, words[name]) != ("volume", "computed"):
                 words[name] = positions.array(words[name])
         words = positions.words(words)
         if words.get("solid") is None:
@@ -173,7 +175,8 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
         smoothing_length_is_support_radius=True it is the radius at which the kernel ends; with
         estimate_smoothing_length=True it is not needed.
     volume, or mass and density, or mass alone: (particles,) or one value, greater than 0, of units
-        that give L^3; without them volumes follow from the particles' distances.
+        that give L^3; without them, and with volume="computed", volumes follow from the particles'
+        distances, so that drops of few particles and sheets have a surface, too.
     attributes: {name: array}, or a data frame, to be carried to the surface: real ones as the mean of
         the particles around, integers and bools from the nearest particle.
     scalar_dot: a second vector for each particle; the scalar is then the dot product.

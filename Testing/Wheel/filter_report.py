@@ -17,8 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from marchingcorrectors import vtkMarchingCorrectors
 
-STATISTICS = ("Points", "Triangles", "Lines", "Length", "Area", "VirtualCells", "SeedCells", "CellsUsed", "FluidParticles", "PeriodicBounds",
-              "CubeSize", "ScalarRange", "SmoothingLengthRange", "IsoValues")
+COSTS = ("Seconds", "Device", "Platform", "DeviceBytesPeak")  # of this run alone
 
 
 def hash_of(array):
@@ -38,6 +37,13 @@ def report_mesh(surface):
     return found
 
 
+def report_fields(data):
+    """Field data as lists of numbers, or of one text."""
+    arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
+    return {array.GetName(): [array.GetValue(0)] if array.IsA("vtkStringArray") else vtk_to_numpy(array).ravel().tolist()
+            for array in arrays if array.GetName() not in COSTS}
+
+
 def report(file, scalar, value, properties):
     reader, extract, said = vtkXMLPolyDataReader(), vtkMarchingCorrectors(), []
     reader.SetFileName(file)
@@ -55,13 +61,10 @@ def report(file, scalar, value, properties):
     extract.AddObserver("WarningEvent", keep)
     extract.AddObserver("ErrorEvent", lambda *_: None)
     extract.Update()
-    surface = extract.GetOutput()
-    fields = surface.GetFieldData()
-    return {"warnings": said, "error": extract.GetErrorMessage(), **report_mesh(surface),
+    return {"warnings": said, "error": extract.GetErrorMessage(), **report_mesh(extract.GetOutput()),
             "smoothing length": extract.GetUsedSmoothingLength(), "volume": extract.GetUsedVolume(),
             "measures": extract.GetSurfaceMeasures(), "cells": f"{extract.GetEstimatedCells():.9g}",
-            "fields": {name: vtk_to_numpy(data.GetArray(name)).tolist() for name in STATISTICS
-                       for data in (fields, extract.GetRunStatistics()) if data.HasArray(name)}}
+            "fields": report_fields(extract.GetRunStatistics())}
 
 
 def main():

@@ -162,15 +162,19 @@ class Objects(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             data = pyvista.PolyData(POSITIONS)
             data["distance"], data["Type"] = DISTANCE, np.arange(COUNT) % 2
+            data["vx"], data["vy"], data["vz"] = (POSITIONS - 0.65).T
             data.save(Path(folder) / "a.vtk")
             particles = mc.io.read(Path(folder) / "a.vtk")
             again = pickle.loads(pickle.dumps(copy.deepcopy(particles)))
         for each in (particles, again):
             np.testing.assert_array_equal(each["distance"], DISTANCE)
-            self.assertEqual((list(each), "distance" in each, len(each)), (["distance", "Type"], True, COUNT))
+            self.assertEqual((list(each), "distance" in each, len(each)), (["distance", "Type", "vx", "vy", "vz", "Velocity"], True, COUNT))
             self.assertIn("distance", repr(each.arrays))
         found = mc.isosurface(again, "distance", 0.4, smoothing_length=H, volume=V, solid=np.zeros(COUNT, bool))
         np.testing.assert_allclose(found.points, sphere().points, atol=1e-6)
+        joined = mc.isosurface(again, "Velocity", 0.4, smoothing_length=H, volume=V, solid=np.zeros(COUNT, bool),
+                               attributes=["Velocity"])
+        np.testing.assert_allclose(np.linalg.norm(joined.attributes["Velocity"], axis=1), 0.4, atol=0.03)
         told = caught(mc.free_surface, particles, smoothing_length=H, volume=V)
         self.assertIn("say solid=particles['Type'] != VALUE", str(told[0].message))
         self.assertEqual(quietly(mc.gauge, again, [[[0.6, 0.6, -1], [0.6, 0.6, 2]]], smoothing_length="distance").names, ["0"])

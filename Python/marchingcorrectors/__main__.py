@@ -11,6 +11,9 @@ from .io import FileError
 
 
 def main(arguments):
+    if arguments[:1] in (["-h"], ["--help"]):
+        print(__doc__.strip())
+        return 0
     is_convert = len(arguments) >= 3 and arguments[0] == "convert"
     if not is_convert and arguments[:1] not in (["surface"], ["gauge"], ["slice"], ["line"]):
         print(__doc__.strip(), file=sys.stderr)

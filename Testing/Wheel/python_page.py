@@ -8,7 +8,6 @@ of the functions for NumPy. test_windows.py runs it under wine.
 import importlib.util
 import multiprocessing
 import os
-import pickle
 import re
 import struct
 import sys
@@ -60,35 +59,18 @@ def run_blocks(page):
     return scope["surface"]
 
 
-def go_through_functions():
+def go_through_calls():
+    """What crosses between Python and the library: names of files, callbacks, exceptions."""
     x, r = ball()
-    surface = mc.isosurface(x, r, 0.3, attributes={"r": r}, **H)
-    assert abs(surface.attributes["r"].mean() - 0.3) < 1e-3
-    assert len(mc.free_surface(x, **H).triangles) > 1000
-    assert mc.probe(x, x[:10], attributes={"r": r}, **H).values["r"].shape == (10,)
-    gradients = mc.derivatives(x, {"v": x}, **H)
-    assert set(mc.flow(gradients.gradients["v"] if hasattr(gradients, "gradients") else gradients["v"]))
-    assert mc.devices() and "smoothing_length" in mc.isosurface.__doc__
-    same = mc.isosurface(x.tolist(), r.tolist(), 0.3, attributes={"r": r}, **H)
-    assert same == surface
+    surface = mc.isosurface(x, r, 0.3, **H)
     surface.save("ball.npz")
     assert np.array_equal(np.load("ball.npz")["points"], surface.points)
-
-
-def go_through_errors():
-    x, r = ball()
     refused(mc.Error, mc.isosurface, x[:, :2], r, 0.3, **H)
-    refused(mc.Error, mc.isosurface, x, r, 0.3, sph_kernel="cubical", **H)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", mc.InputWarning)
-        refused(mc.InputWarning, mc.isosurface, x, r, 99.0, **H)
+    refused(mc.Error, mc.Context, "no such device")
     seen = []
     assert len(mc.isosurface(x, r, 0.3, progress=lambda *now: seen.append(now), **H).triangles) and seen
-    refused(Exception, mc.isosurface, x, r, 0.3, progress=lambda *_: False, **H)
+    refused(mc.Cancelled, mc.isosurface, x, r, 0.3, progress=lambda *_: False, **H)
     refused(ZeroDivisionError, mc.isosurface, x, r, 0.3, progress=lambda *_: 1 / 0, **H)
-    with mc.Context() as context:
-        refused(TypeError, pickle.dumps, context)
-    refused(mc.Error, mc.Context, "no such device")
 
 
 def go_through_threads():
@@ -137,8 +119,7 @@ def main():
         before = os.getcwd()
         os.chdir(folder)
         try:
-            for step in (lambda: run_blocks(page), go_through_functions, go_through_errors, go_through_threads,
-                         go_through_files):
+            for step in (lambda: run_blocks(page), go_through_calls, go_through_threads, go_through_files):
                 step()
         finally:
             os.chdir(before)  # Windows removes no folder that is in use

@@ -43,9 +43,10 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """What the panel says of a property, without its default."""
+    """What the panel says of a property, without a default that is no more than a word."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
-    return text.split(" Default: ")[0]
+    said, _, default = text.partition(" Default: ")
+    return text if ", " in default else said
 
 
 PANEL = ElementTree.parse(Path(__file__).with_name("MarchingCorrectors.xml"))

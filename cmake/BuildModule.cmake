@@ -4,16 +4,19 @@ set(mcor_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/MarchingCorrectors")
 
 vtk_module_scan(
   MODULE_FILES     "${PROJECT_SOURCE_DIR}/vtkMarchingCorrectors/vtk.module"
-  REQUEST_MODULES  MarchingCorrectors::vtkMarchingCorrectors
+  REQUEST_MODULES  VTK::vtkMarchingCorrectors
   PROVIDES_MODULES mcor_modules
   HIDE_MODULES_FROM_CACHE ON)
 vtk_module_build(
   MODULES             ${mcor_modules}
   PACKAGE             MarchingCorrectors
   INSTALL_EXPORT      MarchingCorrectors
+  TEST_DIRECTORY_NAME NONE # its tests are for VTK's own build
   CMAKE_DESTINATION   "${mcor_package_dir}"
   VERSION             "${PROJECT_VERSION}"
   SOVERSION           "${PROJECT_VERSION_MAJOR}")
+
+add_library(MarchingCorrectors::vtkMarchingCorrectors ALIAS vtkMarchingCorrectors)
 
 if (MCOR_WRAP_PYTHON)
   if (NOT DEFINED MCOR_PYTHON_DESTINATION)

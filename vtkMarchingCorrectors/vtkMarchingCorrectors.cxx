@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 static_assert(static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) == MCOR_MAGNITUDE,
   "the filter's numbers are the core's");
 
@@ -392,3 +393,4 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Surface Measures: " << this->SurfaceMeasures << "\n";
   os << indent << "Estimated Cells: " << this->EstimatedCells << "\n";
 }
+VTK_ABI_NAMESPACE_END

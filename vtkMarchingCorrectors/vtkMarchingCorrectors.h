@@ -94,15 +94,17 @@
 #include <limits>  // For members
 #include <vector>  // For members
 
-class vtkMarchingCorrectorsInput;
-class vtkPointSet;
 struct mcor_input;
 struct mcor_ranks;
 struct mcor_statistics;
 struct mcor_surface;
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkMarchingCorrectorsInput;
+class vtkPointSet;
 struct vtkMarchingCorrectorsChoice;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkMarchingCorrectors : public vtkSPHAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkMarchingCorrectors : public vtkSPHAlgorithm
 {
 public:
   static vtkMarchingCorrectors* New();
@@ -568,5 +570,6 @@ private:
   vtkAhead Next;
   vtkTimeStamp LookTime; // when that was found
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

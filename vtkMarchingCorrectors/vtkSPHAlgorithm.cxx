@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cstring>
 
+VTK_ABI_NAMESPACE_BEGIN
 // These are handed to the core as they are.
 static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
     static_cast<int>(vtkSPHAlgorithm::QUADRATIC) == MCOR_QUADRATIC &&
@@ -438,3 +439,4 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Controller: " << this->Controller << "\n";
   printName("Error Message", this->ErrorMessage);
 }
+VTK_ABI_NAMESPACE_END

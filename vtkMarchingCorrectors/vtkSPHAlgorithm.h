@@ -39,6 +39,11 @@
 #include <string> // For members
 #include <vector> // For members
 
+struct mcor_context;
+struct mcor_input;
+struct mcor_options;
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObjectTree;
 class vtkFieldData;
 class vtkMultiProcessController;
@@ -48,9 +53,6 @@ class vtkSPHParticles;
 class vtkSPHRanks;
 struct vtkSPHRanksBalance;
 struct vtkSPHRanksRun;
-struct mcor_context;
-struct mcor_input;
-struct mcor_options;
 struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
@@ -558,5 +560,6 @@ private:
   int RunCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -28,6 +28,7 @@
 #include <numeric>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** The lowest numbers of many, one more than may be far from the others. */
@@ -280,3 +281,4 @@ int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)
   this->FindFluid(choice, particles);
   return vtkSPHParticles(choice, particles).FindDimension(nullptr, this->Dimension);
 }
+VTK_ABI_NAMESPACE_END

@@ -5,6 +5,7 @@
 #include "mcor_parts.h"
 #include "vtkSPHParticles.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkSPHAlgorithm::vtkInternals::~vtkInternals()
 {
   mcor_free_context(this->Context);
@@ -87,3 +88,4 @@ void vtkSPHAlgorithm::vtkInternals::EndRun()
     this->Release();
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHParticles;
 
 class vtkSPHAlgorithm::vtkInternals
@@ -65,5 +66,6 @@ private:
   };
   Kept Particles, Scalar, Attributes;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

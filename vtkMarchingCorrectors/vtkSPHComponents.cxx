@@ -32,6 +32,7 @@
 #include <numeric>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
@@ -420,3 +421,4 @@ void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Detect Fluid: " << this->DetectFluid << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -46,12 +46,13 @@
 #include <string> // For members
 #include <vector> // For pieces
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkSPHPieces;
 class vtkSPHRanks;
 class vtkTable;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHComponents : public vtkPolyDataAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHComponents : public vtkPolyDataAlgorithm
 {
 public:
   static vtkSPHComponents* New();
@@ -179,5 +180,6 @@ private:
     vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const;
   vtkSmartPointer<vtkPointSet> GatherParticles(vtkSPHRanks& ranks, vtkPointSet* particles) const;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

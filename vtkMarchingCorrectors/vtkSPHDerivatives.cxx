@@ -13,6 +13,7 @@
 
 #include <cstdlib>
 
+VTK_ABI_NAMESPACE_BEGIN
 bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
   vtkPointData* data, const mcor_derivatives& derivatives, bool asFloat) const
 {
@@ -206,3 +207,4 @@ void vtkSPHDerivatives::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Compute Lambda2: " << this->ComputeLambda2 << "\n";
   os << indent << "Compute Strain Rate: " << this->ComputeStrainRate << "\n";
 }
+VTK_ABI_NAMESPACE_END

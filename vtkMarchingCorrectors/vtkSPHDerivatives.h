@@ -46,7 +46,8 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHDerivatives : public vtkSPHAlgorithm
+VTK_ABI_NAMESPACE_BEGIN
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHDerivatives : public vtkSPHAlgorithm
 {
 public:
   static vtkSPHDerivatives* New();
@@ -127,5 +128,6 @@ private:
   void DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
     const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output);
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

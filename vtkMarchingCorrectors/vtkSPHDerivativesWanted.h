@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPointData;
 struct vtkSPHAttribute;
 
@@ -39,5 +40,6 @@ struct vtkSPHDerivatives::vtkWanted
   bool Gradient;
   std::string GradientName;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <set>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -289,3 +290,4 @@ void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
     PrintNumbers(os, indent, ("Gauge " + gauge.Name).c_str(), gauge.Ends.data(), 6);
   }
 }
+VTK_ABI_NAMESPACE_END

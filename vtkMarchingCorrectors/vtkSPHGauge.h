@@ -47,12 +47,14 @@
 #include <string> // For gauges
 #include <vector> // For gauges
 
-class vtkDataSet;
-class vtkTable;
 struct mcor_gauge_line;
 struct mcor_gauges;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHGauge : public vtkSPHAlgorithm
+VTK_ABI_NAMESPACE_BEGIN
+class vtkDataSet;
+class vtkTable;
+
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHGauge : public vtkSPHAlgorithm
 {
 public:
   static vtkSPHGauge* New();
@@ -152,5 +154,6 @@ private:
   vtkDataObject* Lines = nullptr; // while a run lasts
   double InputTime = 0.0;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -23,6 +23,7 @@
 #include <limits>
 #include <memory>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Points that the core gets at a time. */
@@ -326,3 +327,4 @@ void vtkSPHProbe::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Null Value: " << this->NullValue << "\n";
   os << indent << "Valid Point Mask Array Name: " << this->ValidPointMaskArrayName << "\n";
 }
+VTK_ABI_NAMESPACE_END

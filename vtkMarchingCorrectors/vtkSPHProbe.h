@@ -47,9 +47,10 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHSamples;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHProbe : public vtkSPHAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHProbe : public vtkSPHAlgorithm
 {
 public:
   static vtkSPHProbe* New();
@@ -151,5 +152,6 @@ private:
   double GetNull() const;
   void FinishOutput(vtkDataSet* output) const;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -233,3 +234,4 @@ void vtkSPHResample::PrintSelf(ostream& os, vtkIndent indent)
      << this->Dimensions[2] << "\n";
   os << indent << "Only Fluid: " << this->OnlyFluid << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -30,7 +30,8 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHProbe.h"
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHResample : public vtkSPHProbe
+VTK_ABI_NAMESPACE_BEGIN
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHResample : public vtkSPHProbe
 {
 public:
   static vtkSPHResample* New();
@@ -143,5 +144,6 @@ private:
   int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // of a volume, asked of this process
   bool HasPoints = true;                         // of a slice or a line
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -22,6 +22,7 @@
 #include <map>
 #include <sstream>
 
+VTK_ABI_NAMESPACE_BEGIN
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 class vtkSPHTemporalInterpolator::vtkInternals
@@ -361,3 +362,4 @@ void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Resample Factor: " << this->ResampleFactor << "\n";
   os << indent << "Error Message: " << this->ErrorMessage << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -51,11 +51,12 @@
 #include <string> // For members
 #include <vector> // For members
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObject;
 class vtkDataObjectTree;
 class vtkPolyData;
 
-class VTKMARCHINGCORRECTORS_EXPORT vtkSPHTemporalInterpolator : public vtkAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHTemporalInterpolator : public vtkAlgorithm
 {
 public:
   static vtkSPHTemporalInterpolator* New();
@@ -164,5 +165,6 @@ private:
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

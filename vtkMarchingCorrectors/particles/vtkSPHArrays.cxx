@@ -17,6 +17,7 @@
 #include <sstream>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Rounds in place: the surface is the largest thing at this time. */
@@ -300,3 +301,4 @@ bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge)
 {
   return Consider({ { array, array->GetNumberOfComponents() } }, merge).Rank >= 0;
 }
+VTK_ABI_NAMESPACE_END

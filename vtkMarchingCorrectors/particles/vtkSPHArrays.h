@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
 
 /** A text of the core, which is freed; empty for null. */
@@ -97,5 +98,6 @@ bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge = nullptr);
 
 /** A line "Name: values" for each array. */
 std::string vtkSPHDescribe(vtkFieldData* data);
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <iterator>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Blocks = std::vector<vtkPointSet*>;
@@ -333,3 +334,4 @@ std::string vtkSPHFindWalls(const std::vector<std::string>& names)
     " seems to hold walls. Each block is taken by itself, so its particles do not affect the "
     "surfaces of the others. Set Blocks to Together.";
 }
+VTK_ABI_NAMESPACE_END

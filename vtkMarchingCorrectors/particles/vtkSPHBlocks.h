@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObject;
 class vtkDataObjectTree;
 class vtkPointSet;
@@ -59,5 +60,6 @@ vtkMTimeType vtkSPHTimeOfBlocks(vtkDataObjectTree* tree);
  * by themselves. Empty otherwise.
  */
 std::string vtkSPHFindWalls(const std::vector<std::string>& names);
+VTK_ABI_NAMESPACE_END
 
 #endif

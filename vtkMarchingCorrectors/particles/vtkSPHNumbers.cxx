@@ -16,6 +16,7 @@
 #include <sstream>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 const vtkIdType Grain = 8192; // particles that are worth a thread
@@ -166,3 +167,4 @@ std::string vtkSPHMatchNumbers(const std::array<vtkDataArray*, 2>& arrays,
   }
   return "";
 }
+VTK_ABI_NAMESPACE_END

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 
 /**
@@ -21,5 +22,6 @@ class vtkDataArray;
  */
 std::string vtkSPHMatchNumbers(const std::array<vtkDataArray*, 2>& arrays,
   const std::array<std::string, 2>& sets, const std::array<std::vector<vtkIdType>*, 2>& partners);
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** An array without values has no pointer, which to the core would be a constant. */
@@ -395,3 +396,4 @@ std::vector<std::string> vtkSPHParticles::ListLeftOut(
   }
   return sentences;
 }
+VTK_ABI_NAMESPACE_END

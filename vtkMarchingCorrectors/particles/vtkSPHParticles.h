@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 /**
  * A point array asked for by SetInputArrayToProcess: the array if there is one, and the name asked
  * for, empty if none was.
@@ -164,5 +165,6 @@ private:
   std::vector<std::uint8_t> Solid;
   std::vector<mcor_array> Attributes;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

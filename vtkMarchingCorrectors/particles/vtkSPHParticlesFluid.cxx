@@ -14,6 +14,7 @@
 #include <map>
 #include <sstream>
 
+VTK_ABI_NAMESPACE_BEGIN
 bool vtkSPHParticles::CollectSolids()
 {
   this->FluidCount = static_cast<vtkIdType>(this->Core.count);
@@ -129,3 +130,4 @@ std::string vtkSPHParticles::DescribeUnusedType()
   }
   return {};
 }
+VTK_ABI_NAMESPACE_END

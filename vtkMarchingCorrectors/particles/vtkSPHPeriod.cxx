@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <deque>
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data)
 {
   std::deque<std::vector<double>> values;
@@ -87,3 +88,4 @@ bool vtkSPHAlgorithm::SetPeriod(vtkPointSet* particles, mcor_options& options)
   std::copy(bounds.begin(), bounds.end(), options.periodic);
   return true;
 }
+VTK_ABI_NAMESPACE_END

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFieldData;
 class vtkMultiProcessController;
 class vtkPointSet;
@@ -43,5 +44,6 @@ VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
 /** The bounds over all processes' particles; a process may have none. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
+VTK_ABI_NAMESPACE_END
 
 #endif

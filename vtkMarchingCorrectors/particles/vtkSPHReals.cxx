@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 
+VTK_ABI_NAMESPACE_BEGIN
 double vtkSPHValueOf(const mcor_array& array, std::int64_t i)
 {
   if (!array.data)
@@ -99,3 +100,4 @@ std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t m
   }
   return counts.size() <= most ? counts : std::map<double, vtkIdType>();
 }
+VTK_ABI_NAMESPACE_END

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <map>
 
+VTK_ABI_NAMESPACE_BEGIN
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
 {
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
@@ -77,5 +78,6 @@ double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
 
 /** The scalar to contour at a particle. */
 double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);
+VTK_ABI_NAMESPACE_END
 
 #endif

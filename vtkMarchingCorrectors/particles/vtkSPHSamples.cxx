@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Tuples that one thread copies at a time. */
@@ -128,3 +129,4 @@ void vtkSPHSamples::AddTo(vtkFieldData* data) const
   add(this->Weight);
   data->AddArray(this->Mask);
 }
+VTK_ABI_NAMESPACE_END

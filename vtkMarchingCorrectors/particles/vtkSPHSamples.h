@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHParticles;
 
 class vtkSPHSamples
@@ -49,5 +50,6 @@ private:
   Pair Weight;
   vtkNew<vtkCharArray> Mask; // as in vtkProbeFilter
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Where the plane is in the box, along its own axes u and v. False: nowhere. */
@@ -185,3 +186,4 @@ void vtkSPHCropSlice(vtkPolyData* slice, const char* mask)
     slice->SetPolys(kept);
   }
 }
+VTK_ABI_NAMESPACE_END

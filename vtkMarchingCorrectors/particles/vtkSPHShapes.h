@@ -6,6 +6,9 @@
 #ifndef vtkSPHShapes_h
 #define vtkSPHShapes_h
 
+#include "vtkType.h" // For VTK_ABI_NAMESPACE_BEGIN
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 /**
@@ -20,5 +23,6 @@ void vtkSPHMakeLine(const double from[3], const double to[3], int resolution, vt
 
 /** Takes away the quads that have a corner where the point array of this name is 0. */
 void vtkSPHCropSlice(vtkPolyData* slice, const char* mask);
+VTK_ABI_NAMESPACE_END
 
 #endif

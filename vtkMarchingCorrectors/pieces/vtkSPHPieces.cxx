@@ -14,6 +14,7 @@
 #include <numeric>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Triple = std::array<double, 3>;
@@ -352,3 +353,4 @@ void vtkSPHPieces::FindParents()
     this->Pieces[static_cast<size_t>(cavities[i])].Parent = around[i];
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -11,6 +11,7 @@
 #include <array>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 /** One piece. Lengths have the unit of the positions. */
@@ -73,5 +74,6 @@ private:
   std::vector<Shift> GroupShift; // of a part: from it to its group's first part
   std::vector<char> GroupEndless;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

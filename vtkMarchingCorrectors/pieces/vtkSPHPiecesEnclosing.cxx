@@ -11,6 +11,7 @@
 #include <cmath>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Triple = std::array<double, 3>;
@@ -238,3 +239,4 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
     });
   return found;
 }
+VTK_ABI_NAMESPACE_END

@@ -23,6 +23,7 @@
 
 #include <memory>
 
+VTK_ABI_NAMESPACE_BEGIN
 void vtkMarchingCorrectors::EstimateDistributed(
   vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options)
 {
@@ -163,3 +164,4 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
     vtkSPHMatchEmpty(ranks, output);
   }
 }
+VTK_ABI_NAMESPACE_END

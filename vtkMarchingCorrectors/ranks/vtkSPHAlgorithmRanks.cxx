@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <string>
 
+VTK_ABI_NAMESPACE_BEGIN
 bool vtkSPHAlgorithm::BeginDistributed(
   vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken)
 {
@@ -104,3 +105,4 @@ int vtkSPHAlgorithm::FindDimensionDistributed(vtkPointSet* particles)
   calls.End(false);
   return found;
 }
+VTK_ABI_NAMESPACE_END

@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Ids = std::vector<vtkIdType>;
@@ -198,3 +199,4 @@ std::string vtkSPHComponents::SplitDistributed(
   Renumber(output->GetCellData(), newTriangles);
   return "";
 }
+VTK_ABI_NAMESPACE_END

@@ -20,6 +20,7 @@
 
 #include <memory>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Lists, for each rank, the particles that came from it and that this one owns. */
@@ -131,3 +132,4 @@ void vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& 
     }
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -21,6 +21,7 @@
 #include <set>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Around the lines, in cubes: so that one alone, too, has a box, and bricks to be cut at. */
@@ -149,3 +150,4 @@ void vtkSPHGauge::GaugeDistributed(
   }
   this->Fill(output, gauges, found, true);
 }
+VTK_ABI_NAMESPACE_END

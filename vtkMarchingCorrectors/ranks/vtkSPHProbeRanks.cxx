@@ -23,6 +23,7 @@
 #include <cmath>
 #include <limits>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
@@ -214,3 +215,4 @@ void vtkSPHProbe::ProbeDistributed(
     this->FinishOutput(output);
   }
 }
+VTK_ABI_NAMESPACE_END

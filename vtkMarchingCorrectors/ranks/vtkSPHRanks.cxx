@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkSPHRanks::vtkSPHRanks(vtkMultiProcessController* controller)
   : Controller(vtkMPIController::SafeDownCast(controller))
   , Communicator(vtkDIYUtilities::GetCommunicator(controller))
@@ -64,3 +65,4 @@ void vtkSPHRanks::ExchangeBlocks(const Visit& send, const Visit& receive)
   master.exchange(true); // to whom there is something to say, no neighbours being known
   master.foreach (receive);
 }
+VTK_ABI_NAMESPACE_END

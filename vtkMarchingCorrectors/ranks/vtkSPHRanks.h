@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 /** For each rank, or from each. */
 using vtkSPHRanksLists = std::vector<std::vector<vtkIdType>>;
 
@@ -160,5 +161,6 @@ void vtkSPHPlaceOnFirst(
     }
   }
 }
+VTK_ABI_NAMESPACE_END
 
 #endif

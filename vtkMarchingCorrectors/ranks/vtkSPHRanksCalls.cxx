@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route)
   : Ranks(ranks)
 {
@@ -78,3 +79,4 @@ int vtkSPHRanksCalls::Deliver(
   *allCount = static_cast<std::int64_t>(this->Gathered.size() / width);
   return 0;
 }
+VTK_ABI_NAMESPACE_END

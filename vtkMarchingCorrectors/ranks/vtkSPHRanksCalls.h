@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 struct vtkSPHRanksRoute;
 
 class vtkSPHRanksCalls
@@ -48,5 +49,6 @@ private:
   bool Stopped = false;
   Bytes Gathered;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

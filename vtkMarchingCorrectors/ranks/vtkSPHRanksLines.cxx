@@ -19,6 +19,7 @@
 #include <limits>
 #include <numeric>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** The values of an array that a surface may lack. */
@@ -134,3 +135,4 @@ void vtkSPHRanksLines::Move(vtkSPHRanks& ranks, vtkPolyData* output)
   arrays->SetGlobalIds(CountUp("GlobalPointIds", output->GetNumberOfPoints()));
   output->GetCellData()->SetGlobalIds(CountUp("GlobalCellIds", cells));
 }
+VTK_ABI_NAMESPACE_END

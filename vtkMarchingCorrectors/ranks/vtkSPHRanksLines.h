@@ -14,6 +14,7 @@
 
 #include <array>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 class vtkSPHRanksLines
@@ -48,5 +49,6 @@ private:
   vtkIdType Count = 0;
   bool Failed = false;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

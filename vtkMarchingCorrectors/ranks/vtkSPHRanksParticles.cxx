@@ -19,6 +19,7 @@
 #include <string>
 #include <tuple>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** An array's name, type and components. */
@@ -263,3 +264,4 @@ void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
     result->GetPointData()->ShallowCopy(empty->GetPointData());
   }
 }
+VTK_ABI_NAMESPACE_END

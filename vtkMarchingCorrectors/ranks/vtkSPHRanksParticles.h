@@ -11,6 +11,7 @@
 
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
@@ -42,5 +43,6 @@ vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData
  * Collective.
  */
 void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result);
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 constexpr int Bins = 64; // of a histogram: a round of the search for a plane
@@ -226,3 +227,4 @@ void vtkSPHRanksPartition::FindOverlaps(const vtkSPHRanksBox& box, std::vector<i
     }
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHRanks;
 
 /** low and high side of x, y, z; the low side belongs to the box, the high side does not. */
@@ -72,5 +73,6 @@ private:
   std::vector<vtkSPHRanksBox> Boxes;
   std::vector<vtkSPHRanksPlace> Places; // while space is divided
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -14,6 +14,7 @@
 #include <limits>
 #include <sstream>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 std::string Describe(const vtkSPHPeriod& found)
@@ -89,3 +90,4 @@ bool vtkSPHAlgorithm::SetPeriodDistributed(vtkPointSet* particles, mcor_options&
   std::copy(bounds.begin(), bounds.end(), options.periodic);
   return true;
 }
+VTK_ABI_NAMESPACE_END

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
@@ -211,3 +212,4 @@ void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArr
   ranks.Reduce(vtkSPHRanks::SUM, &measures.open, 1);
   mcor_keep_measures(&measures, &statistics);
 }
+VTK_ABI_NAMESPACE_END

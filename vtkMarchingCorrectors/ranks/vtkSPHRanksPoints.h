@@ -10,6 +10,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkSmartPointer.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHRanks;
 
 /** Numbers of a rank's points and triangles, and how many there are on all ranks. */
@@ -29,5 +30,6 @@ vtkSPHRanksNumbers vtkSPHNumber(vtkSPHRanks& ranks, const mcor_surface& surface)
 /** Area and volume of all ranks' surface, into `statistics`; numbers: of this rank's points. Collective. */
 void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
   mcor_statistics& statistics);
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Along an edge; cuts need not lie on bricks, but those that do cost least. */
@@ -343,3 +344,4 @@ vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
 {
   return Router(input, options, globals, balance).Find(ranks);
 }
+VTK_ABI_NAMESPACE_END

@@ -14,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 /** One period, as the core has it: it begins at a node of the lattice. */
@@ -71,5 +72,6 @@ struct vtkSPHRanksBalance
  */
 vtkSPHRanksRoute vtkSPHFindRoute(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals, const vtkSPHRanksBalance& balance);
+VTK_ABI_NAMESPACE_END
 
 #endif

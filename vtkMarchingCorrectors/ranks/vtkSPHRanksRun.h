@@ -13,6 +13,7 @@
 #include "vtkSPHRanksRoute.h"
 #include "vtkSmartPointer.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 struct vtkSPHRanksRun
 {
   explicit vtkSPHRanksRun(vtkMultiProcessController* controller)
@@ -33,5 +34,6 @@ struct vtkSPHRanksRun
   vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
   std::vector<vtkIdType> From;       ///< how many of these from each rank
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -14,6 +14,7 @@
 #include <functional>
 #include <numeric>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 enum How
@@ -173,3 +174,4 @@ void vtkSPHAddSampleShares(
   AddCount(run, "RankPoints", shares, &Share::Points);
   AddSeconds(run, shares);
 }
+VTK_ABI_NAMESPACE_END

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFieldData;
 class vtkSPHRanks;
 struct vtkSPHRanksRoute;
@@ -44,5 +45,6 @@ void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& sha
  */
 void vtkSPHAddSampleShares(
   vtkSPHRanks& ranks, vtkFieldData* run, const vtkSPHRanksRoute& route, std::int64_t points);
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 vtkSmartPointer<vtkAbstractArray> MakeLike(vtkAbstractArray* array, vtkIdType count)
@@ -133,12 +134,27 @@ std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdT
 }
 }
 
+namespace
+{
+/** The array, or a copy whose values lie side by side. */
+vtkSmartPointer<vtkAbstractArray> AsPlain(vtkAbstractArray* array)
+{
+  if (array->HasStandardMemoryLayout())
+  {
+    return array;
+  }
+  vtkSmartPointer<vtkAbstractArray> copy = MakeLike(array, 0);
+  copy->DeepCopy(array);
+  return copy;
+}
+}
+
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
 {
   vtkSPHRanksArrays arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
-    arrays.emplace_back(data->GetAbstractArray(i));
+    arrays.push_back(AsPlain(data->GetAbstractArray(i)));
   }
   return arrays;
 }
@@ -146,7 +162,7 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointData* data)
 vtkSPHRanksArrays vtkSPHListArrays(vtkPolyData* points)
 {
   vtkSPHRanksArrays arrays = vtkSPHListArrays(points->GetPointData());
-  arrays.emplace(arrays.begin(), points->GetPoints()->GetData());
+  arrays.insert(arrays.begin(), AsPlain(points->GetPoints()->GetData()));
   return arrays;
 }
 
@@ -231,3 +247,4 @@ vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays
   }
   return returned;
 }
+VTK_ABI_NAMESPACE_END

@@ -11,6 +11,7 @@
 
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkAbstractArray;
 class vtkPointData;
 class vtkPolyData;
@@ -37,5 +38,6 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
  */
 vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount);
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <thread>
 
+VTK_ABI_NAMESPACE_BEGIN
 /** Looks at once, then less and less often. */
 inline void vtkSPHAwait(vtkMPICommunicator::Request& request)
 {
@@ -40,5 +41,6 @@ inline void vtkSPHAwaitRanks(vtkMPIController* controller)
     vtkSPHAwait(sending);
   }
 }
+VTK_ABI_NAMESPACE_END
 
 #endif

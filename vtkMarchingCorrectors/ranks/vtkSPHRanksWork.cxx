@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /** Cells of the coarse grid. */
@@ -183,3 +184,4 @@ std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input&
   }
   return work;
 }
+VTK_ABI_NAMESPACE_END

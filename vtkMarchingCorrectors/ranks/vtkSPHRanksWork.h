@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHRanks;
 
 /**
@@ -27,5 +28,6 @@ std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_op
  */
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals);
+VTK_ABI_NAMESPACE_END
 
 #endif

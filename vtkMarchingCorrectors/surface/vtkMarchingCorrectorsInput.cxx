@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsInput.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
   const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points)
   : vtkSPHParticles(choice, points)
@@ -126,3 +127,4 @@ void vtkMarchingCorrectorsInput::SignScalar()
   SignObject(this->ScalarSignature, this->ScalarDot);
   this->ScalarSignature.push_back(static_cast<std::uint64_t>(this->Core.scalar_component));
 }
+VTK_ABI_NAMESPACE_END

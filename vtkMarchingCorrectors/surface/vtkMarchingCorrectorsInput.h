@@ -9,6 +9,7 @@
 
 #include "vtkSPHParticles.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 struct vtkMarchingCorrectorsChoice : vtkSPHParticlesChoice
 {
   vtkSPHRequest Scalar;
@@ -44,5 +45,6 @@ private:
   void NameScalar();
   void SignScalar();
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -23,6 +23,7 @@
 #include <cstdlib>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /// Of an array's range among the particles: on a surface it varies by more, or it is noise.
@@ -379,3 +380,4 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddCount(fieldData, "IterationLimit", { o.iteration_limit });
   vtkSPHAddCount(fieldData, "Preview", { o.preview });
 }
+VTK_ABI_NAMESPACE_END

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkFieldData;
 class vtkMarchingCorrectorsInput;
 class vtkPolyData;
@@ -50,5 +51,6 @@ private:
   const mcor_options& Options;
   mcor_surface& Surface;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

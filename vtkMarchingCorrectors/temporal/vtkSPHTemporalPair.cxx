@@ -20,6 +20,7 @@
 #include <sstream>
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 const vtkIdType Grain = 8192;       // particles that are worth a thread
@@ -345,3 +346,4 @@ bool vtkSPHTemporalPair::IsInBoth(vtkAbstractArray* array) const
   }
   return true;
 }
+VTK_ABI_NAMESPACE_END

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 /** The user's choices, and the times of the two steps, the second one later. */
 struct vtkSPHTemporalChoice
 {
@@ -72,5 +73,6 @@ private:
   bool FollowsVelocities = false;
   std::vector<std::uint64_t> Signature; // of what was matched
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

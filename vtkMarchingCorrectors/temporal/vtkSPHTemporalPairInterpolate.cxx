@@ -13,6 +13,7 @@
 
 #include <type_traits>
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 const vtkIdType Grain = 8192; // particles that are worth a thread
@@ -137,3 +138,4 @@ void vtkSPHTemporalPair::InterpolateArrays(
       }));
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -4,7 +4,7 @@
 #define mcor_native_h
 
 /* The built-in device: an OpenCL platform inside of this library, whose one device is the CPU, for which
- * the kernels were compiled with the library (cmake/CompileAhead.cmake). It has those functions of
+ * the kernels were compiled with the library (CompileAhead.cmake). It has those functions of
  * OpenCL that are called for it: kernels are not timed, nor programs loaded, and a part of it is a number of
  * threads. All commands are done when their call returns. */
 

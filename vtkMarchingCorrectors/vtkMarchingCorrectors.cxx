@@ -62,21 +62,18 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 }
 
 // What is not a number, as an empty row of a panel's list, is none.
-bool vtkMarchingCorrectors::ListIsoValues(
+void vtkMarchingCorrectors::ListIsoValues(
   const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list)
 {
   const bool isFree = input.Choice.FreeSurface;
   vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
   std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
     std::back_inserter(list), [](double value) { return !std::isnan(value); });
-  if (!list.empty())
+  double range[2], value = 0.5;
+  if (list.empty() && (isFree || mcor_find_iso_value(&input.Core, ranks, range, &value)))
   {
-    return true;
+    list.push_back(value);
   }
-  double range[2], value = isFree ? 0.5 : 0.0;
-  const bool isFound = isFree || mcor_find_iso_value(&input.Core, ranks, range, &value);
-  list.push_back(value);
-  return isFound;
 }
 
 void vtkMarchingCorrectors::SetPanelBoxPosition(double x, double y, double z)

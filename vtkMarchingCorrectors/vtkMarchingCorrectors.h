@@ -563,8 +563,8 @@ private:
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  /** Lists the iso values that were given, or a usual one, over all ranks unless that is null. False if there is none. */
-  bool ListIsoValues(
+  /** Lists the iso values that were given, or a usual one, over all ranks unless that is null: empty if there is none. */
+  void ListIsoValues(
     const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list);
 
   vtkAhead Next;

@@ -36,6 +36,14 @@ class Sources(unittest.TestCase):
         self.assertEqual(callers, {"device"})
 
 
+    def test_letters_are_small_in_every_locale(self):
+        """tolower('I') is no i in a Turkish one: names of arrays and blocks would not be found."""
+        for folder, _, names in os.walk(os.path.join(SOURCE, "vtkMarchingCorrectors")):
+            for name in names:
+                with open(os.path.join(folder, name), encoding="utf-8") as file:
+                    self.assertNotRegex(file.read(), r"\b(std::)?to(lower|upper)\([^'I]", name)
+
+
 class Arguments(unittest.TestCase):
     def check_refused(self, sentence, *command):
         before = time.time()

@@ -17,7 +17,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <iterator>
 
@@ -72,7 +71,8 @@ bool TellsOfWalls(const std::string& name)
 {
   std::string small = name;
   std::transform(small.begin(), small.end(), small.begin(),
-    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    [](char letter)
+    { return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter; });
   const char* const words[] = { "wall", "bound", "solid", "obstacle", "rigid" };
   return std::any_of(std::begin(words), std::end(words),
     [&small](const char* word) { return small.find(word) != std::string::npos; });

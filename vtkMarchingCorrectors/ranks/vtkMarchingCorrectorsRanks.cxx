@@ -61,7 +61,8 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   }
   std::vector<double> isoValues;
   vtkSPHRanksCalls calls(run.Ranks);
-  calls.End(!this->ListIsoValues(mine, calls.Get(), isoValues));
+  this->ListIsoValues(mine, calls.Get(), isoValues);
+  calls.End(isoValues.empty());
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
   options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;

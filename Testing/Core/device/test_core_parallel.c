@@ -50,7 +50,7 @@ static bool is_complete(int64_t count, int64_t grain)
 {
   visits v = { .count = count, .elements = calloc((size_t)count + 1, 1) };
   bool good = v.elements != NULL;
-  const int slices = good ? mcor_parallel_for(count, grain, visit, &v) : 0;
+  const int slices = good ? mcor_parallel_for(NULL, count, grain, visit, &v) : 0;
   int64_t sum = 0;
   for (int s = 0; s < MCOR_SLICES; ++s)
   {
@@ -326,13 +326,13 @@ static void test_ranges(void** state)
   }
   const mcor_array array = { .data = values, .type = MCOR_FLOAT32 };
   double range[2];
-  mcor_find_range(&array, solid, count, 0, range);
+  mcor_find_range(NULL, &array, solid, count, 0, range);
   assert_true(range[0] == (double)(count / 2) && range[1] == (double)(count - 1));
-  assert_true(mcor_largest(&array, count, 0) == (double)(count - 1));
+  assert_true(mcor_largest(NULL, &array, count, 0) == (double)(count - 1));
   values[3] = -1e9f;
-  assert_true(mcor_largest(&array, count, 0) == 1e9);
+  assert_true(mcor_largest(NULL, &array, count, 0) == 1e9);
   memset(solid, 1, (size_t)count);
-  mcor_find_range(&array, solid, count, 0, range);
+  mcor_find_range(NULL, &array, solid, count, 0, range);
   assert_true(range[0] > range[1] && mcor_largest_of(range[0], range[1]) == 0);
   free(values);
   free(solid);

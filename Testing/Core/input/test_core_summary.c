@@ -35,6 +35,9 @@ static void test_estimate(void** state)
   assert_true(least == 0.1);
   /* The cubes of the large one are twice as large, unless all are of one size. */
   assert_near(mcor_estimate_cells(&input, &options, least), 4 * one);
+  options.capping = MCOR_CAP_PERIOD; /* which makes them so */
+  assert_near(mcor_estimate_cells(&input, &options, least), 11 * one);
+  options.capping = 0;
   options.level_limit = 0;
   assert_near(mcor_estimate_cells(&input, &options, least), 11 * one);
   const uint8_t solid[4] = { 0, 0, 0, 1 };

@@ -98,7 +98,7 @@ static mcor_status mcor_find_finer(mcor_context* context)
        job.begin += MCOR_FINER_STEP)
   {
     const int64_t rest = tree->region_count - job.begin;
-    mcor_parallel_for(rest < MCOR_FINER_STEP ? rest : MCOR_FINER_STEP, MCOR_HEAVY_GRAIN / 8,
+    mcor_parallel_for(context, rest < MCOR_FINER_STEP ? rest : MCOR_FINER_STEP, MCOR_HEAVY_GRAIN / 8,
       mcor_find_finer_slice, &job);
     MCOR_TRY(mcor_report_launch(context));
   }

@@ -252,7 +252,7 @@ static mcor_status mcor_split_in_slices(mcor_context* context, mcor_tree_job* jo
   for (job->begin = 0; job->begin < particles; job->begin += step)
   {
     const int64_t rest = particles - job->begin;
-    mcor_parallel_for(rest < step ? rest : step, grain, mcor_split_slice, job);
+    mcor_parallel_for(context, rest < step ? rest : step, grain, mcor_split_slice, job);
     for (int s = 0; s < MCOR_SLICES; ++s)
     {
       MCOR_TRY(job->failed[s] ? mcor_fail_leaves(context) : MCOR_OK);

@@ -8,6 +8,7 @@
 #include "mcor_internal.h"
 #include "mcor_native.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define MCOR_CL_TRY(context, call, what)                                                           \
@@ -34,6 +35,17 @@ void mcor_blame_files(mcor_context* context);
 
 /* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
+
+/* A variable of the environment that only tests set: other builds do not read it. */
+static inline const char* mcor_test_setting(const char* name)
+{
+#ifdef MCOR_TESTING
+  return getenv(name);
+#else
+  (void)name;
+  return NULL;
+#endif
+}
 
 static inline mcor_status mcor_ask(mcor_context* context, bool compiles)
 {

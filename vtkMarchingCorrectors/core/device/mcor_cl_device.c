@@ -155,10 +155,10 @@ static cl_device_type mcor_type_of(cl_device_id device)
 }
 
 /* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
- * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM is for tests: cpu or gpu. */
+ * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM, cpu or gpu, is for tests. */
 static bool mcor_has_cpu_form(const mcor_cl* cl)
 {
-  const char* forced = getenv("MCOR_DEVICE_FORM");
+  const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
   if (forced && *forced)
   {
     return strcmp(forced, "gpu") != 0;

@@ -113,7 +113,7 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
  * tests. */
 static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
-  const char* forced = getenv("MCOR_LANES");
+  const char* forced = mcor_test_setting("MCOR_LANES");
   const int number = forced ? atoi(forced) : 0;
   cl_uint width = 1;
   clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);

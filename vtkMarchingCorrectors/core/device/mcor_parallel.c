@@ -188,8 +188,9 @@ static void mcor_run_slices(void* data, size_t first, size_t last)
   }
 }
 
-mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
-  mcor_slice_body body, void* data, int* slices)
+/* asked: whom to ask whether to go on; NULL: nobody. */
+static mcor_status mcor_run_loop(mcor_pool* of_device, mcor_context* asked, int64_t count,
+  int64_t grain, mcor_slice_body body, void* data, int* slices)
 {
   const int64_t most = count / grain;
   mcor_loop loop = { count,
@@ -197,11 +198,10 @@ mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grai
       : most > 0       ? (int)most
                        : count > 0,
     body, data };
-  mcor_pool* of_device = context ? context->cl.pool : NULL;
   const int usable = of_device || loop.slices < 2 ? 1 : mcor_limit_threads(mcor_processors(1));
   mcor_pool own = { .threads = usable < MCOR_LOOP_THREADS ? usable : MCOR_LOOP_THREADS };
   const mcor_status status = mcor_pool_run(
-    of_device ? of_device : &own, context, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
+    of_device ? of_device : &own, asked, 0, (size_t)loop.slices, 1, mcor_run_slices, &loop);
   mcor_end_pool(&own);
   if (slices)
   {
@@ -210,9 +210,17 @@ mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grai
   return status;
 }
 
-int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data)
+mcor_status mcor_parallel_run(mcor_context* context, int64_t count, int64_t grain,
+  mcor_slice_body body, void* data, int* slices)
+{
+  return mcor_run_loop(
+    context ? context->cl.pool : NULL, context, count, grain, body, data, slices);
+}
+
+int mcor_parallel_for(
+  mcor_context* context, int64_t count, int64_t grain, mcor_slice_body body, void* data)
 {
   int slices;
-  mcor_parallel_run(NULL, count, grain, body, data, &slices);
+  mcor_run_loop(context ? context->cl.pool : NULL, NULL, count, grain, body, data, &slices);
   return slices;
 }

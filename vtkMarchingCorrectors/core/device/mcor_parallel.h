@@ -27,8 +27,10 @@ typedef void (*mcor_slice_body)(void* data, int slice, int64_t first, int64_t la
 /* Runs the body once for every slice of [0, count), in any order, in several threads; waits for
  * all. Where the slices are depends on `count` and `grain`, their least size, alone: what a loop
  * adds up for each and then in order is the same whatever the number of threads. Returns the number
- * of slices. */
-int mcor_parallel_for(int64_t count, int64_t grain, mcor_slice_body body, void* data);
+ * of slices. context: whose threads take part; it is not asked whether to go on. NULL: threads are made for this
+ * loop. */
+int mcor_parallel_for(
+  mcor_context* context, int64_t count, int64_t grain, mcor_slice_body body, void* data);
 
 /* Runs the body within a call, which may be cancelled between slices: then some are left out. `slices`
  * becomes their number; NULL: not wanted. A context that is NULL, or in no call, is not asked. A

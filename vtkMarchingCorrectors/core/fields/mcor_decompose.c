@@ -118,6 +118,6 @@ mcor_status mcor_decompose_gradients(const double* gradients, int64_t count, con
     return MCOR_INVALID_ARGUMENT;
   }
   mcor_decompose_job job = { gradients, flow };
-  mcor_parallel_for(count, MCOR_HEAVY_GRAIN, mcor_decompose_slice, &job);
+  mcor_parallel_for(NULL, count, MCOR_HEAVY_GRAIN, mcor_decompose_slice, &job);
   return MCOR_OK;
 }

@@ -16,7 +16,7 @@ void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t c
   all.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    mcor_find_range(&all, NULL, count, a, context->box.points + 2 * a);
+    mcor_find_range(context, &all, NULL, count, a, context->box.points + 2 * a);
   }
   context->box.of_points = true;
 }

@@ -173,7 +173,7 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_array* arr
   const bool same = strcmp(name, role) == 0;
   MCOR_TRY(mcor_check_form(context, array, role, components));
   int c = 0;
-  const int64_t i = mcor_find_illegal(array, solid, count, positive, &c);
+  const int64_t i = mcor_find_illegal(context, array, solid, count, positive, &c);
   if (i < 0)
   {
     return MCOR_OK;

@@ -41,7 +41,7 @@ static mcor_status mcor_measure_components(
   {
     const mcor_array* array = &input->attributes[a];
     /* The first particle that is not, of the rank where it has the least number. */
-    int64_t not_finite = mcor_find_not_finite(array, input->solid, input->count);
+    int64_t not_finite = mcor_find_not_finite(context, array, input->solid, input->count);
     not_finite = not_finite < 0 ? INT64_MAX : not_finite;
     MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &not_finite));
     not_finite = not_finite == INT64_MAX ? -1 : not_finite;
@@ -51,7 +51,7 @@ static mcor_status mcor_measure_components(
       found->not_finite = not_finite;
       if (not_finite < 0)
       {
-        mcor_measure_component(input, a, c, found);
+        mcor_measure_component(context, input, a, c, found);
         MCOR_TRY(context->run.options->ranks ? mcor_merge_component(context, input, array, c, found)
                                              : MCOR_OK);
       }
@@ -74,7 +74,7 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
-  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(&input->mass, input->count, 0) : 0;
+  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, &input->mass, input->count, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {

@@ -139,11 +139,11 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->high[slice] = high;
 }
 
-void mcor_find_range(
-  const mcor_array* array, const uint8_t* solid, int64_t count, int component, double range[2])
+void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  int64_t count, int component, double range[2])
 {
   mcor_range_job job = { .array = array, .solid = solid, .component = component };
-  const int slices = mcor_parallel_for(count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
+  const int slices = mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
   range[0] = DBL_MAX;
   range[1] = -DBL_MAX;
   for (int s = 0; s < slices; ++s)
@@ -153,24 +153,24 @@ void mcor_find_range(
   }
 }
 
-double mcor_largest(const mcor_array* array, int64_t count, int component)
+double mcor_largest(mcor_context* context, const mcor_array* array, int64_t count, int component)
 {
   double range[2];
-  mcor_find_range(array, NULL, count, component, range);
+  mcor_find_range(context, array, NULL, count, component, range);
   return mcor_largest_of(range[0], range[1]);
 }
 
-void mcor_measure_component(
-  const mcor_input* input, int attribute, int component, mcor_global_component* found)
+void mcor_measure_component(mcor_context* context, const mcor_input* input, int attribute,
+  int component, mcor_global_component* found)
 {
   const mcor_array* array = &input->attributes[attribute];
   double range[2];
-  mcor_find_range(array, input->solid, input->count, component, range);
+  mcor_find_range(context, array, input->solid, input->count, component, range);
   found->low = range[0];
   found->high = range[1];
   if (input->solid && !(range[0] < range[1]))
   {
-    mcor_find_range(array, NULL, input->count, component, range);
+    mcor_find_range(context, array, NULL, input->count, component, range);
   }
   found->varies = range[0] < range[1];
   found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
@@ -208,10 +208,11 @@ static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
   job->illegal[slice] = illegal;
 }
 
-static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positive)
+static bool mcor_is_legal(
+  mcor_context* context, const mcor_array* array, int64_t elements, bool positive)
 {
   mcor_legal_job job = { .array = array, .positive = positive };
-  const int slices = mcor_parallel_for(elements, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
+  const int slices = mcor_parallel_for(context, elements, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
   bool illegal = false;
   for (int s = 0; s < slices; ++s)
   {
@@ -220,11 +221,11 @@ static bool mcor_is_legal(const mcor_array* array, int64_t elements, bool positi
   return !illegal;
 }
 
-int64_t mcor_find_illegal(
-  const mcor_array* array, const uint8_t* solid, int64_t count, bool positive, int* component)
+int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
-  if (array->data && mcor_is_legal(array, count * components, positive))
+  if (array->data && mcor_is_legal(context, array, count * components, positive))
   {
     return -1;
   }
@@ -243,10 +244,11 @@ int64_t mcor_find_illegal(
   return -1;
 }
 
-int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count)
+int64_t mcor_find_not_finite(
+  mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count)
 {
   int component;
-  return mcor_find_illegal(array, solid, count, false, &component);
+  return mcor_find_illegal(context, array, solid, count, false, &component);
 }
 
 /* The power of 2 just above all components of particle i; 0 if they are 0 or not finite. */

@@ -65,14 +65,14 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
 void mcor_widen_range(const double* x, int count, double* low, double* high);
 /* Least and greatest value of one component, solids left out where `solid` is not NULL; of none DBL_MAX,
  * -DBL_MAX. */
-void mcor_find_range(
-  const mcor_array* array, const uint8_t* solid, int64_t count, int component, double range[2]);
+void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  int64_t count, int component, double range[2]);
 /* The largest absolute value in a range, and of one component; of none 0. */
 static inline double mcor_largest_of(double low, double high)
 {
   return low > high ? 0 : fmax(-low, high);
 }
-double mcor_largest(const mcor_array* array, int64_t count, int component);
+double mcor_largest(mcor_context* context, const mcor_array* array, int64_t count, int component);
 
 /* Where what failed is for a lattice that is too large, and one smoothing length is far from the others: adds
  * which one to the sentence. */
@@ -80,16 +80,17 @@ void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* The first particle, solids left out where `solid` is not NULL, of which any component is not finite, or
  * not above 0 where it must be; -1 if there is none. */
-int64_t mcor_find_illegal(
-  const mcor_array* array, const uint8_t* solid, int64_t count, bool positive, int* component);
-int64_t mcor_find_not_finite(const mcor_array* array, const uint8_t* solid, int64_t count);
+int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  int64_t count, bool positive, int* component);
+int64_t mcor_find_not_finite(
+  mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
 
 /* mcor_attribute.c. Components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
 /* Measures one component; whether its attribute is finite is known before. */
-void mcor_measure_component(
-  const mcor_input* input, int attribute, int component, mcor_global_component* found);
+void mcor_measure_component(mcor_context* context, const mcor_input* input, int attribute,
+  int component, mcor_global_component* found);
 
 /* About the median of the scalar of fluid particles; measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);

@@ -131,7 +131,7 @@ static mcor_status mcor_scale_positions(
   positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    largest[a] = mcor_largest(&positions, input->count, a);
+    largest[a] = mcor_largest(context, &positions, input->count, a);
   }
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
   for (int a = 0; a < 3; ++a)

@@ -197,7 +197,7 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 {
   const mcor_input* input = wall->input;
   MCOR_TRY(mcor_place_samples(context, wall));
-  wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(&input->mass, input->count, 0) : 1;
+  wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, &input->mass, input->count, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
   int slices;
   MCOR_TRY(

@@ -5,7 +5,6 @@
 
 #include "mcor.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -33,7 +32,8 @@ static bool mcor_is_same_name(const char* name, const char* usual)
     {
       continue;
     }
-    if (tolower((unsigned char)*name) != *usual)
+    /* Small by ASCII, whatever the locale: in a Turkish one, tolower('I') is no i. */
+    if ((*name >= 'A' && *name <= 'Z' ? *name - 'A' + 'a' : *name) != *usual)
     {
       return false;
     }

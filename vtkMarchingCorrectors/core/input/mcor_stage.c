@@ -52,7 +52,7 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
 
 /* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume (in two
  * dimensions over the smoothing length) in cubes, the mass over the largest one, or 1. */
-double mcor_size_scale(const mcor_context* context, const mcor_input* input)
+double mcor_size_scale(mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
   const mcor_options* options = context->run.options;
@@ -68,7 +68,7 @@ double mcor_size_scale(const mcor_context* context, const mcor_input* input)
     return 1;
   }
   const mcor_globals* globals = options->globals;
-  return 1 / (globals ? globals->mass_max : mcor_largest(&input->mass, input->count, 0));
+  return 1 / (globals ? globals->mass_max : mcor_largest(context, &input->mass, input->count, 0));
 }
 
 typedef struct mcor_stage_job

@@ -18,7 +18,7 @@ typedef struct mcor_staging
 } mcor_staging;
 
 /* The factor of the input's volume or mass on the way to the device. */
-double mcor_size_scale(const mcor_context* context, const mcor_input* input);
+double mcor_size_scale(mcor_context* context, const mcor_input* input);
 mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);
 

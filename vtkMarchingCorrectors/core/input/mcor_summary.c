@@ -58,13 +58,14 @@ static double mcor_sum_cubes(
 {
   const bool has_box = mcor_has_box(options) != 0;
   const bool one_for_all = mcor_has_one_length(input) && !input->solid && !has_box;
+  const int levels = options->filled || options->capping ? 0 : options->level_limit;
   double cubes = 0.0;
   for (int64_t i = 0; i < (one_for_all && input->count > 1 ? 1 : input->count); ++i)
   {
     if ((!input->solid || !input->solid[i]) && (!has_box || mcor_is_in_box(input, i, options->box)))
     {
       double h = mcor_length_at(input, i);
-      for (int level = 0; level < options->level_limit && h >= 2.0 * least; ++level)
+      for (int level = 0; level < levels && h >= 2.0 * least; ++level)
       {
         h *= 0.5;
       }

@@ -405,7 +405,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   if (mcor_needs_density(input) || mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) || pairs)
   {
     mcor_reach_job job = { .context = context, .input = input, .box = reach };
-    const int slices = mcor_parallel_for(input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
+    const int slices = mcor_parallel_for(context, input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
     double farthest = 0;
     for (int s = 0; s < slices; ++s)
     {

@@ -98,7 +98,7 @@ static bool mcor_has_positions(const mcor_input* input)
     (unsigned)input->positions.type <= MCOR_FLOAT64;
 }
 
-static mcor_spread mcor_spread_of(const mcor_input* input)
+static mcor_spread mcor_spread_of(mcor_context* context, const mcor_input* input)
 {
   mcor_spread_job job = { .input = input };
   for (int i = 0; i < 6 * MCOR_SLICES; ++i)
@@ -107,7 +107,7 @@ static mcor_spread mcor_spread_of(const mcor_input* input)
     job.slices[i / 6].high[i % 6] = -DBL_MAX;
   }
   const int slices = mcor_has_positions(input)
-    ? mcor_parallel_for(input->count, MCOR_LIGHT_GRAIN, mcor_spread_slice, &job)
+    ? mcor_parallel_for(context, input->count, MCOR_LIGHT_GRAIN, mcor_spread_slice, &job)
     : 0;
   for (int i = 0; i < 6 * slices; ++i)
   {
@@ -134,7 +134,7 @@ static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
 
 int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension)
 {
-  mcor_spread spread = mcor_spread_of(input);
+  mcor_spread spread = mcor_spread_of(NULL, input);
   if (ranks &&
     (ranks->reduce_doubles(ranks->user, MCOR_LEAST, spread.low, 6) ||
       ranks->reduce_doubles(ranks->user, MCOR_GREATEST, spread.high, 6)))
@@ -152,7 +152,7 @@ static mcor_status mcor_refuse_plane(
                            "positions, or use three dimensions";
   mcor_array positions = input->positions;
   positions.components = 3;
-  if (mcor_find_not_finite(&positions, NULL, input->count) >= 0)
+  if (mcor_find_not_finite(context, &positions, NULL, input->count) >= 0)
   {
     return MCOR_OK; /* for mcor_check_input to say */
   }
@@ -200,7 +200,7 @@ static mcor_status mcor_find_plane(
   {
     return MCOR_OK;
   }
-  mcor_spread spread = mcor_spread_of(input);
+  mcor_spread spread = mcor_spread_of(context, input);
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.low, 6));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.high, 6));
   context->plane = mcor_plane_of(&spread, options->dimension);
@@ -299,7 +299,7 @@ mcor_status mcor_flatten_points(
     "Host memory for %lld points could not be allocated.", (long long)count);
   mcor_flatten_job job = { &context->plane, *points, *flat, true };
   job.positions.components = 3;
-  mcor_parallel_for(count, MCOR_LIGHT_GRAIN, mcor_flatten_doubles, &job);
+  mcor_parallel_for(context, count, MCOR_LIGHT_GRAIN, mcor_flatten_doubles, &job);
   *turned = (mcor_array){ .data = *flat, .type = MCOR_FLOAT64, .components = 3 };
   return MCOR_OK;
 }

@@ -79,7 +79,7 @@ mcor_status mcor_list_components(
   {
     const mcor_array* array = &input->attributes[a];
     not_finite[a] = globals ? globals->components[next].not_finite
-                            : mcor_find_not_finite(array, input->solid, input->count);
+                            : mcor_find_not_finite(context, array, input->solid, input->count);
     for (int c = 0; c < mcor_components(array); ++c, ++next)
     {
       mcor_global_component found = { 0 };
@@ -93,7 +93,7 @@ mcor_status mcor_list_components(
       }
       else
       {
-        mcor_measure_component(input, a, c, &found);
+        mcor_measure_component(context, input, a, c, &found);
       }
       if (found.varies || !of_surface)
       {

@@ -21,6 +21,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
+#include <string>
+#include <type_traits>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -327,6 +330,33 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   }
 }
 
+namespace
+{
+/// Its number, or the word that has this number.
+template <typename T>
+void AddOption(vtkFieldData* data, const std::string& name, bool isWord, const char* words, T value)
+{
+  using Number = typename std::conditional<std::is_enum<T>::value, int, T>::type;
+  if (name.empty() || name == "CubeSize" || name == "Dimension" || name == "Kernel" ||
+    name == "WallShare")
+  {
+    return;
+  }
+  if (!isWord)
+  {
+    vtkSPHAdd(data, name.c_str(), static_cast<Number>(value));
+    return;
+  }
+  std::istringstream stream(words);
+  std::string word;
+  for (int i = 0; i <= static_cast<int>(value); ++i)
+  {
+    std::getline(stream, word, '|');
+  }
+  vtkSPHAddText(data, name.c_str(), word);
+}
+}
+
 void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
 {
   const mcor_options& o = this->Options;
@@ -349,13 +379,18 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
     vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
   }
+  // Those in use are statistics: see AddStatistics.
+#define WORD true
+#define FLAG false
+#define AT_LEAST_0 false
+#define ABOVE_0 false
+#define SHARE false
+#define FROM(least, greatest) false
+#define OPTION(member, usual, legal, words, scope, property)                                       \
+  AddOption(fieldData, property, legal, words, o.member);
+#include "mcor_options.def"
   vtkSPHAddText(fieldData, "Kernel", mcor_sph_kernel_name(o.sph_kernel));
-  vtkSPHAddText(fieldData, "SeedMode", o.seeds == MCOR_PAIRS ? "pairs" : "complete");
-  vtkSPHAddText(fieldData, "Topology", o.topology == MCOR_TOPOLOGY_FIELD ? "field" : "table");
-  vtkSPHAddText(fieldData, "Precision", o.precision == MCOR_FLOAT64 ? "double" : "single");
-  vtkSPHAddReal(fieldData, "CubeSizeFactor", { o.cube_size_factor });
   vtkSPHAddText(fieldData, "CubeSizeMode", o.level_limit > 0 ? "adaptive" : "uniform");
-  vtkSPHAddCount(fieldData, "CubeLevelLimit", { o.level_limit });
   const double* p = o.periodic;
   const bool isPeriodic = p[0] < p[1] || p[2] < p[3] || p[4] < p[5];
   if (isPeriodic)
@@ -366,18 +401,9 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   {
     vtkSPHAddCount(fieldData, "Capping", { o.capping != MCOR_CAP_NONE ? 1 : 0 });
   }
-  vtkSPHAddCount(fieldData, "Filled", { o.filled });
   if (mcor_has_box(&o))
   {
     vtkSPHAddReal(fieldData, "Box", { o.box[0], o.box[1], o.box[2], o.box[3], o.box[4], o.box[5] });
   }
-  vtkSPHAddReal(fieldData, "HScaleFactor", { o.h_scale });
-  vtkSPHAddReal(fieldData, "NodeThreshold", { o.node_threshold });
-  vtkSPHAddText(fieldData, "BoundaryDetection",
-    o.boundary_detection == MCOR_BOUNDARY_EIGENVALUE ? "eigenvalue" : "weight_sum");
-  vtkSPHAddReal(fieldData, "VertexThreshold", { o.vertex_threshold });
-  vtkSPHAddReal(fieldData, "Tolerance", { o.tolerance });
-  vtkSPHAddCount(fieldData, "IterationLimit", { o.iteration_limit });
-  vtkSPHAddCount(fieldData, "Preview", { o.preview });
 }
 VTK_ABI_NAMESPACE_END

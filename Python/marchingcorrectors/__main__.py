@@ -4,7 +4,9 @@
 python -m marchingcorrectors surface | gauge | slice | line IN... OUT [--help]: of one file, with the program's words.
 
 For convert, several files become the times of a .pvd; else they are bodies of one set (.vtp, .vtu, .vtk)."""
+import signal
 import sys
+import warnings
 
 from ._library import Error
 from .io import FileError
@@ -18,6 +20,11 @@ def main(arguments):
     if not is_convert and arguments[:1] not in (["surface"], ["gauge"], ["slice"], ["line"]):
         print(__doc__.strip(), file=sys.stderr)
         return 2
+    for name in ("SIGTERM", "SIGHUP"):  # ended so, too, it leaves no file behind
+        number = getattr(signal, name, None)
+        if number and signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, lambda number, _: sys.exit(128 + number))
+    warnings.showwarning = lambda sentence, *_: print(f"marchingcorrectors: warning: {sentence}", file=sys.stderr)
     try:
         if is_convert:
             from .io.convert import convert
@@ -30,6 +37,11 @@ def main(arguments):
     except ImportError as error:
         print(f'marchingcorrectors: this needs the package {error.name}: pip install {error.name}',
               file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    except MemoryError:
+        print("marchingcorrectors: memory ran out", file=sys.stderr)
         return 1
     except (Error, FileError, OSError) as error:
         print(f"marchingcorrectors: {error}", file=sys.stderr)

@@ -2,12 +2,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Particles as VTK's poly data, .vtp, and .pvd of several times."""
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
+from .._warnings import warn
 from . import FileError, read
+from ._outputs import STEP_MARK, Outputs
 from ._particles import support_factor
+
+
+def plain(values):
+    """Of a type that VTK has: half precision becomes single, long double double."""
+    values = np.asarray(values)
+    kind, size = values.dtype.kind, values.dtype.itemsize
+    if kind == "f" and size not in (4, 8):
+        return values.astype(np.float32 if size < 4 else np.float64)
+    return np.ascontiguousarray(values, np.uint8 if kind == "b" else values.dtype.newbyteorder("="))
 
 
 def to_vtk(particles):
@@ -19,14 +30,13 @@ def to_vtk(particles):
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
     def array(values, name):
-        values = np.ascontiguousarray(values)
-        values = values.astype(np.uint8) if values.dtype == bool else values
+        values = np.asarray(values)
         if values.dtype.kind == "U":
             made = vtkStringArray()
             for word in values:
                 made.InsertNextValue(word)
         else:
-            made = numpy_to_vtk(values, deep=True)
+            made = numpy_to_vtk(plain(values), deep=True)
         made.SetName(name)
         return made
 
@@ -43,14 +53,21 @@ def to_vtk(particles):
         if isinstance(particles.smoothing_length, str):
             arrays.pop(particles.smoothing_length)
         factor = support_factor(particles.kernel) if particles.support_radius else 1
-        arrays["SmoothingLength"] = np.broadcast_to(np.asarray(h, float) / factor, len(positions))
+        h = np.asarray(h, float)
+        if h.ndim and h.size != len(positions):
+            raise FileError(f"{particles.file}: the smoothing lengths '{particles.smoothing_length}' have the shape "
+                            f"{h.shape}, where one for each of the {len(positions)} particles is needed.")
+        arrays["SmoothingLength"] = np.broadcast_to(h.ravel() / factor, len(positions))
     if isinstance(particles.mass, float):
         arrays.setdefault("Mass", np.full(len(positions), particles.mass))
     if particles.solid is not None and "Type" not in arrays:
         arrays["ParticleType"] = particles.solid.astype(np.uint8)
     for name, values in arrays.items():
-        if values.ndim <= 2 and len(values) == len(positions):
-            data.GetPointData().AddArray(array(values, name))
+        if values.ndim in (1, 2) and len(values) == len(positions) and values.size >= len(values):
+            if values.dtype.kind in "biuf" or (values.dtype.kind == "U" and values.ndim == 1):
+                data.GetPointData().AddArray(array(values, name))
+            else:
+                warn(f"{particles.file}: the array '{name}' ({values.dtype}) is left out, as VTK has no such type.")
     field = {"TimeValue": None if particles.time is None else [float(particles.time)],
              "PeriodicBounds": particles.period}
     for name, values in field.items():
@@ -59,15 +76,24 @@ def to_vtk(particles):
     return data
 
 
-def write_vtp(particles, path):
+def vtp_bytes(particles, mark=b""):
+    """In memory: on a full disk VTK's writers end in a crash, or without a word."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
+    data = to_vtk(particles)
+    for arrays in (data.GetPointData(), data.GetFieldData()):
+        for i in range(arrays.GetNumberOfArrays()):
+            each = arrays.GetAbstractArray(i)
+            each.SetName(escape(each.GetName(), {'"': "&quot;"}))  # VTK's writers put names into XML as they are
     writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(str(path))
+    writer.WriteToOutputStringOn()
     writer.SetDataModeToBinary()
-    writer.SetInputData(to_vtk(particles))
-    if not writer.Write():
-        raise FileError(f"{path} cannot be written.")
+    writer.SetInputData(data)
+    written = writer.Write() and writer.GetOutputString()
+    if not written:
+        raise FileError(f"{particles.file} could not be converted: VTK's writer gave up.")
+    written = written if isinstance(written, bytes) else written.encode()
+    return written.replace(b"?>", b"?>\n" + mark, 1) if mark else written
 
 
 def convert(inputs, output):
@@ -75,15 +101,16 @@ def convert(inputs, output):
     output = Path(output)
     if output.suffix.lower() not in (".vtp", ".pvd"):
         raise FileError(f"'{output}' must end in .vtp or .pvd.")
-    if any(Path(each).resolve() == output.resolve() for each in inputs):
-        raise FileError(f"{output.name} is a file to be read, too.")
     if output.suffix.lower() == ".vtp":
-        write_vtp(read(inputs[0] if len(inputs) == 1 else inputs), output)
+        with Outputs(inputs, [output]) as files:
+            files.write(output, vtp_bytes(read(inputs[0] if len(inputs) == 1 else inputs)))
         return
+    steps = [output.with_name(f"{output.stem}_{i:04d}.vtp") for i in range(len(inputs))]
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>"]
-    for i, each in enumerate(inputs):
-        particles, name = read(each), f"{output.stem}_{i:04d}.vtp"
-        write_vtp(particles, output.with_name(name))
-        time = i if particles.time is None else particles.time
-        lines.append(f'<DataSet timestep="{time!r}" part="0" file={quoteattr(name)}/>')
-    output.write_text("\n".join(lines + ["</Collection>", "</VTKFile>", ""]))
+    with Outputs(inputs, [output], steps) as files:
+        for i, (each, step) in enumerate(zip(inputs, steps)):
+            particles = read(each)
+            files.write(step, vtp_bytes(particles, STEP_MARK))
+            time = float(i if particles.time is None else particles.time)
+            lines.append(f'<DataSet timestep="{time!r}" part="0" file={quoteattr(step.name)}/>')
+        files.write(output, "\n".join(lines + ["</Collection>", "</VTKFile>", ""]).encode())

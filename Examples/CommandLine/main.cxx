@@ -86,7 +86,7 @@ Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
 
 void MakeSurface(const Job& job, MessageCapture* messages)
 {
-  CheckOutputs(ListFiles(job.ParticleFiles(), messages),
+  CheckOutputs(ListFiles(job.InputFiles(), messages),
     { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File });
   vtkSmartPointer<vtkPointSet> particles =
     AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));

@@ -695,6 +695,8 @@ class Options(CommandLineTest):
         result = self.extract(*ISO, "--box", "50,51,0,1,0,1")
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, "the surface is empty: no part of the field in the box reaches")
+        result = self.extract(*ISO, "--box=-1,0.1,-1,1,-1,1", "--vertex-threshold", "9")
+        self.assertRegex(result.stderr, "the surface is empty: all \\d+ triangles in the box were trimmed")
 
     def test_periodic(self):
         """A block that repeats along x and y is a slab; lengths or bounds; the cube size fits."""

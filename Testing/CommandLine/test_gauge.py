@@ -154,11 +154,16 @@ class Gauge(CommandLineTest):
                  (["--gauge", UP, "--iso", "0"], "--iso value above 0"),
                  (["--gauge", UP, "--times", "1"], "--times: 1 is outside the times of the steps, 0 to 0"),
                  (["--gauge", UP, "--solids", "wall"], "leave out --solids wall"),
+                 (["--gauge", "=1+1=0,0,0:0,0,1"], "'=1.1' begins with '=', so that spreadsheets"),
+                 (["--gauge-grid", "3000,3000:0,1,0,1,0,1"], "more than a million gauges, which take minutes"),
                  (["--gauge-grid", "1,1:0,1,0,1,0,1"], "the output of --gauge-grid is a .vti file")]
         for options, sentence in cases:
             self.one_sentence(self.measure(*options), 2, sentence)
         self.one_sentence(self.measure("--gauges", "none.txt"), 1, "none.txt cannot be read")
         self.one_sentence(self.measure("--gauges", "."), 1, "cannot be read")
+        self.one_sentence(self.measure("--gauges", "/dev/zero"), 1, "/dev/zero is larger than 64 MiB")
+        self.one_sentence(self.measure("--gauge", "far=0,0,0:0,0,1e30"), 1,
+                          "Gauge 'far' needs .*e.* sample points.*; the limit is 4e.15")
         for text in ("0,1:0,1,0,1,0,1", "1.5,1:0,1,0,1,0,1", "2,2:0,1,0,1,1,0", "2,2"):
             self.one_sentence(self.run_program(self.input, "l.vti", "--gauge-grid", text), 2, "--gauge-grid needs")
         self.assertEqual(self.table.read_text(), "as it was")

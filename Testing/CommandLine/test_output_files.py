@@ -10,10 +10,12 @@ import subprocess
 import threading
 import time
 import unittest
+import xml.etree.ElementTree
 
 import particle_files as files
 from command_line_test import ISO, WITH_DISPLAY, CommandLineTest, drop_privileges, main
 
+QUOTE = '"'
 FREE = ["--free-surface", "--quiet"]
 
 
@@ -219,6 +221,37 @@ class OutputFiles(CommandLineTest):
         self.assertEqual(piece.read_text(), before)
         self.assertFalse((self.directory / "s.vtp").exists())
         self.assertFalse(film.exists())
+
+    def test_gauges_are_inputs(self):
+        gauges = self.directory / "gauges.csv"
+        gauges.write_text("mast=0,0,-1:0,0,1\n")
+        (self.directory / "link.csv").symlink_to(gauges)
+        film = [self.input, self.input, "film.pvd", *FREE, "--gauges", gauges]
+        for name in ("gauges.csv", "link.csv"):
+            for options in (["--numbers", name], ["--numbers", "n.csv", "--components", name],
+                            ["--numbers", "n.csv", "--stats", name]):
+                self.one_sentence(self.run_program(*film, *options), 2, name + " would overwrite the input")
+            self.one_sentence(self.run_program(self.input, name, "--gauges", gauges), 2, "would overwrite the input")
+        self.assertEqual(gauges.read_text(), "mast=0,0,-1:0,0,1\n")
+        self.assertFalse((self.directory / "film.pvd").exists())
+
+    def test_names_for_xml(self):
+        """Names of files and arrays, those of field data, too, come back as they were."""
+        name = "a<b>&\"c' d"
+        points = self.directory / f"{name}.vtp"
+        field = f'<FieldData>{files.xml_array(name.replace("&", "&amp;").replace("<", "&lt;").replace(QUOTE, "&quot;"), [1.0])}</FieldData>'
+        files.write_vtp(points, self.points[:5], {})
+        points.write_text(points.read_text().replace("<PolyData>", "<PolyData>" + field))
+        result = self.run_program(self.input, "o.vtp", "--probe", points)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        root = xml.etree.ElementTree.parse(self.directory / "o.vtp").getroot()
+        self.assertIn(name, [each.get("Name") for each in root.iter("DataArray")])
+        film = self.run_program(self.input, self.input, f"{name}2.pvd", *FREE)
+        self.assertEqual((film.returncode, film.stderr), (0, ""))
+        listed = xml.etree.ElementTree.parse(self.directory / f"{name}2.pvd").getroot().iter("DataSet")
+        self.assertEqual([each.get("file") for each in listed], [f"{name}2_{i:04d}.vtp" for i in range(2)])
+        again = self.run_program(f"{name}2.pvd", "again.pvd", *FREE, "--smoothing-length", "0.3")
+        self.assertEqual(again.returncode, 0, again.stderr)
 
     # Whole or untouched
 

@@ -98,6 +98,32 @@ class Plane(CommandLineTest):
         self.refuse(self.extract("--free-surface", "--box=-inf,inf,inf,inf,0,1"), 2, "lower number first along y")
         self.refuse(self.extract("--free-surface", "--box=-inf,inf,1,0,0,1"), 2, "lower number first along y")
 
+    def test_columns_of_a_table(self):
+        """Arrays with the names of other columns, or of formulas, and integers that no double can tell apart."""
+        big = 2 ** 60 + 1
+        arrays = {**self.arrays, **{name: [7.5] * len(self.points) for name in ("X", "Line", "Velocity:0", "=1+1")}}
+        files.write_vtp(self.input, self.points, arrays, files.xml_array("Id", [big] * len(self.points), "Int64") +
+                        files.xml_array("Code", [2 ** 64 - 1] * len(self.points), "UInt64"))
+        table = self.directory / "table.csv"
+        self.assertEqual(self.run_program(self.input, table, *ISO).stderr, "")
+        with open(table, encoding="utf-8", newline="") as stream:
+            names, *rows = csv.reader(stream)
+        self.assertEqual(len(names), len(set(names)))
+        for row in rows:
+            row = dict(zip(names, row))
+            self.assertEqual(row["Line"], "0")
+            self.assertAlmostEqual(math.hypot(float(row["X"]), float(row["Z"])), float(row["Radius"]), delta=0.02)
+            self.assertAlmostEqual(float(row["Velocity:0"]), float(row["X"]), delta=0.02)
+            self.assertEqual([row[name] for name in ("X_", "Line_", "Velocity:0_", "'=1+1")], ["7.5"] * 4)
+            self.assertEqual((row["Id"], row["Code"]), (str(big), str(2 ** 64 - 1)))
+
+    def test_table_without_fluid(self):
+        for output in ("none.csv", "none_%04d.csv"):
+            result = self.run_program(self.input, output, *ISO, "--fluid", "Radius=99")
+            self.assertEqual(result.returncode, 0)
+            self.assertRegex(result.stderr, "the surface is empty: No particle has Radius = 99")
+            self.assertEqual((self.directory / output.replace("%04d", "0000")).read_text(), "Line\n")
+
     def test_tilted(self):
         """A plane that is turned about the axis z counts as three-dimensional, and that is said."""
         files.write_vtp(self.input, [(0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z) for x, y, z in self.points], self.arrays)

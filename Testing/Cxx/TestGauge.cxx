@@ -68,7 +68,7 @@ void CheckWeird()
   CHECK(std::isnan(NumberAt(gauge->GetOutput(), 0, "last")));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double ends[][2] = { { 0.0, 0.0 }, { 0.0, nan } };
-  const char* const sentences[] = { "Gauge mast has no length", "not finite" };
+  const char* const sentences[] = { "Gauge 'mast' has no length", "not finite" };
   for (int i = 0; i < 3; ++i)
   {
     gauge = MakeGauge(cube);

@@ -381,6 +381,8 @@ class Program(unittest.TestCase):
                 np.testing.assert_array_equal(corners(whole), corners(ranks))
                 np.testing.assert_array_equal(vtk_to_numpy(whole.GetPointData().GetArray("ComponentId")),
                                               vtk_to_numpy(ranks.GetPointData().GetArray("ComponentId")))
+                np.testing.assert_array_equal(vtk_to_numpy(whole.GetCellData().GetArray("ComponentId")),
+                                              vtk_to_numpy(ranks.GetCellData().GetArray("ComponentId")))
             else:
                 self.assertEqual(difference(ranks, whole), "")
 

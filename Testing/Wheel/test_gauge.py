@@ -49,7 +49,7 @@ class Gauge(unittest.TestCase):
         self.assertEqual(particles.sph.gauge({"mast": UP}, **WORDS), mc.gauge(POSITIONS, {"mast": UP}, **WORDS))
 
     def test_what_is_no_line(self):
-        for lines, sentence in ((UP[0], "shape"), ({"bow": UP * 0}, "bow has no length"), (UP * np.nan, "not finite")):
+        for lines, sentence in ((UP[0], "shape"), ({"bow": UP * 0}, "bow' has no length"), (UP * np.nan, "not finite")):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):
                 mc.gauge(POSITIONS, lines, **WORDS)
         for iso in (0, -1, (0.2, 0.5)):

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -42,6 +43,11 @@ GaugeLine ToGauge(const std::string& option, const std::string& text)
     throw UsageError(option + " needs a name and two places, NAME=X,Y,Z:X,Y,Z, not '" + text + "'");
   }
   gauge.Name = Printable(text.substr(0, equals));
+  if (std::string("=+-@").find(gauge.Name[0]) != std::string::npos)
+  {
+    throw UsageError(option + ": the name of gauge '" + gauge.Name +
+      "' begins with '" + gauge.Name[0] + "', so that spreadsheets would take it for a formula; begin it with a letter");
+  }
   if (std::equal(gauge.Ends.begin(), gauge.Ends.begin() + 3, gauge.Ends.begin() + 3))
   {
     throw UsageError(option + ": gauge '" + gauge.Name +
@@ -52,7 +58,20 @@ GaugeLine ToGauge(const std::string& option, const std::string& text)
 
 std::vector<GaugeLine> ReadGauges(const std::string& file)
 {
-  std::ifstream stream(file);
+  const std::size_t most = std::size_t(64) << 20; // a device has no end
+  std::ifstream source(file, std::ios::binary);
+  std::string text;
+  for (char part[1 << 16]; source && text.size() <= most;)
+  {
+    source.read(part, sizeof(part));
+    text.append(part, static_cast<std::size_t>(source.gcount()));
+  }
+  if (!source.eof()) // a folder opens, but does not read
+  {
+    throw std::runtime_error("the gauges' file " + file +
+      (text.size() > most ? " is larger than 64 MiB; give one of fewer gauges" : " cannot be read"));
+  }
+  std::istringstream stream(text);
   std::vector<GaugeLine> gauges;
   for (std::string line; std::getline(stream, line);)
   {
@@ -63,10 +82,6 @@ std::vector<GaugeLine> ReadGauges(const std::string& file)
     }
     const std::size_t last = line.find_last_not_of(" \t\r");
     gauges.push_back(ToGauge("--gauges " + file, line.substr(first, last + 1 - first)));
-  }
-  if (!stream.eof()) // a folder opens, but does not read
-  {
-    throw std::runtime_error("the gauges' file " + file + " cannot be read");
   }
   if (gauges.empty())
   {
@@ -96,9 +111,10 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
       throw UsageError(option + " needs whole numbers of gauges, 1 or more, not '" + text + "'");
     }
   }
-  if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e7)
+  if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e6)
   {
-    throw UsageError(option + " has more than 10 million gauges; take fewer");
+    throw UsageError(option +
+      " has more than a million gauges, which take minutes and gigabytes; take fewer, or a part of the bounds at a time");
   }
   return grid;
 }

@@ -363,10 +363,11 @@ private:
 
 } // namespace
 
-std::vector<std::string> Job::ParticleFiles() const
+std::vector<std::string> Job::InputFiles() const
 {
   std::vector<std::string> files = this->Inputs;
   files.insert(files.end(), this->Walls.begin(), this->Walls.end());
+  files.insert(files.end(), { this->ProbeFile, this->GaugeFile });
   return files;
 }
 

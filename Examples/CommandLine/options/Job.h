@@ -57,8 +57,8 @@ struct Job
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
-  /// All files of particles.
-  std::vector<std::string> ParticleFiles() const;
+  /// All files that are read, but for those that they list.
+  std::vector<std::string> InputFiles() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 

@@ -74,38 +74,55 @@ void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* 
   text << "    </" << element << ">\n";
 }
 
-/// Puts a part's points, with their arrays, and triangles where their numbers say.
-void Place(vtkPolyData* part, vtkPolyData* whole, vtkIdTypeArray* corners)
+/// Gives the whole room for all arrays that the first part has, but for the numbers.
+void Allocate(vtkDataSetAttributes* whole, vtkDataSetAttributes* first, vtkIdType count)
 {
-  vtkPointData *from = part->GetPointData(), *to = whole->GetPointData();
-  const vtkIdType count = part->GetNumberOfPoints();
-  if (count == 0)
-  {
-    return; // VTK sends no arrays then
-  }
+  whole->CopyAllOn();
+  whole->CopyGlobalIdsOff();
+  whole->CopyAllocate(first, count);
+  whole->SetNumberOfTuples(count);
+}
+
+/// Puts what a part has of each array where its numbers say; returns these.
+vtkSmartPointer<vtkIdList> Place(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
+{
   vtkDataArray* numbers = from->GetGlobalIds();
-  vtkDataArray* triangles = part->GetCellData()->GetGlobalIds();
-  vtkNew<vtkIdList> own, places, triangle;
-  own->SetNumberOfIds(count);
-  places->SetNumberOfIds(count);
+  const vtkIdType count = numbers ? numbers->GetNumberOfTuples() : 0;
+  vtkNew<vtkIdList> own;
+  auto places = vtkSmartPointer<vtkIdList>::New();
   for (vtkIdType i = 0; i < count; ++i)
   {
-    own->SetId(i, i);
-    places->SetId(i, static_cast<vtkIdType>(numbers->GetComponent(i, 0)));
+    own->InsertNextId(i);
+    places->InsertNextId(static_cast<vtkIdType>(numbers->GetComponent(i, 0)));
   }
-  whole->GetPoints()->GetData()->InsertTuples(places, own, part->GetPoints()->GetData());
-  for (int a = 0; a < to->GetNumberOfArrays(); ++a)
+  for (int a = 0; count > 0 && a < to->GetNumberOfArrays(); ++a)
   {
     vtkAbstractArray* array = to->GetAbstractArray(a);
     array->InsertTuples(places, own, from->GetAbstractArray(array->GetName()));
   }
+  return places;
+}
+
+/// Puts a part's points and triangles, with their arrays, where their numbers say.
+void Place(vtkPolyData* part, vtkPolyData* whole, vtkIdTypeArray* corners)
+{
+  if (part->GetNumberOfPoints() == 0)
+  {
+    return; // VTK sends no arrays then
+  }
+  vtkNew<vtkIdList> triangle;
+  const vtkSmartPointer<vtkIdList> places = Place(part->GetPointData(), whole->GetPointData());
+  const vtkSmartPointer<vtkIdList> triangles = Place(part->GetCellData(), whole->GetCellData());
+  for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+  {
+    whole->GetPoints()->SetPoint(places->GetId(i), part->GetPoint(i));
+  }
   for (vtkIdType i = 0; i < part->GetNumberOfPolys(); ++i)
   {
-    const auto place = static_cast<vtkIdType>(triangles->GetComponent(i, 0));
     part->GetPolys()->GetCellAtId(i, triangle);
     for (vtkIdType c = 0; c < 3; ++c)
     {
-      corners->SetValue(3 * place + c, places->GetId(triangle->GetId(c)));
+      corners->SetValue(3 * triangles->GetId(i) + c, places->GetId(triangle->GetId(c)));
     }
   }
 }
@@ -143,11 +160,8 @@ vtkSmartPointer<vtkPolyData> Merge(const std::vector<vtkSmartPointer<vtkPolyData
   points->SetDataType(first->GetPoints()->GetDataType());
   points->SetNumberOfPoints(count);
   whole->SetPoints(points);
-  vtkPointData* arrays = whole->GetPointData();
-  arrays->CopyAllOn();
-  arrays->CopyGlobalIdsOff();
-  arrays->CopyAllocate(first->GetPointData(), count);
-  arrays->SetNumberOfTuples(count);
+  Allocate(whole->GetPointData(), first->GetPointData(), count);
+  Allocate(whole->GetCellData(), first->GetCellData(), triangleCount);
   for (const auto& part : parts)
   {
     Place(part, whole, corners);

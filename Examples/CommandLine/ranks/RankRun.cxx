@@ -66,7 +66,7 @@ void CheckUse(const Job& job, const RankSession& session, MessageCapture* messag
   {
     outputs.insert(outputs.end(), { job.Output, job.StatisticsFile, job.ComponentFile });
   }
-  CheckOutputs(ListFiles(job.ParticleFiles(), messages), outputs);
+  CheckOutputs(ListFiles(job.InputFiles(), messages), outputs);
 }
 
 /// Puts what this process writes beside its places.

@@ -63,7 +63,7 @@ void CheckFiles(const Job& job, const std::vector<std::string>& stored,
   {
     throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
   }
-  std::vector<std::string> inputs = job.ParticleFiles(), outputs = surfaces;
+  std::vector<std::string> inputs = job.InputFiles(), outputs = surfaces;
   inputs.insert(inputs.end(), stored.begin(), stored.end());
   for (std::size_t i = 0; !job.Picture.File.empty() && i < surfaces.size(); ++i)
   {

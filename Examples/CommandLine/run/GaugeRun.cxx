@@ -100,10 +100,9 @@ public:
 private:
   void CheckFiles() const
   {
-    std::vector<std::string> inputs = this->Options.ParticleFiles();
+    std::vector<std::string> inputs = this->Options.InputFiles();
     const std::vector<std::string> stored = this->Times.ListFiles();
     inputs.insert(inputs.end(), stored.begin(), stored.end());
-    inputs.push_back(this->Options.GaugeFile);
     CheckOutputs(ListFiles(inputs, this->Messages), { this->Options.Output });
   }
 

@@ -150,9 +150,7 @@ void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
 
 void CheckProbeFiles(const Job& job, MessageCapture* messages)
 {
-  std::vector<std::string> inputs = ListFiles(job.ParticleFiles(), messages);
-  inputs.push_back(job.ProbeFile);
-  CheckOutputs(inputs, { job.Output, job.Picture.File });
+  CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
 }
 
 vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)

@@ -148,8 +148,17 @@ std::string ReasonForNoSurface(vtkFieldData* statistics)
     return "";
   }
   vtkDataArray* range = statistics->GetArray("ScalarRange");
+  vtkDataArray* before = statistics->GetArray("TrianglesBeforeTrimming");
   std::ostringstream stream;
   const bool inBox = statistics->HasArray("Box");
+  if (before && before->GetComponent(0, 0) > 0.0)
+  {
+    const bool hasLines = statistics->HasArray("Lines");
+    stream << "all " << before->GetComponent(0, 0) << (hasLines ? " lines" : " triangles")
+           << (inBox ? " in the box" : "") << " were trimmed, as they lie where the fluid ends: "
+           << "a lower --vertex-threshold keeps more of them";
+    return stream.str();
+  }
   stream << "no part of the field" << (inBox ? " in the box" : "") << " reaches the iso value";
   if (values->GetNumberOfValues() == 1)
   {

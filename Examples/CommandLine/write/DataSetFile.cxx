@@ -21,35 +21,80 @@
 #include "vtkXMLUnstructuredGridWriter.h"
 
 #include <functional>
+#include <initializer_list>
 #include <stdexcept>
 #include <vector>
 
 namespace
 {
 
-/// VTK's writers put names into XML as they are.
-void EscapeNames(vtkFieldData* arrays)
+/// VTK's writers put names into XML as they are: arrays and their components have names fit for it, as long as
+/// this lives.
+class NamesForXml
 {
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+public:
+  explicit NamesForXml(vtkDataSet* data)
   {
-    vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    array->SetName(EscapedForXml(array->GetName() ? array->GetName() : "").c_str());
+    for (vtkFieldData* arrays : std::initializer_list<vtkFieldData*>{
+           data->GetPointData(), data->GetCellData(), data->GetFieldData() })
+    {
+      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+      {
+        this->Escape(arrays->GetAbstractArray(i));
+      }
+    }
   }
-}
 
-/// In memory and not appended: see SurfaceFile.cxx.
+  ~NamesForXml()
+  {
+    for (const Name& name : this->Names)
+    {
+      name.Set(name.Before);
+    }
+  }
+
+  NamesForXml(const NamesForXml&) = delete;
+  void operator=(const NamesForXml&) = delete;
+
+private:
+  struct Name
+  {
+    std::string Before;
+    std::function<void(const std::string&)> Set;
+  };
+
+  void Escape(vtkAbstractArray* array)
+  {
+    if (!array->GetName())
+    {
+      array->SetName(""); // where VTK would make one of an address
+    }
+    this->Replace(array->GetName(), [array](const std::string& name) { array->SetName(name.c_str()); });
+    for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
+    {
+      this->Replace(array->GetComponentName(c),
+        [array, c](const std::string& name) { array->SetComponentName(c, name.c_str()); });
+    }
+  }
+
+  void Replace(const char* name, const std::function<void(const std::string&)>& set)
+  {
+    const std::string before = name ? name : "", fit = EscapedForXml(before);
+    if (fit != before)
+    {
+      set(fit);
+      this->Names.push_back({ before, set });
+    }
+  }
+
+  std::vector<Name> Names;
+};
+
 template <typename WriterT>
 bool WriteXml(vtkDataSet* data, std::string& bytes)
 {
   vtkNew<WriterT> writer;
-  EscapeNames(data->GetPointData());
-  EscapeNames(data->GetCellData());
-  writer->SetInputData(data);
-  writer->SetDataModeToBinary();
-  writer->WriteToOutputStringOn();
-  const bool good = writer->Write() != 0;
-  bytes = writer->GetOutputString();
-  return good;
+  return WriteXmlInline(writer, data, bytes);
 }
 
 bool WriteLegacy(vtkDataSet* data, std::string& bytes)
@@ -79,6 +124,19 @@ const std::vector<FileFormat<Writer>> Formats = {
   { ".vtk", { "vtkDataSet", WriteLegacy } },
 };
 
+}
+
+bool WriteXmlInline(vtkXMLWriter* writer, vtkDataSet* data, std::string& bytes)
+{
+  const NamesForXml names(data);
+  writer->SetInputData(data);
+  writer->SetDataModeToBinary();
+  writer->WriteToOutputStringOn();
+  // VTK's default takes three times as long, which is most of a small run, for no smaller file.
+  writer->SetCompressionLevel(1);
+  const bool good = writer->Write() != 0;
+  bytes = writer->GetOutputString();
+  return good;
 }
 
 void CheckDataSetFile(const std::string& file, vtkDataSet* data)

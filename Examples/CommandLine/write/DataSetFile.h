@@ -7,13 +7,17 @@
 
 class MessageCapture;
 class vtkDataSet;
+class vtkXMLWriter;
+
+/// In memory, as on a full disk the writer of VTK 9.1 crashes; not appended, VTK's default, which ParaView 5.11
+/// as Debian 12 has it cannot read. Returns false where VTK gave up.
+bool WriteXmlInline(vtkXMLWriter* writer, vtkDataSet* data, std::string& bytes);
 
 /// Throws std::runtime_error with one sentence if the ending of the name is not that of a format which
 /// holds data sets of this class.
 void CheckDataSetFile(const std::string& file, vtkDataSet* data);
 
-/// Writes a data set, completely or not at all. Names of arrays may be changed. Throws
-/// std::runtime_error with one sentence.
+/// Writes a data set, completely or not at all. Throws std::runtime_error with one sentence.
 void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages);
 
 #endif

@@ -3,6 +3,7 @@
 #include "SurfaceFile.h"
 
 #include "ColorScale.h"
+#include "DataSetFile.h"
 #include "Ending.h"
 #include "FileFormat.h"
 #include "Job.h"
@@ -13,13 +14,11 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTable.h"
 #include "vtkTriangle.h"
 #include "vtkXMLPolyDataWriter.h"
 
@@ -29,6 +28,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -38,41 +38,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Gives the point arrays other names; attributes stay what they are.
-void ReplaceNames(
-  vtkPolyData* surface, const std::function<std::string(const std::string&)>& replace)
-{
-  vtkPointData* arrays = surface->GetPointData();
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    array->SetName(replace(array->GetName() ? array->GetName() : "").c_str());
-  }
-}
-
-/// In memory: on a full disk the writer of VTK 9.1 crashes.
 bool WriteXml(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(surface);
-  // Not appended, VTK's default: ParaView 5.11 as Debian 12 has it cannot read that.
-  writer->SetDataModeToBinary();
-  writer->WriteToOutputStringOn();
-  // VTK's default takes three times as long, which is most of a small run, for no smaller file.
-  writer->SetCompressionLevel(1);
-  // VTK's writer puts names into XML as they are.
-  std::vector<std::string> names;
-  ReplaceNames(surface,
-    [&](const std::string& name)
-    {
-      names.push_back(name);
-      return EscapedForXml(name);
-    });
-  const bool good = writer->Write() != 0;
-  std::size_t next = 0;
-  ReplaceNames(surface, [&](const std::string&) { return names[next++]; });
-  bytes = writer->GetOutputString();
-  return good;
+  return WriteXmlInline(writer, surface, bytes);
 }
 
 /// The least significant byte first, on every machine.
@@ -212,45 +181,58 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   return true;
 }
 
-/// Of two dimensions: a row for each point of each line, a column for each component.
+/// Of two dimensions: a row for each point of each line, a column for each component. An array whose column would
+/// have the name of one before it gets another one: readers go by names.
 bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
-  vtkNew<vtkTable> table;
+  struct Column
+  {
+    vtkAbstractArray* Array;
+    int Component;
+  };
+  std::vector<Column> columns;
+  std::set<std::string> names = { "Line" };
+  bytes = "Line";
+  const auto add = [&columns, &names, &bytes](vtkAbstractArray* array, int c, std::string name)
+  {
+    while (!names.insert(name).second)
+    {
+      name += "_";
+    }
+    bytes += "," + TableField(name);
+    columns.push_back({ array, c });
+  };
+  for (int c = 0; surface->GetPoints() && c < 3; ++c)
+  {
+    add(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
+  }
+  for (const bool isVector : { true, false }) // names of components are made of arrays' names: they go first
+  {
+    for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* array = surface->GetPointData()->GetAbstractArray(i);
+      const int components = array->GetNumberOfComponents();
+      for (int c = 0; (components > 1) == isVector && c < components; ++c)
+      {
+        add(array, c, array->GetName() + (isVector ? ":" + std::to_string(c) : ""));
+      }
+    }
+  }
+  bytes += "\n";
   vtkNew<vtkIdList> line;
-  std::vector<vtkIdType> lines, points;
   for (vtkIdType l = 0; l < surface->GetNumberOfLines(); ++l)
   {
     surface->GetLines()->GetCellAtId(l, line);
-    lines.insert(lines.end(), static_cast<std::size_t>(line->GetNumberOfIds()), l);
-    points.insert(points.end(), line->begin(), line->end());
-  }
-  const auto add = [&](const std::string& name, const std::function<double(std::size_t)>& value)
-  {
-    vtkNew<vtkDoubleArray> column;
-    column->SetName(name.c_str());
-    for (std::size_t i = 0; i < points.size(); ++i)
+    for (const vtkIdType point : *line)
     {
-      column->InsertNextValue(value(i));
-    }
-    table->AddColumn(column);
-  };
-  const auto addArray = [&](vtkDataArray* array, int c, const std::string& name)
-  { add(name, [&](std::size_t i) { return array->GetComponent(points[i], c); }); };
-  add("Line", [&](std::size_t i) { return static_cast<double>(lines[i]); });
-  for (int c = 0; c < 3; ++c)
-  {
-    addArray(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
-  }
-  for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = surface->GetPointData()->GetArray(i);
-    for (int c = 0; array && c < array->GetNumberOfComponents(); ++c)
-    {
-      const bool isOne = array->GetNumberOfComponents() == 1;
-      addArray(array, c, array->GetName() + (isOne ? "" : ":" + std::to_string(c)));
+      bytes += std::to_string(l);
+      for (const Column& column : columns)
+      {
+        bytes += "," + TableField(column.Array, point, column.Component);
+      }
+      bytes += "\n";
     }
   }
-  bytes = TableHeader(table) + TableRows(table);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include "vtkDataArray.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
+#include "vtkVariant.h"
 
 #include <charconv>
 #include <cmath>
@@ -12,40 +13,48 @@
 namespace
 {
 
-std::string Quoted(const std::string& text)
+template <typename T>
+std::string Formatted(T number)
 {
-  if (text.find_first_of(",\"\n\r") == std::string::npos)
+  char digits[32];
+  const auto result = std::to_chars(digits, digits + sizeof(digits), number);
+  return std::string(digits, result.ptr);
+}
+
+}
+
+std::string TableField(const std::string& text)
+{
+  const bool isFormula = !text.empty() && std::string("=+-@").find(text[0]) != std::string::npos;
+  const std::string plain = (isFormula ? "'" : "") + text;
+  if (plain.find_first_of(",\"\n\r") == std::string::npos)
   {
-    return text;
+    return plain;
   }
   std::string quoted = "\"";
-  for (const char c : text)
+  for (const char c : plain)
   {
     quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   }
   return quoted + "\"";
 }
 
-std::string Formatted(double number)
+std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)
 {
-  if (std::isnan(number))
+  if (auto* texts = vtkStringArray::SafeDownCast(array))
   {
-    return "";
+    return TableField(texts->GetValue(tuple));
   }
-  char digits[32];
-  const auto result = std::to_chars(digits, digits + sizeof(digits), number + 0.0); // no -0
-  return std::string(digits, result.ptr);
-}
-
-std::string Field(vtkAbstractArray* column, vtkIdType row)
-{
-  if (auto* texts = vtkStringArray::SafeDownCast(column))
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  if (array->GetDataTypeSize() == 8 && array->GetDataType() != VTK_DOUBLE) // beyond 2^53, too
   {
-    return Quoted(texts->GetValue(row));
+    const vtkVariant value =
+      array->GetVariantValue(tuple * array->GetNumberOfComponents() + component);
+    return numbers->GetDataTypeMin() < 0.0 ? Formatted(value.ToLongLong())
+                                              : Formatted(value.ToUnsignedLongLong());
   }
-  return Formatted(vtkDataArray::SafeDownCast(column)->GetComponent(row, 0));
-}
-
+  const double number = numbers->GetComponent(tuple, component) + 0.0; // no -0
+  return std::isnan(number) ? "" : Formatted(number);
 }
 
 std::string TableHeader(vtkTable* table)
@@ -53,7 +62,7 @@ std::string TableHeader(vtkTable* table)
   std::string line;
   for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
   {
-    line += (c ? "," : "") + Quoted(table->GetColumnName(c));
+    line += (c ? "," : "") + TableField(table->GetColumnName(c));
   }
   return line + "\n";
 }
@@ -65,7 +74,7 @@ std::string TableRows(vtkTable* table)
   {
     for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
     {
-      text += (c ? "," : "") + Field(table->GetColumn(c), row);
+      text += (c ? "," : "") + TableField(table->GetColumn(c), row);
     }
     text += "\n";
   }

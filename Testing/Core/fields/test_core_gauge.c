@@ -294,7 +294,7 @@ static void test_weird(void** state)
   const mcor_gauge_line nan = { .from = { 1, NAN, 3 }, .to = { 1, 2, 4 } };
   const mcor_gauge_line far = { .from = { 100, 2, 3 }, .to = { 1e9, 2, 4 } };
   const mcor_gauge_line good = { .from = { 3, 3, 3 }, .to = { 3, 3, 3.1 } };
-  refuse(*state, &input, &options, &none, "bow has no length");
+  refuse(*state, &input, &options, &none, "'bow' has no length");
   refuse(*state, &input, &options, &nan, "not finite");
   const double zero = 0;
   options.iso_values = &zero;

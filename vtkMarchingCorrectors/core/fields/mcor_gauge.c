@@ -177,8 +177,8 @@ static mcor_status mcor_run_gauge(
     if (off)
     {
       status = mcor_fail(context, MCOR_INVALID_ARGUMENT,
-        "Gauge %lld leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
-        (long long)i, 'x' + w, plane->at);
+        "Gauge %s leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
+        mcor_label_gauge(line, i).text, 'x' + w, plane->at);
     }
   }
   double box[6];

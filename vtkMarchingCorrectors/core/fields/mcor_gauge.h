@@ -59,7 +59,14 @@ typedef struct mcor_gauge_job
 /* Points on the device at a time. */
 #define MCOR_GAUGE_BATCH (1 << 18)
 
+/* How messages call a gauge: by its name in quotes, or its number. */
+typedef struct mcor_gauge_label
+{
+  char text[80];
+} mcor_gauge_label;
+
 /* mcor_gauge_line.c */
+mcor_gauge_label mcor_label_gauge(const mcor_gauge_line* line, int64_t number);
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
 /* How far apart samples are at most, L. */
 double mcor_gauge_step(double h_scale, double smoothing_length_min);

@@ -40,11 +40,24 @@ static double mcor_gauge_length(const mcor_gauge_line* line)
   return ldexp(sqrt(sum), exponent);
 }
 
+mcor_gauge_label mcor_label_gauge(const mcor_gauge_line* line, int64_t number)
+{
+  mcor_gauge_label label;
+  if (line->name)
+  {
+    snprintf(label.text, sizeof label.text, "'%.70s'", line->name);
+  }
+  else
+  {
+    snprintf(label.text, sizeof label.text, "number %lld", (long long)number);
+  }
+  return label;
+}
+
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number)
 {
-  char name[64];
-  snprintf(name, sizeof name, "number %lld", (long long)number);
-  const char* which = line->name ? line->name : name;
+  const mcor_gauge_label label = mcor_label_gauge(line, number);
+  const char* which = label.text;
   for (int a = 0; a < 3; ++a)
   {
     MCOR_RETURN_IF(!isfinite(line->from[a]) || !isfinite(line->to[a]), context,
@@ -180,10 +193,13 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   }
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
-  MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !(steps < 4e15), context, MCOR_OUT_OF_CAPACITY,
-    "Gauge number %lld needs %.3g sample points, one every quarter of the smallest smoothing "
-    "length %g; the limit is %d. Shorten the gauge.",
-    (long long)number, last - first + 1, context->measure.h_min, MCOR_GAUGE_MOST);
+  const bool whole_is_countable = steps < 4e15; /* so that places on it are told apart */
+  MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
+    MCOR_OUT_OF_CAPACITY,
+    "Gauge %s needs %.3g sample points, one every quarter of the smallest smoothing "
+    "length %g; the limit is %.3g. Shorten the gauge.",
+    mcor_label_gauge(line, number).text, (whole_is_countable ? last - first : steps) + 1,
+    context->measure.h_min, whole_is_countable ? (double)MCOR_GAUGE_MOST : 4e15);
   mcor_gauge_samples whole = {
     .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last
   };

@@ -101,7 +101,8 @@ void MakeSurface(const Job& job, MessageCapture* messages)
   AddHintOfPeriod(job, particles, warnings);
   ColorScale colors(job.Picture);
   colors.Include(surface);
-  const std::string lost = LostArrays(job.Output, surface, colors);
+  const std::string lost =
+    LostArrays(job.Output, surface, colors, ArraysWithoutPlace(job, particles));
   if (!lost.empty())
   {
     warnings.push_back(lost);
@@ -148,8 +149,10 @@ bool Execute(Job& job)
   if (job.ListDevices)
   {
     ListDevices();
+    return true;
   }
-  else if (job.IsGauge())
+  LoadDriversAhead(job.Surface->GetDevice());
+  if (job.IsGauge())
   {
     return MakeGaugeTable(job, messages);
   }
@@ -242,5 +245,7 @@ int main(int argc, char* argv[])
 {
   OpenStandardStreams();
   PrepareForEnding();
-  return Finish(Status([&] { return ParseAndExecute(argc, argv); }));
+  const int status = Status([&] { return ParseAndExecute(argc, argv); });
+  AwaitDrivers();
+  return Finish(status);
 }

@@ -27,6 +27,34 @@ def compressed(data):
     return base64.b64encode(header) + base64.b64encode(body)
 
 
+def unpacked(text):
+    """Of an array that VTK has packed with LZ4: a header of four numbers, then one block of sequences, each of bytes to
+    copy from the block and of bytes to repeat from what is there already."""
+    blocks, _, _, _ = struct.unpack("<4I", base64.b64decode(text[:24])[:16])
+    assert blocks == 1
+    block, at, data = base64.b64decode(text[24:]), 0, bytearray()
+
+    def length(short):
+        nonlocal at
+        total = short
+        while short in (15, 255):
+            short = block[at]
+            total, at = total + short, at + 1
+            short = 255 if short == 255 else 0
+        return total
+
+    while at < len(block):
+        token, at = block[at], at + 1
+        literals = length(token >> 4)
+        data += block[at:at + literals]
+        at += literals
+        if at < len(block):
+            back, at = block[at] | block[at + 1] << 8, at + 2
+            for _ in range(length(token & 15) + 4):
+                data.append(data[-back])
+    return bytes(data)
+
+
 def cells(count):
     """Cells of an unstructured grid, one per particle: name, type, data."""
     return [("connectivity", "Int64", struct.pack(f"<{count}q", *range(count))),

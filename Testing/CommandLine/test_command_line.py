@@ -237,7 +237,7 @@ class BadData(CommandLineTest):
         self.refuse_with("(?i)cube size", *ISO, "--cube-size", "1e-15")
 
     def test_surface_too_large(self):
-        self.refuse_with("too large.*larger cube size", *ISO, "--cube-size", "1e-5")
+        self.refuse_with(r"too large.*larger cube size \(--cube-size\)", *ISO, "--cube-size", "1e-5")
 
     def test_memory_limit(self):
         fine = [*ISO, "--cube-size", "0.01", "--memory-limit"]
@@ -265,7 +265,7 @@ class BadData(CommandLineTest):
         """The ICD loader of Debian then finds no driver at all: the built-in device needs none, nor a home."""
         environment = {**os.environ, "OCL_ICD_VENDORS": str(self.directory / "nowhere"), "HOME": "/nonexistent"}
         environment.pop("MCOR_DEVICE", None)
-        self.refuse_with("were not compiled", *ISO, "--precision", "double", env=environment)
+        self.refuse_with("were not compiled.*Use single precision .--precision single", *ISO, "--precision", "double", env=environment)
         listed = self.run_program("--list-devices", env=environment)
         self.assertRegex(listed.stdout, r"^0: built in: this CPU.*\n$")
 
@@ -279,6 +279,19 @@ class BadData(CommandLineTest):
         fifo = self.directory / "fifo.vtp"
         os.mkfifo(fifo)
         self.refuse_with("fifo.vtp cannot be read: it is not a regular file", source=fifo)
+
+    def test_files_of_solvers(self):
+        for name in ("s.bgeo", "s.bi4", "s.hdf5"):
+            self.refuse(self.run_program(self.directory / name, "o.vtp", *ISO), 2,
+                        f"{name} is a solver's own file; 'python -m marchingcorrectors convert .*{name} particles.vtp'")
+
+    def test_correction_that_ends_early(self):
+        """What each sentence advises is an option."""
+        result = self.extract(*ISO, "--iteration-limit", "1", "--tolerance", "1e-9")
+        self.assertRegex(result.stderr, "warning: .* off the iso value .*Try a higher iteration limit .--iteration-limit")
+        statistics = self.succeed(*ISO, "--tolerance", "0.5")
+        self.assertEqual(statistics["parameters"]["tolerance"], 0.5)
+        self.assertEqual(self.succeed(*ISO, "--iteration-limit", "7")["parameters"]["iteration_limit"], 7)
 
     def test_no_vtk_files(self):
         for name in ("text.vtp", "text.vtu", "text.vtk"):

@@ -148,6 +148,20 @@ class Film(CommandLineTest):
         self.assertEqual([s["statistics"]["fluid_particles"] for s in steps], [600, 600])
         self.assertNotEqual(*[self.without_mark(p) for _, p in self.listed()])
 
+    def test_numbers_by_another_name(self):
+        paths = self.write_steps(2)
+        self.good("steps.pvd", "--times", "0.03")
+        expected = self.without_mark(self.listed()[0][1]).replace("Idp", "Tag")
+        for i, path in enumerate(paths):
+            points, arrays = files.drop_at(0.1 * i)
+            arrays = {"Tag" if name == "Idp" else name: values for name, values in arrays.items()}
+            files.write_vtp(path, points, arrays)
+        result = self.make("steps.pvd", "--times", "0.03")
+        self.one_sentence(result, 1, r"no point array has one of the usual names.*Name the array of ids \(--ids NAME\)")
+        self.good("steps.pvd", "--times", "0.03", "--ids", "Tag")
+        self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
+        self.one_sentence(self.make("steps.pvd", "--ids", "Tag"), 2, "only --times asks for; leave out --ids")
+
     def test_no_numbers(self):
         points, arrays = files.drop_at(0.1)
         del arrays["Idp"]

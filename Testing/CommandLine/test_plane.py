@@ -1,14 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Two dimensions by the program marching-correctors: test_plane.py PROGRAM PRELOAD."""
-import base64
 import csv
 import math
 import re
 import struct
-import zlib
 
 import particle_files as files
+from binary_files import unpacked
 from command_line_test import ISO, CommandLineTest, main
 
 SIDE = 20
@@ -196,10 +195,8 @@ class Plane(CommandLineTest):
         self.assertRegex(away.stdout, r"points +31, 0 of them valid")
 
     def point_values(self, name):
-        """Of an array, which is compressed behind a header of 16 bytes."""
         kind, text = re.search(f'type="Float(32|64)" Name="{name}"[^>]*>\\s*([^<\\s]*)', self.output.read_text()).groups()
-        data = zlib.decompress(base64.b64decode(text[24:]))
-        return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", data)]
+        return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", unpacked(text))]
 
     def test_values_on_a_line(self):
         """Means of the distance from the middle are it."""

@@ -45,8 +45,9 @@ GaugeLine ToGauge(const std::string& option, const std::string& text)
   gauge.Name = Printable(text.substr(0, equals));
   if (std::string("=+-@").find(gauge.Name[0]) != std::string::npos)
   {
-    throw UsageError(option + ": the name of gauge '" + gauge.Name +
-      "' begins with '" + gauge.Name[0] + "', so that spreadsheets would take it for a formula; begin it with a letter");
+    throw UsageError(option + ": the name of gauge '" + gauge.Name + "' begins with '" +
+      gauge.Name[0] +
+      "', so that spreadsheets would take it for a formula; begin it with a letter");
   }
   if (std::equal(gauge.Ends.begin(), gauge.Ends.begin() + 3, gauge.Ends.begin() + 3))
   {
@@ -69,7 +70,8 @@ std::vector<GaugeLine> ReadGauges(const std::string& file)
   if (!source.eof()) // a folder opens, but does not read
   {
     throw std::runtime_error("the gauges' file " + file +
-      (text.size() > most ? " is larger than 64 MiB; give one of fewer gauges" : " cannot be read"));
+      (text.size() > most ? " is larger than 64 MiB; give one of fewer gauges"
+                          : " cannot be read"));
   }
   std::istringstream stream(text);
   std::vector<GaugeLine> gauges;
@@ -114,7 +116,8 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
   if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e6)
   {
     throw UsageError(option +
-      " has more than a million gauges, which take minutes and gigabytes; take fewer, or a part of the bounds at a time");
+      " has more than a million gauges, which take minutes and gigabytes; take fewer, or a part of "
+      "the bounds at a time");
   }
   return grid;
 }

@@ -194,6 +194,19 @@ void Check(const Job& job)
   {
     throw UsageError("needs INPUT and OUTPUT");
   }
+  for (const std::string& input : job.Inputs)
+  {
+    for (const char* ending : { ".bgeo", ".bgeo.gz", ".bi4", ".h5", ".hdf5" })
+    {
+      if (EndsWith(input, ending))
+      {
+        throw UsageError(input + " is a solver's own file; 'python -m marchingcorrectors convert " +
+          input + " particles.vtp' of the Python package makes one that is read here");
+      }
+    }
+  }
+  Exclude("particles are matched between steps, which only --times asks for; leave out ",
+    { { !job.IdArray.empty() && job.Times.empty(), "--ids" } });
   Exclude("--walls tells which particles are fluid; leave out ",
     { { !job.Walls.empty() && *job.Surface->GetFluidArrayName(), "--fluid" } });
   if (job.IsGauge())

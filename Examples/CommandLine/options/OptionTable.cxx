@@ -289,6 +289,12 @@ const Options TheMethod = {
       j.Surface->SetTopology(ToChoice(
         n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }));
     } },
+  { "--tolerance", "T",
+    "correct vertices until the field is within T times the scalar's range of the iso value "
+    "(default 1e-6)",
+    [](Job& j, Text n, Text v) { j.Surface->SetTolerance(ToPositive(n, v)); } },
+  { "--iteration-limit", "N", "correct a vertex in at most N steps, from 1 to 255 (default 30)",
+    [](Job& j, Text n, Text v) { j.Surface->SetIterationLimit(ToCount(n, v, 1, 255)); } },
   { "--preview", "", "faster: no correction, and normals from the triangles",
     [](Job& j, Text, Text) { j.Surface->PreviewOn(); } },
   { "--node-threshold", "T", "discard cells with a node whose weight is lower than T (default 0.1)",
@@ -359,6 +365,9 @@ const Options Output = {
     [](Job& j, Text, Text v) { j.NumbersFile = v; } },
   { "--times", "T[,T...]", "for a film or gauges: at these times, which may lie between two steps",
     SetTimes },
+  { "--ids", "NAME",
+    "with --times, array of ids that tell which particle of a step is which of the next",
+    [](Job& j, Text, Text v) { j.IdArray = Printable(v); } },
   { "--time-step", "DT", "for a film: time between one INPUT and the next (default 1)",
     [](Job& j, Text n, Text v) { j.TimeStep = ToPositive(n, v); } },
   { "--stats", "FILE.json", "write the statistics of the run",

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SafeText.h"
 
+#include "Advice.h"
+
 #include <cstddef>
 #include <cstdio>
 #include <iostream>
@@ -109,7 +111,7 @@ std::string QuotedForJson(const std::string& text)
 
 void Say(const std::string& sentence)
 {
-  std::cerr << "marching-correctors: " << Printable(sentence) << "\n";
+  std::cerr << "marching-correctors: " << Printable(WithOptions(sentence)) << "\n";
 }
 
 std::string EscapedForXml(const std::string& text)

@@ -149,7 +149,8 @@ void ShareSurface(Job& job, RankSession& session, MessageCapture* messages)
       if (whole)
       {
         colors.Include(whole);
-        const std::string lost = LostArrays(job.Output, whole, colors);
+        const std::string lost =
+          LostArrays(job.Output, whole, colors, ArraysWithoutPlace(job, particles));
         warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
       }
       WriteSurface(job, session, run.Surface, whole, colors, messages, files);

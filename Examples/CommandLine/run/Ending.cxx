@@ -4,6 +4,8 @@
 
 #include "SafeText.h"
 
+#include "vtkMarchingCorrectors.h"
+
 #include <algorithm>
 #include <climits>
 #include <csignal>
@@ -13,6 +15,7 @@
 #include <exception>
 #include <initializer_list>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -53,6 +56,8 @@ const bool FoundAwaited = (FindAwaited(), true);
 char Failure[PATH_MAX + 256] = "the run failed";
 char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran out";
 char StackOfHandler[1 << 16]; // that of a recursion without end is full
+char HintOfDrivers[PATH_MAX + 256] = "";
+thread_local bool IsLoadingDrivers = false; ///< meanwhile another thread reads files
 volatile std::sig_atomic_t IsFinished = 0;
 volatile std::sig_atomic_t FinalStatus = 0;
 volatile std::sig_atomic_t ClearsLine = 0;
@@ -60,6 +65,7 @@ volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< also where Silenc
 
 /// Never destroyed: the waiting thread lives as long as the process.
 std::mutex& FilesLock = *new std::mutex;
+std::thread& Loading = *new std::thread;
 std::vector<std::string>& Files = *new std::vector<std::string>;
 
 void RemoveFiles()
@@ -108,7 +114,8 @@ void EndByCrash(int number)
   RemoveFiles();
   SayInHandler(ClearsLine ? "\r\033[K" : "");
   for (const char* part : std::initializer_list<const char*>{
-         "marching-correctors: ", Failure, ": ", Reason(number), "; ", Hint, "\n" })
+         "marching-correctors: ", IsLoadingDrivers ? "the run failed" : Failure, ": ",
+         Reason(number), "; ", IsLoadingDrivers ? HintOfDrivers : Hint, "\n" })
   {
     SayInHandler(part);
   }
@@ -172,7 +179,14 @@ void PrepareForEnding()
   }
   // All threads to come leave these signals to one that waits for them: it may lock and allocate.
   pthread_sigmask(SIG_BLOCK, &Awaited, nullptr);
-  std::thread(WaitForSignal).detach();
+  try
+  {
+    std::thread(WaitForSignal).detach();
+  }
+  catch (const std::system_error&) // no more threads: signals end the program at once
+  {
+    pthread_sigmask(SIG_UNBLOCK, &Awaited, nullptr);
+  }
 }
 
 void KeepWatchOfCrashes()
@@ -205,6 +219,37 @@ std::string FaultsOfDrivers(const std::string& device)
         ? ", files that PoCL keeps may be damaged (remove the folder " + Printable(folder) + ")"
         : "") +
     ", or memory ran out";
+}
+
+void LoadDriversAhead(const std::string& device)
+{
+  const char* variable = std::getenv("MCOR_DEVICE");
+  if ((device.empty() && variable ? std::string(variable) : device).rfind("built", 0) == 0)
+  {
+    return;
+  }
+  Set(HintOfDrivers, FaultsOfDrivers(device));
+  try
+  {
+    Loading = std::thread(
+      []
+      {
+        IsLoadingDrivers = true;
+        vtkMarchingCorrectors::ListDevices();
+      });
+  }
+  catch (const std::system_error&)
+  {
+    // No more threads: drivers are loaded when they are needed.
+  }
+}
+
+void AwaitDrivers()
+{
+  if (Loading.joinable())
+  {
+    Loading.join();
+  }
 }
 
 Activity::Activity(const std::string& failure, const std::string& hint)

@@ -33,6 +33,13 @@ private:
   std::string OuterHint;
 };
 
+/// Loads the drivers of OpenCL, which takes a while, in a thread: files are read meanwhile. Nothing where the device is
+/// the built-in one.
+void LoadDriversAhead(const std::string& device);
+
+/// Before a device is used.
+void AwaitDrivers();
+
 /// While one lives, nothing but the program's own sentence about a crash reaches standard error: libraries
 /// write there what they think of a damaged file.
 class Silence

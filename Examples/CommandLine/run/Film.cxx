@@ -209,7 +209,7 @@ private:
     this->Sharing.OnFirst([&] { this->Keep(i, run, particles, warnings); });
     for (const std::string& warning : warnings)
     {
-      this->Tell("warning: ", i, WithOptions(this->Options, warning));
+      this->Tell("warning: ", i, warning);
     }
   }
 
@@ -257,7 +257,8 @@ private:
         frame, this->Drawn->Draw(frame, surface, particles, this->FrameColors, this->Messages));
     }
     files.Commit();
-    const std::string lost = LostArrays(file, surface, this->Colors);
+    const std::string lost =
+      LostArrays(file, surface, this->Colors, ArraysWithoutPlace(this->Options, particles));
     if (!lost.empty())
     {
       warnings.push_back(lost);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleTimes.h"
 
+#include "Advice.h"
+#include "CollectionFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -58,6 +60,8 @@ std::string TimeText(double time)
 
 ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
   : Messages(messages)
+  , HasTimes(IsCollectionFile(job.Inputs.front()))
+  , Ids(job.IdArray)
   , Stored(ListSteps(job, messages))
   , Times(ListTimes(job, this->Stored))
 {
@@ -113,6 +117,7 @@ void ParticleTimes::Reset()
   vtkNew<ParticleSteps> source;
   vtkNew<vtkSPHTemporalInterpolator> interpolator;
   source->SetSteps(&this->Stored, this->Messages);
+  interpolator->SetIdArrayName(this->Ids.c_str());
   interpolator->SetInputConnection(source->GetOutputPort());
   this->Source = source;
   this->Interpolator = interpolator;
@@ -129,7 +134,11 @@ vtkSmartPointer<vtkPointSet> ParticleTimes::At(double time, std::vector<std::str
   {
     throw std::runtime_error(error.empty() ? this->Messages->GetErrors().front() : error);
   }
-  warnings = this->Messages->GetWarnings();
+  for (const std::string& sentence : this->Messages->GetWarnings())
+  {
+    warnings.push_back(Reworded(sentence, "set the time scale",
+      this->HasTimes ? "change those in the .pvd file" : "use --time-step"));
+  }
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->ShallowCopy(this->Interpolator->GetOutput());
   if (this->WallFiles != this->ListWalls(time))

@@ -51,6 +51,8 @@ public:
 
 private:
   MessageCapture* const Messages;
+  const bool HasTimes; ///< of their own, in a .pvd file
+  const std::string Ids;
   const Steps Stored;
   const std::vector<double> Times;
   vtkSmartPointer<vtkPointSet> Walls;

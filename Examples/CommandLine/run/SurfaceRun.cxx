@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceRun.h"
 
-#include "CollectionFile.h"
+#include "Advice.h"
 #include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
+#include "SurfaceFile.h"
 #include "Walls.h"
 
 #include "vtkCallbackCommand.h"
@@ -22,7 +23,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -104,14 +104,14 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(const Job& job, vtkPointSet* parti
   const std::string error = filter->GetErrorMessage();
   if (!error.empty())
   {
-    throw std::runtime_error(WithOptions(job, error));
+    throw std::runtime_error(error);
   }
   auto derived = vtk::TakeSmartPointer(particles->NewInstance());
   derived->ShallowCopy(filter->GetOutput()); // the next step has the output itself
   return derived;
 }
 
-/// All arrays, or those that are named.
+/// All arrays, or those that are named, as far as there is a place for them.
 void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   const std::vector<std::string>& names = job.AttributeNames;
@@ -127,6 +127,13 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
     {
       throw std::runtime_error(
         "there is no point array '" + name + "' to interpolate (--attributes)");
+    }
+  }
+  if (filter == job.Surface)
+  {
+    for (const std::string& name : ArraysWithoutPlace(job, particles))
+    {
+      filter->AddExcludedArray(name.c_str());
     }
   }
   for (int i = 0; !names.empty() && i < data->GetNumberOfArrays(); ++i)
@@ -196,25 +203,27 @@ void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
 
 }
 
-std::string WithOptions(const Job& job, const std::string& sentence)
+std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles)
 {
-  const bool hasTimes = !job.Inputs.empty() && IsCollectionFile(job.Inputs.front());
-  const std::pair<const char*, const char*> words[] = {
-    { "Turn Estimate Smoothing Length on, or choose Smoothing Length Array",
-      "Give --smoothing-length NAME, VALUE or estimate" },
-    { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh." },
-    { "set the time scale", hasTimes ? "change those in the .pvd file" : "use --time-step" },
-  };
-  std::string result = sentence;
-  for (const auto& word : words)
+  std::vector<std::string> names;
+  vtkPointData* data = particles->GetPointData();
+  const std::string& color = job.Picture.ColorBy; // all are listed where it is none of them
+  if (HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
+    (!color.empty() && !data->HasArray(color.c_str())))
   {
-    const std::size_t at = result.find(word.first);
-    if (at != std::string::npos)
+    return names;
+  }
+  const std::vector<std::string>& asked = job.AttributeNames;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    const std::string name = data->GetArrayName(i) ? data->GetArrayName(i) : "";
+    if (!name.empty() && name != job.Scalar && name != color && name != WallArrayName &&
+      (asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end()))
     {
-      result.replace(at, std::strlen(word.first), word.second);
+      names.push_back(name);
     }
   }
-  return result;
+  return names;
 }
 
 bool ShowsProgress(const Job& job)
@@ -225,6 +234,7 @@ bool ShowsProgress(const Job& job)
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
+  AwaitDrivers();
   vtkSmartPointer<vtkPointSet> particles = AddDerivedArrays(job, input);
   SetParticles(filter, job, particles);
   SetAttributes(filter, job, particles);
@@ -261,8 +271,7 @@ double Update(
   const std::string error = filter->GetErrorMessage();
   if (!error.empty() || !messages->GetErrors().empty())
   {
-    throw std::runtime_error(
-      WithOptions(job, error.empty() ? messages->GetErrors().front() : error));
+    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
   }
   return elapsed.count();
 }
@@ -282,7 +291,11 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
 
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
 {
-  std::vector<std::string> all = messages->GetWarnings();
+  std::vector<std::string> all;
+  for (const std::string& sentence : messages->GetWarnings())
+  {
+    all.push_back(WithOptions(sentence)); // they are in the statistics, too
+  }
   vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
   if (run.Surface->GetNumberOfCells() > 0 || (triangles && triangles->GetComponent(0, 0) > 0))
   {

@@ -15,9 +15,6 @@ class vtkPointSet;
 class vtkSPHAlgorithm;
 struct Job;
 
-/// A sentence of the filters, with the names of options where it has properties'.
-std::string WithOptions(const Job& job, const std::string& sentence);
-
 /// Whether standard error is a terminal whose user has not asked for silence.
 bool ShowsProgress(const Job& job);
 
@@ -28,6 +25,9 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
 
 /// The same for the surface, which gets the particles as its input.
 void SetUpSurface(const Job& job, vtkPointSet* input);
+
+/// Arrays of the particles that are not interpolated because the surface's file could not hold them.
+std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles);
 
 struct Run
 {

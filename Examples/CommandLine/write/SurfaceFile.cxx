@@ -154,6 +154,8 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   head << "\nelement face " << surface->GetNumberOfPolys()
        << "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes = head.str();
+  bytes.reserve(bytes.size() + 27 * static_cast<std::size_t>(surface->GetNumberOfPoints()) +
+    13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
   double vector[3];
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
@@ -206,7 +208,8 @@ bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   {
     add(surface->GetPoints()->GetData(), c, std::string(1, "XYZ"[c]));
   }
-  for (const bool isVector : { true, false }) // names of components are made of arrays' names: they go first
+  for (const bool isVector :
+    { true, false }) // names of components are made of arrays' names: they go first
   {
     for (int i = 0; i < surface->GetPointData()->GetNumberOfArrays(); ++i)
     {
@@ -299,10 +302,20 @@ bool IsFilmSurface(const std::string& file)
   return head.find(FilmMark) != std::string::npos;
 }
 
-std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors)
+bool HoldsArrays(const std::string& file)
+{
+  return !EndsWith(file, ".ply") && !EndsWith(file, ".stl") && !EndsWith(file, ".obj");
+}
+
+std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
+  const std::vector<std::string>& more)
 {
   const bool isPly = EndsWith(file, ".ply");
   std::string names;
+  for (const std::string& name : more)
+  {
+    names += (names.empty() ? "" : ", ") + name;
+  }
   vtkPointData* arrays = surface->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
@@ -312,8 +325,7 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
       name == "Normals" || name == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + name;
   }
-  if (EndsWith(file, ".vtp") || EndsWith(file, ".csv") || names.empty() ||
-    (isPly && !colors.GetName().empty()))
+  if (HoldsArrays(file) || names.empty() || (isPly && !colors.GetName().empty()))
   {
     return "";
   }

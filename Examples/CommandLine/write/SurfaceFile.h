@@ -4,6 +4,7 @@
 #define SurfaceFile_h
 
 #include <string>
+#include <vector>
 
 class ColorScale;
 class MessageCapture;
@@ -28,7 +29,12 @@ std::string FilmSurfaceBytes(
 /// Whether it has this mark, so that another film may replace it.
 bool IsFilmSurface(const std::string& file);
 
-/// A sentence about the arrays that a file in this format does not hold; empty if it has all.
-std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
+/// Whether files in this format hold arrays of any name.
+bool HoldsArrays(const std::string& file);
+
+/// A sentence about the arrays that a file in this format does not hold, those of the surface and more; empty if it has
+/// all.
+std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
+  const std::vector<std::string>& more);
 
 #endif

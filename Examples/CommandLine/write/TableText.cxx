@@ -51,7 +51,7 @@ std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)
     const vtkVariant value =
       array->GetVariantValue(tuple * array->GetNumberOfComponents() + component);
     return numbers->GetDataTypeMin() < 0.0 ? Formatted(value.ToLongLong())
-                                              : Formatted(value.ToUnsignedLongLong());
+                                           : Formatted(value.ToUnsignedLongLong());
   }
   const double number = numbers->GetComponent(tuple, component) + 0.0; // no -0
   return std::isnan(number) ? "" : Formatted(number);

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Advice.h"
+
+namespace
+{
+
+struct Advice
+{
+  const char* Words;
+  const char* Instead; ///< where the sentence does not name that option already
+  const char* Option;
+};
+
+const Advice All[] = {
+  { "Turn Estimate Smoothing Length on, or choose Smoothing Length Array",
+    "Give --smoothing-length NAME, VALUE or estimate", "--smoothing-length" },
+  { "Name its array, give a constant, or have it estimated.",
+    "Give --smoothing-length NAME, VALUE or estimate.", "--smoothing-length" },
+  { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh.", "--dp" },
+  { "Name the array of ids", "Name the array of ids (--ids NAME)", "--ids" },
+  { "arger cube size", "arger cube size (--cube-size)", "--cube-size" },
+  { "maller cube size", "maller cube size (--cube-size)", "--cube-size" },
+  { "another cube size", "another cube size (--cube-size)", "--cube-size" },
+  { "a cube size of no more", "a cube size (--cube-size) of no more", "--cube-size" },
+  { "fewer levels", "fewer levels (--max-level)", "--max-level" },
+  { "complete seeds", "complete seeds (--seeds complete)", "--seeds" },
+  { "urn filling off", "urn filling off (leave out --filled)", "--filled" },
+  { "or do not fill", "or do not fill (leave out --filled)", "--filled" },
+  { "urn capping off", "urn capping off (leave out --capping)", "--capping" },
+  { "or no caps", "or no caps (leave out --capping)", "--capping" },
+  { "set the dimension to 3", "set the dimension to 3 (--dimension 3)", "--dimension" },
+  { "use three dimensions", "use three dimensions (--dimension 3)", "--dimension" },
+  { "Try double precision", "Try double precision (--precision double)", "--precision" },
+  { "hoose another device", "hoose another device (--device)", "--device" },
+  { "se single precision", "se single precision (--precision single)", "--precision" },
+  { "or single precision", "or single precision (--precision single)", "--precision" },
+  { "a higher memory limit", "a higher memory limit (--memory-limit)", "--memory-limit" },
+  { "a higher iteration limit", "a higher iteration limit (--iteration-limit)", "--iteration-limit" },
+  { "a larger tolerance", "a larger tolerance (--tolerance)", "--tolerance" },
+  { "choose a larger factor", "choose a larger factor (--h-scale)", "--h-scale" },
+  { "masses and densities, or remove", "masses and densities (--volume, or --mass and --density), or remove",
+    "--volume" },
+  { "there is an option for that", "there is an option for that: --support-radius", "--support-radius" },
+  { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
+  { "with the value of the fluid", "with the value of the fluid (--fluid NAME=VALUE)", "--fluid" },
+  { "Set the periodic bounds", "Set the periodic bounds (--periodic)", "--periodic" },
+};
+
+}
+
+std::string Reworded(
+  const std::string& sentence, const std::string& words, const std::string& instead)
+{
+  const std::size_t at = sentence.find(words);
+  return at == std::string::npos ? sentence : std::string(sentence).replace(at, words.size(), instead);
+}
+
+std::string WithOptions(const std::string& sentence)
+{
+  std::string result = sentence;
+  for (const Advice& advice : All)
+  {
+    if (result.find(advice.Option) == std::string::npos)
+    {
+      result = Reworded(result, advice.Words, advice.Instead);
+    }
+  }
+  return result;
+}

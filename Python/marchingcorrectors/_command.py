@@ -15,6 +15,7 @@ from . import io
 from ._functions import free_surface, isosurface, probe
 from ._gauge import gauge
 from ._library import InvalidArgument
+from .io._outputs import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, words_of
 
 
@@ -263,10 +264,12 @@ def run(arguments):
     given = make_parser(arguments[0]).parse_args(joined)
     if given.threads is not None:
         os.environ["MCOR_THREADS"] = str(given.threads)
-    particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
-    with warnings.catch_warnings():
+    output = given.output
+    with warnings.catch_warnings(), Outputs([*given.input, *given.walls], [output]) as files:
         warnings.showwarning = lambda message, *_: print(f"marchingcorrectors: warning: {message}", file=sys.stderr)
+        particles = io.read(given.input[0] if len(given.input) == 1 else given.input, walls=given.walls)
+        given.output = files.beside(output)
         said = {"surface": run_surface, "gauge": run_gauge, "slice": run_slice, "line": run_line}[arguments[0]](
             given, particles)
     if not given.quiet:
-        print(f"{given.output}: {said}")
+        print(f"{output}: {said}")

@@ -137,6 +137,25 @@ class Convert(unittest.TestCase):
         self.assertEqual(stat.S_IMODE(self.at("new.vtp").stat().st_mode), 0o666 & ~mask)
         self.assertFalse([p for p in self.folder.iterdir() if p.name.startswith(".")])
 
+    def test_commands(self):
+        """What the other commands write follows the same rules."""
+        os.rename(self.at("run_0000.vtp"), self.at("in.vtp"))
+        self.at("link.npz").symlink_to("in.vtp")
+        self.at("old.csv").write_text("old")
+        self.before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
+        words = ["--smoothing-length", "300", "--gauge", "up=0,0,0:0,0,900"]
+        done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "surface", "in.vtp", "link.npz", *words[:2]],
+                              cwd=self.folder, stderr=subprocess.PIPE, universal_newlines=True)
+        self.refuse(done, "link.npz would overwrite the input")
+        for name, status in (("nowhere/a.csv", 1), ("old.txt", 1), ("old.csv", 0)):
+            done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "gauge", "in.vtp", name, *words],
+                                  cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+            self.assertEqual(done.returncode, status, done.stderr)
+            if status:
+                self.refuse(done, "could not be written" if "nowhere" in name else "is a .csv file, not")
+        self.assertTrue(self.at("old.csv").read_text().startswith("time,gauge,state"))
+        self.assertFalse([p for p in self.folder.iterdir() if p.name.startswith(".")])
+
     @unittest.skipIf(os.name == "nt", "Windows has no such signals")
     def test_signals(self):
         self.at("large.vtp").write_bytes(vtp_bytes(particles(400000)))
@@ -181,11 +200,11 @@ class Convert(unittest.TestCase):
             self.assertEqual(vtk_to_numpy(to_vtk(made).GetPoints().GetData()).ravel().tolist(), list(range(9)))
 
     def test_smoothing_lengths(self):
-        made = particles(h=np.array([[1.0], [2], [3]]), wide=np.ones((3, 2)))
+        made = particles(h=np.array([1.0, 2, 3]), wide=np.ones((3, 2)))
         made.smoothing_length = "h"
         self.assertEqual(vtk_to_numpy(to_vtk(made).GetPointData().GetArray("SmoothingLength")).tolist(), [1, 2, 3])
         made.smoothing_length = "wide"
-        with self.assertRaisesRegex(FileError, r"'wide' have the shape \(3, 2\), where one for each of the 3"):
+        with self.assertRaisesRegex(FileError, r"'wide' has the shape \(3, 2\), where .* one number for each of 3"):
             to_vtk(made)
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Output files by the rules of the program marching-correctors: written beside their places, then all take them."""
 import os
+import shutil
 import stat
 import tempfile
 
@@ -30,7 +31,7 @@ class Outputs:
     """
 
     def __init__(self, inputs, outputs, steps=()):
-        self._written = []
+        self._written, self._folders = [], []
         read = {_identity(path) for path in inputs if os.path.exists(path)}
         found = set()
         for path in (*outputs, *steps):
@@ -78,6 +79,20 @@ class Outputs:
                     mode &= 0o707  # another group must not gain what the old one was allowed
             os.chmod(beside, mode)
 
+    def beside(self, path):
+        """Where a library is to write that file: in a folder of its own beside the place, under its name."""
+        with _sentences(path):
+            target = os.path.realpath(path)
+            if os.path.exists(target) and not os.path.isfile(target):
+                return str(path)
+            if os.path.exists(target):
+                with open(target, "r+b"):
+                    pass
+            folder, name = os.path.dirname(target), os.path.basename(path)
+            self._folders.append(tempfile.mkdtemp(dir=folder, prefix=f".{name[:50]}."))
+            self._written.append((os.path.join(self._folders[-1], name), target, b""))
+            return self._written[-1][0]
+
     def __enter__(self):
         return self
 
@@ -87,6 +102,8 @@ class Outputs:
                 beside, target, data = self._written[0]
                 with _sentences(target):
                     if beside:
+                        if os.path.dirname(beside) in self._folders and os.path.exists(target):
+                            shutil.copymode(target, beside)
                         os.replace(beside, target)
                     else:
                         with open(target, "wb") as file:
@@ -94,8 +111,10 @@ class Outputs:
                 self._written.pop(0)
         finally:
             for beside, _, _ in self._written:
-                if beside:
+                if beside and os.path.exists(beside):
                     os.unlink(beside)
+            for folder in self._folders:
+                shutil.rmtree(folder, ignore_errors=True)
 
 
 class _sentences:

@@ -53,11 +53,7 @@ def to_vtk(particles):
         if isinstance(particles.smoothing_length, str):
             arrays.pop(particles.smoothing_length)
         factor = support_factor(particles.kernel) if particles.support_radius else 1
-        h = np.asarray(h, float)
-        if h.ndim and h.size != len(positions):
-            raise FileError(f"{particles.file}: the smoothing lengths '{particles.smoothing_length}' have the shape "
-                            f"{h.shape}, where one for each of the {len(positions)} particles is needed.")
-        arrays["SmoothingLength"] = np.broadcast_to(h.ravel() / factor, len(positions))
+        arrays["SmoothingLength"] = np.broadcast_to(np.asarray(h, float) / factor, len(positions))
     if isinstance(particles.mass, float):
         arrays.setdefault("Mass", np.full(len(positions), particles.mass))
     if particles.solid is not None and "Type" not in arrays:

@@ -25,6 +25,7 @@ const Advice All[] = {
   { "a cube size of no more", "a cube size (--cube-size) of no more", "--cube-size" },
   { "fewer levels", "fewer levels (--max-level)", "--max-level" },
   { "complete seeds", "complete seeds (--seeds complete)", "--seeds" },
+  { "uniform cubes", "uniform cubes (--cubes uniform)", "--cubes" },
   { "urn filling off", "urn filling off (leave out --filled)", "--filled" },
   { "or do not fill", "or do not fill (leave out --filled)", "--filled" },
   { "urn capping off", "urn capping off (leave out --capping)", "--capping" },
@@ -44,6 +45,8 @@ const Advice All[] = {
   { "there is an option for that", "there is an option for that: --support-radius", "--support-radius" },
   { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
   { "with the value of the fluid", "with the value of the fluid (--fluid NAME=VALUE)", "--fluid" },
+  { "pthread_create has failed: Resource temporarily unavailable",
+    "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },
   { "Set the periodic bounds", "Set the periodic bounds (--periodic)", "--periodic" },
 };
 

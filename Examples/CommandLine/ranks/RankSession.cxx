@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankSession.h"
 
+#include "Sentences.h"
+
 #include "vtkMPIController.h"
 #include "vtkSPHRanksWait.h"
 
-#include <exception>
-#include <new>
 #include <stdexcept>
 
 RankSession::RankSession()
@@ -35,19 +35,7 @@ int RankSession::GetCount() const
 
 void RankSession::RunOnAll(const std::function<void()>& work)
 {
-  std::string sentence;
-  try
-  {
-    work();
-  }
-  catch (const std::bad_alloc&)
-  {
-    sentence = "host memory ran out";
-  }
-  catch (const std::exception& error)
-  {
-    sentence = error.what();
-  }
+  std::string sentence = FailureOf(work);
   const int self = sentence.empty() ? this->GetCount() : this->GetRank();
   int failed = self;
   vtkSPHAwaitRanks(this->Controller);

@@ -191,7 +191,7 @@ class Convert(unittest.TestCase):
             else:
                 self.assertEqual(vtk_to_numpy(data.GetArray(name)).tolist(), values.astype(values.dtype.newbyteorder("="))
                                  .tolist() if name == "big" else values.astype(float).tolist())
-        for name, values in (("text", np.array(["a", "b", "c"])), ("complex", np.ones(3, complex))):
+        for name, values in (("bytes", np.array([b"a", b"b", b"c"])), ("complex", np.ones(3, complex))):
             with self.subTest(name), self.assertWarnsRegex(InputWarning, f"the array '{name}' .* is left out"):
                 self.assertFalse(to_vtk(particles(**{name: values})).GetPointData().HasArray(name))
         for kind in (np.float16, np.longdouble, ">f4", int):

@@ -37,12 +37,14 @@ const Advice All[] = {
   { "se single precision", "se single precision (--precision single)", "--precision" },
   { "or single precision", "or single precision (--precision single)", "--precision" },
   { "a higher memory limit", "a higher memory limit (--memory-limit)", "--memory-limit" },
-  { "a higher iteration limit", "a higher iteration limit (--iteration-limit)", "--iteration-limit" },
+  { "a higher iteration limit", "a higher iteration limit (--iteration-limit)",
+    "--iteration-limit" },
   { "a larger tolerance", "a larger tolerance (--tolerance)", "--tolerance" },
   { "choose a larger factor", "choose a larger factor (--h-scale)", "--h-scale" },
-  { "masses and densities, or remove", "masses and densities (--volume, or --mass and --density), or remove",
-    "--volume" },
-  { "there is an option for that", "there is an option for that: --support-radius", "--support-radius" },
+  { "masses and densities, or remove",
+    "masses and densities (--volume, or --mass and --density), or remove", "--volume" },
+  { "there is an option for that", "there is an option for that: --support-radius",
+    "--support-radius" },
   { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
   { "with the value of the fluid", "with the value of the fluid (--fluid NAME=VALUE)", "--fluid" },
   { "pthread_create has failed: Resource temporarily unavailable",
@@ -56,7 +58,8 @@ std::string Reworded(
   const std::string& sentence, const std::string& words, const std::string& instead)
 {
   const std::size_t at = sentence.find(words);
-  return at == std::string::npos ? sentence : std::string(sentence).replace(at, words.size(), instead);
+  return at == std::string::npos ? sentence
+                                 : std::string(sentence).replace(at, words.size(), instead);
 }
 
 std::string WithOptions(const std::string& sentence)

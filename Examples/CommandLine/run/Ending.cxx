@@ -224,7 +224,7 @@ std::string FaultsOfDrivers(const std::string& device)
 void LoadDriversAhead(const std::string& device)
 {
   const char* variable = std::getenv("MCOR_DEVICE");
-  if ((device.empty() && variable ? std::string(variable) : device).rfind("built", 0) == 0)
+  if (!device.empty() || (variable && *variable))
   {
     return;
   }

@@ -33,8 +33,8 @@ private:
   std::string OuterHint;
 };
 
-/// Loads the drivers of OpenCL, which takes a while, in a thread: files are read meanwhile. Nothing where the device is
-/// the built-in one.
+/// Loads the drivers of OpenCL, which takes a while, in a thread: files are read meanwhile. Nothing where a
+/// device is named, which may need none.
 void LoadDriversAhead(const std::string& device);
 
 /// Before a device is used.

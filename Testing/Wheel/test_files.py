@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import warnings
 from pathlib import Path
 
@@ -272,6 +273,14 @@ class Layouts(Case):
         self.assertEqual(particles.positions.tobytes(), X[alive].tobytes())
         self.assertLess(np.abs(particles.arrays["density"] / DENSITY[alive] - 1).max(), 1e-12)
         self.assertEqual(particles.time, 7.0)
+
+    def test_packages(self):
+        """Names of packages as pip knows them."""
+        write_native(self.at("dump"))
+        write_gadget(self.at("snap.hdf5"))
+        for missing, name, packages in (("sarracen", "dump", "sarracen scikit-learn"), ("h5py", "snap.hdf5", "h5py")):
+            with unittest.mock.patch.dict(sys.modules, {missing: None}):
+                self.assert_refused(f"pip install {packages}.", self.at(name))
 
     def test_phantom_native(self):
         if not all(importlib.util.find_spec(name) for name in ("sarracen", "sklearn")):

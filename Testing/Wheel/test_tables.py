@@ -8,9 +8,11 @@ import unittest
 
 import h5py
 import numpy as np
+import pyvista
 
 import marchingcorrectors as mc
 from marchingcorrectors import io
+from marchingcorrectors.io.convert import convert
 from test_files import Case, quietly
 
 WORDS = ("O", "H2", "Ar")
@@ -241,6 +243,19 @@ class Tables(Case):
         self.at("wall.csv").write_text("x,y,z\n9,9,9\n")
         both = io.read([self.at("water.csv"), self.at("wall.csv")])
         self.assertEqual(both.solid.tolist(), [False] * len(x) + [True])
+
+    def test_film(self):
+        """All steps of a file are converted, with their times."""
+        write_xyz(self.at("p.xyz"), np.random.default_rng(5), 3, True)
+        write_gadget_binary(self.at("snap"), np.random.default_rng(5))
+        convert([self.at("p.xyz"), self.at("snap")], self.at("film.pvd"))
+        reader = pyvista.get_reader(self.at("film.pvd"))
+        self.assertEqual(reader.time_values, [0, 0.25, 0.5])  # the snapshot's is 0.25, too
+        for i in range(3):
+            step = pyvista.read(self.at(f"film_{i:04d}.vtp"))
+            self.assertTrue(np.array_equal(step.points, io.read(self.at("p.xyz"), step=i).positions))
+            self.assertEqual(step["species"].tolist(), io.read(self.at("p.xyz"), step=i).arrays["species"].tolist())
+        self.assertEqual(pyvista.read(self.at("film_0003.vtp")).n_points, len(io.read(self.at("snap"))))
 
     def test_sentences(self):
         for name, text, words in (

@@ -16,7 +16,7 @@ from .gadget_binary import is_gadget_binary
 
 ENDINGS = (".hdf5", ".h5", ".bi4", ".bgeo", *bodies.ENDINGS)
 PathName = Union[str, "os.PathLike[str]"]
-__all__ = ["ENDINGS", "FileError", "Particles", "read"]
+__all__ = ["ENDINGS", "FileError", "Particles", "count_steps", "read"]
 
 
 def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, int, Sequence[Union[str, int]]] = None,
@@ -48,6 +48,11 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
         raise FileError(f"{paths[0].name} asks for more memory than there is: it is damaged, or too large.") from None
     except Exception as error:  # of a damaged file each library has its own kinds
         raise FileError(f"{paths[0].name} cannot be read: {' '.join(str(error).split())[:200]}") from None
+
+
+def count_steps(path: PathName) -> int:
+    """How many steps a file holds; more than one only in .vtkhdf, .xyz and dumps of LAMMPS."""
+    return len(read(path).times or [0]) if bodies.may_hold_steps(Path(path)) else 1
 
 
 def _read(paths, types, walls, step):

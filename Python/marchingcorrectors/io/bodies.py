@@ -10,11 +10,18 @@ XYZ = (".xyz", ".extxyz", ".exyz")
 ENDINGS = (".vtp", ".vtu", ".vtk", ".vtkhdf", *TABLES, *XYZ, ".dump", ".lammpstrj")
 
 
+def is_dump(path):
+    with open(path, "rb") as file:
+        return file.read(5) == b"ITEM:"
+
+
+def may_hold_steps(path):
+    return path.suffix.lower() in (".vtkhdf", *XYZ) or path.is_file() and is_dump(path)
+
+
 def load(path, step):
     ending = path.suffix.lower()
-    with open(path, "rb") as file:
-        head = file.read(64)
-    if head.startswith(b"ITEM:"):
+    if is_dump(path):
         from .tables import read_lammps
         return read_lammps(path, step)
     if ending in XYZ:

@@ -7,7 +7,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from .._warnings import warn
-from . import FileError, read
+from . import FileError, count_steps, read
 from ._outputs import STEP_MARK, Outputs
 from ._particles import support_factor
 
@@ -93,7 +93,7 @@ def vtp_bytes(particles, mark=b""):
 
 
 def convert(inputs, output):
-    """Files into one .vtp, or one .vtp for each beside a .pvd, whose times are the files' (else 0, 1, ...)."""
+    """Files into one .vtp, or one .vtp for each of their steps beside a .pvd, whose times are the files' (else 0, 1, ...)."""
     output = Path(output)
     if output.suffix.lower() not in (".vtp", ".pvd"):
         raise FileError(f"'{output}' must end in .vtp or .pvd.")
@@ -101,11 +101,12 @@ def convert(inputs, output):
         with Outputs(inputs, [output]) as files:
             files.write(output, vtp_bytes(read(inputs[0] if len(inputs) == 1 else inputs)))
         return
-    steps = [output.with_name(f"{output.stem}_{i:04d}.vtp") for i in range(len(inputs))]
+    sources = [(each, i) for each in inputs for i in range(count_steps(each))]
+    steps = [output.with_name(f"{output.stem}_{i:04d}.vtp") for i in range(len(sources))]
     lines = ['<?xml version="1.0"?>', '<VTKFile type="Collection" version="0.1">', "<Collection>"]
     with Outputs(inputs, [output], steps) as files:
-        for i, (each, step) in enumerate(zip(inputs, steps)):
-            particles = read(each)
+        for i, ((each, number), step) in enumerate(zip(sources, steps)):
+            particles = read(each, step=number)
             files.write(step, vtp_bytes(particles, STEP_MARK))
             time = float(i if particles.time is None else particles.time)
             lines.append(f'<DataSet timestep="{time!r}" part="0" file={quoteattr(step.name)}/>')

@@ -217,6 +217,7 @@ void pqSPHInUse::beginNew()
     return;
   }
   SCOPED_UNDO_EXCLUDE();
+  this->WasEmpty = false; // as it has not been updated
   // The pipeline has the filter's name without the words in brackets, which are for ParaView's search.
   auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
   const QRegularExpression others("[^A-Za-z0-9]");

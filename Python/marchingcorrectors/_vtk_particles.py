@@ -123,7 +123,7 @@ def varies(array, on_surface):
         return False
     kind = -1 if array.GetNumberOfComponents() > 1 else 0
     (low, high), (least, most) = on_surface.GetRange(kind), array.GetRange(kind)
-    return high - low > 1e-3 * (most - least)
+    return high - low > 0.03 * (most - least)
 
 
 def find_fluid(data):

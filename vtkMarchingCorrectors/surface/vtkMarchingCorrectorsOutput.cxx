@@ -30,7 +30,7 @@ VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 /// Of an array's range among the particles: on a surface it varies by more, or it is noise.
-constexpr double LeastShare = 1e-3;
+constexpr double LeastShare = 0.03;
 
 // As it was when the run began.
 void AddArrayName(vtkFieldData* data, const char* name, const mcor_array& array)

@@ -20,7 +20,7 @@
 #define MCOR_THREE_DECADES 1000.0
 
 /* As a share of the span of most values. */
-#define MCOR_NEAR_END 1e-3
+#define MCOR_NEAR_END 0.01
 
 /* A range of more decades begins with values that rounding has left of 0. */
 #define MCOR_MANY_DECADES 1e6
@@ -174,15 +174,16 @@ static bool mcor_choose_iso(
   {
     return false;
   }
-  /* If most values are alike (walls at rest, gas before a shock), what surrounds their median is noise, or nothing. */
+  /* If most values are alike (walls at rest, gas before a shock), what surrounds their median is noise, or nothing.
+   * That of values over some decades is far below the greatest ones, too. */
   const double* span = most[0] < most[1] ? most : found;
-  const double near = MCOR_NEAR_END * (span[1] - span[0]);
+  const double near = MCOR_NEAR_END * (span[1] - span[0]), ratio = ends[1] / ends[0];
   const bool at_end = median - span[0] <= near || span[1] - median <= near;
-  const bool decades = found[0] > 0 && ends[1] / ends[0] >= MCOR_THREE_DECADES &&
-    !(at_end && ends[1] / ends[0] > MCOR_MANY_DECADES);
-  *iso_value = decades ? sqrt(ends[0]) * sqrt(ends[1])
-    : at_end           ? 0.5 * span[0] + 0.5 * span[1]
-                       : median;
+  const bool decades =
+    ends[0] > 0 && ratio >= MCOR_THREE_DECADES && (ratio <= MCOR_MANY_DECADES || !at_end);
+  *iso_value = decades && found[0] > 0 ? sqrt(ends[0]) * sqrt(ends[1])
+    : at_end && !decades               ? 0.5 * span[0] + 0.5 * span[1]
+                                       : median;
   range[0] = found[0];
   range[1] = found[1];
   return true;

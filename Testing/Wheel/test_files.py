@@ -541,6 +541,9 @@ class Layouts(Case):
         self.assertEqual(quietly(mc.gauge, particles, ((0, 0, 0), (0, 0, 2)), mass=0.001).last.tolist(), quietly(
             mc.gauge, X, ((0, 0, 0), (0, 0, 2)), smoothing_length=H, mass=0.001, density=DENSITY).last.tolist())
         wanted = quietly(mc.free_surface, X, smoothing_length=H, mass=MASS, density=DENSITY)
+        for attributes in ("Velocity", ["Velocity"], {"Velocity": X}):
+            found = quietly(mc.derivatives, particles, attributes, mass="m1").gradients["Velocity"]
+            self.assertLess(np.abs(found - np.eye(3)).max(), 1e-5)
         self.assertEqual(quietly(mc.free_surface, particles, mass="m1").points.tobytes(), wanted.points.tobytes())
         with self.assertRaisesRegex(io.FileError, "the array 'Velocity' has the shape"):
             particles.smoothing_length = "Velocity"

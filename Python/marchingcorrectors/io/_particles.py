@@ -190,6 +190,7 @@ class Particles:
                 warn(f"The kernel of {self.file} is '{self.kernel}', which is not among those here: the cubic spline "
                      "is taken. Give sph_kernel.")
         names = words.get("attributes")
+        names = [names] if isinstance(names, str) else names
         if isinstance(names, (list, tuple)):
             words["attributes"] = {name: self.array(name) for name in names}
         return words

@@ -238,7 +238,7 @@ def run_slice(given, particles):
     axis, place = given.slice
     low, high = particles.positions.min(axis=0).astype(float), particles.positions.max(axis=0).astype(float)
     spacing = np.delete(high - low, axis).max() / (max(given.resolution, 2) - 1) or 1.0
-    lines = [low[a] + spacing * np.arange(int(round((high[a] - low[a]) / spacing)) + 1) for a in range(3)]
+    lines = [low[a] + spacing * np.arange(int(np.ceil((high[a] - low[a]) / spacing - 1e-9)) + 1) for a in range(3)]
     lines[axis] = np.array([place])
     points = np.stack(np.meshgrid(*lines[::-1], indexing="ij")[::-1], -1).reshape(-1, 3)  # x runs fastest
     return run_probe(given, particles, points, lambda pyvista: pyvista.ImageData(

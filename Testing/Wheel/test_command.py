@@ -78,7 +78,7 @@ class Command(unittest.TestCase):
                                 (["--dp", "1", "--smoothing-length", "1"], "leave one of them out")):
             self.run_it("surface", "a.ply", *words, status=1)
             self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")
-        self.run_it("surface", "a.ply", "--preview")
+        self.run_it("surface", "a.ply", "--preview", program=["--free-surface"])
         self.assertIn("--fluid ParticleType=VALUE", self.said)
 
 

@@ -16,8 +16,7 @@ def find_class(name):
     try:
         import vtkmodules
     except ImportError:
-        raise ImportError('VTK was not found: pip install "marching-correctors[vtk]", or '
-                          '"marching-correctors[pyvista]".') from None
+        raise ImportError("VTK was not found: pip install vtk, or pip install pyvista.") from None
     package, module = import_module(__package__), None
     built = any(list(Path(folder).glob("vtkMarchingCorrectors*.so")) for folder in package.__path__)
     if built and not _is_from_pypi(vtkmodules):

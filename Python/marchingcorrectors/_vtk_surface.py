@@ -82,7 +82,8 @@ def add_run(run, found, particles, arguments):
     for name in ("Device", "Platform"):
         add(run, name, s[name.lower()])
     plane, shut = s["dimension"] == 2, s["is_closed"]
-    when = {"always": True, "is_plane": plane, "has_levels": o.level_limit > 0, "has_scalar": particles.scalar is not None,
+    when = {"always": True, "is_plane": plane, "has_levels": o.level_limit > 0, "is_widened": s["widening_max"] > 0,
+            "has_scalar": particles.scalar is not None,
             "has_caps": o.capping > 0, "has_area": not plane or shut or o.filled, "has_volume": not plane and shut}
     for how, condition, member, name in c.STATISTICS:
         value = s[member]

@@ -232,6 +232,10 @@ extern "C"
     mcor_field field;
     mcor_seed_mode seeds;
     mcor_topology topology;
+    /* 1 to 4; default 1: off. Above 1, each particle's smoothing length is multiplied by a factor up to this, as
+     * large as leaves the particle inside of the free surface: see mcor_widen. Flat surfaces become flat, and
+     * drops, threads and sheets stay. Cubes and volumes are those of the original lengths. Not with ranks. */
+    double widening;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
@@ -342,6 +346,7 @@ extern "C"
      * particle (0: none); share of the support that these particles fill if all are as large as the
      * particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
+    double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
     double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; or 0 */
@@ -441,6 +446,7 @@ extern "C"
      * around. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
+    double* widening; /* [point_count], the Shepard mean of the factors; NULL unless options.widening is above 1 */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
     double** attributes;       /* [attribute_count] -> [point_count][components] */
@@ -668,6 +674,27 @@ extern "C"
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);
   const char* mcor_gauge_state_name(mcor_gauge_state state); /* "dry", "wet", "full" */
+
+  /* Widened smoothing lengths. Owned; free with mcor_free_widening. */
+  typedef struct mcor_widening
+  {
+    int64_t count;                         /* of particles */
+    double* factor;                        /* [count]; 1 of solids */
+    double* smoothing_length;              /* [count], unit L, widened */
+    double* volume;                        /* [count], of the original lengths; NULL where they are not computed */
+    double smoothing_length_range[2];      /* of the original lengths of fluid particles, unit L */
+    double least, mean, greatest;          /* factors of fluid particles */
+    mcor_statistics statistics;
+  } mcor_widening;
+
+  /* Finds the factor s of each fluid particle: the greatest in [1, options.widening] with which the weight sum
+   * sum V_k W(x_j - x_k, s h_j) is at least 0.1 above the free surface's iso value (0.5 for scalars), on steps of 0.2
+   * with linear interpolation; reduced to 1 where neighbours are few (drops, threads), and to the Shepard mean around
+   * the particle. A surface with options.widening is, to the last bit, that of smoothing_length and volume with the
+   * original cube size. Reads the options of mcor_extract; a box does not matter. *widening is overwritten. */
+  mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, mcor_widening* widening);
+  void mcor_free_widening(mcor_widening* widening);
 
   typedef enum mcor_gradient
   {

@@ -10,6 +10,7 @@
 #include "mcor_fill.h"
 #include "mcor_pair.h"
 #include "mcor_plane.h"
+#include "mcor_widen.h"
 
 /* One iso value's surface, appended. */
 static mcor_status mcor_extract_iso(
@@ -106,8 +107,10 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(
     !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
-  const mcor_status status = mcor_run_call(context, input, options,
-    mcor_uses_solids(input, options), &surface->statistics, mcor_extract_all, surface);
+  const mcor_status status = options->widening > 1
+    ? mcor_extract_widened(context, input, options, surface)
+    : mcor_run_call(context, input, options, mcor_uses_solids(input, options),
+        &surface->statistics, mcor_extract_all, surface);
   if (status != MCOR_OK)
   {
     mcor_free_surface(surface);

@@ -43,6 +43,7 @@ set(mcor_program_sources
   "kernels/fields/mcor_probe_lanes.cl  PROBE lanes"
   "kernels/fields/mcor_probe_point.cl  PROBE point"
   "kernels/fields/mcor_derive.cl       PROBE"
+  "kernels/fields/mcor_widen.cl        PROBE"
   "kernels/plane/mcor_plane_nodes.cl   FIELD ADAPTIVE"
   "kernels/cubes/mcor_pair.cl          LATTICE FIELD"
   "kernels/cubes/mcor_pair_grow.cl     LATTICE")

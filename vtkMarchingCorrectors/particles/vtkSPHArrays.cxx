@@ -152,7 +152,7 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
   }
   addSeconds(MCOR_PHASE_COUNT, s.build_seconds);
   addSeconds(MCOR_PHASE_COUNT + 1, total);
-  const bool is_run = true, always = false, has_scalar = false, has_levels = false, has_caps = false,
+  const bool is_run = true, always = false, has_scalar = false, has_levels = false, is_widened = false, has_caps = false,
              is_plane = false, has_area = false, has_volume = false;
 #define STATISTIC(how, when, member, name)                                                         \
   if (when)                                                                                        \

@@ -308,6 +308,7 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
   const mcor_statistics& s = this->Surface.statistics;
   const bool always = true, is_run = false, is_plane = s.dimension == 2;
   const bool has_scalar = this->Options.field != MCOR_WEIGHT_SUM, has_caps = this->Options.capping != 0;
+  const bool is_widened = s.widening_max > 0.0;
   const bool has_levels = this->Options.level_limit > 0, has_volume = !is_plane && s.is_closed;
   const bool has_area = !is_plane || s.is_closed || this->Options.filled;
 #define STATISTIC(how, when, member, name)                                                         \

@@ -27,8 +27,8 @@ int mcor_program_sources(
 
 bool mcor_program_may_have(mcor_program program, const char* kernel)
 {
-  const bool is_probe =
-    strncmp(kernel, "mcor_probe_", 11) == 0 || strncmp(kernel, "mcor_derive_", 12) == 0;
+  const bool is_probe = strncmp(kernel, "mcor_probe_", 11) == 0 ||
+    strncmp(kernel, "mcor_derive_", 12) == 0 || strncmp(kernel, "mcor_widen_", 11) == 0;
   const bool is_adaptive = strncmp(kernel, "mcor_adaptive_", 12) == 0;
   return program == MCOR_PROGRAM_LATTICE ? !is_probe
     : program == MCOR_PROGRAM_PROBE      ? is_probe

@@ -38,7 +38,7 @@ typedef struct mcor_spread_job
   mcor_spread slices[MCOR_SLICES];
 } mcor_spread_job;
 
-static void mcor_widen(mcor_spread* spread, int i, double low, double high)
+static void mcor_extend_spread(mcor_spread* spread, int i, double low, double high)
 {
   spread->low[i] = low < spread->low[i] ? low : spread->low[i];
   spread->high[i] = high > spread->high[i] ? high : spread->high[i];
@@ -82,7 +82,7 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (!solid || !input->ignore_solids)
         {
-          mcor_widen(&spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
+          mcor_extend_spread(&spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
         }
       }
       everywhere = everywhere && spread.low[a] < spread.high[a];
@@ -112,7 +112,7 @@ static mcor_spread mcor_spread_of(mcor_context* context, const mcor_input* input
   for (int i = 0; i < 6 * slices; ++i)
   {
     const mcor_spread* slice = &job.slices[i / 6];
-    mcor_widen(&job.slices[0], i % 6, slice->low[i % 6], slice->high[i % 6]);
+    mcor_extend_spread(&job.slices[0], i % 6, slice->low[i % 6], slice->high[i % 6]);
   }
   return job.slices[0];
 }

@@ -1,0 +1,232 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Widened smoothing lengths: against plain sums in double precision; and the surface is that of an ordinary call
+ * with these lengths. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDEST 2.0
+
+/* A block of n x n x n, a sheet above it, a thread, and lone drops. */
+static core_set make_scene(int n, double jitter, uint64_t seed)
+{
+  const int side = 2 * n;
+  core_set set = core_make_set((int64_t)n * n * n + side * side + side + 4);
+  int64_t p = 0;
+  for (int i = 0; i < n * n * n; ++i, ++p)
+  {
+    set.position[3 * p] = i % n;
+    set.position[3 * p + 1] = i / n % n;
+    set.position[3 * p + 2] = i / (n * n);
+  }
+  for (int i = 0; i < side * side; ++i, ++p)
+  {
+    set.position[3 * p] = i % side;
+    set.position[3 * p + 1] = i / side;
+    set.position[3 * p + 2] = n + 6;
+  }
+  for (int i = 0; i < side + 4; ++i, ++p)
+  {
+    set.position[3 * p] = i < side ? i : 8 * (i - side);
+    set.position[3 * p + 1] = i < side ? -8 : -20;
+    set.position[3 * p + 2] = 0;
+  }
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] += jitter * (random_unit(&seed) - 0.5);
+    }
+    set.smoothing_length[i] = 1.1;
+    set.volume[i] = 1;
+    set.scalar[i] = set.position[3 * i];
+  }
+  return set;
+}
+
+static double cubic(double q)
+{
+  return (q < 1      ? 1 - 1.5 * q * q + 0.75 * q * q * q
+             : q < 2 ? 0.25 * pow(2 - q, 3)
+                     : 0) /
+    3.14159265358979323846;
+}
+
+static double distance(const core_set* set, int64_t i, int64_t j)
+{
+  double sum = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double d = set->position[3 * i + a] - set->position[3 * j + a];
+    sum += d * d;
+  }
+  return sqrt(sum);
+}
+
+static double weight_with(const core_set* set, int64_t j, double s)
+{
+  const double h = s * set->smoothing_length[j];
+  double sum = 0;
+  for (int64_t k = 0; k < set->count; ++k)
+  {
+    sum += set->volume[k] * cubic(distance(set, j, k) / h) / (h * h * h);
+  }
+  return sum;
+}
+
+/* As SPEC says: the widest step whose sum is high enough, and the way to the next. */
+static double expected_factor(const core_set* set, int64_t j, double least)
+{
+  double upper = WIDEST, above = weight_with(set, j, upper), s = above >= least ? upper : 1,
+         crowd = 0;
+  for (int step = 4; step >= 0 && above < least; --step)
+  {
+    const double lower = 1 + 0.2 * step, c = weight_with(set, j, lower);
+    if (c >= least)
+    {
+      s = lower + (c - least) / (c - above) * (upper - lower);
+      break;
+    }
+    upper = lower;
+    above = c;
+  }
+  for (int64_t k = 0; k < set->count; ++k)
+  {
+    const double r = distance(set, j, k) / (2 * set->smoothing_length[j]);
+    crowd += k != j && r < 1 ? 1 - r * r * r : 0;
+  }
+  const double t = fmin(fmax((crowd - 2.2) / 2.3, 0), 1);
+  return 1 + (s - 1) * t * t * (3 - 2 * t);
+}
+
+static void expect_factors(const core_set* set, const mcor_widening* w, double least)
+{
+  double* s = malloc((size_t)set->count * sizeof *s);
+  assert_non_null(s);
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    s[j] = expected_factor(set, j, least);
+  }
+  int wide = 0, narrow = 0;
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    double mean = 0, weight = 0;
+    for (int64_t k = 0; k < set->count; ++k)
+    {
+      const double h = set->smoothing_length[k],
+                   v = set->volume[k] * cubic(distance(set, j, k) / h) / (h * h * h);
+      mean += v * s[k];
+      weight += v;
+    }
+    const double expected = fmax(fmin(s[j], mean / weight), 1);
+    CORE_CHECK(fabs(w->factor[j] - expected) < 2e-4, "particle %lld: %g, expected %g", (long long)j,
+      w->factor[j], expected);
+    CORE_CHECK(
+      w->smoothing_length[j] == set->smoothing_length[j] * w->factor[j], "not the widened length");
+    wide += expected > 1.9;
+    narrow += expected < 1.01;
+  }
+  CORE_CHECK(wide > 50 && narrow >= 4, "%d wide, %d narrow", wide, narrow);
+  free(s);
+}
+
+static void test_factors(void** state)
+{
+  mcor_context* context = *state;
+  const double iso = 0.5;
+  core_set set = make_scene(9, 0.24, 3);
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  options.widening = WIDEST;
+  for (int precision = 0; precision < 2; ++precision)
+  {
+    mcor_widening w;
+    options.precision = precision ? MCOR_FLOAT64 : MCOR_FLOAT32;
+    CORE_OK(context, mcor_widen(context, &input, &options, &w));
+    expect_factors(&set, &w, iso + 0.1);
+    mcor_free_widening(&w);
+  }
+  core_free_set(&set);
+}
+
+/* The surface, but for the array of factors, is that of the widened lengths. */
+static void test_surface(void** state)
+{
+  mcor_context* context = *state;
+  core_set set = make_scene(8, 0.24, 5);
+  for (int way = 0; way < 8; ++way)
+  {
+    const double iso = way & 1 ? 3.3 : 0.5;
+    mcor_input input = core_input(&set);
+    mcor_options options = core_options(&iso);
+    options.field = way & 1 ? MCOR_SHEPARD : MCOR_WEIGHT_SUM;
+    input.volume = way & 2 ? (mcor_array){ 0 } : input.volume;
+    for (int a = 0; a < 3 && way & 4; ++a)
+    {
+      options.periodic[2 * a] = -2.25;
+      options.periodic[2 * a + 1] = a == 1 ? 38 : 16 + 2 * a;
+    }
+    mcor_widening w;
+    mcor_surface widened, plain;
+    options.widening = WIDEST;
+    CORE_OK(context, mcor_widen(context, &input, &options, &w));
+    CORE_OK(context, mcor_extract(context, &input, &options, &widened));
+    assert_int_equal(w.volume != NULL, (way & 2) != 0);
+    CORE_CHECK(
+      w.least == 1 && w.greatest > 1.99 && w.mean > 1.1, "%g %g %g", w.least, w.mean, w.greatest);
+    assert_true(widened.statistics.widening_max == w.greatest);
+    options.widening = 1;
+    options.level_limit = 0;
+    options.cube_size = 0.5 * 1.1;
+    input.smoothing_length.data = w.smoothing_length;
+    if (w.volume)
+    {
+      input.volume = core_array(w.volume, 1);
+    }
+    CORE_OK(context, mcor_extract(context, &input, &options, &plain));
+    CORE_CHECK(plain.point_count > 500 && plain.point_count == widened.point_count,
+      "%lld and %lld points", (long long)plain.point_count, (long long)widened.point_count);
+    assert_true(core_hash(&plain) == core_hash(&widened));
+    for (int64_t p = 0; p < widened.point_count; ++p)
+    {
+      CORE_CHECK(
+        widened.widening[p] > 0.999 && widened.widening[p] < 2.001, "%g", widened.widening[p]);
+    }
+    mcor_free_surface(&plain);
+    mcor_free_surface(&widened);
+    mcor_free_widening(&w);
+  }
+  core_free_set(&set);
+}
+
+static void test_refused(void** state)
+{
+  mcor_context* context = *state;
+  const double iso = 0.5;
+  core_set set = make_scene(3, 0, 1);
+  const mcor_input input = core_input(&set);
+  mcor_surface surface;
+  mcor_options options = core_options(&iso);
+  static const double wrong[3] = { 0.9, 4.1, NAN };
+  for (int i = 0; i < 3; ++i)
+  {
+    options.widening = wrong[i];
+    assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
+    assert_non_null(strstr(mcor_last_error(context), "widening"));
+    mcor_free_surface(&surface);
+  }
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_factors),
+    cmocka_unit_test(test_surface), cmocka_unit_test(test_refused) };
+  return cmocka_run_group_tests_name("widen", tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,12 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_widen_h
+#define mcor_widen_h
+
+#include "mcor.h"
+
+/* mcor_extract with options.widening above 1. */
+mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_surface* surface);
+
+#endif

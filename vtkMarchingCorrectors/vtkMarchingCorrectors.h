@@ -340,6 +340,13 @@ public:
   vtkSPHFlagMacro(Preview);
 
   /**
+   * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the particle stays inside of
+   * the free surface: flat water becomes flat, drops, threads and sheets stay. Cubes and volumes are those of the
+   * original lengths; the array Widening is the factor. From 1 (off, the default) to 4; 2 is usual. Not over ranks.
+   */
+  vtkSPHValueMacro(Widening, double);
+
+  /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by default.
    * Off keeps the triangles beyond, except for those that NodeThreshold discards. The free surface is not
    * trimmed.
@@ -504,6 +511,7 @@ protected:
   int Topology = TOPOLOGY_TABLE;
   vtkTypeBool Preview = 0;
   vtkTypeBool Trim = 1;
+  double Widening = 1.0;
   double NodeThreshold = 0.1;
   int BoundaryDetection = WEIGHT_SUM;
   double VertexThreshold = 0.5;

@@ -71,6 +71,7 @@ class Surface(Result):
     residual: Optional[np.ndarray] = None  #: (points,) float32, field minus iso value, scalar unit
     boundary_flag: Optional[np.ndarray] = None  #: (points,) uint8, see isosurface()
     iso_value: Optional[np.ndarray] = None  #: (points,) float64, scalar unit
+    widening: Optional[np.ndarray] = None  #: (points,) float64, the factor of smoothing lengths, with widen
     nearest_particle: Optional[np.ndarray] = None  #: (points,) int64, index of a fluid particle
     point_keys: Optional[np.ndarray] = None  #: (points, 3) uint64
     triangle_keys: Optional[np.ndarray] = None  #: (triangles, 2) uint64

@@ -235,7 +235,7 @@ extern "C"
     /* 1 to 4; default 1: off. Above 1, each particle's smoothing length is multiplied by a factor up to this, as
      * large as leaves the particle inside of the free surface: see mcor_widen. Flat surfaces become flat, and
      * drops, threads and sheets stay. Cubes and volumes are those of the original lengths. Not with ranks. */
-    double widening;
+    double widen;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
@@ -446,7 +446,7 @@ extern "C"
      * around. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
-    double* widening; /* [point_count], the Shepard mean of the factors; NULL unless options.widening is above 1 */
+    double* widening; /* [point_count], the Shepard mean of the factors; NULL unless options.widen is above 1 */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
     double** attributes;       /* [attribute_count] -> [point_count][components] */
@@ -687,10 +687,10 @@ extern "C"
     mcor_statistics statistics;
   } mcor_widening;
 
-  /* Finds the factor s of each fluid particle: the greatest in [1, options.widening] with which the weight sum
+  /* Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which the weight sum
    * sum V_k W(x_j - x_k, s h_j) is at least 0.1 above the free surface's iso value (0.5 for scalars), on steps of 0.2
    * with linear interpolation; reduced to 1 where neighbours are few (drops, threads), and to the Shepard mean around
-   * the particle. A surface with options.widening is, to the last bit, that of smoothing_length and volume with the
+   * the particle. A surface with options.widen is, to the last bit, that of smoothing_length and volume with the
    * original cube size. Reads the options of mcor_extract; a box does not matter. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);

@@ -225,6 +225,7 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   add("CorrectionLength", s.correction_length, 1);
   add("Residual", s.residual, 1);
   add("BoundaryFlag", s.boundary_flag, 1);
+  add("Widening", s.widening, 1);
 }
 
 void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)

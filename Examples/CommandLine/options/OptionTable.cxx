@@ -283,6 +283,8 @@ const Options TheMethod = {
       j.Surface->SetSeedMode(
         ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }));
     } },
+  { "--widen", "S", "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
+    [](Job& j, Text n, Text v) { j.Surface->SetWidening(ToPositive(n, v)); } },
   { "--topology", "table|field", "resolve ambiguous cells by the table (default), or by the field",
     [](Job& j, Text n, Text v)
     {

@@ -143,7 +143,7 @@ static void test_factors(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
-  options.widening = WIDEST;
+  options.widen = WIDEST;
   for (int precision = 0; precision < 2; ++precision)
   {
     mcor_widening w;
@@ -174,14 +174,14 @@ static void test_surface(void** state)
     }
     mcor_widening w;
     mcor_surface widened, plain;
-    options.widening = WIDEST;
+    options.widen = WIDEST;
     CORE_OK(context, mcor_widen(context, &input, &options, &w));
     CORE_OK(context, mcor_extract(context, &input, &options, &widened));
     assert_int_equal(w.volume != NULL, (way & 2) != 0);
     CORE_CHECK(
       w.least == 1 && w.greatest > 1.99 && w.mean > 1.1, "%g %g %g", w.least, w.mean, w.greatest);
     assert_true(widened.statistics.widening_max == w.greatest);
-    options.widening = 1;
+    options.widen = 1;
     options.level_limit = 0;
     options.cube_size = 0.5 * 1.1;
     input.smoothing_length.data = w.smoothing_length;
@@ -216,7 +216,7 @@ static void test_refused(void** state)
   static const double wrong[3] = { 0.9, 4.1, NAN };
   for (int i = 0; i < 3; ++i)
   {
-    options.widening = wrong[i];
+    options.widen = wrong[i];
     assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
     assert_non_null(strstr(mcor_last_error(context), "widening"));
     mcor_free_surface(&surface);

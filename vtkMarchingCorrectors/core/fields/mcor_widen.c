@@ -214,9 +214,9 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   MCOR_RETURN_IF(options->ranks || options->globals, context, MCOR_INVALID_ARGUMENT,
     "Widening needs all particles in one process. Run one process, or widen the smoothing lengths "
     "beforehand.");
-  MCOR_RETURN_IF(!(options->widening >= 1 && options->widening <= 4), context,
+  MCOR_RETURN_IF(!(options->widen >= 1 && options->widen <= 4), context,
     MCOR_INVALID_ARGUMENT, "The widening is %g; it must be at least 1 and at most 4.",
-    options->widening);
+    options->widen);
   const size_t n = (size_t)(input->count > 0 ? input->count : 0);
   mcor_widen_run run = { .out = widening, .factor = malloc(n * sizeof(float) + 1) };
   widening->count = input->count;
@@ -236,9 +236,9 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   }
   mcor_options own = *options;
   mcor_input particles = *input;
-  own.widening = 1;
+  own.widen = 1;
   own.outputs = 0;
-  own.h_scale = options->widening;
+  own.h_scale = options->widen;
   own.node_threshold = 0;
   memset(own.box, 0, sizeof own.box);
   const bool uses_solids = mcor_uses_solids(input, options);
@@ -300,7 +300,7 @@ mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
     own.volume = (mcor_array){ .data = widening.volume, .type = MCOR_FLOAT64 };
   }
   own.particles_version = 0; /* which stands for the original lengths */
-  plain.widening = 1;
+  plain.widen = 1;
   plain.cube_size = options->cube_size > 0
     ? options->cube_size
     : options->cube_size_factor * widening.smoothing_length_range[0];

@@ -5,7 +5,7 @@
 
 #include "mcor.h"
 
-/* mcor_extract with options.widening above 1. */
+/* mcor_extract with options.widen above 1. */
 mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface);
 

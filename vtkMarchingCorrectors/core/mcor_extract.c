@@ -107,7 +107,7 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(
     !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
-  const mcor_status status = options->widen > 1
+  const mcor_status status = options->widen != 1
     ? mcor_extract_widened(context, input, options, surface)
     : mcor_run_call(context, input, options, mcor_uses_solids(input, options),
         &surface->statistics, mcor_extract_all, surface);

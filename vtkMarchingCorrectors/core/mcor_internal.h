@@ -233,6 +233,8 @@ mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
+/* Of `count` bricks from `first` on, the nodes that are needed. */
+mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context, double iso);
@@ -351,8 +353,7 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 
 #define MCOR_BLOCK_ARGS(c)                                                                         \
   MCOR_INT((c)->bricks.block_count), MCOR_INT((c)->bricks.block_shift),                            \
-    MCOR_INT((c)->lattice.blocks[0]), MCOR_INT((c)->lattice.blocks[1]),                            \
-    MCOR_INT((c)->lattice.blocks[2]), MCOR_BUFFER(&(c)->bricks.block_keys),                        \
+    MCOR_BUFFER(&(c)->bricks.rungs), MCOR_BUFFER(&(c)->bricks.block_keys),                         \
     MCOR_BUFFER(&(c)->bricks.block_buckets)
 
 #define MCOR_BRICK_ARGS(c)                                                                         \

@@ -67,15 +67,16 @@ typedef struct mcor_brick_data
   mcor_buffer above, valid;  /* ulong: signs of the known nodes, see mcor_node_signs */
 } mcor_brick_data;
 
-/* [III-B] Blocks where there may be surface, and the bricks that exist in them. */
+/* [III-B] Blocks where there may be surface, of all levels, and the bricks that exist in them. */
 typedef struct mcor_bricks
 {
+  mcor_buffer rungs; /* mcor_rung: of each level, and the end */
   int block_count, block_shift;
-  mcor_buffer block_keys, block_buckets;
-  mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
-  mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
-  mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer seed_bits, seeds;       /* bricks as in bits; ulong, cells by slot */
+  mcor_buffer block_keys, block_buckets; /* by level, z, y, x */
+  mcor_buffer block_states, inactive;    /* uchar; see mcor_block.cl */
+  mcor_buffer states;                    /* uchar [block_count][512], see mcor_seed.cl */
+  mcor_buffer bits, base;                /* [block_count][16] */
+  mcor_buffer seed_bits, seeds;          /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
   mcor_buffer cells;          /* ulong: those that may be used, all or none of a brick */
@@ -139,29 +140,26 @@ typedef struct mcor_adaptive
   int count;                                 /* leaves where there may be surface */
   int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
   int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
-  mcor_buffer rungs;      /* mcor_rung, of all levels of leaves */
   mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
   mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
   mcor_buffer states, chosen;              /* int, uchar: of all leaves */
-  mcor_buffer proofs, mixed;           /* uchar: of slots; of leaves where there may be surface */
-  mcor_buffer cells;                   /* int4: those where there may be surface, in order */
-  mcor_buffer finer;                   /* uint: where their neighbours are finer */
-  mcor_buffer wanted, requests, index; /* keys of bricks with nodes of theirs */
-  mcor_buffer keys, buckets;           /* of slots */
-  int bucket_shift;
-  mcor_buffer tables;    /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
-  mcor_buffer quadrants; /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
-  mcor_buffer flat;      /* int: loops that lie in one face between leaves */
+  mcor_buffer proofs, mixed; /* uchar: of slots; of leaves where there may be surface */
+  mcor_buffer cells;         /* int4: those where there may be surface, in order */
+  mcor_buffer finer;         /* uint: where their neighbours are finer */
+  mcor_buffer wanted;        /* int: how many blocks that they need each adds */
+  mcor_buffer tables;        /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
+  mcor_buffer quadrants;     /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
+  mcor_buffer flat;          /* int: loops that lie in one face between leaves */
 } mcor_adaptive;
 
 /* Which cells pairs reach; see mcor_pair.c. */
 typedef struct mcor_pairs
 {
-  mcor_buffer marked, reached, grown; /* ulong, by a brick's number in its block: by pairs; by now; when last looked
-                                         at */
-  mcor_buffer cells, seeds;           /* ulong, by slot: those that are reached; that are marked */
-  mcor_buffer domain;                 /* ulong, by slot: where growth may go */
-  mcor_buffer found;                  /* int: what a kernel found in any brick */
+  /* ulong, by a brick's number in its block: by pairs; by now; when last looked at */
+  mcor_buffer marked, reached, grown;
+  mcor_buffer cells, seeds; /* ulong, by slot: those that are reached; that are marked */
+  mcor_buffer domain;       /* ulong, by slot: where growth may go */
+  mcor_buffer found;        /* int: what a kernel found in any brick */
 } mcor_pairs;
 
 /* Decisions of MCOR_TOPOLOGY_FIELD. */
@@ -251,7 +249,7 @@ typedef struct mcor_run
   int iso_number; /* of the iso value under way */
   mcor_phase phase;
   double phase_begin, phase_built; /* cl.build_seconds then */
-  const char* doing;             /* what runs, as last reported */
+  const char* doing;               /* what runs, as last reported */
   double fraction, fraction_end; /* last reported, also by a first attempt; where what runs ends */
   double report_time;            /* of the last report */
   bool building_told;            /* in this phase */

@@ -413,7 +413,9 @@ static void test_request(void** state)
   }
   mcor_bricks* bricks = &context->bricks;
   bricks->block_count = blocks;
+  const mcor_rung rungs[2] = { { .n = { 3, 3, 3 } }, { .base = 27 } };
   context->lattice.blocks[0] = context->lattice.blocks[1] = context->lattice.blocks[2] = 3;
+  CORE_OK(context, mcor_write(context, &context->bricks.rungs, rungs, sizeof rungs));
   CORE_OK(context, mcor_write(context, &bricks->block_keys, keys, (size_t)blocks * sizeof *keys));
   CORE_OK(context,
     mcor_index_keys(

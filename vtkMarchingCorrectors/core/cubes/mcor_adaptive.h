@@ -14,11 +14,6 @@ static inline bool mcor_is_adaptive(const mcor_context* context)
   return context->lattice.top > 0;
 }
 
-/* Slots by keys. */
-#define MCOR_SLOT_ARGS(c)                                                                          \
-  MCOR_INT((c)->bricks.now.count), MCOR_INT((c)->adaptive.bucket_shift),                           \
-    MCOR_BUFFER(&(c)->adaptive.keys), MCOR_BUFFER(&(c)->adaptive.buckets)
-
 /* Kernel arguments of MCOR_LEAF_PARAMS and MCOR_PLAIN_PARAMS. */
 #define MCOR_LEAF_ARGS(c)                                                                          \
   MCOR_INT((c)->adaptive.count), MCOR_INT(mcor_is_plane(c)), MCOR_BUFFER(&(c)->adaptive.finer),    \
@@ -70,7 +65,12 @@ void mcor_release_adaptive(mcor_context* context);
 /* mcor_adaptive_seed.c. What is known of the nodes of all leaves, while slots are made. */
 typedef struct mcor_leaf_nodes
 {
-  mcor_buffer value, weight; /* of those to examine; empty if they are not evaluated */
+  mcor_buffer value, weight; /* of the leaves that are evaluated, in their order */
+  mcor_buffer place;         /* int, of each leaf: where these begin */
+  int count, room;           /* evaluated leaves, and for how many there is room */
+  mcor_buffer part_value,
+    part_weight;      /* of all leaves of a part, before it is known which are evaluated */
+  mcor_buffer counts; /* int: 1 where a leaf of the part is */
 } mcor_leaf_nodes;
 
 /* Takes the tree to the device. */

@@ -9,100 +9,95 @@
 #include "mcor_plane.h"
 #include "mcor_tree.h"
 
-/* Keys of all bricks whose nodes the leaves need. */
-static mcor_status mcor_want_bricks(mcor_context* context, int* slots)
+/* Makes the blocks of all levels that have bricks whose nodes the leaves need, and requests these bricks. */
+static mcor_status mcor_request_wanted(mcor_context* context)
 {
   mcor_adaptive* adaptive = &context->adaptive;
-  const mcor_tree* tree = &context->tree;
-  const int count = adaptive->count;
+  mcor_bricks* bricks = &context->bricks;
+  const int count = adaptive->count, plane = mcor_is_plane(context);
+  const uint64_t limit = context->tree.key_limit / MCOR_BLOCK_BRICKS;
   int wanted;
   MCOR_TRY(mcor_reserve(context, &adaptive->wanted, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_count_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer),
-    MCOR_BUFFER(&adaptive->wanted)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_count_blocks", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_INT(plane), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->wanted)));
   MCOR_TRY(mcor_scan(context, &adaptive->wanted, count, &wanted));
-  MCOR_TRY(mcor_reserve(context, &adaptive->requests, (size_t)wanted * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_fill_wanted", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->cells),
+  MCOR_TRY(mcor_reserve(context, &bricks->child_keys, (size_t)wanted * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_fill_blocks", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_INT(plane), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&adaptive->cells),
     MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->wanted),
-    MCOR_BUFFER(&adaptive->requests)));
-  MCOR_TRY(mcor_unique(context, &adaptive->requests, wanted, tree->key_limit, &adaptive->keys,
-    &adaptive->index, slots));
-  MCOR_RELEASE(context, &adaptive->requests, &adaptive->index);
+    MCOR_BUFFER(&bricks->child_keys)));
+  MCOR_TRY(mcor_unique(context, &bricks->child_keys, wanted, limit, &bricks->block_keys,
+    &bricks->child_index, &bricks->block_count));
+  MCOR_RELEASE(context, &bricks->child_keys, &bricks->child_index);
   mcor_release_sort(context);
-  return mcor_index_keys(
-    context, &adaptive->keys, *slots, tree->key_limit, &adaptive->buckets, &adaptive->bucket_shift);
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, bricks->block_count, limit,
+    &bricks->block_buckets, &bricks->block_shift));
+  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
+  MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));
+  return MCOR_LAUNCH(context, "mcor_adaptive_request", MCOR_MEDIUM, count, MCOR_BLOCK_ARGS(context),
+    MCOR_INT(count), MCOR_INT(plane), MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer),
+    MCOR_BUFFER(&bricks->bits));
 }
 
-/* The first slot of each level, from their keys. */
-static mcor_status mcor_find_slot_levels(mcor_context* context, int slots)
+/* The first slot of each level, from that of its first block. */
+static mcor_status mcor_find_slot_levels(mcor_context* context)
 {
   const mcor_tree* tree = &context->tree;
-  mcor_adaptive* adaptive = &context->adaptive;
+  mcor_bricks* bricks = &context->bricks;
+  const int blocks = bricks->block_count;
   void* view;
-  MCOR_TRY(mcor_map(context, &adaptive->keys, (size_t)slots * sizeof(cl_ulong), false, &view));
+  MCOR_TRY(mcor_map(context, &bricks->block_keys, (size_t)blocks * sizeof(cl_ulong), false, &view));
   const cl_ulong* keys = view;
+  int first[MCOR_TREE_LEVEL_LIMIT + 2];
+  for (int l = 0, block = 0; l <= tree->top + 1; ++l)
+  {
+    while (block < blocks && keys[block] < tree->rungs[l].base)
+    {
+      ++block;
+    }
+    first[l] = block;
+  }
+  MCOR_TRY(mcor_unmap(context, &bricks->block_keys, &view));
   for (int l = 0; l <= tree->top + 1; ++l)
   {
-    int low = 0, high = slots;
-    while (low < high)
-    {
-      const int middle = low + (high - low) / 2;
-      const bool before = keys[middle] / MCOR_BLOCK_BRICKS < tree->rungs[l].base;
-      low = before ? middle + 1 : low;
-      high = before ? high : middle;
-    }
-    context->bricks.first_slot[l] = low;
+    MCOR_TRY(mcor_read(context, &bricks->base, (size_t)first[l] * MCOR_BLOCK_WORDS * sizeof(cl_int),
+      &bricks->first_slot[l], sizeof(cl_int)));
   }
-  return mcor_unmap(context, &adaptive->keys, &view);
+  return MCOR_OK;
 }
 
-/* Slots for the bricks, of which nothing is known. */
-static mcor_status mcor_fill_slots(mcor_context* context, int count)
+/* Whether a proof is tried for slots: MCOR_LEAF_PROOFS of the kernels. */
+static bool mcor_tries_proofs(const mcor_context* context)
 {
-  mcor_adaptive* adaptive = &context->adaptive;
-  mcor_brick_data* now = &context->bricks.now;
-  const size_t n = (size_t)count, real = context->cl.real_size;
-  now->count = count;
-  MCOR_TRY(mcor_reserve(context, &now->bricks, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, &now->known, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &now->above, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &now->valid, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &now->value, n * 64 * real));
-  MCOR_TRY(mcor_reserve(context, &now->weight, n * 64 * real));
-  MCOR_TRY(mcor_reserve(context, &adaptive->proofs, n));
-  return MCOR_LAUNCH(context, "mcor_adaptive_bricks", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_INT(context->tree.top), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->keys),
-    MCOR_BUFFER(&now->bricks));
+  const mcor_options* options = context->run.options;
+  return options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
+    context->cl.lanes > 1 && !mcor_is_plane(context);
 }
 
-/* Takes over what is known of nodes from the last set of slots. */
-static mcor_status mcor_move_nodes(mcor_context* context, const mcor_brick_data* last)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  return MCOR_LAUNCH(context, "mcor_adaptive_move", MCOR_MEDIUM, last->count,
-    MCOR_SLOT_ARGS(context), MCOR_INT(last->count), MCOR_BUFFER(&context->adaptive.rungs),
-    MCOR_BUFFER(&last->bricks), MCOR_BUFFER(&last->known),
-    MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))), MCOR_BUFFER(&last->value),
-    MCOR_BUFFER(&last->weight), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value),
-    MCOR_BUFFER(&now->weight));
-}
-
-/* Evaluates those nodes of slots of the level that is seen that are neither known nor certain. */
-static mcor_status mcor_evaluate_span(mcor_context* context, double iso, const mcor_span* span)
+/* Calls for all slots, level by level, each seen in its cells. */
+static mcor_status mcor_evaluate_levels(mcor_context* context, double iso, bool prove)
 {
   const mcor_adaptive* adaptive = &context->adaptive;
   const mcor_brick_data* now = &context->bricks.now;
-  const size_t count = (size_t)span->count, lanes = (size_t)context->cl.lanes;
-  return mcor_is_plane(context)
-    ? MCOR_LAUNCH(context, "mcor_adaptive_plane_nodes", MCOR_HEAVY, count * 16 / lanes,
-        MCOR_GRID_ARGS(context), MCOR_INT(span->first), MCOR_INT(span->count),
-        MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
-        MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight))
-    : MCOR_LAUNCH(context, "mcor_adaptive_nodes", MCOR_HEAVY, count * (lanes == 1 ? 64 : 1),
-        MCOR_GRID_ARGS(context), MCOR_INT(span->first), MCOR_INT(span->count),
-        MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
-        MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
+  for (int l = 0; l <= context->tree.top; ++l)
+  {
+    mcor_span span = { .first = context->bricks.first_slot[l],
+      .end = context->bricks.first_slot[l + 1] };
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(mcor_next_span(context, &span));
+    while (span.count > 0)
+    {
+      MCOR_TRY(prove ? MCOR_LAUNCH(context, "mcor_adaptive_prove", MCOR_HEAVY, span.count,
+                         MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
+                         MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
+                         MCOR_BUFFER(&adaptive->proofs))
+                     : mcor_evaluate_needed(context, span.first, span.count));
+      MCOR_TRY(mcor_next_span(context, &span));
+    }
+  }
+  return mcor_view_level(context, 0);
 }
 
 /* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. iso:
@@ -111,19 +106,16 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
 {
   const mcor_adaptive* adaptive = &context->adaptive;
   const mcor_brick_data* now = &context->bricks.now;
-  for (int l = 0; l <= context->tree.top && now->count > 0; ++l)
+  if (now->count == 0)
   {
-    mcor_span span = { .first = context->bricks.first_slot[l],
-      .end = context->bricks.first_slot[l + 1] };
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_next_span(context, &span));
-    while (span.count > 0)
-    {
-      MCOR_TRY(mcor_evaluate_span(context, iso, &span));
-      MCOR_TRY(mcor_next_span(context, &span));
-    }
+    return MCOR_OK;
   }
-  MCOR_TRY(mcor_view_level(context, 0));
+  MCOR_TRY(mcor_tries_proofs(context) ? mcor_evaluate_levels(context, iso, true) : MCOR_OK);
+  MCOR_TRY(mcor_reserve(context, &context->bricks.need, (size_t)now->count * sizeof(cl_ulong)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_unknown", MCOR_LIGHT, now->count,
+    MCOR_INT(now->count), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
+    MCOR_BUFFER(&context->bricks.need)));
+  MCOR_TRY(mcor_evaluate_levels(context, iso, false));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
     MCOR_REAL(iso), MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&now->known),
@@ -141,8 +133,8 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
   MCOR_TRY(
     mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_tables", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
-    MCOR_INT(count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->rungs),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_tables", MCOR_MEDIUM, count,
+    MCOR_BRICK_ARGS(context), MCOR_INT(count), MCOR_INT(mcor_is_plane(context)),
     MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_need", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
@@ -157,34 +149,30 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
     MCOR_BUFFER(&bricks->leaf_of));
 }
 
-/* Leaves whose nodes are evaluated along with their states: more take much memory. */
-#define MCOR_LEAVES_AT_ONCE (1 << 19)
-
 /* Slots of all nodes that the leaves where there may be surface need, with what is known of them. found:
  * of mcor_choose_leaves. */
 static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_nodes* found)
 {
   mcor_adaptive* adaptive = &context->adaptive;
-  int slots = 0;
-  if (adaptive->count > 0)
+  mcor_brick_data* now = &context->bricks.now;
+  if (adaptive->count == 0)
   {
-    MCOR_TRY(mcor_want_bricks(context, &slots));
-    MCOR_TRY(mcor_find_slot_levels(context, slots));
+    mcor_release_brick_data(context, now);
+    adaptive->dropped = found ? adaptive->evaluated : adaptive->dropped;
+    return MCOR_OK;
   }
-  mcor_brick_data last = context->bricks.now;
-  context->bricks.now = (mcor_brick_data){ 0 };
-  mcor_status status = mcor_fill_slots(context, slots);
-  status = status == MCOR_OK && slots > 0 ? mcor_take_leaf_nodes(context, found) : status;
-  if (status == MCOR_OK && found)
+  MCOR_TRY(mcor_request_wanted(context));
+  MCOR_TRY(mcor_place_bricks(context));
+  MCOR_TRY(mcor_find_slot_levels(context));
+  MCOR_TRY(mcor_reserve(context, &adaptive->proofs, (size_t)now->count));
+  MCOR_TRY(mcor_take_leaf_nodes(context, found));
+  if (found)
   {
     int taken;
-    const mcor_buffer* known = &context->bricks.now.known;
-    status = mcor_count_bits(context, known, known, slots, &taken);
+    MCOR_TRY(mcor_count_bits(context, &now->known, &now->known, now->count, &taken));
     adaptive->dropped = adaptive->evaluated - taken;
   }
-  status = status == MCOR_OK && slots > 0 ? mcor_move_nodes(context, &last) : status;
-  mcor_release_brick_data(context, &last);
-  return status;
+  return MCOR_OK;
 }
 
 /* Ends with all nodes of leaves where there may be surface. iso: relative to A0. */
@@ -203,8 +191,8 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
     return MCOR_OK;
   }
   MCOR_TRY(mcor_find_side_flags(context, iso));
-  const bool at_once = context->cl.lanes > 1 && context->bricks.now.count == 0 &&
-    context->tree.leaf_count <= MCOR_LEAVES_AT_ONCE && !mcor_is_plane(context);
+  const bool at_once =
+    context->cl.lanes > 1 && context->bricks.now.count == 0 && !mcor_is_plane(context);
   context->adaptive.dropped = context->bricks.now.count == 0 ? 0 : context->adaptive.dropped;
   mcor_leaf_nodes found = { 0 };
   mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
@@ -212,7 +200,8 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   {
     status = mcor_place_leaves(context, at_once ? &found : NULL);
   }
-  MCOR_RELEASE(context, &found.value, &found.weight);
+  MCOR_RELEASE(context, &found.value, &found.weight, &found.place, &found.part_value,
+    &found.part_weight, &found.counts);
   MCOR_TRY(status);
   MCOR_TRY(mcor_evaluate_slots(context, iso));
   return mcor_complete_leaves(context, iso);
@@ -221,9 +210,8 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
 void mcor_release_adaptive(mcor_context* context)
 {
   mcor_adaptive* g = &context->adaptive;
-  MCOR_RELEASE(context, &g->rungs, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys,
-    &g->region_order, &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer,
-    &g->wanted, &g->requests, &g->index, &g->keys, &g->buckets, &g->tables, &g->quadrants, &g->flat,
-    &context->grid.view_levels, &context->grid.view_inv_h);
+  MCOR_RELEASE(context, &g->leaves, &g->leaf_finer, &g->regions, &g->region_keys, &g->region_order,
+    &g->states, &g->chosen, &g->proofs, &g->mixed, &g->cells, &g->finer, &g->wanted, &g->tables,
+    &g->quadrants, &g->flat, &context->grid.view_levels, &context->grid.view_inv_h);
   mcor_release_tree(&context->tree);
 }

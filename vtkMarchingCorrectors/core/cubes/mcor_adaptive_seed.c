@@ -117,10 +117,10 @@ mcor_status mcor_write_tree(mcor_context* context)
   MCOR_TRY(mcor_write(context, &adaptive->leaf_finer, tree->finer, leaves * sizeof(cl_uint)));
   MCOR_TRY(mcor_write(context, &adaptive->regions, tree->regions, (regions + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_write(
-    context, &adaptive->rungs, tree->rungs, (size_t)(tree->top + 3) * sizeof tree->rungs[0]));
+    context, &context->bricks.rungs, tree->rungs, (size_t)(tree->top + 3) * sizeof tree->rungs[0]));
   MCOR_TRY(mcor_reserve(context, &adaptive->region_keys, regions * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_region_keys", MCOR_LIGHT, regions,
-    MCOR_INT((int)regions), MCOR_BUFFER(&adaptive->rungs), MCOR_BUFFER(&adaptive->regions),
+    MCOR_INT((int)regions), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&adaptive->regions),
     MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->region_keys)));
   MCOR_TRY(mcor_sort(
     context, &adaptive->region_keys, &adaptive->region_order, tree->region_count, tree->key_limit));
@@ -129,7 +129,7 @@ mcor_status mcor_write_tree(mcor_context* context)
 }
 
 #define MCOR_REGION_ARGS(c)                                                                        \
-  MCOR_INT((c)->tree.region_count), MCOR_BUFFER(&(c)->adaptive.rungs),                             \
+  MCOR_INT((c)->tree.region_count), MCOR_BUFFER(&(c)->bricks.rungs),                               \
     MCOR_BUFFER(&(c)->adaptive.regions), MCOR_BUFFER(&(c)->adaptive.leaves),                       \
     MCOR_BUFFER(&(c)->adaptive.region_keys), MCOR_BUFFER(&(c)->adaptive.region_order)
 
@@ -159,28 +159,65 @@ static mcor_status mcor_find_states(mcor_context* context, double iso)
   return mcor_view_level(context, 0);
 }
 
+/* Regions whose leaves' values are kept as if all were evaluated. */
+#define MCOR_PART_REGIONS 512
+
+/* Takes the values of a part's leaves, [first, first + count), that are evaluated. */
+static mcor_status mcor_pack_values(
+  mcor_context* context, int first, int count, mcor_leaf_nodes* found)
+{
+  int added;
+  const mcor_adaptive* adaptive = &context->adaptive;
+  MCOR_TRY(mcor_reserve(context, &found->counts, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_count_values", MCOR_LIGHT, count, MCOR_INT(first),
+    MCOR_INT(count), MCOR_BUFFER(&adaptive->states), MCOR_BUFFER(&found->counts)));
+  MCOR_TRY(mcor_scan(context, &found->counts, count, &added));
+  if (found->count + added > found->room)
+  {
+    const size_t bytes = 64 * context->cl.real_size, old = (size_t)found->count * bytes;
+    found->room = found->count + added + found->room / 4;
+    MCOR_TRY(mcor_extend(context, &found->value, old, (size_t)found->room * bytes));
+    MCOR_TRY(mcor_extend(context, &found->weight, old, (size_t)found->room * bytes));
+  }
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_pack_values", MCOR_MEDIUM, count, MCOR_INT(first),
+    MCOR_INT(count), MCOR_INT(found->count), MCOR_BUFFER(&found->counts),
+    MCOR_INT((int)(64 * context->cl.real_size / sizeof(cl_uint))), MCOR_BUFFER(&found->part_value),
+    MCOR_BUFFER(&found->part_weight), MCOR_BUFFER(&found->place), MCOR_BUFFER(&found->value),
+    MCOR_BUFFER(&found->weight)));
+  found->count += added;
+  return MCOR_OK;
+}
+
 /* The same where particles are gathered for many lanes, with the values of nodes if `found`, as all their
  * particles are at hand. */
 static mcor_status mcor_find_region_states(
-  mcor_context* context, double iso, const mcor_leaf_nodes* found)
+  mcor_context* context, double iso, mcor_leaf_nodes* found)
 {
   const mcor_tree* tree = &context->tree;
   mcor_adaptive* adaptive = &context->adaptive;
   const mcor_leaf_nodes none = { 0 };
   for (int l = 0; l <= tree->top; ++l)
   {
-    mcor_span span = { .first = tree->first_region[l], .end = tree->first_region[l + 1] };
     MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(mcor_next_span(context, &span));
-    while (span.count > 0)
+    for (int part = tree->first_region[l], end; part < tree->first_region[l + 1]; part = end)
     {
-      MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_regions", MCOR_HEAVY, span.count,
-        MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
-        MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
-        MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
-        MCOR_BUFFER(&adaptive->states), MCOR_BUFFER(found ? &found->value : &none.value),
-        MCOR_BUFFER(found ? &found->weight : &none.weight)));
+      const int rest = tree->first_region[l + 1] - part;
+      end = part + (found && rest > MCOR_PART_REGIONS ? MCOR_PART_REGIONS : rest);
+      const int first = tree->regions[part], count = tree->regions[end] - first;
+      mcor_span span = { .first = part, .end = end };
       MCOR_TRY(mcor_next_span(context, &span));
+      while (span.count > 0)
+      {
+        MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_regions", MCOR_HEAVY, span.count,
+          MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
+          MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
+          MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
+          MCOR_INT(first), MCOR_BUFFER(&adaptive->states),
+          MCOR_BUFFER(found ? &found->part_value : &none.value),
+          MCOR_BUFFER(found ? &found->part_weight : &none.weight)));
+        MCOR_TRY(mcor_next_span(context, &span));
+      }
+      MCOR_TRY(found ? mcor_pack_values(context, first, count, found) : MCOR_OK);
     }
   }
   return mcor_view_level(context, 0);
@@ -276,13 +313,15 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
 {
   mcor_adaptive* adaptive = &context->adaptive;
   const mcor_tree* tree = &context->tree;
-  const size_t n = (size_t)tree->leaf_count, values = n * 64 * context->cl.real_size;
+  const size_t n = (size_t)tree->leaf_count;
   MCOR_TRY(mcor_reserve(context, &adaptive->states, n * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->chosen, n));
   if (found)
   {
-    MCOR_TRY(mcor_reserve(context, &found->value, values));
-    MCOR_TRY(mcor_reserve(context, &found->weight, values));
+    const size_t part = n < 8 * MCOR_PART_REGIONS ? n : 8 * MCOR_PART_REGIONS;
+    MCOR_TRY(mcor_reserve(context, &found->part_value, part * 64 * context->cl.real_size));
+    MCOR_TRY(mcor_reserve(context, &found->part_weight, part * 64 * context->cl.real_size));
+    MCOR_TRY(mcor_reserve(context, &found->place, n * sizeof(cl_int)));
   }
   MCOR_TRY(context->cl.lanes == 1 || mcor_is_plane(context)
       ? mcor_find_states(context, iso)
@@ -303,6 +342,7 @@ mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* f
     MCOR_REGION_ARGS(context), MCOR_INT(now->count), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&adaptive->states),
     MCOR_INT(found ? (int)(64 * context->cl.real_size / sizeof(cl_uint)) : 0),
-    MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight), MCOR_BUFFER(&adaptive->proofs),
-    MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight));
+    MCOR_BUFFER(&from->place), MCOR_BUFFER(&from->value), MCOR_BUFFER(&from->weight),
+    MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value),
+    MCOR_BUFFER(&now->weight));
 }

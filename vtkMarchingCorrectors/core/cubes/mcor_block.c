@@ -11,25 +11,24 @@
 /* The first size has the smallest cubes of which no more than this many cover the lattice. */
 #define MCOR_FIRST_CUBES 32768
 
-/* One size of cubes: 32 << doublings nodes long. */
-typedef struct mcor_cubes
+/* Larger cubes are the blocks of higher levels, 32 << level nodes long. Numbers those of all levels up to the first
+ * size; returns that level. */
+static int mcor_make_rungs(const mcor_context* context, mcor_rung rungs[MCOR_LEVEL_LIMIT + 1])
 {
-  int doublings, n[3];
-} mcor_cubes;
-
-static mcor_cubes mcor_cubes_of(const mcor_context* context, int doublings)
-{
-  mcor_cubes cubes = { .doublings = doublings };
-  for (int a = 0; a < 3; ++a)
+  uint64_t total = UINT64_MAX;
+  int level = -1;
+  for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
+       rungs[level + 1].base = rungs[level].base + total)
   {
-    cubes.n[a] = ((context->lattice.blocks[a] - 1) >> doublings) + 1;
+    total = 1;
+    ++level;
+    for (int a = 0; a < 3; ++a)
+    {
+      rungs[level].n[a] = ((context->lattice.blocks[a] - 1) >> level) + 1;
+      total *= (uint64_t)rungs[level].n[a];
+    }
   }
-  return cubes;
-}
-
-static uint64_t mcor_cube_total(const mcor_cubes* cubes)
-{
-  return (uint64_t)cubes->n[0] * (uint64_t)cubes->n[1] * (uint64_t)cubes->n[2];
+  return level;
 }
 
 /* Blocks that are there because they are kept, in cubes that are inactive now, become void: as if
@@ -65,28 +64,24 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
 /* States of the cubes whose keys are the block keys now, and which of them are inactive. children:
  * see mcor_void_kept, 0 where no blocks are kept. */
 static mcor_status mcor_test_cubes(
-  mcor_context* context, double iso, const mcor_cubes* cubes, int children)
+  mcor_context* context, double iso, const mcor_rung* rungs, int level, int children)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count;
-  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, mcor_cube_total(cubes),
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, rungs[level + 1].base,
     &bricks->block_buckets, &bricks->block_shift));
   MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
   MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-    MCOR_INT(count), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_INT(MCOR_BLOCK_CUBES << cubes->doublings), MCOR_SEED_ARGS(context, iso),
-    MCOR_BUFFER(&bricks->block_states)));
-  MCOR_TRY(
-    mcor_void_cubes(context, cubes->n[0], cubes->n[1], MCOR_BLOCK_CUBES << cubes->doublings));
+    MCOR_INT(count), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->block_states)));
+  MCOR_TRY(mcor_void_cubes(context));
   if (children > 0)
   {
     MCOR_TRY(mcor_void_kept(context, children));
   }
-  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count, MCOR_INT(count),
-    MCOR_INT(bricks->block_shift), MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]),
-    MCOR_INT(cubes->n[2]), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_buckets),
-    MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
+  return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count,
+    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
 /* So many blocks at most: surface in a fourth of them has as many triangles as there can be. */
@@ -103,21 +98,20 @@ static double mcor_foresee_blocks(const mcor_context* context, int64_t count, in
 
 /* Replaces the cubes by the *children parts of those that are active, and by the blocks `kept` where
  * these are blocks already. */
-static mcor_status mcor_divide_cubes(mcor_context* context, const mcor_cubes* cubes,
+static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
   const mcor_buffer* kept, int kept_count, int* children)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer *counts = &bricks->child_counts, *keys = &bricks->child_keys,
               *index_of = &bricks->child_index;
-  const mcor_cubes finer = mcor_cubes_of(context, cubes->doublings - 1);
-  const int count = bricks->block_count, added = finer.doublings == 0 ? kept_count : 0;
+  const mcor_buffer* rungs = &context->bricks.rungs;
+  const int count = bricks->block_count, added = level == 1 ? kept_count : 0;
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->inactive), MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]),
-    MCOR_INT(finer.n[2]), MCOR_BUFFER(counts)));
+    MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->inactive),
+    MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, children));
-  const double foreseen = mcor_foresee_blocks(context, *children + added, finer.doublings);
+  const double foreseen = mcor_foresee_blocks(context, *children + added, level - 1);
   MCOR_RETURN_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: with cube size %g there may be surface in %s %.3g blocks of "
     "%d^3 cells; the limit is %d. Use a larger cube size.",
@@ -125,13 +119,11 @@ static mcor_status mcor_divide_cubes(mcor_context* context, const mcor_cubes* cu
     MCOR_BLOCK_CUBES, MCOR_BLOCK_LIMIT);
   MCOR_TRY(mcor_reserve(context, keys, ((size_t)*children + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_INT(cubes->n[0]), MCOR_INT(cubes->n[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_INT(finer.n[0]), MCOR_INT(finer.n[1]), MCOR_INT(finer.n[2]), MCOR_BUFFER(counts),
-    MCOR_BUFFER(keys)));
+    MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(counts), MCOR_BUFFER(keys)));
   MCOR_TRY(mcor_copy(
     context, kept, keys, (size_t)*children * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
-  return mcor_unique(context, keys, *children + added, mcor_cube_total(&finer), &bricks->block_keys,
-    index_of, &bricks->block_count);
+  return mcor_unique(
+    context, keys, *children + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
 /* Requests the bricks of which nodes are known. */
@@ -147,11 +139,10 @@ mcor_status mcor_request_known(mcor_context* context)
 mcor_status mcor_make_blocks(mcor_context* context, double iso)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_cubes cubes = mcor_cubes_of(context, 0);
-  while (mcor_cube_total(&cubes) > MCOR_FIRST_CUBES)
-  {
-    cubes = mcor_cubes_of(context, cubes.doublings + 1);
-  }
+  mcor_rung rungs[MCOR_LEVEL_LIMIT + 1] = { 0 };
+  int level = mcor_make_rungs(context, rungs);
+  MCOR_TRY(
+    mcor_write(context, &context->bricks.rungs, rungs, (size_t)(level + 2) * sizeof rungs[0]));
   mcor_buffer kept = { 0 };
   int children = 0;
   const int kept_count = bricks->now.count > 0 ? bricks->block_count : 0;
@@ -160,23 +151,24 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
     kept = bricks->block_keys;
     bricks->block_keys = (mcor_buffer){ 0 };
   }
-  bricks->block_count = (int)mcor_cube_total(&cubes);
+  bricks->block_count = (int)(rungs[level + 1].base - rungs[level].base);
   mcor_status status =
     mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
   status = status == MCOR_OK
     ? MCOR_LAUNCH(context, "mcor_block_all", MCOR_MEDIUM, bricks->block_count,
-        MCOR_INT(bricks->block_count), MCOR_BUFFER(&bricks->block_keys))
+        MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs), MCOR_INT(level),
+        MCOR_BUFFER(&bricks->block_keys))
     : status;
-  for (; cubes.doublings > 0 && status == MCOR_OK;
-       cubes = mcor_cubes_of(context, cubes.doublings - 1))
+  for (; level > 0 && status == MCOR_OK; --level)
   {
-    status = mcor_test_cubes(context, iso, &cubes, 0);
-    status =
-      status == MCOR_OK ? mcor_divide_cubes(context, &cubes, &kept, kept_count, &children) : status;
+    status = mcor_test_cubes(context, iso, rungs, level, 0);
+    status = status == MCOR_OK
+      ? mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &children)
+      : status;
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_test_cubes(context, iso, &cubes, kept_count > 0 ? children : 0));
+  MCOR_TRY(mcor_test_cubes(context, iso, rungs, 0, kept_count > 0 ? children : 0));
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));

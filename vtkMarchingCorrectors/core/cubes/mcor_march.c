@@ -135,10 +135,10 @@ static mcor_status mcor_emit_vertices(mcor_context* context, double iso)
   MCOR_TRY(mcor_reserve(context, &mesh->ends, vertices * 2 * context->cl.real_size));
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, triangles * 3 * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
-    MCOR_SLOT_ARGS(context), MCOR_BUFFER(&context->bricks.neighbours),
-    MCOR_BUFFER(&context->adaptive.rungs), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&now->value), MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso),
-    MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->ends));
+    MCOR_BRICK_ARGS(context), MCOR_INT(now->count), MCOR_BUFFER(&context->bricks.neighbours),
+    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->ends));
 }
 
 /* Triangles, or lines, and their cells, of which those between the sides are owned. */
@@ -153,8 +153,7 @@ static mcor_status mcor_emit_triangles(
   MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, emit, MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_LEAF_ARGS(context), MCOR_PLAIN_ARGS(context), MCOR_CUT_ARGS(context),
-    MCOR_SIDES_ARGS(sides), MCOR_INT(follows), MCOR_INT(context->lattice.blocks[0]),
-    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&context->adaptive.rungs),
+    MCOR_SIDES_ARGS(sides), MCOR_INT(follows), MCOR_BUFFER(&context->bricks.rungs),
     MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
     MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells),
     MCOR_BUFFER(&mesh->triangles));

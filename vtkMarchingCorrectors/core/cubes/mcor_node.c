@@ -5,6 +5,20 @@
 
 #include "mcor_plane.h"
 
+mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count)
+{
+  mcor_bricks* bricks = &context->bricks;
+  /* One item per brick where one gathers for many lanes, else one per node. */
+  const bool plane = mcor_is_plane(context); /* there 16 of them, an item for all lanes */
+  const size_t items = (size_t)count *
+    (size_t)(plane               ? 16 / context->cl.lanes
+        : context->cl.lanes == 1 ? 64
+                                 : 1);
+  return MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_node_values", MCOR_HEAVY, items,
+    MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
+}
+
 /* Values of all nodes of the bricks that are not known yet. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
@@ -13,15 +27,7 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
-  /* One item per brick where one gathers for many lanes, else one per node. */
-  const bool plane = mcor_is_plane(context); /* there 16 of them, an item for all lanes */
-  const size_t items = (size_t)count *
-    (size_t)(plane               ? 16 / context->cl.lanes
-        : context->cl.lanes == 1 ? 64
-                                 : 1);
-  return MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_node_values", MCOR_HEAVY, items,
-    MCOR_GRID_ARGS(context), MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
+  return mcor_evaluate_needed(context, 0, count);
 }
 
 /* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */

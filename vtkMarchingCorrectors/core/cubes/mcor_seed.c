@@ -52,10 +52,10 @@ static mcor_status mcor_find_regions(
   MCOR_TRY(mcor_reserve(context, list, (size_t)regions * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, list_count, 0, sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
-    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
-    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states),
-    MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
+    MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states),
+    MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits),
+    MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
   cl_int count;
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
   *listed = count;

@@ -28,10 +28,10 @@ void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
 void mcor_release_bricks(mcor_context* context)
 {
   mcor_bricks* b = &context->bricks;
-  MCOR_RELEASE(context, &b->block_keys, &b->block_buckets, &b->block_states, &b->inactive,
-    &b->states, &b->bits, &b->base, &b->seed_bits, &b->seeds, &b->cells, &b->plain, &b->leaf_of,
-    &b->neighbours, &b->need, &b->bit_counts, &b->child_counts, &b->child_keys, &b->child_index,
-    &b->regions, &b->found);
+  MCOR_RELEASE(context, &b->rungs, &b->block_keys, &b->block_buckets, &b->block_states,
+    &b->inactive, &b->states, &b->bits, &b->base, &b->seed_bits, &b->seeds, &b->cells, &b->plain,
+    &b->leaf_of, &b->neighbours, &b->need, &b->bit_counts, &b->child_counts, &b->child_keys,
+    &b->child_index, &b->regions, &b->found);
   mcor_release_brick_data(context, &b->now);
 }
 
@@ -71,7 +71,7 @@ mcor_status mcor_place_bricks(mcor_context* context)
   mcor_brick_data last = bricks->now;
   bricks->now = (mcor_brick_data){ 0 };
   bricks->first_slot[0] = 0;
-  bricks->first_slot[1] = count;
+  bricks->first_slot[1] = count; /* with levels: until mcor_find_slot_levels */
   const mcor_status status = mcor_fill_bricks(context, &last, count, words);
   mcor_release_brick_data(context, &last);
   return status;
@@ -84,10 +84,6 @@ mcor_status mcor_find_neighbours(mcor_context* context)
   const int count = bricks->now.count;
   MCOR_TRY(mcor_fill(
     context, &bricks->neighbours, 0xff, (size_t)count * MCOR_NEIGHBOURS * sizeof(cl_int)));
-  return mcor_is_adaptive(context)
-    ? MCOR_LAUNCH(context, "mcor_adaptive_neighbours", MCOR_MEDIUM, count, MCOR_SLOT_ARGS(context),
-        MCOR_BUFFER(&context->adaptive.rungs), MCOR_BUFFER(&bricks->now.bricks),
-        MCOR_BUFFER(&bricks->neighbours))
-    : MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_MEDIUM, count, MCOR_BRICK_ARGS(context),
-        MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
+  return MCOR_LAUNCH(context, "mcor_brick_neighbours", MCOR_MEDIUM, count, MCOR_BRICK_ARGS(context),
+    MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours));
 }

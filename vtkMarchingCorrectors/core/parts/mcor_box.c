@@ -180,14 +180,14 @@ bool mcor_is_limited(const mcor_context* context)
   return limited;
 }
 
-mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size)
+mcor_status mcor_void_cubes(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
   return !mcor_is_limited(context)
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, bricks->block_count,
-        MCOR_INT(bricks->block_count), MCOR_INT(cubes_x), MCOR_INT(cubes_y),
-        MCOR_BUFFER(&bricks->block_keys), MCOR_INT(size), MCOR_NEAR_ARGS(&context->box),
+        MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
+        MCOR_BUFFER(&bricks->block_keys), MCOR_NEAR_ARGS(&context->box),
         MCOR_BUFFER(&bricks->block_states));
 }
 
@@ -198,9 +198,9 @@ mcor_status mcor_void_bricks(mcor_context* context)
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
         (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
-        MCOR_INT(context->lattice.blocks[0]), MCOR_INT(context->lattice.blocks[1]),
-        MCOR_BUFFER(&bricks->block_keys), MCOR_NEAR_ARGS(&context->box),
-        MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
+        MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&bricks->block_keys),
+        MCOR_NEAR_ARGS(&context->box), MCOR_BUFFER(&bricks->states),
+        MCOR_BUFFER(&bricks->seed_bits));
 }
 
 /* Keeps, of the marched bricks' cells, those in a box that is made larger by so many cells below and above;

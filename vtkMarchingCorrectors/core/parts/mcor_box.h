@@ -73,7 +73,7 @@ int mcor_list_images(
 bool mcor_is_limited(const mcor_context* context);
 
 /* Seeds: of cubes of a size, and of bricks, those off the box become void. */
-mcor_status mcor_void_cubes(mcor_context* context, int cubes_x, int cubes_y, int size);
+mcor_status mcor_void_cubes(mcor_context* context);
 mcor_status mcor_void_bricks(mcor_context* context);
 
 /* Extraction. Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned

@@ -409,10 +409,9 @@ mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso)
   const mcor_bricks* bricks = &context->bricks;
   return MCOR_LAUNCH(context, "mcor_plane_seeds", MCOR_HEAVY,
     (size_t)bricks->block_count * MCOR_BLOCK_REGIONS, MCOR_GRID_ARGS(context),
-    MCOR_INT(bricks->block_count), MCOR_INT(context->lattice.blocks[0]),
-    MCOR_INT(context->lattice.blocks[1]), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states),
-    MCOR_BUFFER(&bricks->seed_bits));
+    MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states),
+    MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
 }
 
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)

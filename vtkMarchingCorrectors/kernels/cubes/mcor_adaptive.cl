@@ -35,129 +35,115 @@ ulong mcor_adaptive_wanted(uint finer, int plane)
   return plane ? wanted & MCOR_WANTED_IN_PLANE : wanted;
 }
 
-/* Key of the brick of bit `b` of these. */
-ulong mcor_adaptive_wanted_key(__global const mcor_rung* rungs, int4 leaf, int b)
+/* The brick of bit `b` of these, with its level. */
+int4 mcor_adaptive_wanted_brick(int4 leaf, int b)
 {
   const int f = b - 8;
-  return b < 8
-    ? mcor_adaptive_key(rungs, leaf.w, leaf.x + (b & 1), leaf.y + (b >> 1 & 1), leaf.z + (b >> 2))
-    : mcor_adaptive_key(
-        rungs, leaf.w - 1, 2 * leaf.x + f % 3, 2 * leaf.y + f / 3 % 3, 2 * leaf.z + f / 9);
+  return b < 8 ? leaf + (int4)(b & 1, b >> 1 & 1, b >> 2, 0)
+               : (int4)(2 * leaf.x + f % 3, 2 * leaf.y + f / 3 % 3, 2 * leaf.z + f / 9, leaf.w - 1);
 }
 
-/* One work-item = one leaf. Counts the bricks that it needs. */
-__kernel void mcor_adaptive_count_wanted(
-  const int count, const int plane, __global const uint* finer, __global int* counts)
+/* Blocks that bricks which a leaf needs may be in: of its level, and of the finer one. */
+#define MCOR_WANTED_BLOCKS 16
+
+/* Keys of these, but for the own one where the leaf before, which is sorted, has the same; returns how many. */
+int mcor_adaptive_wanted_blocks(__global const mcor_rung* rungs, __global const int4* cells, int i,
+  uint finer, int plane, ulong keys[MCOR_WANTED_BLOCKS + 1])
+{
+  const int4 leaf = cells[i], before = cells[max(i - 1, 0)];
+  int count = 0;
+  keys[count++] = mcor_block_key(rungs, leaf.w, leaf.x >> 3, leaf.y >> 3, leaf.z >> 3);
+  for (ulong rest = mcor_adaptive_wanted(finer, plane); rest; rest &= rest - 1)
+  {
+    const int4 b = mcor_adaptive_wanted_brick(leaf, mcor_ctz(rest));
+    const ulong key = mcor_block_key(rungs, b.w, b.x >> 3, b.y >> 3, b.z >> 3);
+    bool is_new = true;
+    for (int k = 0; k < count; ++k)
+    {
+      is_new = is_new && keys[k] != key;
+    }
+    keys[count] = key;
+    count += is_new;
+  }
+  if (i > 0 &&
+    mcor_block_key(rungs, before.w, before.x >> 3, before.y >> 3, before.z >> 3) == keys[0])
+  {
+    keys[0] = keys[--count];
+  }
+  return count;
+}
+
+/* One work-item = one leaf. Counts these blocks. */
+__kernel void mcor_adaptive_count_blocks(const int count, const int plane,
+  __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
+  __global int* counts)
 {
   MCOR_ITEM(i, i < count);
-  counts[i] = (int)popcount(mcor_adaptive_wanted(finer[i], plane));
+  ulong found[MCOR_WANTED_BLOCKS + 1];
+  counts[i] = mcor_adaptive_wanted_blocks(rungs, cells, i, finer[i], plane, found);
 }
 
-/* One work-item = one leaf. Reads the scanned counts. Writes the keys of the bricks that it needs. */
-__kernel void mcor_adaptive_fill_wanted(const int count, const int plane,
+/* One work-item = one leaf. Reads the scanned counts. Writes the keys of these blocks. */
+__kernel void mcor_adaptive_fill_blocks(const int count, const int plane,
   __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
   __global const int* scanned, __global ulong* keys)
 {
   MCOR_ITEM(i, i < count);
-  int to = scanned[i];
-  for (ulong rest = mcor_adaptive_wanted(finer[i], plane); rest; rest &= rest - 1)
+  ulong found[MCOR_WANTED_BLOCKS + 1];
+  const int wanted = mcor_adaptive_wanted_blocks(rungs, cells, i, finer[i], plane, found);
+  for (int k = 0; k < wanted; ++k)
   {
-    keys[to++] = mcor_adaptive_wanted_key(rungs, cells[i], mcor_ctz(rest));
+    keys[scanned[i] + k] = found[k];
   }
 }
 
-/* One work-item = one slot. Writes its brick and level, given by its key. */
-__kernel void mcor_adaptive_bricks(const int count, const int top, __global const mcor_rung* rungs,
-  __global const ulong* keys, __global int4* bricks)
+/* One work-item = one leaf. Requests the bricks that it needs. */
+__kernel void mcor_adaptive_request(MCOR_BLOCK_PARAMS, const int count, const int plane,
+  __global const int4* cells, __global const uint* finer, __global uint* brick_bits)
 {
   MCOR_ITEM(i, i < count);
-  int level = 0;
-  const ulong key = keys[i] / MCOR_BLOCK_BRICKS;
-  const int number = (int)(keys[i] % MCOR_BLOCK_BRICKS);
-  while (level < top && key >= rungs[level + 1].base)
+  for (ulong rest = mcor_adaptive_wanted(finer[i], plane); rest; rest &= rest - 1)
   {
-    ++level;
-  }
-  const int4 block =
-    mcor_block_of_key(key - rungs[level].base, rungs[level].n[0], rungs[level].n[1]);
-  bricks[i] = (int4)(block.x * 8 + (number & 7), block.y * 8 + (number >> 3 & 7),
-    block.z * 8 + (number >> 6), level);
-}
-
-/* One work-item = one slot. Enters the bricks of its level up from it, and it, into each other's lists, see
- * mcor_brick_neighbours. */
-__kernel void mcor_adaptive_neighbours(MCOR_SLOT_PARAMS, __global const mcor_rung* rungs,
-  __global const int4* bricks, __global int* neighbours)
-{
-  MCOR_ITEM(slot, slot < slot_count);
-  const int4 own = bricks[slot];
-  __global const mcor_rung* rung = rungs + own.w;
-  for (int d = 1; d < 8; ++d)
-  {
-    const int x = own.x + (d & 1), y = own.y + (d >> 1 & 1), z = own.z + (d >> 2);
-    const int other = x >> 3 < rung->n[0] && y >> 3 < rung->n[1] && z >> 3 < rung->n[2]
-      ? mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, own.w, x, y, z))
-      : -1;
-    if (other >= 0)
-    {
-      neighbours[slot * 14L + d - 1] = other;
-      neighbours[other * 14L + d + 6] = slot;
-    }
+    const int4 b = mcor_adaptive_wanted_brick(cells[i], mcor_ctz(rest));
+    mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, b.w, b.x, b.y, b.z));
   }
 }
 
 /* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
-__kernel void mcor_adaptive_tables(MCOR_SLOT_PARAMS, const int count, const int plane,
-  __global const mcor_rung* rungs, __global const int4* cells, __global const uint* finer,
-  __global int* tables)
+__kernel void mcor_adaptive_tables(MCOR_BRICK_PARAMS, const int count, const int plane,
+  __global const int4* cells, __global const uint* finer, __global int* tables)
 {
   MCOR_ITEM(i, i < count);
   const ulong wanted = mcor_adaptive_wanted(finer[i], plane);
   for (int b = 0; b < MCOR_LEAF_SLOTS; ++b)
   {
-    tables[i * (long)MCOR_LEAF_SLOTS + b] = wanted >> b & 1
-      ? mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_wanted_key(rungs, cells[i], b))
-      : -1;
+    const int4 brick = mcor_adaptive_wanted_brick(cells[i], b);
+    tables[i * (long)MCOR_LEAF_SLOTS + b] =
+      wanted >> b & 1 ? mcor_find_brick(MCOR_BRICK_ARGS, brick.w, brick.x, brick.y, brick.z) : -1;
   }
 }
 
 #endif
 
 #if MCOR_OF_ADAPTIVE
-/* One work-item = MCOR_ITEM_NODES nodes of a brick, from brick `first` on. Unless they are known, or
- * certain, reads the particles that reach them; tries the proof first where it was not tried.
- * Writes their values and weights, or the proof. */
-__kernel void mcor_adaptive_nodes(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
-  __global real* node_value, __global real* node_weight)
+#if MCOR_LEAF_PROOFS
+/* One work-item = one slot, of `count` from `first` on. Tries the proof where its nodes are neither known nor
+ * certain, and it was not tried. */
+__kernel void mcor_adaptive_prove(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs)
 {
-  const long node = (long)get_global_id(0) * MCOR_ITEM_NODES;
-  const int slot = first + (int)(node / 64);
-  if (node >= 64L * count || known[slot] || MCOR_IS_CERTAIN(proofs[slot]))
+  const int slot = first + get_global_id(0);
+  if (slot >= first + count || known[slot] || proofs[slot] != MCOR_UNTRIED)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-#if MCOR_LEAF_PROOFS
-  if (proofs[slot] == MCOR_UNTRIED)
-  {
-    mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_INSIDE_SHARE);
-    mcor_tile tile;
-    mcor_tile_init(&tile);
-    proofs[slot] = mcor_brick_is_inside(&grid, &close, &tile, iso) ? MCOR_ABOVE : MCOR_EXAMINE;
-    if (MCOR_IS_CERTAIN(proofs[slot]))
-    {
-      return;
-    }
-  }
-#endif
-  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(node % 64), 1);
-  mcor_node_sums sums;
+  mcor_query close = mcor_node_query(&grid, bricks[slot], 0, MCOR_INSIDE_SHARE);
   mcor_tile tile;
   mcor_tile_init(&tile);
-  mcor_node_sum(&grid, &query, &tile, &sums);
-  mcor_node_store(&sums, node_value + 64L * first + node, node_weight + 64L * first + node);
+  proofs[slot] = mcor_brick_is_inside(&grid, &close, &tile, iso) ? MCOR_ABOVE : MCOR_EXAMINE;
 }
+#endif
 
 /* One work-item = one slot. Writes which of its nodes are above the iso value and which are valid; of those
  * that are certain all may be. Others are known from now on. */
@@ -181,6 +167,14 @@ __kernel void mcor_adaptive_sign(const int slot_count, __global const uchar* pro
 #endif
 
 #if MCOR_OF_LATTICE
+/* One work-item = one slot. Writes which nodes are to be evaluated: all of those neither known nor certain. */
+__kernel void mcor_adaptive_unknown(const int slot_count, __global const ulong* known,
+  __global const uchar* proofs, __global ulong* need)
+{
+  MCOR_ITEM(slot, slot < slot_count);
+  need[slot] = known[slot] || MCOR_IS_CERTAIN(proofs[slot]) ? 0 : ~0UL;
+}
+
 /* Marks a slot whose nodes' values are needed after all; of those below the node threshold they never
  * are. */
 void mcor_leaf_ask(__global uchar* proofs, int slot)
@@ -238,28 +232,6 @@ __kernel void mcor_adaptive_need(const int count, const int plane, __global cons
   for (int b = 0; b < MCOR_LEAF_SLOTS && sides == MCOR_EXAMINE; ++b)
   {
     mcor_leaf_ask(proofs, slots[b]);
-  }
-}
-
-/* One work-item = one slot of the old set. Moves what is known of it to its slot in the new set, if it
- * has one. words: of 4 bytes, that the values of a brick's nodes take. */
-__kernel void mcor_adaptive_move(MCOR_SLOT_PARAMS, const int old_count,
-  __global const mcor_rung* rungs, __global const int4* old_bricks, __global const ulong* old_known,
-  const int words, __global const uint* old_value, __global const uint* old_weight,
-  __global ulong* known, __global uint* node_value, __global uint* node_weight)
-{
-  MCOR_ITEM(old, old < old_count && old_known[old]);
-  const int4 b = old_bricks[old];
-  const int slot = mcor_adaptive_find(MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, b.w, b.x, b.y, b.z));
-  if (slot < 0)
-  {
-    return;
-  }
-  known[slot] = old_known[old];
-  for (int n = 0; n < words; ++n)
-  {
-    node_value[slot * (long)words + n] = old_value[old * (long)words + n];
-    node_weight[slot * (long)words + n] = old_weight[old * (long)words + n];
   }
 }
 #endif

@@ -215,11 +215,11 @@ int mcor_leaf_evaluate(const mcor_grid* grid, mcor_query* query, mcor_tile* tile
 
 /* One work-item = one region, of `count` from `first` on: the leaves that are parts of one brick, the
  * particles of which are gathered once. Reads the particles that reach it. Writes the leaves' states
- * and, of those to be examined, if `evaluates`, their nodes' values and weights. */
+ * and, of those to be examined, if `evaluates`, their nodes' values and weights, from those of `first_leaf` on. */
 __kernel void mcor_adaptive_regions(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int* regions, __global const int4* leaves, __global const uint* finer,
-  MCOR_SEED_PARAMS, const int evaluates, __global int* states, __global real* node_value,
-  __global real* node_weight)
+  MCOR_SEED_PARAMS, const int evaluates, const int first_leaf, __global int* states,
+  __global real* node_value, __global real* node_weight)
 {
   const int region = first + get_global_id(0);
   if (region >= first + count)
@@ -260,8 +260,8 @@ __kernel void mcor_adaptive_regions(MCOR_GRID_PARAMS, const int first, const int
     }
     const int state = mcor_seed_state(&grid, &query, &tile, false, &limits);
     states[i] = state == MCOR_EXAMINE && evaluates
-      ? mcor_leaf_evaluate(
-          &grid, &query, &tile, finer[i], &limits, node_value + 64L * i, node_weight + 64L * i)
+      ? mcor_leaf_evaluate(&grid, &query, &tile, finer[i], &limits,
+          node_value + 64L * (i - first_leaf), node_weight + 64L * (i - first_leaf))
       : mcor_leaf_state(state, finer[i]);
   }
 }
@@ -277,7 +277,7 @@ __kernel void mcor_adaptive_region_keys(const int region_count, __global const m
 {
   MCOR_ITEM(r, r < region_count);
   const int4 leaf = leaves[regions[r]];
-  keys[r] = mcor_adaptive_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
+  keys[r] = mcor_brick_key(rungs, leaf.w + 1, leaf.x >> 1, leaf.y >> 1, leaf.z >> 1);
 }
 
 #endif
@@ -292,7 +292,7 @@ __kernel void mcor_adaptive_region_keys(const int region_count, __global const m
 /* The region of parts of a brick, or -1. */
 int mcor_find_region(MCOR_REGION_PARAMS, int level, int x, int y, int z)
 {
-  const ulong key = mcor_adaptive_key(rungs, level, x, y, z);
+  const ulong key = mcor_brick_key(rungs, level, x, y, z);
   const int at = mcor_find_key(region_keys, 0, region_count, key);
   return at < region_count && region_keys[at] == key ? region_order[at] : -1;
 }
@@ -350,13 +350,41 @@ __kernel void mcor_adaptive_choose(MCOR_REGION_PARAMS, const int plane, __global
 
 #endif
 
+#if MCOR_OF_LATTICE
+/* One work-item = one leaf, of `count` from `first` on. Writes 1 where its nodes are evaluated, else 0. */
+__kernel void mcor_adaptive_count_values(
+  const int first, const int count, __global const int* states, __global int* counts)
+{
+  MCOR_ITEM(i, i < count);
+  counts[i] = states[first + i] & MCOR_EVALUATED ? 1 : 0;
+}
+
+/* One work-item = one of these leaves. Reads the scanned counts. Moves its nodes' values, if they are evaluated, to
+ * where there is room for those alone, from number `base` on. */
+__kernel void mcor_adaptive_pack_values(const int first, const int count, const int base,
+  __global const int* scanned, const int words, __global const uint* part_value,
+  __global const uint* part_weight, __global int* place, __global uint* value,
+  __global uint* weight)
+{
+  MCOR_ITEM(i, i < count && scanned[i + 1] > scanned[i]);
+  const int to = base + scanned[i];
+  place[first + i] = to;
+  for (int n = 0; n < words; ++n)
+  {
+    value[to * (long)words + n] = part_value[i * (long)words + n];
+    weight[to * (long)words + n] = part_weight[i * (long)words + n];
+  }
+}
+#endif
+
 #if MCOR_OF_ADAPTIVE
 /* One work-item = one slot. Takes over what was found of the leaf whose brick it is, if it is one's:
  * words: of 4 bytes, that the values of a brick's nodes take; 0: there are none. */
 __kernel void mcor_adaptive_take(MCOR_REGION_PARAMS, const int slot_count,
   __global const int4* bricks, __global const int* states, const int words,
-  __global const uint* leaf_value, __global const uint* leaf_weight, __global uchar* proofs,
-  __global ulong* known, __global uint* node_value, __global uint* node_weight)
+  __global const int* place, __global const uint* leaf_value, __global const uint* leaf_weight,
+  __global uchar* proofs, __global ulong* known, __global uint* node_value,
+  __global uint* node_weight)
 {
   MCOR_ITEM(slot, slot < slot_count);
   const int4 b = bricks[slot];
@@ -368,11 +396,12 @@ __kernel void mcor_adaptive_take(MCOR_REGION_PARAMS, const int slot_count,
                                : state & MCOR_EXAMINE);
   if (state & MCOR_EVALUATED)
   {
+    const long from = place[i] * (long)words;
     known[slot] = ~0UL;
     for (int n = 0; n < words; ++n)
     {
-      node_value[slot * (long)words + n] = leaf_value[i * (long)words + n];
-      node_weight[slot * (long)words + n] = leaf_weight[i * (long)words + n];
+      node_value[slot * (long)words + n] = leaf_value[from + n];
+      node_weight[slot * (long)words + n] = leaf_weight[from + n];
     }
   }
 }

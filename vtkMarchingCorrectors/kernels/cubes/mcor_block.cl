@@ -10,25 +10,25 @@
 
 #if MCOR_OF_LATTICE
 /* One work-item = one cube of the first size, all of which exist. Writes its key. */
-__kernel void mcor_block_all(const int count, __global ulong* keys)
+__kernel void mcor_block_all(
+  const int count, __global const mcor_rung* rungs, const int level, __global ulong* keys)
 {
   MCOR_ITEM(i, i < count);
-  keys[i] = (ulong)i;
+  keys[i] = rungs[level].base + (ulong)i;
 }
 #endif
 
 #if MCOR_OF_FIELD
-/* One work-item = one cube, `size` nodes long. Reads the particles that reach it. Writes its
+/* One work-item = one cube, 32 << level nodes long. Reads the particles that reach it. Writes its
  * state. */
-__kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, const int cubes_x,
-  const int cubes_y, __global const ulong* keys, const int size, MCOR_SEED_PARAMS,
-  __global uchar* states)
+__kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const mcor_rung* rungs,
+  __global const ulong* keys, MCOR_SEED_PARAMS, __global uchar* states)
 {
   MCOR_ITEM(i, i < count);
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int4 brick = mcor_block_of_key(keys[i], cubes_x, cubes_y) * (size / MCOR_BRICK);
-  mcor_query query = mcor_seed_query(&grid, brick, size - 1);
+  const int4 cube = mcor_block_of_key(rungs, keys[i]);
+  mcor_query query = mcor_seed_query(&grid, cube * (8 << cube.w), (MCOR_BLOCK_CUBES << cube.w) - 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
   states[i] = (uchar)mcor_seed_state(&grid, &query, &tile, true, &limits);
@@ -42,53 +42,52 @@ __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {
   MCOR_ITEM(i, i < block_count);
-  const int4 cube = mcor_block_of_key(block_keys[i], blocks_x, blocks_y);
+  const int4 cube = mcor_block_of_key(rungs, block_keys[i]);
   int seen = 1 << states[i];
   for (int d = 0; d < 27; ++d)
   {
     const int other = mcor_find_block(
-      MCOR_BLOCK_ARGS, cube.x + d % 3 - 1, cube.y + d / 3 % 3 - 1, cube.z + d / 9 - 1);
+      MCOR_BLOCK_ARGS, cube.w, cube.x + d % 3 - 1, cube.y + d / 3 % 3 - 1, cube.z + d / 9 - 1);
     seen |= other < 0 ? 0 : 1 << states[other];
   }
   const int both = 1 << MCOR_ABOVE | 1 << MCOR_BELOW;
   inactive[i] = (seen & both) != both && !(seen >> MCOR_EXAMINE & 1);
 }
 
-/* Whether child c (bits x, y, z) of a cube is within the level below, of nx * ny * nz cubes. */
-bool mcor_block_has_child(int4 cube, int c, int nx, int ny, int nz)
+/* Whether child c (bits x, y, z) of a cube is on the lattice. */
+bool mcor_block_has_child(__global const mcor_rung* rungs, int4 cube, int c)
 {
-  return 2 * cube.x + (c & 1) < nx && 2 * cube.y + (c >> 1 & 1) < ny && 2 * cube.z + (c >> 2) < nz;
+  return mcor_has_block(
+    rungs, cube.w - 1, 2 * cube.x + (c & 1), 2 * cube.y + (c >> 1 & 1), 2 * cube.z + (c >> 2));
 }
 
 /* One work-item = one cube. Counts the cubes into which it is divided: none if it is inactive. */
-__kernel void mcor_block_count(const int count, const int cubes_x, const int cubes_y,
-  __global const ulong* keys, __global const uchar* inactive, const int nx, const int ny,
-  const int nz, __global int* counts)
+__kernel void mcor_block_count(const int count, __global const mcor_rung* rungs,
+  __global const ulong* keys, __global const uchar* inactive, __global int* counts)
 {
   MCOR_ITEM(i, i < count);
-  const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
+  const int4 cube = mcor_block_of_key(rungs, keys[i]);
   int children = 0;
   for (int c = 0; c < 8 && !inactive[i]; ++c)
   {
-    children += mcor_block_has_child(cube, c, nx, ny, nz);
+    children += mcor_block_has_child(rungs, cube, c);
   }
   counts[i] = children;
 }
 
 /* One work-item = one cube. Reads the scanned counts. Writes the keys of its children. */
-__kernel void mcor_block_fill(const int count, const int cubes_x, const int cubes_y,
-  __global const ulong* keys, const int nx, const int ny, const int nz, __global const int* scanned,
-  __global ulong* child_keys)
+__kernel void mcor_block_fill(const int count, __global const mcor_rung* rungs,
+  __global const ulong* keys, __global const int* scanned, __global ulong* child_keys)
 {
   MCOR_ITEM(i, i < count);
-  const int4 cube = mcor_block_of_key(keys[i], cubes_x, cubes_y);
+  const int4 cube = mcor_block_of_key(rungs, keys[i]);
   int to = scanned[i];
   for (int c = 0; c < 8 && to < scanned[i + 1]; ++c)
   {
-    if (mcor_block_has_child(cube, c, nx, ny, nz))
+    if (mcor_block_has_child(rungs, cube, c))
     {
-      child_keys[to++] = ((ulong)(2 * cube.z + (c >> 2)) * ny + (2 * cube.y + (c >> 1 & 1))) * nx +
-        (2 * cube.x + (c & 1));
+      child_keys[to++] = mcor_block_key(
+        rungs, cube.w - 1, 2 * cube.x + (c & 1), 2 * cube.y + (c >> 1 & 1), 2 * cube.z + (c >> 2));
     }
   }
 }
@@ -99,6 +98,7 @@ __kernel void mcor_block_request_known(MCOR_BLOCK_PARAMS, const int brick_count,
 {
   MCOR_ITEM(slot, slot < brick_count && known[slot]);
   const int4 brick = bricks[slot];
-  mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z));
+  mcor_request_brick(
+    brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z));
 }
 #endif

@@ -229,10 +229,9 @@ void mcor_leaf_mark(
 /* Of mcor_march_triangles and mcor_plane_lines, which are launched alike. */
 #define MCOR_EMIT_PARAMS                                                                           \
   const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,  \
-    const int follows, const int blocks_x, const int blocks_y, __global const mcor_rung *rungs,    \
-    __global const int4 *bricks, __global const ulong *used, __global const ulong *edges,          \
-    __global const int *vertex_base, __global const int *triangle_base,                            \
-    __global ulong *triangle_cells, __global int *triangles
+    const int follows, __global const mcor_rung *rungs, __global const int4 *bricks,               \
+    __global const ulong *used, __global const ulong *edges, __global const int *vertex_base,      \
+    __global const int *triangle_base, __global ulong *triangle_cells, __global int *triangles
 
 /* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
 ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)

@@ -120,9 +120,8 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
 
 /* Value at the upper end of the edge from node n of a brick along an axis; beyond it, of the brick there, or of the
  * finer one that has the node. */
-real mcor_march_end(__global const int* neighbours, MCOR_SLOT_PARAMS,
-  __global const mcor_rung* rungs, int4 brick, int slot, int n, int axis,
-  __global const real* node_value)
+real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 brick, int slot, int n,
+  int axis, __global const real* node_value)
 {
   const int step = 1 << (2 * axis), next = neighbours[slot * 14L + (1 << axis) - 1];
   if ((n >> (2 * axis) & 3) != 3)
@@ -136,16 +135,15 @@ real mcor_march_end(__global const int* neighbours, MCOR_SLOT_PARAMS,
   const int4 at = 2 *
     (brick * MCOR_BRICK +
       (int4)((n & 3) + (axis == 0), (n >> 2 & 3) + (axis == 1), (n >> 4) + (axis == 2), 0));
-  const int other = mcor_adaptive_find(
-    MCOR_SLOT_ARGS, mcor_adaptive_key(rungs, brick.w - 1, at.x >> 2, at.y >> 2, at.z >> 2));
+  const int other = mcor_find_brick(MCOR_BRICK_ARGS, brick.w - 1, at.x >> 2, at.y >> 2, at.z >> 2);
   return node_value[other * 64L + (at.x & 3) + 4 * (at.y & 3) + 16 * (at.z & 3)];
 }
 
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
  * edge of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times the level),
  * and the two values against the iso value. */
-__kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, __global const int* neighbours,
-  __global const mcor_rung* rungs, __global const int4* bricks, __global const ulong* edges,
+__kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
+  __global const int* neighbours, __global const int4* bricks, __global const ulong* edges,
   __global const real* node_value, __global const int* vertex_base, const real iso,
   __global int4* vertex_edge, __global real* vertex_ends)
 {
@@ -165,7 +163,7 @@ __kernel void mcor_march_vertices(MCOR_SLOT_PARAMS, __global const int* neighbou
           brick.y * MCOR_BRICK + (n >> 2 & 3), brick.z * MCOR_BRICK + (n >> 4),
           axis | (int)(e[3 + axis] >> n & 1) << 2 | brick.w << MCOR_LEVEL_SHIFT);
         const real end =
-          mcor_march_end(neighbours, MCOR_SLOT_ARGS, rungs, brick, slot, n, axis, node_value);
+          mcor_march_end(neighbours, MCOR_BRICK_ARGS, brick, slot, n, axis, node_value);
         for (int copy = 0; copy < copies; ++copy, ++to)
         {
           vertex_edge[to] = edge;
@@ -194,7 +192,8 @@ __kernel void mcor_march_triangles(MCOR_EMIT_PARAMS)
     leaf = mcor_leaf_load(leaf_of[slot], plane, finer, tables, above, valid);
   }
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
-  const ulong key = mcor_slot_key(MCOR_KEY_ARGS, bricks[slot]) << 6;
+  const ulong key =
+    mcor_brick_key(rungs, bricks[slot].w, bricks[slot].x, bricks[slot].y, bricks[slot].z) << 6;
   long to = triangle_base[slot];
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {

@@ -93,14 +93,15 @@ ulong2 mcor_node_signs(
 }
 
 #if MCOR_OF_FIELD
-/* One work-item = MCOR_ITEM_NODES nodes of a brick. Where they are needed, reads the particles that
- * reach them. Writes their values and weights. */
-__kernel void mcor_node_values(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
-  __global const ulong* need, __global real* node_value, __global real* node_weight)
+/* One work-item = MCOR_ITEM_NODES nodes of a brick, of `count` from `first` on. Where they are needed, reads the
+ * particles that reach them. Writes their values and weights. */
+__kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* need, __global real* node_value,
+  __global real* node_weight)
 {
-  const long first_node = (long)get_global_id(0) * MCOR_ITEM_NODES;
+  const long first_node = 64L * first + (long)get_global_id(0) * MCOR_ITEM_NODES;
   const int slot = (int)(first_node / 64);
-  if (slot >= brick_count || need[slot] == 0)
+  if (slot >= first + count || need[slot] == 0)
   {
     return;
   }

@@ -8,7 +8,7 @@
 /* Adds a cell to those of its brick, if that is one; `reached` is by the bricks' numbers. Whether it is new. */
 bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reached)
 {
-  const int number = mcor_brick_number(MCOR_BLOCK_ARGS, x >> 2, y >> 2, z >> 2);
+  const int number = mcor_brick_number(MCOR_BLOCK_ARGS, 0, x >> 2, y >> 2, z >> 2);
   return number >= 0 &&
     mcor_add_cells(reached, number, 1UL << ((x & 3) | (y & 3) << 2 | (z & 3) << 4));
 }
@@ -20,7 +20,7 @@ __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
 {
   MCOR_ITEM(own, own < block_count * MCOR_BLOCK_BRICKS && reached[own] != 0);
-  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, own);
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, own);
   for (int d = 0; d < 8; ++d)
   {
     const int m = mcor_cells_reach(reached[own], d)
@@ -38,7 +38,7 @@ __kernel void mcor_pair_request(
 
 #if MCOR_OF_FIELD
 /* What marking takes, last among a kernel's parameters. */
-#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint *reached
+#define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* reached
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
 /* Where a line, of which 1 / gap is the extent along an axis, crosses the side by which it leaves the cell

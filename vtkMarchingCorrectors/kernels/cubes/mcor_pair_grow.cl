@@ -27,7 +27,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
 {
   MCOR_ITEM(i, i < brick_count);
   const int4 brick = bricks[i];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
   const ulong before = grown[own];
   /* Others add to them meanwhile: what is missed is there in the next round. */
   const ulong first = atomic_or(reached + 2L * own, 0), rest = atomic_or(reached + 2L * own + 1, 0);
@@ -78,7 +78,7 @@ __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_
   __global uint* reached, __global int* flags)
 {
   MCOR_ITEM(own, own < block_count * MCOR_BLOCK_BRICKS);
-  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, own);
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, own);
   const int first[3] = { first_x, first_y, first_z };
   const int period[3] = { period_x, period_y, period_z };
   const ulong low = atomic_or(reached + 2L * own, 0), high = atomic_or(reached + 2L * own + 1, 0);
@@ -114,7 +114,7 @@ __kernel void mcor_pair_fill(const int brick_count, __global const int4* bricks,
 {
   MCOR_ITEM(i, i < brick_count);
   const int4 brick = bricks[i];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
   cells[i] = reached[own];
   seeds[i] = marked[own];
 }

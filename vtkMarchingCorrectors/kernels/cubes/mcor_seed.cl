@@ -229,10 +229,10 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wid
 /* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
  * the states of its bricks as far as the region tells; requests those that are not certain, and
  * lists the regions that have such, in any order. */
-__kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
-  MCOR_SEED_PARAMS, __global uchar* states, __global uint* brick_bits, __global int* list,
-  __global int* list_count)
+__kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count,
+  __global const mcor_rung* rungs, __global const ulong* block_keys,
+  __global const uchar* block_states, MCOR_SEED_PARAMS, __global uchar* states,
+  __global uint* brick_bits, __global int* list, __global int* list_count)
 {
   const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
   if (block >= block_count)
@@ -243,7 +243,7 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count, const i
   int state = block_states[block];
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, number);
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
   mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1);
   mcor_tile tile;
   mcor_tile_init(&tile);
@@ -329,7 +329,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int number = mcor_region_number(list[i]);
-  const int4 region = mcor_brick_of_number(block_keys, blocks_x, blocks_y, number);
+  const int4 region = mcor_brick_of_number(rungs, block_keys, number);
   mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1);
   mcor_tile wide;
   mcor_tile_init(&wide);
@@ -361,10 +361,11 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
 
 #if MCOR_OF_LATTICE
 /* A block and those left and right of it, or -1. */
-int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int x, int y, int z)
+int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 {
-  return (int3)(mcor_find_block(MCOR_BLOCK_ARGS, x - 1, y, z),
-    mcor_find_block(MCOR_BLOCK_ARGS, x, y, z), mcor_find_block(MCOR_BLOCK_ARGS, x + 1, y, z));
+  return (int3)(mcor_find_block(MCOR_BLOCK_ARGS, level, x - 1, y, z),
+    mcor_find_block(MCOR_BLOCK_ARGS, level, x, y, z),
+    mcor_find_block(MCOR_BLOCK_ARGS, level, x + 1, y, z));
 }
 
 /* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below
@@ -399,15 +400,15 @@ __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactiv
   uint beside = 0;
   if (seen & (1 << MCOR_ABOVE | 1 << MCOR_BELOW))
   {
-    const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, m), own = brick >> 3;
-    const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, own.y, own.z);
+    const int4 brick = mcor_brick_of_number(rungs, block_keys, m), own = brick >> 3;
+    const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, own.x, own.y, own.z);
     for (int d = 0; d < 9; ++d)
     {
       const int y = brick.y + d % 3 - 1, z = brick.z + d / 3 - 1;
       const bool within = y >> 3 == own.y && z >> 3 == own.z;
-      beside |=
-        mcor_seed_row(within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, own.x, y >> 3, z >> 3),
-          (z & 7) * 64 + (y & 7) * 8, states);
+      beside |= mcor_seed_row(
+        within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, own.x, y >> 3, z >> 3),
+        (z & 7) * 64 + (y & 7) * 8, states);
     }
   }
   for (int x = 0; x < 8; ++x)
@@ -434,7 +435,7 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     return;
   }
   const int4 brick = bricks[slot];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
   for (int d = 0; d < 27; ++d)
   {
     const int x = d % 3, y = d / 3 % 3, z = d / 9;

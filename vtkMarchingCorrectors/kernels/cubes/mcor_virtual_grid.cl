@@ -6,32 +6,45 @@
  * then z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
 
 #define MCOR_BLOCK_PARAMS                                                                          \
-  const int block_count, const int block_shift, const int blocks_x, const int blocks_y,            \
-    const int blocks_z, __global const ulong *block_keys, __global const int *block_buckets
+  const int block_count, const int block_shift, __global const mcor_rung *rungs,                   \
+    __global const ulong *block_keys, __global const int *block_buckets
 
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Index of a block, or -1. */
-int mcor_find_block(MCOR_BLOCK_PARAMS, int x, int y, int z)
+/* Key of a block of a level. */
+ulong mcor_block_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
-  if (x < 0 || y < 0 || z < 0 || x >= blocks_x || y >= blocks_y || z >= blocks_z)
+  __global const mcor_rung* rung = rungs + level;
+  return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
+}
+
+/* Whether the lattice has it. */
+bool mcor_has_block(__global const mcor_rung* rungs, int level, int x, int y, int z)
+{
+  __global const mcor_rung* rung = rungs + level;
+  return x >= 0 && y >= 0 && z >= 0 && x < rung->n[0] && y < rung->n[1] && z < rung->n[2];
+}
+
+/* Index of a block of a level, or -1. */
+int mcor_find_block(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
+{
+  if (!mcor_has_block(rungs, level, x, y, z))
   {
     return -1;
   }
-  const ulong key = ((ulong)z * blocks_y + y) * blocks_x + x;
+  const ulong key = mcor_block_key(rungs, level, x, y, z);
   const ulong bucket = key >> block_shift;
   const int low = mcor_find_key(block_keys, block_buckets[bucket], block_buckets[bucket + 1], key);
   return low < block_count && block_keys[low] == key ? low : -1;
 }
 
-#define MCOR_BLOCK_ARGS                                                                            \
-  block_count, block_shift, blocks_x, blocks_y, blocks_z, block_keys, block_buckets
+#define MCOR_BLOCK_ARGS block_count, block_shift, rungs, block_keys, block_buckets
 
 /* Position of a brick among the MCOR_BLOCK_BRICKS of each block, or -1 where it has no block. */
-int mcor_brick_number(MCOR_BLOCK_PARAMS, int x, int y, int z)
+int mcor_brick_number(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 {
-  const int block = mcor_find_block(MCOR_BLOCK_ARGS, x >> 3, y >> 3, z >> 3);
+  const int block = mcor_find_block(MCOR_BLOCK_ARGS, level, x >> 3, y >> 3, z >> 3);
   return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
 }
 
@@ -42,7 +55,7 @@ MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int
   const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
   return (bx | by | bz) >> 3 == 0
     ? own + x + 8 * y + 64 * z
-    : mcor_brick_number(MCOR_BLOCK_ARGS, brick.x + x, brick.y + y, brick.z + z);
+    : mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x + x, brick.y + y, brick.z + z);
 }
 
 /* Slot of the brick with a number, or -1. */
@@ -57,34 +70,47 @@ int mcor_slot_of_number(__global const uint* brick_bits, __global const int* bri
 }
 
 /* Slot of a brick, or -1. */
-MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int x, int y, int z)
+MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, int z)
 {
-  return mcor_slot_of_number(brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, x, y, z));
+  return mcor_slot_of_number(
+    brick_bits, brick_base, mcor_brick_number(MCOR_BLOCK_ARGS, level, x, y, z));
 }
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
 
-/* Position of a block, in blocks. */
-int4 mcor_block_of_key(ulong key, const int blocks_x, const int blocks_y)
+/* Position of a block, in blocks of its level, and the level. */
+int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
 {
-  return (int4)((int)(key % blocks_x), (int)(key / blocks_x % blocks_y),
-    (int)(key / blocks_x / blocks_y), 0);
+  int level = 0;
+  while (key >= rungs[level + 1].base)
+  {
+    ++level;
+  }
+  const ulong number = key - rungs[level].base;
+  const int nx = rungs[level].n[0], ny = rungs[level].n[1];
+  return (int4)((int)(number % nx), (int)(number / nx % ny), (int)(number / nx / ny), level);
 }
 
-/* Brick coordinates of number m. */
+/* Brick number `local_brick` of a block with a key: its coordinates, and its level. */
+int4 mcor_brick_in_block(__global const mcor_rung* rungs, ulong key, int local_brick)
+{
+  const int4 block = mcor_block_of_key(rungs, key);
+  return (int4)(block.x * 8 + (local_brick & 7), block.y * 8 + (local_brick >> 3 & 7),
+    block.z * 8 + (local_brick >> 6), block.w);
+}
+
+/* The same of number m. */
 MCOR_ONE_COPY int4 mcor_brick_of_number(
-  __global const ulong* block_keys, const int blocks_x, const int blocks_y, int m)
+  __global const mcor_rung* rungs, __global const ulong* block_keys, int m)
 {
-  const int local_brick = m % MCOR_BLOCK_BRICKS;
-  return mcor_block_of_key(block_keys[m / MCOR_BLOCK_BRICKS], blocks_x, blocks_y) * 8 +
-    (int4)(local_brick & 7, local_brick >> 3 & 7, local_brick >> 6, 0);
+  return mcor_brick_in_block(rungs, block_keys[m / MCOR_BLOCK_BRICKS], m % MCOR_BLOCK_BRICKS);
 }
 
-/* A number by which bricks of all of the lattice are in the order of their slots. */
-ulong mcor_brick_place(const int blocks_x, const int blocks_y, int4 brick)
+/* Key of a brick of a level: bricks of all of the lattice are in the order of their slots. */
+ulong mcor_brick_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
-  const ulong block = ((ulong)(brick.z / 8) * blocks_y + brick.y / 8) * blocks_x + brick.x / 8;
-  return block << 9 | (ulong)((brick.x & 7) | (brick.y & 7) << 3 | (brick.z & 7) << 6);
+  return mcor_block_key(rungs, level, x >> 3, y >> 3, z >> 3) * MCOR_BLOCK_BRICKS +
+    (ulong)((x & 7) | (y & 7) << 3 | (z & 7) << 6);
 }
 
 /* Requests the brick with number m; true if nothing had requested it before. It has no slot
@@ -102,40 +128,6 @@ ulong mcor_add_cells(__global uint* cells, int at, ulong added)
   const uint new_low = low ? low & ~atomic_or(cells + 2L * at, low) : 0;
   const uint new_high = high ? high & ~atomic_or(cells + 2L * at + 1, high) : 0;
   return new_low | (ulong)new_high << 32;
-}
-
-/* ---- Adaptive cubes: bricks by their level and place ---- */
-
-/* Key of a brick of a level. */
-ulong mcor_adaptive_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
-{
-  __global const mcor_rung* rung = rungs + level;
-  const ulong block =
-    rung->base + ((ulong)(z >> 3) * rung->n[1] + (y >> 3)) * rung->n[0] + (x >> 3);
-  return block * MCOR_BLOCK_BRICKS + (ulong)((x & 7) | (y & 7) << 3 | (z & 7) << 6);
-}
-
-/* Key of a brick that ascends with its slot, with or without levels. */
-#define MCOR_KEY_PARAMS                                                                            \
-  const int levels, const int blocks_x, const int blocks_y, __global const mcor_rung *rungs
-#define MCOR_KEY_ARGS levels, blocks_x, blocks_y, rungs
-ulong mcor_slot_key(MCOR_KEY_PARAMS, int4 brick)
-{
-  return levels ? mcor_adaptive_key(rungs, brick.w, brick.x, brick.y, brick.z)
-                : mcor_brick_place(blocks_x, blocks_y, brick);
-}
-
-#define MCOR_SLOT_PARAMS                                                                           \
-  const int slot_count, const int bucket_shift, __global const ulong *keys,                        \
-    __global const int *buckets
-#define MCOR_SLOT_ARGS slot_count, bucket_shift, keys, buckets
-
-/* Slot of a brick with a key, or -1. */
-int mcor_adaptive_find(MCOR_SLOT_PARAMS, ulong key)
-{
-  const ulong bucket = key >> bucket_shift;
-  const int low = mcor_find_key(keys, buckets[bucket], buckets[bucket + 1], key);
-  return low < slot_count && keys[low] == key ? low : -1;
 }
 
 #if MCOR_OF_LATTICE
@@ -157,7 +149,7 @@ __kernel void mcor_brick_fill(
   for (uint bits = brick_bits[word]; bits; bits &= bits - 1)
   {
     const int b = 31 - (int)clz(bits & -bits);
-    bricks[slot] = mcor_brick_of_number(block_keys, blocks_x, blocks_y, word * 32 + b);
+    bricks[slot] = mcor_brick_of_number(rungs, block_keys, word * 32 + b);
     seeds[slot++] = seed_bits[word] >> b & 1 ? ~0UL : 0;
   }
 }
@@ -169,7 +161,7 @@ __kernel void mcor_brick_neighbours(
 {
   MCOR_ITEM(slot, slot < brick_count);
   const int4 brick = bricks[slot];
-  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.x, brick.y, brick.z);
+  const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
   for (int d = 1; d < 8; ++d)
   {
     const int other = mcor_slot_of_number(brick_bits, brick_base,
@@ -192,7 +184,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
 {
   MCOR_ITEM(old, old < old_count);
   const int4 brick = old_bricks[old];
-  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, brick.x, brick.y, brick.z);
+  const int slot = mcor_find_brick(MCOR_BRICK_ARGS, brick.w, brick.x, brick.y, brick.z);
   if (slot < 0)
   {
     return;

@@ -17,24 +17,26 @@ bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
     node.y <= last_y && node.z + size > first_z && node.z <= last_z;
 }
 
-/* One work-item = one cube, `size` nodes long. Makes void what has no node of the box. */
-__kernel void mcor_box_void_cubes(const int count, const int cubes_x, const int cubes_y,
-  __global const ulong* keys, const int size, MCOR_BOX_PARAMS, __global uchar* states)
+/* One work-item = one cube, 32 << level nodes long. Makes void what has no node of the box. */
+__kernel void mcor_box_void_cubes(const int count, __global const mcor_rung* rungs,
+  __global const ulong* keys, MCOR_BOX_PARAMS, __global uchar* states)
 {
   MCOR_ITEM(i, i < count);
-  if (!mcor_box_reaches(MCOR_BOX_ARGS, mcor_block_of_key(keys[i], cubes_x, cubes_y) * size, size))
+  const int4 cube = mcor_block_of_key(rungs, keys[i]);
+  const int size = MCOR_BLOCK_CUBES << cube.w;
+  if (!mcor_box_reaches(MCOR_BOX_ARGS, cube * size, size))
   {
     states[i] = MCOR_VOID;
   }
 }
 
 /* One work-item = one brick of a block. The same; and what is void gets no slot. */
-__kernel void mcor_box_void_bricks(const int block_count, const int blocks_x, const int blocks_y,
+__kernel void mcor_box_void_bricks(const int block_count, __global const mcor_rung* rungs,
   __global const ulong* block_keys, MCOR_BOX_PARAMS, __global uchar* states,
   __global uint* brick_bits)
 {
   MCOR_ITEM(m, m < block_count * MCOR_BLOCK_BRICKS);
-  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, m);
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, m);
   if (!mcor_box_reaches(MCOR_BOX_ARGS, brick * MCOR_BRICK, MCOR_BRICK))
   {
     states[m] = MCOR_VOID;

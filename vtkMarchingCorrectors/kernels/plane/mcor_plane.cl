@@ -161,7 +161,8 @@ __kernel void mcor_plane_lines(MCOR_EMIT_PARAMS)
     leaf = mcor_leaf_load(leaf_of[slot], plane, finer, tables, above, valid);
   }
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
-  const ulong key = mcor_slot_key(MCOR_KEY_ARGS, bricks[slot]) << 6;
+  const ulong key =
+    mcor_brick_key(rungs, bricks[slot].w, bricks[slot].x, bricks[slot].y, bricks[slot].z) << 6;
   const ulong joined = resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] & own : 0;
   long to = triangle_base[slot];
   for (ulong rest = used[slot]; rest; rest &= rest - 1)

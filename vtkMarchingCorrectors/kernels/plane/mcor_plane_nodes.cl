@@ -116,9 +116,10 @@ int mcor_plane_state(const mcor_grid* grid, int4 brick, int cubes, const mcor_se
 #if MCOR_OF_FIELD
 /* One work-item = one region. As mcor_seed_regions; above the plane nothing is examined. Regions are not listed:
  * bounds on bricks cost more than their few nodes. */
-__kernel void mcor_plane_seeds(MCOR_GRID_PARAMS, const int block_count, const int blocks_x,
-  const int blocks_y, __global const ulong* block_keys, __global const uchar* block_states,
-  MCOR_SEED_PARAMS, __global uchar* states, __global uint* brick_bits)
+__kernel void mcor_plane_seeds(MCOR_GRID_PARAMS, const int block_count,
+  __global const mcor_rung* rungs, __global const ulong* block_keys,
+  __global const uchar* block_states, MCOR_SEED_PARAMS, __global uchar* states,
+  __global uint* brick_bits)
 {
   const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
   if (block >= block_count)
@@ -126,7 +127,7 @@ __kernel void mcor_plane_seeds(MCOR_GRID_PARAMS, const int block_count, const in
     return;
   }
   const int number = mcor_region_number(region);
-  const int4 brick = mcor_brick_of_number(block_keys, blocks_x, blocks_y, number);
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
   int state = brick.z > 0 ? MCOR_VOID : block_states[block];
   if (state == MCOR_EXAMINE)
   {
@@ -145,13 +146,14 @@ __kernel void mcor_plane_seeds(MCOR_GRID_PARAMS, const int block_count, const in
   }
 }
 
-/* One work-item = MCOR_LANES nodes of a brick. Evaluates them where they are needed. */
-__kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global const int4* bricks,
-  __global const ulong* need, __global real* node_value, __global real* node_weight)
+/* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. Evaluates them where they are needed. */
+__kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* need, __global real* node_value,
+  __global real* node_weight)
 {
   const long item = get_global_id(0);
-  const int slot = (int)(item / MCOR_PLANE_ITEMS);
-  if (slot >= brick_count || need[slot] == 0)
+  const int slot = first + (int)(item / MCOR_PLANE_ITEMS);
+  if (slot >= first + count || need[slot] == 0)
   {
     return;
   }
@@ -162,23 +164,6 @@ __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int brick_count, __global
 #endif
 
 #if MCOR_OF_ADAPTIVE
-/* One work-item = MCOR_LANES nodes of a slot, from slot `first` on. Evaluates them unless they are known, or
- * certain. */
-__kernel void mcor_adaptive_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* bricks, __global const ulong* known, __global const uchar* proofs,
-  __global real* node_value, __global real* node_weight)
-{
-  const long item = get_global_id(0);
-  const int slot = first + (int)(item / MCOR_PLANE_ITEMS);
-  if (slot >= first + count || known[slot] || MCOR_IS_CERTAIN(proofs[slot]))
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  mcor_plane_evaluate(&grid, bricks[slot], (int)(item % MCOR_PLANE_ITEMS) * MCOR_LANES,
-    node_value + slot * 64L, node_weight + slot * 64L);
-}
-
 /* One work-item = one region, of `count` from `first` on. Reads the particles that reach its part of the
  * plane. Writes its leaves' states: all have that of the region, as bounds on leaves cost more than their nodes. */
 __kernel void mcor_adaptive_plane_regions(MCOR_GRID_PARAMS, const int first, const int count,

@@ -37,8 +37,8 @@ endif ()
 
 # Has sources compiled into an object file for the built-in device, whose function is `name`.
 function (mcor_compile_ahead object name flags defines)
-  set(prefix "${mcor_folder}/kernels/device/mcor_native.cl")
-  set(script "${mcor_folder}/cmake/CompileAhead.cmake")
+  set(prefix "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../kernels/device/mcor_native.cl")
+  set(script "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/CompileAhead.cmake")
   add_custom_command(
     OUTPUT  "${object}"
     COMMAND "${CMAKE_COMMAND}" "-DCOMPILER=${MCOR_CLANG}" "-DNAME=${name}" "-DFLAGS=${flags}"

@@ -42,7 +42,10 @@ __path__ = _extend_path(__path__, __name__)
 
 
 def read_pyvista(path: Any, **words: Any) -> "pyvista.PolyData":
-    """A solver's file as pyvista.PolyData, for particles.sph; words are those of io.read()."""
+    """A solver's file as pyvista.PolyData, for particles.sph; words are those of io.read().
+
+    Example: read_pyvista("snapshot.hdf5").sph.isosurface("Density", 1e-4).plot()
+    """
     import pyvista
 
     from .io import read

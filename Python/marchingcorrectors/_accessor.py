@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, T
 
 import numpy as np
 import pyvista
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import _functions, _gauge
 from ._context import Context
@@ -18,6 +19,8 @@ from ._vtk_blocks import join_blocks
 from ._vtk_particles import (GHOSTS, NO_PERIOD, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect,
                              find_period, join_velocity, name_of)
 from ._warnings import warn
+from .io._cells import VERTICES, take_vertices
+from .io._particles import Body
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -71,12 +74,44 @@ def _method(names: Sequence[str]) -> Callable[[Function], Function]:
     return decorate
 
 
+def _take_vertices(data: pyvista.DataSet) -> pyvista.DataSet:
+    """The data set, or as poly data the points of its vertices, where io.read() takes these."""
+    if not isinstance(data, (pyvista.PolyData, pyvista.UnstructuredGrid)) or data.n_cells == 0:
+        return data
+    if isinstance(data, pyvista.PolyData):
+        lists, types = data.GetVerts(), np.repeat([VERTICES[0], 0], [data.n_verts, data.n_cells - data.n_verts])
+    else:
+        lists, types = data.GetCells(), data.celltypes
+    if not np.isin(types, VERTICES).any() or np.isin(types, VERTICES).all() and not data.cell_data.keys():
+        return data
+    offsets = vtk_to_numpy(lists.GetOffsetsArray())
+    offsets = np.append(offsets, np.full(data.n_cells + 1 - len(offsets), offsets[-1]))
+    body = Body(data.points, {name: np.asarray(data.point_data[name]) for name in data.point_data.keys()})
+    found = take_vertices("The data set", body, types, offsets, vtk_to_numpy(lists.GetConnectivityArray()),
+                          {name: np.asarray(data.cell_data[name]) for name in data.cell_data.keys()})
+    if found is body:
+        return data
+    particles = pyvista.PolyData(found.points)
+    particles.point_data.update(found.arrays)
+    particles.field_data.update(data.field_data)
+    return particles
+
+
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
 class SphAccessor:
     """Surfaces of the points of a data set, taken as SPH particles."""
 
     def __init__(self, particles: pyvista.DataSet):
-        self._particles = particles
+        self._data = particles
+        self._taken: Tuple[int, pyvista.DataSet] = (-1, particles)
+
+    @property
+    def _particles(self) -> pyvista.DataSet:
+        """The data set, or the vertices in it, which are kept as long as it is the same."""
+        time = self._data.GetMTime()
+        if self._taken[0] != time:
+            self._taken = time, _take_vertices(self._data)
+        return self._taken[1]
 
     def __repr__(self):
         return f"<SPH particles: {self._particles.n_points}>"

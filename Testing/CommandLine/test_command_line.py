@@ -94,7 +94,7 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--field", "mean"], "--field must be one of shepard, sum, not 'mean'"),
             ([*good, *ISO, "--seeds", "all"], "--seeds must be one of pairs, complete, not 'all'"),
             ([*good, *ISO, "--topology", "x"], "--topology must be one of table, field, not 'x'"),
-            ([*good, *ISO, "--boundary", "x"], "--boundary must be one of weight, eigenvalue, not 'x'"),
+            ([*good, *ISO, "--boundary", "x"], "--boundary must be one of weight_sum, eigenvalue, not 'x'"),
             ([*good, *ISO, "--solids", "x"], "--solids must be one of auto, weight, ignore, wall, not 'x'"),
             ([*good, *ISO, "--wall-share", "1"], "--wall-share needs a number above 0 and below 1"),
             ([*good, *ISO, "--precision", "half"], "--precision must be one of single, double"),

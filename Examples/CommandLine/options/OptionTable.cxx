@@ -107,7 +107,8 @@ void SetField(Job& job, Text option, Text text)
 void SetBoundary(Job& job, Text option, Text text)
 {
   const int boundary = ToChoice(
-    option, text, { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE }, { "weight", Filter::WEIGHT_SUM } });
+    option, text == "weight" ? "weight_sum" : text, // its word of old
+    { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
   job.Surface->SetBoundaryDetection(boundary);
   if (!job.HasVertexThreshold)
   {

@@ -38,7 +38,7 @@ class Options(unittest.TestCase):
     def test_the_guide_and_the_help_say_the_names_and_defaults(self):
         table = (GUIDE / "parameters.md").read_text(encoding="utf-8")
         said = {name: (option, cell) for option, name, cell in
-                re.findall(r"^\| [^|(]*\((?:`(--[\w-]+)`; )?(\w+)\) \| ([^|]*) \|", table, re.M)}
+                re.findall(r"^\| [^|(]*\((?:`(--[\w-]+)`; )?(\w+)(?:; `\w+`)?\) \| ([^|]*) \|", table, re.M)}
         source = (SOURCES / "Examples/CommandLine/options/OptionTable.cxx").read_text(encoding="utf-8")
         helps = {name: " ".join(re.findall('"([^"]*)"', text)) for name, text in
                  re.findall(r'\{ "(--[\w-]+)", ((?:"[^"]*",?\s*)+)', source)}

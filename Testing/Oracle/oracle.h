@@ -50,6 +50,9 @@ extern "C"
   double oracle_kernel_value(
     oracle_kernel kernel, double h, const double offset[3], double gradient[3]);
 
+  /* The integral of x^2 W over that of W, in h^2, in 2 or 3 dimensions. */
+  double oracle_kernel_variance(oracle_kernel kernel, int dimensions);
+
   /* All arrays are owned by the struct; oracle_free_particles frees them. */
   typedef struct oracle_particles
   {
@@ -84,11 +87,13 @@ extern "C"
     oracle_kernel kernel, oracle_kind kind, double h_scale);
   void oracle_free_field(oracle_field* field);
 
-  /* Fills particles->volume: mass / density; with mass alone m_j / sum_k m_k W(x_j - x_k, h_j);
-   * with neither 1 / sum_k W(x_j - x_k, h_j). The sums leave out solids that are ignored. Returns 0
-   * if memory ran out. */
-  int oracle_compute_volumes(
-    oracle_particles* particles, oracle_kernel kernel, const double* mass, const double* density);
+  /* Fills particles->volume: mass / density; with mass alone m_j / (sum_k m_k W(x_j - x_k, h_j) F_j); with neither
+   * 1 / (sum_k W(x_j - x_k, h_j) F_j), W that of three dimensions. F_j = 1 for solids, else
+   * 1 + 5/3 variance h_j^2 |g|^2 / n^2, n = sum_k h_k^d W(x_j - x_k, h_j), g = the sum of the fluid's
+   * h_k^d grad W + t that of the solids', with t from 0 to 1 such that |g| is least. The sums leave out solids that
+   * are ignored. Returns 0 if memory ran out. */
+  int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, int dimensions,
+    const double* mass, const double* density);
 
   typedef struct oracle_sample
   {

@@ -428,8 +428,11 @@ double oracle_rounding(const oracle_field* field, const double point[3], double 
 typedef struct oracle_volume_sum
 {
   int64_t j;
+  int dimensions;
+  double variance; /* of the kernel */
   const double* mass;
-  double sum;
+  double density, number;     /* number: sum h_k^d W */
+  double fluid[3], solids[3]; /* its gradients */
 } oracle_volume_sum;
 
 static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
@@ -440,17 +443,43 @@ static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
   {
     return;
   }
-  double offset[3];
+  double offset[3], gradient[3];
   for (int axis = 0; axis < 3; ++axis)
   {
     offset[axis] = p->position[3 * at->j + axis] - p->position[3 * k + axis];
   }
-  at->sum += (at->mass ? at->mass[k] : 1.0) *
-    oracle_kernel_value(field->kernel, p->smoothing_length[at->j], offset, NULL);
+  const double size = pow(p->smoothing_length[k], at->dimensions);
+  const double w = oracle_kernel_value(field->kernel, p->smoothing_length[at->j], offset, gradient);
+  at->density += (at->mass ? at->mass[k] : 1.0) * w;
+  at->number += size * w;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    (p->solid[k] ? at->solids : at->fluid)[axis] += size * gradient[axis];
+  }
 }
 
-int oracle_compute_volumes(
-  oracle_particles* particles, oracle_kernel kernel, const double* mass, const double* density)
+static double oracle_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* 1 + 5/3 D^2. */
+static double oracle_one_sided(const oracle_field* field, const oracle_volume_sum* at)
+{
+  const double h = field->particles->smoothing_length[at->j];
+  const double square = oracle_dot(at->solids, at->solids);
+  const double share =
+    square > 0.0 ? fmin(fmax(-oracle_dot(at->fluid, at->solids) / square, 0.0), 1.0) : 0.0;
+  double g[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    g[axis] = at->fluid[axis] + share * at->solids[axis];
+  }
+  return 1.0 + 5.0 / 3.0 * at->variance * h * h * oracle_dot(g, g) / (at->number * at->number);
+}
+
+int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, int dimensions,
+  const double* mass, const double* density)
 {
   oracle_field field;
   if (mass && density)
@@ -465,13 +494,16 @@ int oracle_compute_volumes(
   {
     return 0;
   }
+  const double variance = oracle_kernel_variance(kernel, dimensions);
   for (int64_t j = 0; j < particles->count; ++j)
   {
-    oracle_volume_sum at = { j, mass, 0.0 };
+    oracle_volume_sum at = { .j = j, .dimensions = dimensions, .variance = variance, .mass = mass };
     oracle_visit(&field, &particles->position[3 * j], oracle_reach(&field, j), oracle_add_density,
       &at, 0, 0, particles->count);
     /* The sum of an ignored solid may be 0; its volume is of no use to anyone. */
-    particles->volume[j] = at.sum != 0.0 ? (mass ? mass[j] : 1.0) / at.sum : 0.0;
+    particles->volume[j] = at.density == 0.0 ? 0.0
+                                             : (mass ? mass[j] : 1.0) / at.density /
+        (particles->solid[j] ? 1.0 : oracle_one_sided(&field, &at));
   }
   oracle_free_field(&field);
   return 1;

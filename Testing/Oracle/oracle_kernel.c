@@ -3,12 +3,34 @@
 #include "oracle.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #define ORACLE_PI 3.14159265358979323846
 
 double oracle_support(oracle_kernel kernel)
 {
   return kernel == ORACLE_QUINTIC_SPLINE ? 3.0 : kernel == ORACLE_QUARTIC_SPLINE ? 2.5 : 2.0;
+}
+
+/* Simpson's rule, over a half axis; r^(d - 1) is what a sphere or circle adds. M'4 is a product of axes. */
+double oracle_kernel_variance(oracle_kernel kernel, int dimensions)
+{
+  enum
+  {
+    STEPS = 6000 /* so that pieces of kernels end between steps */
+  };
+  const int d = kernel == ORACLE_M_PRIME_4 ? 1 : dimensions;
+  const double step = oracle_support(kernel) / STEPS;
+  double spread = 0.0, sum = 0.0;
+  for (int i = 0; i <= STEPS; ++i)
+  {
+    const double offset[3] = { i * step, 0.0, 0.0 };
+    const double share = i == 0 || i == STEPS ? 1.0 : i % 2 ? 4.0 : 2.0;
+    const double w = share * oracle_kernel_value(kernel, 1.0, offset, NULL);
+    sum += w * pow(i * step, d - 1);
+    spread += w * pow(i * step, d + 1);
+  }
+  return spread / (d * sum);
 }
 
 /* Monaghan's M4 without the factor 1/h^3, and its derivative in q. */

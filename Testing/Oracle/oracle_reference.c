@@ -81,7 +81,7 @@ static int reference_volumes(
       density[j] = reference_read(&input->density, source ? source[j] : j, 0);
     }
   }
-  enough = enough && oracle_compute_volumes(particles, kernel, mass, density);
+  enough = enough && oracle_compute_volumes(particles, kernel, 3, mass, density);
   for (int64_t j = 0; enough && source && j < particles->count; ++j)
   {
     particles->volume[j] = particles->volume[source[j]];

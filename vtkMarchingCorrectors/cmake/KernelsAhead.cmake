@@ -81,7 +81,7 @@ macro (mcor_compile_variants instructions flags lanes double)
   mcor_compile_program(LATTICE ${mcor_ahead_name}_lattice ${instructions} "${flags}"
     "-DMCOR_PROGRAM=0 -DMCOR_LANES=${lanes} -DMCOR_DOUBLE=${double}")
   foreach (entry IN LISTS mcor_ahead_kernels)
-    string(REGEX MATCH "ENTRY\\([A-Z0-9_]+, ([a-z0-9_]+), ([0-9.]+), ([0-9.]+), ([01])\\)" ignored "${entry}")
+    string(REGEX MATCH "ENTRY\\([A-Z0-9_]+, ([a-z0-9_]+), ([0-9.]+), ([0-9.]+), ([01])," ignored "${entry}")
     set(w ${CMAKE_MATCH_1})
     set(support ${CMAKE_MATCH_2})
     set(norm ${CMAKE_MATCH_3})

@@ -157,7 +157,11 @@ extern "C"
     int estimate_smoothing_length;
 
     /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if both are
-     * given; else, with mass alone, m_j / sum_k m_k W(x_j - x_k, h_j); else 1 / sum_k W(x_j - x_k, h_j).
+     * given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else
+     * 1 / (F_j sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the sum is
+     * low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j = the kernel's
+     * standard deviation along an axis, d = the dimension. Solids fill that side: of their share of g that
+     * part counts, from none to all, which leaves |g| least; F_j = 1 for solids themselves.
      * These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids unless the free surface
      * ends at them. Computed volumes next to walls therefore differ between the fields. */
     mcor_array volume, mass, density;
@@ -576,11 +580,12 @@ extern "C"
   /* Warnings: the extraction succeeded, but the input may not be what was meant. */
   typedef enum mcor_warning
   {
-    MCOR_WARN_NEIGHBOURS = 0, /* far too few or too many, or far too large, see neighbours_median, filled_median */
-    MCOR_WARN_PLANE,          /* the particles lie in a plane, as in a 2-D simulation */
-    MCOR_WARN_ISO_VALUE,      /* outside the range of the field */
-    MCOR_WARN_TRIMMED,        /* a threshold leaves nothing of the surface */
-    MCOR_WARN_PRECISION,      /* positions are rounded too much, see position_error */
+    MCOR_WARN_NEIGHBOURS =
+      0, /* far too few or too many, or far too large, see neighbours_median, filled_median */
+    MCOR_WARN_PLANE,     /* the particles lie in a plane, as in a 2-D simulation */
+    MCOR_WARN_ISO_VALUE, /* outside the range of the field */
+    MCOR_WARN_TRIMMED,   /* a threshold leaves nothing of the surface */
+    MCOR_WARN_PRECISION, /* positions are rounded too much, see position_error */
     MCOR_WARN_TOLERANCE, /* vertices are off the iso value by more than rounding, see vertices_above_tolerance */
     MCOR_WARNING_COUNT
   } mcor_warning;

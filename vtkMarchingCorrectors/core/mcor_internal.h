@@ -38,6 +38,7 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 double mcor_seconds(void);
 /* The norm of a kernel W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);
+double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane);
 
 /* mcor_memory.c. Whether memory of the host could be allocated. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);

@@ -27,11 +27,12 @@ const char* mcor_phase_name(mcor_phase phase)
   return (unsigned)phase < MCOR_PHASE_COUNT ? names[phase] : "unknown phase";
 }
 
-#define MCOR_ENTRY(id, name, support, norm, tensor) { #name, support, norm },
+#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane)                               \
+  { #name, support, norm, { variance, plane } },
 static const struct
 {
   const char* name;
-  double support, norm;
+  double support, norm, variance[2];
 } mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
 
@@ -60,6 +61,11 @@ double mcor_support_factor(mcor_sph_kernel kernel)
 double mcor_kernel_norm(mcor_sph_kernel kernel)
 {
   return mcor_kernel_table[kernel].norm;
+}
+
+double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane)
+{
+  return mcor_kernel_table[kernel].variance[is_plane];
 }
 
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)

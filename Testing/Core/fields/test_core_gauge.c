@@ -228,6 +228,50 @@ static void test_still_pool(void** state)
   core_free_set(&set);
 }
 
+/* With computed volumes, too, though upper layers lack half of their neighbours: with any kernel and usual smoothing
+ * length, with masses or without, in space and in a plane. */
+static void test_still_pool_of_computed_volumes(void** state)
+{
+  static const struct
+  {
+    mcor_sph_kernel kernel;
+    double h[4];
+  } cases[] = { { MCOR_CUBIC_SPLINE, { 1, 1.3, 1.5, 2 } }, { MCOR_QUADRATIC, { 1.3, 1.6 } },
+    { MCOR_QUINTIC_SPLINE, { 1, 1.3 } }, { MCOR_WENDLAND_C2, { 1.2, 1.3, 1.7, 2.078 } },
+    { MCOR_QUARTIC_SPLINE, { 1, 1.3 } }, { MCOR_WENDLAND_C4, { 1.5, 2 } },
+    { MCOR_WENDLAND_C6, { 1.6, 2 } }, { MCOR_SINC_6, { 1.2, 1.6 } } };
+  const mcor_gauge_line line = { .from = { 12.3, 8.1, 3 }, .to = { 12.3, 8.1, 15 } };
+  core_set space = make_pool(0), plane = core_make_set(24 * 10);
+  for (int64_t i = 0; i < 24 * 10; ++i)
+  {
+    const double x[3] = { (double)(i % 24) + 0.5, 8.1, (double)(i / 24) + 0.5 };
+    memcpy(plane.position + 3 * i, x, sizeof x);
+  }
+  for (size_t c = 0; c < 8 * sizeof cases / sizeof cases[0]; ++c)
+  {
+    const double h = cases[c / 8].h[c / 2 % 4];
+    if (h == 0)
+    {
+      continue;
+    }
+    mcor_input input = core_input(c % 2 ? &plane : &space);
+    mcor_options options = core_options(NULL);
+    options.iso_count = 0;
+    options.sph_kernel = cases[c / 8].kernel;
+    input.smoothing_length = (mcor_array){ .constant = h };
+    input.volume = (mcor_array){ 0 };
+    input.mass = (mcor_array){ .constant = c & 2 ? 3 : 0 };
+    mcor_gauges gauges;
+    CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
+    const double level = gauges.readings[0].place[2];
+    CORE_CHECK(fabs(level - 10) < 0.05, "%s, h %g, %d dimensions: level %g",
+      mcor_sph_kernel_name(options.sph_kernel), h, c % 2 ? 2 : 3, level);
+    mcor_free_gauges(&gauges);
+  }
+  core_free_set(&space);
+  core_free_set(&plane);
+}
+
 /* Beyond a period's side there is its image, with the same bits where rounding lets them. */
 static void test_period(void** state)
 {
@@ -323,7 +367,8 @@ static void test_weird(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_pool_with_waves),
-    cmocka_unit_test(test_noise), cmocka_unit_test(test_still_pool), cmocka_unit_test(test_period),
+    cmocka_unit_test(test_noise), cmocka_unit_test(test_still_pool),
+    cmocka_unit_test(test_still_pool_of_computed_volumes), cmocka_unit_test(test_period),
     cmocka_unit_test(test_same_bits), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Search grid: queries against all particles one by one, volumes against double sums. */
+/* Search grid: queries against all particles one by one, volumes against the oracle's. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -194,30 +194,13 @@ static void test_query(void** state)
   }
 }
 
-/* Volumes by the naive double sum. mass: NULL for 1 each. Solids take part unless they are left
- * out. */
-static void naive_volumes(
+/* mass: NULL for 1 each. */
+static void compute_volumes(
   core_set* set, mcor_sph_kernel kernel, const double* mass, int leave_out_solids)
 {
-  for (int64_t j = 0; j < set->count; ++j)
-  {
-    double sum = 0;
-    for (int64_t k = 0; k < set->count; ++k)
-    {
-      if (leave_out_solids && set->solid[k])
-      {
-        continue;
-      }
-      double d[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        d[a] = set->position[3 * j + a] - set->position[3 * k + a];
-      }
-      sum += (mass ? mass[k] : 1) *
-        oracle_kernel_value((oracle_kernel)kernel, set->smoothing_length[j], d, NULL);
-    }
-    set->volume[j] = (mass ? mass[j] : 1) / sum;
-  }
+  oracle_particles particles = core_oracle(set);
+  particles.ignore_solids = leave_out_solids;
+  assert_true(oracle_compute_volumes(&particles, (oracle_kernel)kernel, 3, mass, NULL));
 }
 
 /* The weight sums at the surface's points against those of `set`, which has its volumes. */
@@ -269,10 +252,10 @@ static void check_volumes(mcor_context* context, double h_scale, double ratio)
   }
   check_weights(context, &set, &input, &options, "mass / density");
   input.density = (mcor_array){ 0 };
-  naive_volumes(&set, MCOR_CUBIC_SPLINE, mass, 0);
+  compute_volumes(&set, MCOR_CUBIC_SPLINE, mass, 0);
   check_weights(context, &set, &input, &options, "mass alone");
   input.mass = (mcor_array){ 0 };
-  naive_volumes(&set, MCOR_CUBIC_SPLINE, NULL, 0);
+  compute_volumes(&set, MCOR_CUBIC_SPLINE, NULL, 0);
   check_weights(context, &set, &input, &options, "neither");
   core_free_set(&set);
   free(mass);
@@ -306,7 +289,7 @@ static void check_volumes_of_solids(mcor_context* context, int with_mass, int ig
   input.ignore_solids = ignored;
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_WEIGHT_SUM;
-  naive_volumes(&set, MCOR_CUBIC_SPLINE, with_mass ? mass : NULL, ignored);
+  compute_volumes(&set, MCOR_CUBIC_SPLINE, with_mass ? mass : NULL, ignored);
   oracle_particles particles = core_oracle(&set);
   particles.ignore_solids = ignored;
   oracle_field field;

@@ -51,6 +51,18 @@ static double* evaluate(
   return result;
 }
 
+/* Against integrals of the twin formula. */
+static void check_variance(mcor_sph_kernel kernel)
+{
+  for (int dimensions = 2; dimensions <= 3; ++dimensions)
+  {
+    const double found = mcor_kernel_variance(kernel, dimensions == 2),
+                 twin = oracle_kernel_variance((oracle_kernel)kernel, dimensions);
+    CORE_CHECK(fabs(found - twin) < 1e-9, "kernel %s, %d dimensions: variance %.15g, not %.15g",
+      mcor_sph_kernel_name(kernel), dimensions, found, twin);
+  }
+}
+
 /* Midpoint rule over one octant of the support's cube. */
 static void check_integral(mcor_context* context, mcor_sph_kernel kernel)
 {
@@ -189,6 +201,7 @@ static void test_kernels(void** state)
 {
   for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
   {
+    check_variance((mcor_sph_kernel)k);
     check_integral(*state, (mcor_sph_kernel)k);
     check_values(*state, (mcor_sph_kernel)k);
     check_support(*state, (mcor_sph_kernel)k);

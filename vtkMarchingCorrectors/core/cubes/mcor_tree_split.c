@@ -227,7 +227,7 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
 
 static bool mcor_is_tensor(mcor_sph_kernel kernel)
 {
-#define MCOR_ENTRY(id, name, support, norm, tensor) tensor,
+#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane) tensor,
   static const bool tensors[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
   return tensors[kernel];

@@ -252,7 +252,11 @@ static mcor_status mcor_refuse_density(
     (long long)particle, mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 
-/* V = m / sum_k m_k W(x_j - x_k, h_j), own and unscaled h; m = 1 where no mass is known. */
+/* How much a side without neighbours adds to a density: 5/3 D^2, see mcor_density_factor. The uppermost layer of a
+ * lattice at rest then has its true volume, within 0.7 %, for all kernels and smoothing lengths. */
+#define MCOR_ONE_SIDED (5.0 / 3)
+
+/* V = m / (sum_k m_k W(x_j - x_k, h_j) (1 + 5/3 D^2)), own and unscaled h; m = 1 where no mass is known. */
 static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;
@@ -262,8 +266,10 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
-    MCOR_REAL(context->run.options->h_scale), MCOR_BUFFER(&grid->trim_weight),
-    MCOR_BUFFER(density)));
+    MCOR_REAL(context->run.options->h_scale), MCOR_INT(mcor_is_plane(context)),
+    MCOR_REAL(MCOR_ONE_SIDED *
+      mcor_kernel_variance(context->run.options->sph_kernel, mcor_is_plane(context))),
+    MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(density)));
   double low[3], high[3];
   cl_int first = INT32_MAX;
   mcor_find_evaluated(context, low, high);

@@ -44,7 +44,7 @@ typedef struct mcor_wall
 /* W / norm h^3 at an offset. */
 static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double inv_h)
 {
-#define MCOR_ENTRY(enumerator, name, support, norm, is_tensor)                                     \
+#define MCOR_ENTRY(enumerator, name, support, norm, is_tensor, variance, plane)                    \
   case enumerator:                                                                                 \
     return is_tensor ? mcor_w_##name(fabs(d[0]) * inv_h) * mcor_w_##name(fabs(d[1]) * inv_h) *     \
         mcor_w_##name(fabs(d[2]) * inv_h)                                                          \

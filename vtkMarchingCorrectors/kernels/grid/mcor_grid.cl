@@ -331,10 +331,79 @@ __kernel void mcor_grid_fill_places(
 #endif
 
 #if MCOR_OF_FIELD
+/* Sums over the neighbours k of a particle j, with q = (x_k - x_j) / h_j. */
+typedef struct
+{
+  realv mass;                /* m_k w(q) */
+  realv size;                /* (h_k / h_j)^d w(q), d: dimensions */
+  realv fluid[3], solids[3]; /* (h_k / h_j)^d grad w(q), of these */
+} mcor_density_sums;
+
+/* Beyond, a neighbour is all that counts, and the cube is near what single precision holds. */
+#define MCOR_LARGEST_RATIO ((real)1e10f)
+
+#define MCOR_DENSITY_PULL(side)                                                                    \
+  side[0] = MCOR_FMA(pull, along[0], side[0]);                                                     \
+  side[1] = MCOR_FMA(pull, along[1], side[1]);                                                     \
+  side[2] = MCOR_FMA(pull, along[2], side[2]);
+
+/* Adds particle k to particles at x; scale: 1 / h_j, in the unit of positions, inside: of which lanes it is in a
+ * tile. */
+void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, const fixv x[3],
+  realv scale, realv inv_h, fixv inside, int plane, mcor_density_sums* sums)
+{
+  const realv q[3] = { MCOR_CONVERT_REALV(grid->px[k] - x[0]) * scale,
+    MCOR_CONVERT_REALV(grid->py[k] - x[1]) * scale,
+    MCOR_CONVERT_REALV(grid->pz[k] - x[2]) * scale };
+  const mcor_length length = mcor_length_of(q);
+  realv slope, along[3];
+  const realv w = mcor_weight_gradient(q, &length, (realv)1, &slope, along);
+  sums->mass = MCOR_FMA(inside ? (realv)fabs(mass[k]) : (realv)0, w, sums->mass);
+#if !MCOR_TENSOR
+  const realv ratio = fmin(((real)1 / grid->inv_h[k]) * inv_h, (realv)MCOR_LARGEST_RATIO);
+  const realv size = inside ? ratio * ratio * (plane ? (realv)1 : ratio) : (realv)0;
+  const realv pull = size * slope;
+  sums->size = MCOR_FMA(size, w, sums->size);
+  if (MCOR_SOLIDS && mass[k] < 0)
+  {
+    MCOR_DENSITY_PULL(sums->solids)
+  }
+  else
+  {
+    MCOR_DENSITY_PULL(sums->fluid)
+  }
+#endif
+}
+
+/* What the density is to be multiplied by: 1 + 5/3 D^2, D^2 = variance |g|^2 / n^2, which makes up for the side that
+ * has no neighbours: one_sided = 5/3 variance. Solids fill that side, but not more: of their share of g goes in
+ * what leaves least. */
+realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
+{
+  const realv unit = (real)1 / sums->size;
+  realv g[3], s[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    g[a] = sums->fluid[a] * unit;
+    s[a] = sums->solids[a] * unit;
+  }
+#if MCOR_SOLIDS
+  const realv dot = MCOR_FMA(g[2], s[2], MCOR_FMA(g[1], s[1], g[0] * s[0]));
+  const realv square = mcor_square(s[0], s[1], s[2]);
+  const realv share = square > (realv)0 ? clamp(-dot / square, (realv)0, (realv)1) : (realv)0;
+  for (int a = 0; a < 3; ++a)
+  {
+    g[a] = MCOR_FMA(share, s[a], g[a]);
+  }
+#endif
+  return MCOR_FMA((realv)one_sided, mcor_square(g[0], g[1], g[2]), (realv)1);
+}
+
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and masses (1 each: number density).
- * Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j. */
-__kernel void mcor_grid_density(
-  MCOR_GRID_PARAMS, const real h_scale, __global const real* mass, __global real* density)
+ * Writes sum_k m_k W(x_j - x_k, h_j) h_j^3 / norm with each particle's own, unscaled h_j, times
+ * mcor_density_factor for fluid. */
+__kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int plane,
+  const real one_sided, __global const real* mass, __global real* density)
 {
   const mcor_grid grid = MCOR_GRID;
   const int begin = get_global_id(0) * MCOR_LANES;
@@ -343,10 +412,10 @@ __kernel void mcor_grid_density(
     return;
   }
   const int end = min(begin + MCOR_LANES, particle_count);
-  const fixv x = MCOR_LOAD_FIX(begin, px), y = MCOR_LOAD_FIX(begin, py),
-             z = MCOR_LOAD_FIX(begin, pz);
-  const realv scale = grid.unit * h_scale * MCOR_LOAD(begin, p_inv_h);
-  realv sum = 0;
+  const fixv x[3] = { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py),
+    MCOR_LOAD_FIX(begin, pz) };
+  const realv inv_h = MCOR_LOAD(begin, p_inv_h), scale = grid.unit * h_scale * inv_h;
+  mcor_density_sums sums = { 0, 0, { 0, 0, 0 }, { 0, 0, 0 } };
   mcor_query query;
   mcor_tile tile;
   for (int row = begin, next; row < end; row = next)
@@ -361,19 +430,23 @@ __kernel void mcor_grid_density(
     {
       for (int i = 0; i < tile.count; ++i)
       {
-        const int k = MCOR_INDEX(&tile, i);
-        const realv qx = MCOR_CONVERT_REALV(px[k] - x) * scale;
-        const realv qy = MCOR_CONVERT_REALV(py[k] - y) * scale;
-        const realv qz = MCOR_CONVERT_REALV(pz[k] - z) * scale;
-        const realv m = inside ? (realv)fabs(mass[k]) : (realv)0;
-        sum = MCOR_FMA(m, mcor_weight(mcor_distance(qx, qy, qz, (real)1), (real)1), sum);
+        mcor_density_add(
+          &grid, mass, MCOR_INDEX(&tile, i), x, scale, inv_h, inside, plane, &sums);
       }
     }
   }
-#if MCOR_LANES == 1
-  density[begin] = sum;
+#if MCOR_TENSOR
+  const realv result = sums.mass;
+#elif MCOR_SOLIDS
+  const realv result = sums.mass *
+    (MCOR_LOAD(begin, mass) < (realv)0 ? (realv)1 : mcor_density_factor(&sums, one_sided));
 #else
-  MCOR_CAT(vstore, MCOR_LANES)(sum, 0, density + begin);
+  const realv result = sums.mass * mcor_density_factor(&sums, one_sided);
+#endif
+#if MCOR_LANES == 1
+  density[begin] = result;
+#else
+  MCOR_CAT(vstore, MCOR_LANES)(result, 0, density + begin);
 #endif
 }
 

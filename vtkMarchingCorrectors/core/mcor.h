@@ -396,12 +396,13 @@ extern "C"
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what position_error may add. Without
-     * caps and the trim_vertices_linear. */
+    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what its rounding of positions and sums
+     * may add. Without caps and the trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices,
-      trim_vertices_linear; /* linear: left at the linear cut, off the iso value */
+      /* linear: left at the linear cut, off the iso value; and cuts of caps at walls that are off the share */
+      trim_vertices_linear;
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
@@ -559,6 +560,22 @@ extern "C"
   /* 2 or 3: the dimension of a call with this input, over all ranks unless `ranks` is NULL, and this
    * mcor_options.dimension. Reads only the positions and the solids. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
+
+  /* A usual number of neighbours, as `eta` below. */
+#define MCOR_USUAL_ETA 1.3
+
+  /* Smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the h_i, unit L, that solve
+   * h_i^d sum_j W(x_i - x_j, h_i) = eta^d over all particles, fluid and solid, j = i included, to 1e-6 of h_i; d is
+   * the dimension. None is longer than the extent of all. Reads the positions and solids of the input, and of the
+   * options sph_kernel, dimension and periodic. Not with M'4, whose sum does not grow with h. *why: NULL, or why
+   * it failed, in a sentence; free it with free(). */
+  mcor_status mcor_find_smoothing_lengths(
+    const mcor_input* input, const mcor_options* options, double eta, double* lengths, char** why);
+
+  /* Densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over all particles, fluid and solid, unit of
+   * mass / L^d. Reads positions, smoothing lengths and masses of the input, and the same options. */
+  mcor_status mcor_sum_densities(
+    const mcor_input* input, const mcor_options* options, double* densities, char** why);
 
   /* The least smoothing length of the fluid, as the input has it; 1 with estimate_smoothing_length, infinite
    * without fluid. */

@@ -101,6 +101,9 @@ typedef struct mcor_sample
   double x[3], h, volume;
 } mcor_sample;
 
+/* mcor_neighbour_sums.c. w(q), without the norm; of a tensor kernel that of an axis. */
+double mcor_w_of(mcor_sph_kernel kernel, double q);
+
 #define MCOR_SAMPLES 256
 
 typedef struct mcor_samples_found

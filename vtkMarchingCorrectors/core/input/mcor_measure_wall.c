@@ -6,12 +6,10 @@
  * that those that no fluid reaches do not count. Weights are added as whole numbers: so the result
  * depends neither on the order of the particles, nor on who of several ranks has which. */
 
-#define MCOR_W_ON_HOST
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
-#include "mcor_sph_kernel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,18 +42,10 @@ typedef struct mcor_wall
 /* W / norm h^3 at an offset. */
 static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double inv_h)
 {
-#define MCOR_ENTRY(enumerator, name, support, norm, is_tensor, variance, plane)                    \
-  case enumerator:                                                                                 \
-    return is_tensor ? mcor_w_##name(fabs(d[0]) * inv_h) * mcor_w_##name(fabs(d[1]) * inv_h) *     \
-        mcor_w_##name(fabs(d[2]) * inv_h)                                                          \
-                     : mcor_w_##name(sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
-  switch (kernel)
-  {
-    MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY)
-    default:
-      return 0;
-  }
-#undef MCOR_ENTRY
+  return kernel == MCOR_M_PRIME_4
+    ? mcor_w_of(kernel, fabs(d[0]) * inv_h) * mcor_w_of(kernel, fabs(d[1]) * inv_h) *
+      mcor_w_of(kernel, fabs(d[2]) * inv_h)
+    : mcor_w_of(kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
 }
 
 /* Volumes of particles. Of those that are yet to be computed the masses stand for them: shares do not

@@ -1,0 +1,237 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Smoothing lengths by neighbours, and summed densities: against sums over all pairs, and Plummer's sphere. */
+
+#include "core_fixture.h"
+#include "mcor_plane.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
+static double sum_of_all(const core_set* set, const mcor_options* options, int dimension,
+  const double* mass, int64_t i, double h)
+{
+  double sum = 0;
+  const double scale = h * h * h * (dimension == 2 ? mcor_plane_factor(options->sph_kernel) : 1);
+  int64_t images[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    images[a] = options->periodic[2 * a] < options->periodic[2 * a + 1] ? 3 : 0;
+  }
+  for (int64_t j = 0; j < set->count; ++j)
+  {
+    for (int64_t n = 0; n < (2 * images[0] + 1) * (2 * images[1] + 1) * (2 * images[2] + 1); ++n)
+    {
+      const int64_t x = n % (2 * images[0] + 1), yz = n / (2 * images[0] + 1);
+      const int64_t k[3] = { x - images[0], yz % (2 * images[1] + 1) - images[1],
+        yz / (2 * images[1] + 1) - images[2] };
+      double d[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        d[a] = set->position[3 * i + a] - set->position[3 * j + a] +
+          (double)k[a] * (options->periodic[2 * a + 1] - options->periodic[2 * a]);
+      }
+      sum += (mass ? mass[j] : 1) * scale *
+        oracle_kernel_value((oracle_kernel)options->sph_kernel, h, d, NULL);
+    }
+  }
+  return sum;
+}
+
+/* In clusters, so that smoothing lengths vary by a factor of 100. */
+static core_set make_clusters(int64_t count, int dimension, uint64_t seed)
+{
+  core_set set = core_make_set(count);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const double size = pow(0.1, (double)(i % 3));
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = dimension == 2 && a == 1
+        ? 4
+        : 0.5 + 0.3 * (double)(i % 3) + size * (random_unit(&seed) - 0.5);
+    }
+    set.solid[i] = i % 5 == 0;
+    set.has_solids = 1;
+  }
+  return set;
+}
+
+static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
+{
+  char* why;
+  const int64_t count = 400;
+  core_set set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
+  mcor_options options = core_options(NULL);
+  options.sph_kernel = kernel;
+  options.dimension = 0;
+  for (int a = 0; a < 3 && periodic; a += dimension == 2 ? 2 : 1)
+  {
+    options.periodic[2 * a] = -0.1;
+    options.periodic[2 * a + 1] = 1.4;
+  }
+  mcor_input input = core_input(&set);
+  double *lengths = calloc((size_t)count, sizeof *lengths),
+         *densities = calloc((size_t)count, sizeof *densities),
+         *mass = calloc((size_t)count, sizeof *mass), *again = calloc((size_t)count, sizeof *again);
+  assert_true(lengths && densities && mass && again);
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, lengths, &why), MCOR_OK);
+  double least = INFINITY, most = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const double sum = sum_of_all(&set, &options, dimension, NULL, i, lengths[i]);
+    CORE_CHECK(fabs(sum / pow(1.3, dimension) - 1) < 1e-5,
+      "%s, %d dimensions, particle %d: h %g, sum %g", mcor_sph_kernel_name(kernel), dimension,
+      (int)i, lengths[i], sum);
+    mass[i] = 1 + (double)(i % 7);
+    least = fmin(least, lengths[i]);
+    most = fmax(most, lengths[i]);
+  }
+  assert_true(most > 20 * least);
+  input.mass = core_array(mass, 1);
+  input.smoothing_length = core_array(lengths, 1);
+  assert_int_equal(mcor_sum_densities(&input, &options, densities, &why), MCOR_OK);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const double expected =
+      sum_of_all(&set, &options, dimension, mass, i, lengths[i]) / pow(lengths[i], dimension);
+    CORE_CHECK(fabs(densities[i] / expected - 1) < 1e-12, "particle %d: density %.15g, not %.15g",
+      (int)i, densities[i], expected);
+  }
+  /* In another order the same bits. */
+  int64_t* order = core_make_order(count, 5);
+  core_set other = core_make_set(count);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    memcpy(other.position + 3 * i, set.position + 3 * order[i], 3 * sizeof(double));
+  }
+  input = core_input(&other);
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, again, &why), MCOR_OK);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    assert_true(again[i] == lengths[order[i]]);
+  }
+  free(order);
+  free(lengths);
+  free(densities);
+  free(mass);
+  free(again);
+  core_free_set(&set);
+  core_free_set(&other);
+}
+
+static void test_sums(void** state)
+{
+  (void)state;
+  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
+  {
+    if (k != MCOR_M_PRIME_4)
+    {
+      check_sums((mcor_sph_kernel)k, 3, 0);
+      check_sums((mcor_sph_kernel)k, 2, 0);
+    }
+  }
+  check_sums(MCOR_CUBIC_SPLINE, 3, 1);
+  check_sums(MCOR_QUINTIC_SPLINE, 2, 1);
+}
+
+/* With positions and masses alone: where its sphere has its densities at the radii 1 and 3. */
+static void test_plummer(void** state)
+{
+  char* why;
+  const int count = 20000;
+  const double radii[2] = { 1, 3 }, isos[2] = { 0.0422, 0.000755 };
+  core_set set = core_make_set(count);
+  uint64_t seed = 1;
+  for (int i = 0; i < count; ++i)
+  {
+    const double r = 1 / sqrt(pow((double)i / count + 0.5 / count, -2.0 / 3) - 1);
+    const double z = 2 * random_unit(&seed) - 1, angle = 6.283185307179586 * random_unit(&seed);
+    set.position[3 * i] = r * sqrt(1 - z * z) * cos(angle);
+    set.position[3 * i + 1] = r * sqrt(1 - z * z) * sin(angle);
+    set.position[3 * i + 2] = r * z;
+  }
+  mcor_options options = core_options(NULL);
+  mcor_input input = core_input(&set);
+  assert_int_equal(
+    mcor_find_smoothing_lengths(&input, &options, MCOR_USUAL_ETA, set.smoothing_length, &why),
+    MCOR_OK);
+  input.volume = (mcor_array){ 0 };
+  input.mass = (mcor_array){ .constant = 1.0 / count };
+  assert_int_equal(mcor_sum_densities(&input, &options, set.scalar, &why), MCOR_OK);
+  input.density = core_array(set.scalar, 1);
+  for (int k = 0; k < 2; ++k)
+  {
+    options.iso_values = &isos[k];
+    options.iso_count = 1;
+    options.field = MCOR_SUM;
+    options.node_threshold = options.vertex_threshold = 0;
+    options.level_limit = MCOR_CUBE_LEVELS - 1;
+    mcor_surface surface = core_extract(*state, &input, &options);
+    double sum = 0;
+    int64_t used = 0;
+    for (int64_t p = 0; p < surface.point_count; ++p)
+    {
+      const double* x = surface.points + 3 * p;
+      const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+      sum += r;
+      ++used;
+    }
+    assert_true(used > 1000);
+    CORE_CHECK(fabs(sum / (double)used / radii[k] - 1) < 0.03, "radius %g, not %g",
+      sum / (double)used, radii[k]);
+    mcor_free_surface(&surface);
+  }
+  core_free_set(&set);
+}
+
+static void expect_refusal(mcor_status status, mcor_status expected, char** why, const char* words)
+{
+  CORE_CHECK(status == expected && *why && strstr(*why, words), "%d: %s", (int)status, *why);
+  free(*why);
+}
+
+static void test_weird(void** state)
+{
+  (void)state;
+  double at[6] = { 1, 2, 3, 1, 2, 3 }, out[2] = { -1, -1 };
+  char* why;
+  mcor_options options = core_options(NULL);
+  mcor_input input = { .count = 2, .positions = core_array(at, 3) };
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_INVALID_DATA,
+    &why, "All particles are at one place");
+  at[0] = 2;
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_OK);
+  assert_true(out[0] == 1 && out[1] == 1); /* two do not suffice: the domain's extent */
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 0.6, out, &why),
+    MCOR_INVALID_ARGUMENT, &why, "ETA is 0.6; it must be above 0.683");
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, NAN, out, &why),
+    MCOR_INVALID_ARGUMENT, &why, "it must be above");
+  expect_refusal(mcor_sum_densities(&input, &options, out, &why), MCOR_INVALID_ARGUMENT, &why,
+    "There is no mass");
+  options.sph_kernel = MCOR_M_PRIME_4;
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why),
+    MCOR_INVALID_ARGUMENT, &why, "Choose another kernel");
+  options.sph_kernel = MCOR_CUBIC_SPLINE;
+  at[4] = NAN;
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_INVALID_DATA,
+    &why, "The position of particle 1 is not finite");
+  input.count = 0;
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_OK);
+  /* More at one place than make a sum: as little as it may be. */
+  double many[3 * 100] = { 0 }, lengths[100];
+  many[0] = 1;
+  input = (mcor_input){ .count = 100, .positions = core_array(many, 3) };
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, lengths, &why), MCOR_OK);
+  assert_true(lengths[99] > 0 && lengths[99] < 1e-6);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_plummer),
+    cmocka_unit_test(test_weird) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

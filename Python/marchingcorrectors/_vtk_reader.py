@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from . import io
 from .io.convert import to_vtk
 
-# Those of VTK have their readers; ParaView's own of tables and molecules make no particles: it asks which one to take.
+# VTK's own files have readers there; ParaView's of tables and molecules make no particles: it asks which one to take.
 ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk")] + ["gadget"]
 
 
@@ -39,7 +39,7 @@ class SPHParticleReader(VTKPythonAlgorithmBase):
 
     @smproperty.stringvector(name="Types", default_values="gas")
     def SetTypes(self, types):
-        """Of GADGET's layout: names or numbers, with commas between them."""
+        """Types of GADGET's layout: names or numbers, with commas between them."""
         if types != self._types:
             self._types, self._kept = types, (None, None)
             self.Modified()

@@ -22,7 +22,8 @@ def random_rows(random, columns, least=1):
     """Text of numbers as programs write them."""
     count = random.integers(least, 60)
     form = random.choice(["%.17g", "%.6e", "%12.5f"])
-    return [[form % value for value in row] for row in random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))]
+    values = random.normal(scale=10.0 ** random.integers(-3, 4), size=(count, columns))
+    return [[form % value for value in row] for row in values]
 
 
 def write_csv(path, random):
@@ -59,7 +60,8 @@ def write_xyz(path, random, steps, extended):
     for i in range(steps):
         rows = random_rows(random, 7)
         if extended:
-            text += f'{len(rows)}\nLattice="2 0 0 0 3 0 0 0 4" Properties=species:S:1:pos:R:3:velo:R:3:h:R:1 Time={i / 4} pbc="T F T"\n'
+            text += f'{len(rows)}\nLattice="2 0 0 0 3 0 0 0 4" Properties=species:S:1:pos:R:3:velo:R:3:h:R:1 '
+            text += f'Time={i / 4} pbc="T F T"\n'
         else:
             text += f"{len(rows)}\na remark\n"
         for row in rows:
@@ -71,7 +73,8 @@ def write_lammps(path, random, steps, scaled):
     text = ""
     for i in range(steps):
         rows = random_rows(random, 5)
-        text += f"ITEM: TIMESTEP\n{100 * i}\nITEM: NUMBER OF ATOMS\n{len(rows)}\nITEM: BOX BOUNDS pp ff pp\n-1 3\n0 2\n0.5 4.5\n"
+        text += f"ITEM: TIMESTEP\n{100 * i}\nITEM: NUMBER OF ATOMS\n{len(rows)}\n"
+        text += "ITEM: BOX BOUNDS pp ff pp\n-1 3\n0 2\n0.5 4.5\n"
         text += "ITEM: ATOMS id type " + ("xs ys zs" if scaled else "x y z") + " vx c_rho[1]\n"
         text += "".join(f"{k + 1} {k % 3} " + " ".join(row) + "\n" for k, row in enumerate(rows))
     path.write_text(text)
@@ -79,7 +82,8 @@ def write_lammps(path, random, steps, scaled):
 
 def write_gadget_binary(path, random, named=False, order="<", double=False, files=1):
     """As GADGET-2 does: gas, dark matter and stars; masses of dark matter in the header. Returns {label: of all types}."""
-    counts, table = [int(random.integers(5, 40)), int(random.integers(1, 9)), 0, 0, int(random.integers(1, 9)), 0], [0, 2.5, 0, 0, 0, 0]
+    counts = [int(random.integers(5, 40)), int(random.integers(1, 9)), 0, 0, int(random.integers(1, 9)), 0]
+    table = [0, 2.5, 0, 0, 0, 0]
     total, real = sum(counts), order + ("f8" if double else "f4")
     arrays = {"POS": random.normal(size=(total, 3)).astype(real), "VEL": random.normal(size=(total, 3)).astype(real),
               "ID": np.arange(total, dtype=order + ("u8" if double else "u4")),
@@ -157,7 +161,8 @@ class AgainstNumPy(Case):
                 particles, count = io.read(self.at("p.xyz"), step=step), int(lines[at])
                 wanted = np.loadtxt(lines[at + 2:at + 2 + count], usecols=range(1, 8 if extended else 4), ndmin=2)
                 self.assert_same(particles.positions, wanted[:, :3])
-                self.assertEqual(particles.arrays["species"].tolist(), [line.split()[0] for line in lines[at + 2:at + 2 + count]])
+                species = [line.split()[0] for line in lines[at + 2:at + 2 + count]]
+                self.assertEqual(particles.arrays["species"].tolist(), species)
                 self.assertEqual(len(particles.times), steps)
                 if extended:
                     self.assert_same(particles.arrays["velo"], wanted[:, 3:6])

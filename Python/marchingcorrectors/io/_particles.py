@@ -14,7 +14,7 @@ from .._library import Error, lib
 from .._options import did_you_mean, words_of
 from .._warnings import warn
 
-# What solvers call their kernels begins so, letters and digits alone; the first that fits counts. Wendland's are PySPH's,
+# Solvers' names of their kernels begin so, letters and digits alone; the first that fits counts. Wendland's are PySPH's,
 # too: WendlandQuintic is C2.
 KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6": "sinc6", "wendlandc2": "wendland",
            "wendlandc4": "wendland_c4", "wendlandc6": "wendland_c6", "wendlandquinticc4": "wendland_c4",
@@ -216,7 +216,7 @@ def by_name(file, pairs):
 
 
 class Body(NamedTuple):
-    """What a file of points holds at one of its times; times: those of all steps, None where it is no film."""
+    """The points of a file at one of its times; times: those of all steps, None where it is no film."""
     points: np.ndarray
     arrays: Dict[str, np.ndarray]
     time: Optional[float] = None

@@ -12,8 +12,9 @@ from ._raw import RawArray, state_of
 from .gadget import files_of, numbers_of
 
 HEADER = "6i6d2d2i6I2i4d"
-LABELS = {"POS": "Coordinates", "VEL": "Velocities", "ID": "ParticleIDs", "MASS": "Masses", "U": "InternalEnergy", "RHO": "Density",
-          "NE": "ElectronAbundance", "NH": "NeutralHydrogenAbundance", "HSML": "SmoothingLength", "POT": "Potential",
+LABELS = {"POS": "Coordinates", "VEL": "Velocities", "ID": "ParticleIDs", "MASS": "Masses", "U": "InternalEnergy",
+          "RHO": "Density", "NE": "ElectronAbundance",
+          "NH": "NeutralHydrogenAbundance", "HSML": "SmoothingLength", "POT": "Potential",
           "ACCE": "Acceleration"}
 VECTORS = ("POS", "VEL", "ACCE")
 
@@ -63,7 +64,7 @@ class BinaryFile:
         return begin, size
 
     def label(self):
-        """Of the next array, in format 2; None at the end."""
+        """The name of the next array, in format 2; None at the end."""
         found = self.record()
         if found is None:
             return None
@@ -123,7 +124,7 @@ class BinaryFile:
         return array.rows(begin, self.counts[kind]).load()
 
     def labels_of(self, kind):
-        """Of arrays that particles of a type have."""
+        """The arrays that particles of a type have."""
         whole, gas = sum(self.counts), self.counts[0]
         return [label for label, array in self.arrays.items() if label in ("POS", "MASS") or array.count == whole
                 or (kind == 0 and array.count == gas)]

@@ -48,7 +48,7 @@ def data_set(group, place):
 
 
 def check_storage(data):
-    """What HDF5 makes room for is the data set, and a chunk of it, which may be larger. Packed twice, a chunk could grow to
+    """HDF5 makes room for the data set, and for a chunk of it, which may be larger. Packed twice, a chunk could grow to
     any size."""
     path, properties = data.file.filename, data.id.get_create_plist()
     name, there = os.path.basename(path), os.path.getsize(path)
@@ -103,7 +103,7 @@ def names_of(group, count):
 
 
 def check_claims(groups):
-    """That the file can hold all arrays of these groups together: many names may stand for one."""
+    """Raises FileError where the file cannot hold all arrays of these groups together: many names may stand for one."""
     claimed = sum(get(group, name).nbytes for group in groups for name in group if is_numbers(get(group, name)))
     for group in groups:
         path = group.file.filename

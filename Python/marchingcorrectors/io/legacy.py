@@ -24,8 +24,8 @@ class Legacy:
         self.name, self.data, self.at = path.name, path.read_bytes(), 0
         self.points, self.arrays, self.field, self.cell_arrays, self.twice = None, {}, {}, {}, None
         self.cells, self.types = {}, None  # {name: (values, number)}
-        head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\nDATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n",
-                        self.data)
+        head = re.match(rb"# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n(ASCII|BINARY)\s*?\n"
+                        rb"DATASET +(POLYDATA|UNSTRUCTURED_GRID)\s*?\n", self.data)
         if not head:
             raise FileError(f"{self.name} is no file of VTK's with particles (poly data or an unstructured grid), or its "
                             "beginning is damaged.")

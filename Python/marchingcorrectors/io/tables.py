@@ -185,7 +185,7 @@ def rows_of(file, lines, begin, count):
 
 
 def value_of(comment, key):
-    """What stands behind KEY= in the second line of extended XYZ, with or without quotes."""
+    """The text behind KEY= in the second line of extended XYZ, with or without quotes."""
     found = re.search(rf'(?:^|\s){key}=(?:"([^"]*)"|(\S*))', comment, re.I)
     return (found[1] if found[1] is not None else found[2]) if found else ""
 

@@ -25,7 +25,7 @@ BASE64 = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/="
 
 
 def decode_base64(text):
-    """Of several pieces, each with padding at its end."""
+    """Decodes one piece after the other, each with padding at its end."""
     text = text.translate(None, b" \t\r\n")
     if text.translate(None, BASE64):
         raise ValueError("letters that are not base64's")

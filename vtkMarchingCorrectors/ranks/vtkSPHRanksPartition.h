@@ -7,6 +7,8 @@
 #ifndef vtkSPHRanksPartition_h
 #define vtkSPHRanksPartition_h
 
+#include "vtkType.h" // For VTK's namespace
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -7,6 +7,7 @@
 #define vtkSPHRanksStatistics_h
 
 #include "mcor.h"
+#include "vtkType.h" // For VTK's namespace
 
 #include <cstdint>
 #include <vector>

@@ -7,6 +7,7 @@
 #define vtkSPHRanksWork_h
 
 #include "mcor_parts.h"
+#include "vtkType.h" // For VTK's namespace
 
 #include <cstdint>
 #include <vector>

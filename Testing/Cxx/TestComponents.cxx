@@ -310,6 +310,133 @@ void CheckPeriod()
     std::abs(areas[0] / areas[1] - 1.0) < 0.01 && std::abs(volumes[0] / volumes[1] - 1.0) < 0.01);
 }
 
+/// A lattice of spacing 0.1 in the period 2, moved by `shift`: those whose way from the origin is wanted.
+vtkSmartPointer<vtkPolyData> PeriodicLattice(
+  const std::array<double, 3>& shift, const std::function<bool(const double way[3])>& wanted)
+{
+  std::vector<std::array<double, 3>> places;
+  const int n = 20;
+  for (int i = 0; i < n * n * n; ++i)
+  {
+    const double x[3] = { (i % n) * 0.1, (i / n % n) * 0.1, (i / n / n) * 0.1 };
+    const double way[3] = { std::remainder(x[0], 2.0), std::remainder(x[1], 2.0),
+      std::remainder(x[2], 2.0) };
+    if (wanted(way))
+    {
+      places.push_back({ { way[0] + shift[0], way[1] + shift[1], way[2] + shift[2] } });
+    }
+  }
+  return Particles(places);
+}
+
+vtkSmartPointer<vtkTable> PiecesOf(vtkPolyData* particles, const double period[6])
+{
+  vtkNew<vtkMarchingCorrectors> filter;
+  filter->SetInputData(particles);
+  filter->SetSmoothingLength(0.1);
+  filter->FreeSurfaceOn();
+  filter->SetCubeSize(0.05);
+  filter->SetPeriodicBounds(period);
+  filter->Update();
+  auto split = Split(filter->GetOutput(), particles);
+  split->SetPeriodicBounds(period);
+  split->Update();
+  return split->GetTable();
+}
+
+/// Wherever the period begins: its sides need not be planes of the lattice, where the surface ends.
+void CheckSides()
+{
+  auto particles = PeriodicLattice({ { 0.01, 0.02, 0.03 } },
+    [](const double x[3])
+    {
+      return std::hypot(std::hypot(x[0], x[1]), x[2]) < 0.45 ||
+        std::hypot(std::hypot(x[0] - 0.8, x[1] - 0.8), x[2] - 0.8) < 0.3;
+    });
+  vtkSmartPointer<vtkTable> first;
+  for (const double begin : { 0.0, -1.0, -0.33, 0.77, -7.12 })
+  {
+    const double period[6] = { begin, begin + 2.0, begin + 0.1, begin + 2.1, begin, begin + 2.0 };
+    vtkSmartPointer<vtkTable> table = PiecesOf(particles, period);
+    first = first ? first : table;
+    CHECK(table->GetNumberOfRows() == 2);
+    for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+    {
+      CHECK(At(table, row, "closed") == 1.0);
+      for (const char* column : { "area", "volume", "particles", "mass" })
+      {
+        CHECK(std::abs(At(table, row, column) / At(first, row, column) - 1.0) < 1e-5);
+      }
+      for (int a = 0; a < 3; ++a)
+      {
+        const char* const centres[3] = { "x", "y", "z" };
+        const double centre = At(table, row, centres[a]);
+        CHECK(std::abs(std::remainder(centre - At(first, row, centres[a]), 2.0)) < 1e-5);
+        CHECK(centre > period[2 * a] - 1e-3 && centre < period[2 * a + 1] + 1e-3);
+      }
+    }
+  }
+}
+
+/// A drop in a bubble of a ball, and of a layer without an end, holds its particles wherever sides cut these.
+void CheckDropsInBubbles()
+{
+  for (const bool isLayer : { false, true })
+  {
+    for (const std::array<double, 3>& shift :
+      { std::array<double, 3>{ { 1.0, 1.0, 1.0 } }, std::array<double, 3>{ { 0.0, 1.0, 1.0 } },
+        std::array<double, 3>{ { 0.5, 0.1, 1.0 } }, std::array<double, 3>{ { 0.4, 1.8, 1.0 } } })
+    {
+      const auto radius = [](const double x[3])
+      { return std::hypot(std::hypot(x[0], x[1]), x[2]); };
+      auto particles = PeriodicLattice(shift,
+        [isLayer, &radius](const double x[3])
+        {
+          const double r = radius(x);
+          return r < 0.16 || (r > 0.42 && (isLayer ? std::abs(x[2]) < 0.75 : r < 0.75));
+        });
+      double dropped = 0.0;
+      for (vtkIdType i = 0; i < particles->GetNumberOfPoints(); ++i)
+      {
+        double x[3];
+        particles->GetPoint(i, x);
+        for (int a = 0; a < 3; ++a)
+        {
+          x[a] -= shift[static_cast<size_t>(a)];
+        }
+        dropped += radius(x) < 0.16;
+      }
+      const double period[6] = { 0.0, 2.0, 0.0, 2.0, 0.0, isLayer ? 0.0 : 2.0 };
+      vtkSmartPointer<vtkTable> table = PiecesOf(particles, period);
+      const vtkIdType rows = isLayer ? 4 : 3;
+      CHECK(table->GetNumberOfRows() == rows);
+      int bubbles = 0, drops = 0;
+      for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+      {
+        const double volume = At(table, row, "volume");
+        if (volume < 0.0)
+        {
+          const double parent = At(table, row, "parent");
+          CHECK(parent >= 0.0 &&
+            std::isnan(At(table, static_cast<vtkIdType>(parent), "volume")) == isLayer);
+          ++bubbles;
+        }
+        else if (volume < 0.1)
+        {
+          CHECK(At(table, row, "particles") == dropped);
+          ++drops;
+        }
+        else if (volume > 0.1)
+        {
+          CHECK(At(table, row, "particles") ==
+            static_cast<double>(particles->GetNumberOfPoints()) - dropped);
+        }
+      }
+      CHECK(bubbles == 1 && drops == 1);
+    }
+  }
+}
+
 /// A lattice of n^3 particles around the origin, with the sides 2, those that are wanted.
 vtkSmartPointer<vtkPolyData> Lattice(int n, const std::function<bool(const double x[3])>& wanted)
 {
@@ -432,6 +559,8 @@ int TestComponents(int, char*[])
   CheckFluid();
   CheckAgainstVtk();
   CheckPeriod();
+  CheckSides();
+  CheckDropsInBubbles();
   CheckConvergence();
   CheckSums();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

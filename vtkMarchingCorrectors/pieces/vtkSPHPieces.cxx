@@ -32,6 +32,7 @@ vtkSPHPieces::vtkSPHPieces(vtkPolyData* mesh, const double period[6])
   this->NumberPieces();
   this->FindClosed();
   this->Measure();
+  this->MoveHome();
   this->FindParents();
 }
 
@@ -98,12 +99,21 @@ void vtkSPHPieces::JoinSides()
   std::vector<std::vector<vtkIdType>> members(count); // parts of a group, by its first
   for (int a = 0; a < 3; ++a)
   {
-    const double low = this->Period[2 * a], high = this->Period[2 * a + 1];
-    if (!(low < high))
+    const double period = this->Period[2 * a + 1] - this->Period[2 * a];
+    const double tolerance = SideTolerance * period;
+    double low = VTK_DOUBLE_MAX, high = -VTK_DOUBLE_MAX; // of points that triangles use
+    for (const auto& triangle : this->Triangles)
+    {
+      for (const vtkIdType point : triangle)
+      {
+        low = std::min(low, this->Points[static_cast<size_t>(point)][a]);
+        high = std::max(high, this->Points[static_cast<size_t>(point)][a]);
+      }
+    }
+    if (!(period > 0.0) || !(std::abs(high - low - period) <= tolerance))
     {
       continue;
     }
-    const double tolerance = SideTolerance * (high - low);
     std::map<std::pair<double, double>, vtkIdType> lower;
     const auto key = [&](size_t i)
     { return std::make_pair(this->Points[i][(a + 1) % 3], this->Points[i][(a + 2) % 3]); };
@@ -333,6 +343,38 @@ void vtkSPHPieces::Measure()
   }
 }
 
+// Whichever part came first, and wherever the lattice's sides are. A centre on a side, but for rounding, is on the
+// lower one.
+void vtkSPHPieces::MoveHome()
+{
+  std::vector<Shift> moves(this->Pieces.size());
+  for (size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    vtkSPHPiece& piece = this->Pieces[i];
+    for (int a = 0; a < 3; ++a)
+    {
+      const double low = this->Period[2 * a], period = this->Period[2 * a + 1] - low;
+      const double away =
+        period > 0.0 ? std::floor((piece.Centre[a] - low) / period + SideTolerance) : 0.0;
+      moves[i][a] = static_cast<int>(-away);
+      piece.Centre[a] -= away * period;
+      piece.Bounds[2 * a] -= away * period;
+      piece.Bounds[2 * a + 1] -= away * period;
+    }
+  }
+  for (size_t i = 0; i < this->Points.size(); ++i)
+  {
+    if (this->PieceOfPoint[i] >= 0 && this->Root[i] == static_cast<vtkIdType>(i))
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        this->GroupShift[i][a] += moves[static_cast<size_t>(this->PieceOfPoint[i])][a];
+      }
+    }
+  }
+}
+
+// A cavity in a piece without a volume, such as a layer over the whole period, has that one as parent.
 void vtkSPHPieces::FindParents()
 {
   std::vector<Triple> places;
@@ -347,10 +389,12 @@ void vtkSPHPieces::FindParents()
       cavities.push_back(static_cast<vtkIdType>(i));
     }
   }
-  const std::vector<vtkIdType> around = this->FindEnclosing(places, cavities);
+  const std::vector<vtkIdType> within = this->FindEnclosing(places, cavities);
+  const bool isAll = std::count(within.begin(), within.end(), -1) == 0;
+  const std::vector<vtkIdType> around = isAll ? within : this->FindAround(places);
   for (size_t i = 0; i < cavities.size(); ++i)
   {
-    this->Pieces[static_cast<size_t>(cavities[i])].Parent = around[i];
+    this->Pieces[static_cast<size_t>(cavities[i])].Parent = within[i] >= 0 ? within[i] : around[i];
   }
 }
 VTK_ABI_NAMESPACE_END

@@ -31,8 +31,9 @@ struct vtkSPHPiece
 
 /**
  * Triangles that share points are one piece, also across the sides of a period (bounds, 0 0 where there is
- * none): points there have the same other coordinates, to the last bit. Pieces are in the order of their areas,
- * the largest first.
+ * none): points there have the same other coordinates, to the last bit. A surface ends at planes of its lattice, up
+ * to a cube from these bounds and a period from each other: where it passes them, its own bounds are these sides.
+ * Pieces are in the order of their areas, the largest first. Each is where its centre is within the period.
  */
 class vtkSPHPieces
 {
@@ -44,8 +45,8 @@ public:
   std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses it
 
   /**
-   * For each point the innermost piece with fluid inside that encloses it, -1: none does. `without`: of
-   * each point, a piece that is as if it were not there; may be empty.
+   * For each point the innermost piece with a volume that encloses it: -1 if that is a cavity or there is none.
+   * `without`: of each point, a piece that is as if it were not there; may be empty.
    */
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
     const std::vector<vtkIdType>& without = {}) const;
@@ -60,7 +61,10 @@ private:
   void NumberPieces();
   void Measure();
   void FindClosed();
+  void MoveHome();
   void FindParents();
+  std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
+  std::vector<vtkIdType> FindAround(const std::vector<std::array<double, 3>>& points) const;
   vtkIdType RootOf(vtkIdType point);
   Shift ShiftOf(vtkIdType point) const;
   void CornersOf(vtkIdType triangle, double corners[3][3]) const;

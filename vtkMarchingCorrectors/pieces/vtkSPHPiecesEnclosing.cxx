@@ -38,8 +38,8 @@ bool IsBelow(const double* a, const double* b, double y, double z)
   return z < first[2] + (y - first[1]) * ((second[2] - first[2]) / (second[1] - first[1]));
 }
 
-/** 1: the ray from the point leaves through this face; -1: it enters; 0: it passes by. */
-int Crossing(const Face& face, const Triple& point)
+/** 1: the ray from the point leaves through this face; -1: it enters; 0: it passes by. *at: where, along x. */
+int Crossing(const Face& face, const Triple& point, double* at)
 {
   const double(&c)[3][3] = face.Corner;
   const double y = point[1], z = point[2];
@@ -62,8 +62,8 @@ int Crossing(const Face& face, const Triple& point)
   {
     return 0;
   }
-  const double x = c[0][0] - (n[1] * (y - c[0][1]) + n[2] * (z - c[0][2])) / n[0];
-  return x <= point[0] ? 0 : n[0] > 0.0 ? 1 : -1;
+  *at = c[0][0] - (n[1] * (y - c[0][1]) + n[2] * (z - c[0][2])) / n[0];
+  return *at <= point[0] ? 0 : n[0] > 0.0 ? 1 : -1;
 }
 
 /** Faces by columns. */
@@ -146,37 +146,37 @@ private:
   const std::vector<size_t> None;
 };
 
-/** The innermost piece around the point: of those that the ray leaves, the one of least volume; none where
- * it enters as many, being in a cavity. */
-vtkIdType Enclosing(const Columns& columns, const std::vector<vtkSPHPiece>& pieces,
-  const Triple& point, vtkIdType without)
+/** Makes `innermost` the piece of the least volume, a cavity's without its sign, of those around the point and it. */
+void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
+  vtkIdType without, vtkIdType& innermost)
 {
-  std::vector<std::pair<vtkIdType, int>> turns; // of pieces
+  std::vector<std::pair<vtkIdType, int>>
+    turns; // of pieces: how often the ray leaves rather than enters
   for (const size_t f : columns.At(point[1], point[2]))
   {
     const Face& face = columns.Faces[f];
-    const int crossing = face.Piece == without ? 0 : Crossing(face, point);
+    double at;
+    const int crossing = face.Piece == without ? 0 : Crossing(face, point, &at);
     if (crossing != 0)
     {
-      auto at = std::find_if(turns.begin(), turns.end(),
-        [&](const std::pair<vtkIdType, int>& turn) { return turn.first == face.Piece; });
-      at = at == turns.end() ? turns.insert(at, { face.Piece, 0 }) : at;
-      at->second += crossing;
+      auto turn = std::find_if(turns.begin(), turns.end(),
+        [&face](const std::pair<vtkIdType, int>& one) { return one.first == face.Piece; });
+      turn = turn == turns.end() ? turns.insert(turn, { face.Piece, 0 }) : turn;
+      turn->second += crossing;
     }
   }
-  int total = 0;
-  vtkIdType found = -1;
+  const auto sizeOf = [&pieces](vtkIdType piece)
+  { return std::abs(pieces[static_cast<size_t>(piece)].Volume); };
   for (const auto& turn : turns)
   {
-    const double volume = pieces[static_cast<size_t>(turn.first)].Volume;
-    total += turn.second;
-    const bool encloses = turn.second > 0 && volume > 0.0;
-    if (encloses && (found < 0 || volume < pieces[static_cast<size_t>(found)].Volume))
+    const bool encloses =
+      (turn.second > 0) == (pieces[static_cast<size_t>(turn.first)].Volume > 0.0) &&
+      turn.second != 0;
+    if (encloses && (innermost < 0 || sizeOf(turn.first) < sizeOf(innermost)))
     {
-      found = turn.first;
+      innermost = turn.first;
     }
   }
-  return total > 0 ? found : -1;
 }
 
 /** Moves the place into the period. */
@@ -192,7 +192,37 @@ Triple WithinPeriod(const double period[6], const Triple& point)
 }
 }
 
-// A point may be whole periods away; within the period, in a piece that sticks out of it at the other side.
+// From anywhere within the period to wherever these pieces are.
+std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
+{
+  std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = this->Period[2 * a], period = this->Period[2 * a + 1] - low;
+    int first = 0, last = 0;
+    for (const vtkSPHPiece& piece : this->Pieces)
+    {
+      if (period > 0.0 && piece.HasVolume() == hasVolume)
+      {
+        first = std::min(first, static_cast<int>(std::floor((piece.Bounds[2 * a] - low) / period)));
+        last =
+          std::max(last, static_cast<int>(std::floor((piece.Bounds[2 * a + 1] - low) / period)));
+      }
+    }
+    const std::vector<Triple> before = std::move(shifts);
+    shifts.clear();
+    for (int k = first; k <= last; ++k)
+    {
+      for (Triple shift : before)
+      {
+        shift[a] = k * period;
+        shifts.push_back(shift);
+      }
+    }
+  }
+  return shifts;
+}
+
 std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   const std::vector<Triple>& points, const std::vector<vtkIdType>& without) const
 {
@@ -208,35 +238,94 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
     }
   }
   const Columns columns(std::move(faces));
-  std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };
-  for (int a = 0; a < 3; ++a)
-  {
-    const double period = this->Period[2 * a + 1] - this->Period[2 * a];
-    const size_t count = shifts.size();
-    for (size_t i = 0; i < count && period > 0.0; ++i)
-    {
-      for (const double way : { period, -period })
-      {
-        shifts.push_back(shifts[i]);
-        shifts.back()[a] += way;
-      }
-    }
-  }
+  const std::vector<Triple> shifts = this->ListShifts(true);
   std::vector<vtkIdType> found(points.size(), -1);
   vtkSMPTools::For(0, static_cast<vtkIdType>(points.size()),
-    [&](vtkIdType begin, vtkIdType end)
+    [this, &points, &without, &columns, &shifts, &found](vtkIdType begin, vtkIdType end)
     {
       for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
       {
         const Triple home = WithinPeriod(this->Period, points[i]);
-        for (size_t s = 0; s < shifts.size() && found[i] < 0; ++s)
+        vtkIdType innermost = -1;
+        for (const Triple& shift : shifts)
         {
-          const Triple at = { { home[0] + shifts[s][0], home[1] + shifts[s][1],
-            home[2] + shifts[s][2] } };
-          found[i] = Enclosing(columns, this->Pieces, at, without.empty() ? -1 : without[i]);
+          const Triple at = { { home[0] + shift[0], home[1] + shift[1], home[2] + shift[2] } };
+          Enclose(columns, this->Pieces, at, without.empty() ? -1 : without[i], innermost);
         }
+        const bool isFluid =
+          innermost >= 0 && this->Pieces[static_cast<size_t>(innermost)].Volume > 0.0;
+        found[i] = isFluid ? innermost : -1;
       }
     });
+  return found;
+}
+
+// Rays go both ways along each axis. Each ends at the first face of such a piece, which it leaves or enters: most of
+// them tell where an open piece has holes.
+std::vector<vtkIdType> vtkSPHPieces::FindAround(const std::vector<Triple>& points) const
+{
+  std::vector<int> left(points.size(), 0); // less those that were entered
+  std::vector<vtkIdType> found(points.size(), -1);
+  std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
+  const std::vector<Triple> shifts = this->ListShifts(false);
+  for (int ray = 0; ray < 6; ++ray)
+  {
+    const int axis = ray / 2;
+    const double way = ray % 2 ? -1.0 : 1.0; // mirrored, a face has its other side in front
+    const auto turn = [axis, way](const double* x) {
+      return Triple{ { way * x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3] } };
+    };
+    std::vector<Face> faces;
+    for (size_t t = 0; t < this->Triangles.size(); ++t)
+    {
+      Face face;
+      face.Piece = this->PieceOfTriangle[t];
+      if (!this->Pieces[static_cast<size_t>(face.Piece)].HasVolume())
+      {
+        double corners[3][3];
+        this->CornersOf(static_cast<vtkIdType>(t), corners);
+        for (int i = 0; i < 3; ++i)
+        {
+          const Triple turned = turn(corners[i]);
+          std::copy(turned.begin(), turned.end(), face.Corner[i]);
+        }
+        faces.push_back(face);
+      }
+    }
+    const Columns columns(std::move(faces));
+    for (size_t i = 0; i < points.size(); ++i)
+    {
+      const Triple home = WithinPeriod(this->Period, points[i]);
+      double first = VTK_DOUBLE_MAX, at;
+      int side = 0;
+      vtkIdType piece = -1;
+      for (const Triple& shift : shifts)
+      {
+        const Triple moved = { { home[0] + shift[0], home[1] + shift[1], home[2] + shift[2] } };
+        const Triple point = turn(moved.data());
+        for (const size_t f : columns.At(point[1], point[2]))
+        {
+          const int crossing = Crossing(columns.Faces[f], point, &at);
+          if (crossing != 0 && at - point[0] < first)
+          {
+            first = at - point[0];
+            side = way > 0.0 ? crossing : -crossing;
+            piece = columns.Faces[f].Piece;
+          }
+        }
+      }
+      left[i] += side;
+      if (side > 0 && first < nearest[i])
+      {
+        nearest[i] = first;
+        found[i] = piece;
+      }
+    }
+  }
+  for (size_t i = 0; i < points.size(); ++i)
+  {
+    found[i] = left[i] > 0 ? found[i] : -1;
+  }
   return found;
 }
 VTK_ABI_NAMESPACE_END

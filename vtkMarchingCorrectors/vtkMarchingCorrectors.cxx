@@ -240,7 +240,6 @@ void vtkMarchingCorrectors::ClearSummary()
   this->UsedIsoValues.clear();
   this->IsoValueArrayName.clear();
   this->UsedSmoothingLength.clear();
-  this->UsedVolume.clear();
   this->UsedCubeSize = 0.0;
   this->SurfaceMeasures.clear();
   this->EstimatedCells = 0.0;
@@ -337,7 +336,6 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
   this->IsoValueArrayName = options.outputs & MCOR_OUT_ISO_VALUE ? input.IsoValueName : "";
   this->UsedSmoothingLength =
     vtkSPHTakeText(mcor_describe_smoothing_length(&input.Core, &statistics));
-  this->UsedVolume = vtkSPHTakeText(mcor_describe_volume(&input.Core));
   this->UsedCubeSize = statistics.cube_size;
   this->SurfaceMeasures = vtkSPHTakeText(mcor_describe_measures(&statistics));
 }
@@ -387,7 +385,6 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   PrintNumbers(os, indent, "Fluid Scalar Range", this->FluidScalarRange, 2);
   os << indent << "Used Iso Values: " << this->UsedIsoValues << "\n";
   os << indent << "Used Smoothing Length: " << this->UsedSmoothingLength << "\n";
-  os << indent << "Used Volume: " << this->UsedVolume << "\n";
   os << indent << "Used Cube Size: " << this->UsedCubeSize << "\n";
   os << indent << "Surface Measures: " << this->SurfaceMeasures << "\n";
   os << indent << "Estimated Cells: " << this->EstimatedCells << "\n";

@@ -462,7 +462,6 @@ public:
   vtkGetCharFromStdStringMacro(UsedIsoValues);
   vtkGetCharFromStdStringMacro(IsoValueArrayName);
   vtkGetCharFromStdStringMacro(UsedSmoothingLength);
-  vtkGetCharFromStdStringMacro(UsedVolume);
   vtkGetMacro(UsedCubeSize, double);
   vtkGetCharFromStdStringMacro(SurfaceMeasures);
   vtkGetMacro(EstimatedCells, double);
@@ -535,7 +534,6 @@ protected:
   std::string UsedIsoValues;
   std::string IsoValueArrayName;
   std::string UsedSmoothingLength;
-  std::string UsedVolume;
   double UsedCubeSize = 0.0;
   std::string SurfaceMeasures;
   double EstimatedCells = 0.0;

@@ -294,6 +294,7 @@ int vtkSPHAlgorithm::RequestData(
   this->Warned.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->Internals->BeginRun();
+  this->IsPart = this->IsShared();
   auto* tree = vtkDataObjectTree::GetData(inputVector[0]);
   vtkDataObjectTree* apart = this->TakesTogether() ? nullptr : tree;
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
@@ -384,6 +385,8 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
   { return std::string(array && array->GetName() ? array->GetName() : ""); };
   this->UsedSmoothingLengthArrayName = nameOf(particles ? particles->SmoothingLength : nullptr);
   this->UsedVolumeArrayName = nameOf(particles ? particles->Volume : nullptr);
+  this->UsedVolume =
+    particles ? vtkSPHTakeText(mcor_describe_volume(&particles->Core)) : std::string();
   this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
   this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
   this->UsedFluid = particles ? particles->DescribeFluid() : "";
@@ -405,6 +408,8 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   printName("Smoothing Length Array Name", this->SmoothingLengthArrayName);
   os << indent << "Smoothing Length: " << this->SmoothingLength << "\n";
   os << indent << "Estimate Smoothing Length: " << this->EstimateSmoothingLength << "\n";
+  os << indent << "Smoothing Length Estimate: " << this->SmoothingLengthEstimate << "\n";
+  os << indent << "Neighbor Ratio: " << this->NeighborRatio << "\n";
   os << indent << "Smoothing Length Is Support Radius: " << this->SmoothingLengthIsSupportRadius
      << "\n";
   printName("Volume Array Name", this->VolumeArrayName);
@@ -412,10 +417,12 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   printName("Density Array Name", this->DensityArrayName);
   os << indent << "Mass: " << this->Mass << "\n";
   os << indent << "Density: " << this->Density << "\n";
+  os << indent << "Particle Volume: " << this->ParticleVolume << "\n";
   os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
   PrintNumbers(os, indent, "Periodic Bounds", this->PeriodicBounds, 6);
   os << indent << "Detect Period: " << this->DetectPeriod << "\n";
   printName("Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
+  os << indent << "Used Volume: " << this->UsedVolume << "\n";
   printName("Used Volume Array Name", this->UsedVolumeArrayName);
   printName("Used Mass Array Name", this->UsedMassArrayName);
   printName("Used Density Array Name", this->UsedDensityArrayName);

@@ -13,8 +13,8 @@
  * others that mcor_name_priority in mcor.h knows.
  *
  * The volume of a particle is taken from the volume array; else it is mass / density; else, with masses
- * alone, m_j / sum_k m_k W(x_j - x_k, h_j); else 1 / sum_k W(x_j - x_k, h_j). As an array name,
- * "(automatic)" and "(none)" mean the same as an empty one.
+ * alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j sum_k W(x_j - x_k, h_j)), where F_j makes up
+ * for a side without neighbours (see mcor_input in mcor.h). As an array name, "(automatic)" and "(none)" mean the same as an empty one.
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
@@ -82,17 +82,24 @@ struct vtkSPHParticlesChoice
   std::string SmoothingLengthArrayName;
   double SmoothingLength = 0.0;
   vtkTypeBool EstimateSmoothingLength = 0;
+  int SmoothingLengthEstimate = 0;
+  double NeighborRatio = 1.3;
   vtkTypeBool SmoothingLengthIsSupportRadius = 0;
   std::string VolumeArrayName;
   std::string MassArrayName;
   std::string DensityArrayName;
   double Mass = 0.0;
   double Density = 0.0;
+  double ParticleVolume = 0.0;
   vtkTypeBool DetectArrays = 1;
   std::string FluidArrayName;
   double FluidValue = 0.0;
   vtkTypeBool IgnoreSolids = 0; ///< by the setter, or another one, of each filter
   int Kernel = 0;
+  int Dimension = 0;
+  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  vtkTypeBool DetectPeriod = 0;
+  bool IsPart = false; ///< of particles that several processes share
   std::vector<std::string> ExcludedArrays;
 
   /** Whether the fluid array is a block of composite data, "Block: NAME". */
@@ -148,6 +155,22 @@ public:
    */
   vtkSPHFlagMacro(EstimateSmoothingLength);
 
+  enum EstimateType
+  {
+    ESTIMATE_SPACING = 0,  ///< one for all particles, from their median spacing
+    ESTIMATE_NEIGHBORS = 1 ///< one for each particle
+  };
+
+  ///@{
+  /**
+   * What EstimateSmoothingLength estimates: ESTIMATE_SPACING (the default); or for each particle the h with
+   * h^d sum W(x - x_j, h) = NeighborRatio^d over all particles x_j, d being the dimension, as Phantom, GADGET and
+   * SWIFT define it. NeighborRatio: 1.3 by default, about 57 neighbours with the cubic spline. Of one process only.
+   */
+  vtkSPHClampMacro(SmoothingLengthEstimate, int, ESTIMATE_SPACING, ESTIMATE_NEIGHBORS);
+  vtkSPHValueMacro(NeighborRatio, double);
+  ///@}
+
   /**
    * The array or constant is the support radius of the kernel (where it becomes 0) instead of the
    * smoothing length. Off by default.
@@ -167,6 +190,12 @@ public:
   vtkSPHValueMacro(Mass, double);
   vtkSPHValueMacro(Density, double);
   ///@}
+
+  /**
+   * One volume for all particles where nothing else tells volumes: neither their array, nor mass and density.
+   * Unit L^3, in two dimensions L^2. 0 (the default): volumes are computed then.
+   */
+  vtkSPHValueMacro(ParticleVolume, double);
 
   ///@{
   /**
@@ -202,6 +231,11 @@ public:
   vtkGetCharFromStdStringMacro(UsedMassArrayName);
   vtkGetCharFromStdStringMacro(UsedDensityArrayName);
   ///@}
+
+  /**
+   * What volumes were in the last run, in words: "array Mass / array Density", "computed from the positions".
+   */
+  vtkGetCharFromStdStringMacro(UsedVolume);
 
   ///@{
   /**
@@ -524,14 +558,12 @@ protected:
 
   double NextBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   std::string NextBlocks;
-  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  vtkTypeBool DetectPeriod = 0;
   std::string UsedSmoothingLengthArrayName;
+  std::string UsedVolume;
   std::string UsedVolumeArrayName;
   std::string UsedMassArrayName;
   std::string UsedDensityArrayName;
   double HScaleFactor = 1.0;
-  int Dimension = DIMENSION_AUTO;
   vtkTypeBool DetectFluid = 0;
   std::string UsedFluid;
   int Blocks = TOGETHER;

@@ -3,10 +3,14 @@
 #include "vtkSPHParticles.h"
 
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHPeriod.h"
 #include "vtkSPHReals.h"
 
 #include <algorithm>
@@ -87,6 +91,22 @@ bool vtkSPHParticles::CollectSmoothingLength()
   this->Core.smoothing_length_is_support_radius =
     this->Description.SmoothingLengthIsSupportRadius ? 1 : 0;
   this->Core.estimate_smoothing_length = this->Description.EstimateSmoothingLength ? 1 : 0;
+  const vtkSPHParticlesChoice& f = this->Description;
+  if (this->Core.estimate_smoothing_length &&
+    f.SmoothingLengthEstimate == vtkSPHAlgorithm::ESTIMATE_NEIGHBORS)
+  {
+    if (!this->SmoothingLength) // not from SumDensities()
+    {
+      this->SmoothingLength = this->Compute("SmoothingLength",
+        [this, &f](const mcor_options& options, double* values, char** why) {
+          return mcor_find_smoothing_lengths(&this->Core, &options, f.NeighborRatio, values, why);
+        });
+    }
+    this->Core.estimate_smoothing_length = this->Core.smoothing_length_is_support_radius = 0;
+    this->Core.smoothing_length =
+      this->SmoothingLength ? this->View(this->SmoothingLength) : mcor_array();
+    return this->Error.empty();
+  }
   if (this->Core.estimate_smoothing_length)
   {
     return true;
@@ -109,6 +129,65 @@ bool vtkSPHParticles::CollectSmoothingLength()
       this->ListPointArrays();
   }
   return this->Error.empty();
+}
+
+mcor_options vtkSPHParticles::OwnOptions() const
+{
+  const vtkSPHParticlesChoice& f = this->Description;
+  mcor_options options;
+  mcor_set_default_options(&options);
+  options.sph_kernel = static_cast<mcor_sph_kernel>(f.Kernel);
+  options.dimension = f.Dimension;
+  std::copy(f.PeriodicBounds, f.PeriodicBounds + 6, options.periodic);
+  const vtkSPHPeriod found =
+    f.DetectPeriod ? vtkSPHFindPeriod(this->Points->GetFieldData()) : vtkSPHPeriod();
+  if (!found.Period.empty())
+  {
+    const std::vector<double> bounds =
+      vtkSPHBoundsOfPeriod(found.Period, this->Points->GetBounds());
+    std::copy(bounds.begin(), bounds.end(), options.periodic);
+  }
+  return options;
+}
+
+vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(
+  const char* name, const std::function<int(const mcor_options&, double*, char**)>& call)
+{
+  if (this->Description.IsPart)
+  {
+    this->Error = std::string(name) +
+      " is made of all particles' neighbours, and so in one process only. Run one process, or "
+      "store it beforehand.";
+    return nullptr;
+  }
+  if (!this->Core.positions.data)
+  {
+    this->Core.positions = this->View(this->Points->GetPoints()->GetData());
+    this->Core.positions.name = nullptr;
+  }
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfValues(this->Points->GetNumberOfPoints());
+  char* why = nullptr;
+  if (call(this->OwnOptions(), array->GetPointer(0), &why) != MCOR_OK)
+  {
+    const std::string sentence = vtkSPHTakeText(why);
+    this->Error = sentence.empty() ? "Host memory ran out." : sentence;
+    return nullptr;
+  }
+  return array.GetPointer();
+}
+
+vtkDataArray* vtkSPHParticles::SumDensities()
+{
+  if (!this->CollectSmoothingLength() || !this->CollectVolume())
+  {
+    return nullptr;
+  }
+  this->Summed = this->Compute("Density",
+    [this](const mcor_options& options, double* values, char** why)
+    { return mcor_sum_densities(&this->Core, &options, values, why); });
+  return this->Summed;
 }
 
 // An array or constant that was set goes before detection: with a mass set, a volume array that
@@ -134,11 +213,23 @@ bool vtkSPHParticles::CollectVolume()
   {
     return false;
   }
+  if (this->Summed && !mcor_is_given(&this->Core.density))
+  {
+    this->Density = this->Summed;
+    this->Core.density = this->View(this->Summed);
+  }
   if (!mcor_is_given(&this->Core.mass))
   {
     // A density alone says nothing of volumes, and is not to be reported as used.
     this->Density = nullptr;
     this->Core.density = {};
+  }
+  if (f.ParticleVolume > 0.0 &&
+    !(mcor_is_given(&this->Core.mass) && mcor_is_given(&this->Core.density)))
+  {
+    this->Core.volume.constant = f.ParticleVolume;
+    this->Mass = this->Density = nullptr;
+    this->Core.mass = this->Core.density = {};
   }
   return true;
 }

@@ -146,11 +146,20 @@ protected:
   std::string ListPointArrays() const;
 
   bool CollectSolids();
+  bool CollectVolume();
+
+  /** "Density", summed from masses, which gives volumes, too, from then on; null, and Error, where it fails. */
+  vtkDataArray* SumDensities();
 
   vtkSmartPointer<vtkPointSet> Points;
 
 private:
-  bool CollectVolume();
+  /** What sums over neighbours depend on. */
+  mcor_options OwnOptions() const;
+  /** Fills an array of this name by the core's function; null, and Error, where it fails. */
+  vtkSmartPointer<vtkDataArray> Compute(
+    const char* name, const std::function<int(const mcor_options&, double*, char**)>& call);
+  vtkSmartPointer<vtkDataArray> Summed; // density
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
   void Sign();
 

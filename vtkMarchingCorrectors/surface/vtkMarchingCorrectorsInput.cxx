@@ -52,7 +52,11 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
     return false;
   }
   this->Scalar = scalar.Name == "Velocity" && !scalar.Array ? this->JoinVelocity() : nullptr;
-  if (!this->Scalar)
+  if (scalar.Name == "Density" && !scalar.Array)
+  {
+    this->Scalar = this->SumDensities();
+  }
+  else if (!this->Scalar)
   {
     this->Scalar = this->Check("scalar", scalar.Name, scalar.Array);
   }

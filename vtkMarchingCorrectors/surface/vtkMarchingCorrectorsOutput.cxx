@@ -371,6 +371,10 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   vtkSPHAddCount(
     fieldData, "EstimateSmoothingLength", { this->Input.Core.estimate_smoothing_length });
   AddArrayName(fieldData, "VolumeArray", this->Input.Core.volume);
+  if (!this->Input.Core.volume.data && mcor_is_given(&this->Input.Core.volume))
+  {
+    vtkSPHAddReal(fieldData, "ParticleVolume", { this->Input.Core.volume.constant });
+  }
   AddQuantity(fieldData, "Mass", this->Input.Core.mass);
   AddQuantity(fieldData, "Density", this->Input.Core.density);
   vtkSPHAddText(

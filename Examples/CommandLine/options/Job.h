@@ -85,6 +85,7 @@ struct Job
   std::string Density;
   double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
   double CoefH = 1.0;
+  double NeighborRatio = 0.0; ///< of --smoothing-length neighbours; 0: another one
   bool DetectPeriod = false;               ///< --periodic auto
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
   bool HasVertexThreshold = false;         ///< else it is what suits the boundary detection

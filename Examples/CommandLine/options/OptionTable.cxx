@@ -39,6 +39,17 @@ void SetFluid(Job& job, Text option, Text text)
   SetAll(job, &vtkSPHAlgorithm::SetFluidValue, ToNumber(option, text.substr(equals + 1)));
 }
 
+void SetSmoothingLength(Job& job, Text option, Text text)
+{
+  job.SmoothingLength = ToQuantity(option, text);
+  const std::size_t equals = text.find('=');
+  const std::string word = text.substr(0, equals);
+  const bool isWord = word == "neighbours" || word == "neighbors";
+  job.NeighborRatio = !isWord     ? 0.0
+    : equals == std::string::npos ? MCOR_USUAL_ETA
+                                  : ToPositive(option, text.substr(equals + 1));
+}
+
 void SetSolids(Job& job, Text option, Text text)
 {
   const int solids = ToChoice(option, text,
@@ -186,11 +197,13 @@ const Options Gauges = {
 
 const Options TheParticles = {
   { "", "", "The particles (arrays are found by their usual names unless they are given)", {} },
-  { "--smoothing-length", "NAME|VALUE|estimate",
-    "an array, one value, or an estimate from the particle spacing",
-    [](Job& j, Text n, Text v) { j.SmoothingLength = ToQuantity(n, v); } },
+  { "--smoothing-length", "NAME|VALUE|estimate|neighbours[=ETA]",
+    "an array, one value, an estimate from the particle spacing, or for each particle from its "
+    "neighbours (h^3 x sum of W = ETA^3, default 1.3)",
+    SetSmoothingLength },
   { "--dp", "D",
-    "DualSPHysics: the initial particle distance; h = coefh x sqrt(3) x D (sqrt(2) in 2-D)",
+    "DualSPHysics: the initial particle distance; h = coefh x sqrt(3) x D (sqrt(2) in 2-D), and "
+    "volumes are D^3 (D^2) unless mass and density tell them",
     [](Job& j, Text n, Text v) { j.ParticleDistance = ToPositive(n, v); } },
   { "--coefh", "C", "DualSPHysics: the coefficient in --dp (default 1)",
     [](Job& j, Text n, Text v) { j.CoefH = ToPositive(n, v); } },

@@ -230,7 +230,8 @@ bool MakeGaugeTable(const Job& job, MessageCapture* messages, const StepSharing&
   if (!job.Quiet && sharing.IsFirst)
   {
     std::cout << gauges.size() << (gauges.size() == 1 ? " gauge, " : " gauges, ") << steps
-              << (steps == 1 ? " step\n" : " steps\n");
+              << (steps == 1 ? " step" : " steps") << "; volumes: " << job.Gauge->GetUsedVolume()
+              << "\n";
   }
   return isGood;
 }

@@ -22,7 +22,7 @@ namespace
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
 const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
-  "Mass", "Density", "IsoValues", "Field", "CubeSizeMode", "Capping",
+  "ParticleVolume", "Mass", "Density", "IsoValues", "Field", "CubeSizeMode", "Capping",
 #define BOUNDS(member, scope, property) property,
 #define OPTION(member, usual, legal, words, scope, property) property,
 #include "mcor_options.def"
@@ -77,6 +77,10 @@ std::string DescribeVolume(vtkFieldData* run)
   if (!volume.empty())
   {
     return "array " + volume;
+  }
+  if (run->HasArray("ParticleVolume"))
+  {
+    return Format(run, "ParticleVolume");
   }
   if (!mass.empty() && !density.empty())
   {

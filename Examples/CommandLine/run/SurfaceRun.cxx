@@ -43,7 +43,14 @@ bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   double value = 0.0;
-  if (job.SmoothingLength == "estimate" && !particles->GetPointData()->HasArray("estimate"))
+  const bool isArray = particles->GetPointData()->HasArray(job.SmoothingLength.c_str());
+  if (!isArray && job.NeighborRatio > 0.0)
+  {
+    filter->EstimateSmoothingLengthOn();
+    filter->SetSmoothingLengthEstimate(vtkSPHAlgorithm::ESTIMATE_NEIGHBORS);
+    filter->SetNeighborRatio(job.NeighborRatio);
+  }
+  else if (!isArray && job.SmoothingLength == "estimate")
   {
     filter->EstimateSmoothingLengthOn();
   }
@@ -80,6 +87,7 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   {
     const double dimension = filter->FindDimension(particles);
     filter->SetSmoothingLength(job.CoefH * std::sqrt(dimension) * job.ParticleDistance);
+    filter->SetParticleVolume(std::pow(job.ParticleDistance, dimension));
   }
   const std::vector<double> period = job.DetectPeriod ? DetectPeriod(particles) : job.Periodic;
   if (!period.empty())

@@ -370,6 +370,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                       "no surface.", "Warning")
             return
         try:
+            if choice.EstimateSmoothingLength and choice.SmoothingLengthEstimate:
+                particles.estimate_by_neighbours(options)
             self._extract(particles, options, output)
         except Cancelled:
             pass

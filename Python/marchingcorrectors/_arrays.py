@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from . import _structs as c
-from ._library import InvalidArgument, lib
+from ._library import ERRORS, Error, InvalidArgument, lib
 from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of
+from ._warnings import take_text
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
@@ -178,6 +179,27 @@ class Arguments:
                 set_option(target, name, kind_of(name), value)
         if self.options.capping and any(self.options.box):
             self.options.capping = 2  # MCOR_CAP_BOX
+
+    def per_neighbours(self, function, *more):
+        """Numbers of (particles,) that a function of the core sums over their neighbours."""
+        values, why = np.empty(self.count), ctypes.c_void_p()
+        status = function(ctypes.byref(self.input), ctypes.byref(self.options), *more,
+                          values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
+        sentence = take_text(why.value)
+        if status:
+            raise ERRORS.get(status, Error)(sentence or "Host memory ran out.")
+        return values
+
+    def estimate_by_neighbours(self, word):
+        """word: neighbours, or neighbours=ETA."""
+        name, equals, ratio = word.partition("=")
+        if name not in ("neighbours", "neighbors"):
+            raise InvalidArgument(f"estimate_smoothing_length is '{word}'; it must be True, \"neighbours\" or "
+                                  "\"neighbours=ETA\".")
+        ratio = convert(float, "ETA of neighbours", ratio) if equals else 1.3
+        lengths = self.per_neighbours(lib.mcor_find_smoothing_lengths, ratio)
+        self.input.smoothing_length = self.view(lengths, "smoothing length")
+        self.input.estimate_smoothing_length = self.input.smoothing_length_is_support_radius = 0
 
     def bounds_of_period(self, period):
         """Six bounds, also of three lengths: where the particles lie in them."""

@@ -51,7 +51,12 @@ def prepare(units, attributes, given, options):
     arguments.set_quantities(units.quantities(given))
     arguments.set_solid(given["solid"])
     names = arguments.set_attributes(attributes)
+    estimate = options.get("estimate_smoothing_length")
+    if isinstance(estimate, str):
+        options = {**options, "estimate_smoothing_length": False}
     arguments.set_options(units.options(options))
+    if isinstance(estimate, str):
+        arguments.estimate_by_neighbours(estimate)
     return arguments, names
 
 

@@ -34,7 +34,7 @@ class Options(c.CoreOptions, total=False):
     core/mcor_options.def are CoreOptions."""
 
     smoothing_length_is_support_radius: bool
-    estimate_smoothing_length: bool
+    estimate_smoothing_length: Union[bool, str]
     scalar_component: Union[int, Literal["magnitude"]]
     ignore_solids: bool
     particles_version: int
@@ -80,7 +80,9 @@ WORDS = {
     "triangle_keys": "True: numbers by which triangles of neighbouring boxes can be put in order.",
     "triangle_normals": "True: normals are means over triangles, not from the field's gradient.",
     "smoothing_length_is_support_radius": "True: smoothing_length is the radius at which the kernel ends.",
-    "estimate_smoothing_length": "True: 1.3 times the median particle distance; smoothing_length is not needed.",
+    "estimate_smoothing_length": "True: 1.3 times the median particle distance; smoothing_length is not needed. "
+                                 "\"neighbours\", or \"neighbours=ETA\": for each particle the h with h^3 sum W = ETA^3, "
+                                 "ETA 1.3 unless given (in a plane squares).",
     "scalar_component": "which component of a vector is contoured: 0, 1, ..., or its magnitude.",
     "ignore_solids": "True: walls do not add to the weights that trim the surface.",
     "particles_version": "equal numbers above 0 in two calls with one context promise that positions, smoothing "
@@ -124,7 +126,7 @@ def default_of(name):
             return word
     if isinstance(value, ctypes.Array):
         return None
-    return bool(value) if Options.__annotations__[name] is bool else value
+    return bool(value) if Options.__annotations__[name] is bool or name == "estimate_smoothing_length" else value
 
 
 def did_you_mean(name, known):

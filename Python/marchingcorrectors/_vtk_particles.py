@@ -4,7 +4,7 @@
 import ctypes
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
@@ -303,6 +303,15 @@ class Particles:
         for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids"):
             setattr(result.input, name, bool(getattr(self.choice, camel(name))))
         return result
+
+    def estimate_by_neighbours(self, options):
+        """Smoothing lengths as an array, in place of the estimate of one."""
+        given = self.arguments()
+        given.options = options
+        array = numpy_to_vtk(given.per_neighbours(lib.mcor_find_smoothing_lengths, self.choice.NeighborRatio), deep=True)
+        array.SetName("SmoothingLength")
+        self.values["smoothing_length"] = array
+        self.choice.EstimateSmoothingLength = self.choice.SmoothingLengthIsSupportRadius = 0
 
     @staticmethod
     def estimate_cells(arguments, options):

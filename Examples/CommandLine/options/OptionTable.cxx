@@ -7,6 +7,7 @@
 #include "Job.h"
 #include "OptionValue.h"
 #include "SafeText.h"
+#include "mcor.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -320,7 +321,8 @@ const Options TheMethod = {
       j.Probe->SetWeightThreshold(ToThreshold(n, v));
     } },
   { "--boundary", "weight_sum|eigenvalue",
-    "trim by the weight sum (default), or by the boundary eigenvalue of Marrone et al.", SetBoundary },
+    "trim by the weight sum (default), or by the boundary eigenvalue of Marrone et al.",
+    SetBoundary },
   { "--vertex-threshold", "T",
     "trim triangles where the weight (or eigenvalue) is lower than T (default 0.5, or 0.3)",
     [](Job& j, Text n, Text v)

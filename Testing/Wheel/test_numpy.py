@@ -299,6 +299,40 @@ class Inputs(unittest.TestCase):
         self.assertEqual(list(found.attributes), ["name\udc80", "nul\0"])
 
 
+def cubic(q):
+    return np.where(q < 1, 1 - 1.5 * q ** 2 + 0.75 * q ** 3, np.where(q < 2, 0.25 * np.maximum(2 - q, 0) ** 3, 0)) / np.pi
+
+
+class Neighbours(unittest.TestCase):
+    """Smoothing lengths that are estimated for each particle, against sums over all pairs."""
+
+    def test_smoothing_lengths(self):
+        x = np.random.default_rng(3).normal(size=(300, 3))
+        apart = np.linalg.norm(x[:, None] - x, axis=2)
+        for word, ratio in (("neighbours", 1.3), ("neighbours=1.1", 1.1), ("neighbors", 1.3)):
+            low, high = np.full(300, 1e-3), np.full(300, 20.0)
+            for _ in range(60):
+                h = 0.5 * (low + high)
+                few = cubic(apart / h[:, None]).sum(axis=1) < ratio ** 3
+                low, high = np.where(few, h, low), np.where(few, high, h)
+            found = quietly(mc.free_surface, x, estimate_smoothing_length=word).statistics
+            self.assertAlmostEqual(found["smoothing_length_min"] / low.min(), 1, delta=1e-5)
+            self.assertAlmostEqual(found["smoothing_length_max"] / low.max(), 1, delta=1e-5)
+
+    def test_words(self):
+        for word, sentence in (("nearest", "it must be True, \"neighbours\""), ("neighbours=x", "not a number"),
+                               ("neighbours=0.5", "ETA is 0.5; it must be above 0.683")):
+            with self.assertRaisesRegex(mc.InvalidArgument, sentence):
+                mc.free_surface(POSITIONS, estimate_smoothing_length=word)
+
+    def test_still_water(self):
+        """Volumes that are computed make up for the side without neighbours."""
+        x = np.stack(np.meshgrid(*[np.arange(16) + 0.5] * 3, indexing="ij"), -1).reshape(-1, 3)
+        for kernel, h in (("cubic", 1.0), ("cubic", 2.0), ("wendland", 2.078)):
+            gauges = mc.gauge(x, [((8.2, 8.1, 8), (8.2, 8.1, 20))], smoothing_length=h, sph_kernel=kernel)
+            self.assertAlmostEqual(float(gauges.place[0][2]), 16, delta=0.05)
+
+
 class Runs(unittest.TestCase):
     def test_context_keeps_particles(self):
         with mc.Context() as context:

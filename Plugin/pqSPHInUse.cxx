@@ -87,8 +87,7 @@ QString textOf(vtkSMProperty* property)
                        : QString::fromUtf8(values.GetAsString(i)));
     isKnown = isKnown || (isNumber ? values.GetAsDouble(i) != 0.0 : !texts.back().isEmpty());
   }
-  const bool isFluid = QLatin1String(property->GetXMLName()) == QLatin1String("NextFluid");
-  return isKnown ? texts.join(" to ") : isFluid ? QString("all particles") : QString("-");
+  return isKnown ? texts.join(" to ") : QString("-");
 }
 
 bool isShownElsewhere(vtkSMProperty* property)
@@ -349,8 +348,8 @@ void pqSPHInUse::showValues()
 {
   this->Pause.stop();
   this->proxy()->UpdatePropertyInformation();
-  this->showRows();
   this->colourLate();
+  this->showRows();
 }
 
 // ParaView chooses colours when something is shown first, even if there is nothing to see: after an error, or with an iso
@@ -482,8 +481,15 @@ void pqSPHInUse::showRows()
   for (const auto& row : this->Rows)
   {
     const bool huge = isHuge(row.first);
-    row.second->setText(
-      textOf(row.first) + (huge ? ": this may take minutes and much memory" : ""));
+    const QLatin1String name(row.first->GetXMLName());
+    const bool isDrawn = !this->WasEmpty && !isNew(this->proxy());
+    QString text = textOf(row.first);
+    if (text == "-" &&
+      (name == QLatin1String("NextFluid") || (name == QLatin1String("UsedFluid") && isDrawn)))
+    {
+      text = "all particles";
+    }
+    row.second->setText(text + (huge ? ": this may take minutes and much memory" : ""));
     row.second->setStyleSheet(huge ? "color: #c00000; font-weight: bold" : "");
     if (huge)
     {

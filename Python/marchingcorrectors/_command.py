@@ -86,7 +86,8 @@ def make_parser(command):
     add = parser.add_argument
     add("input", nargs="+", metavar="IN", help="a solver's file, or files of bodies that are one set")
     add("output", metavar="OUT", help=endings)
-    add("--smoothing-length", metavar="NAME|VALUE|estimate", type=quantity, help="an array, one value, or an estimate")
+    add("--smoothing-length", metavar="NAME|VALUE|estimate|neighbours[=ETA]", type=quantity,
+        help="an array, one value, an estimate of one, or of each by its neighbours")
     add("--dp", metavar="D", type=float, help="DualSPHysics: the initial particle distance; h is coefh x sqrt(3) x D (sqrt(2) "
         "in 2-D), and volumes are D^3 (D^2) where mass and density do not tell")
     add("--coefh", metavar="C", type=float, default=1.0, help="DualSPHysics: the coefficient in --dp (default 1)")
@@ -144,7 +145,7 @@ def find_words(given, names, particles):
             is_name = isinstance(value, str) and (name, value) != ("volume", "computed")
             words[name] = particles.array(value) if is_name else value
     length = given.smoothing_length
-    if length in ("estimate", "neighbours"):
+    if isinstance(length, str) and length.partition("=")[0] in ("estimate", "neighbours", "neighbors"):
         words["estimate_smoothing_length"] = True if length == "estimate" else length
     elif length is not None:
         words["smoothing_length"] = particles.array(length) if isinstance(length, str) else length

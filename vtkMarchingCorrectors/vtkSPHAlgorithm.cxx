@@ -88,6 +88,21 @@ const char* vtkSPHAlgorithm::GetExcludedArray(int i) const
     : nullptr;
 }
 
+void vtkSPHAlgorithm::AddOnly(const char* name, double low, double high)
+{
+  this->Only.push_back({ name ? name : "", low, high });
+  this->Modified();
+}
+
+void vtkSPHAlgorithm::ClearOnly()
+{
+  if (!this->Only.empty())
+  {
+    this->Only.clear();
+    this->Modified();
+  }
+}
+
 std::string vtkSPHAlgorithm::ListDevices()
 {
   char* text = nullptr;
@@ -240,14 +255,14 @@ void vtkSPHAlgorithm::Warn(const std::string& message)
 void vtkSPHAlgorithm::WarnOfFluid(
   vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence)
 {
-  const vtkSPHParticlesChoice& choice = particles.Description;
   if (fluidCount > 0)
   {
     this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
     return;
   }
-  vtkWarningMacro(<< this->BlockName << "No particle has " << choice.FluidArrayName << " = "
-                  << choice.FluidValue << ", so there is no fluid and " << consequence << ".");
+  const std::string problem = particles.DescribeNoFluid();
+  vtkWarningMacro(<< this->BlockName << problem << ", so there is no fluid and " << consequence
+                  << ".");
 }
 
 bool vtkSPHAlgorithm::Accept(
@@ -270,6 +285,17 @@ void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
   if (!message.empty() && this->Warned.insert(kind).second)
   {
     vtkWarningMacro(<< this->BlockName << message);
+  }
+}
+
+void vtkSPHAlgorithm::WarnOfParticles(
+  const mcor_input& core, const mcor_options& options, const mcor_statistics& statistics)
+{
+  mcor_surface surface = {};
+  surface.statistics = statistics;
+  for (const mcor_warning kind : { MCOR_WARN_FAR, MCOR_WARN_PERIOD, MCOR_WARN_COARSE })
+  {
+    this->WarnOnce(kind, vtkSPHTakeText(mcor_describe_warning(kind, &core, &options, &surface)));
   }
 }
 
@@ -435,6 +461,11 @@ void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   printName("Used Fluid", this->UsedFluid);
   os << indent << "Blocks: " << (this->Blocks == APART ? "apart" : "together") << "\n";
   os << indent << "Ignore Solids: " << this->IgnoreSolids << "\n";
+  PrintNumbers(os, indent, "Within", this->Within, 6);
+  for (const vtkSPHOnly& only : this->Only)
+  {
+    os << indent << "Only: " << only.Name << " " << only.Low << " " << only.High << "\n";
+  }
   for (const std::string& name : this->ExcludedArrays)
   {
     printName("Excluded Array", name);

@@ -42,6 +42,7 @@
 struct mcor_context;
 struct mcor_input;
 struct mcor_options;
+struct mcor_statistics;
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObjectTree;
@@ -73,6 +74,13 @@ struct vtkSPHRequest;
   vtkBooleanMacro(name, vtkTypeBool)
 
 #ifndef __VTK_WRAP__
+/** A range that a point array must have values in, see vtkSPHAlgorithm::AddOnly(). */
+struct vtkSPHOnly
+{
+  std::string Name;
+  double Low, High;
+};
+
 /**
  * How particles are described, see the setters of vtkSPHAlgorithm. A run has a copy: an observer may change
  * the filter meanwhile.
@@ -101,6 +109,8 @@ struct vtkSPHParticlesChoice
   vtkTypeBool DetectPeriod = 0;
   bool IsPart = false; ///< of particles that several processes share
   std::vector<std::string> ExcludedArrays;
+  double Within[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  std::vector<vtkSPHOnly> Only;
 
   /** Whether the fluid array is a block of composite data, "Block: NAME". */
   bool IsBlock() const { return this->FluidArrayName.compare(0, 7, "Block: ") == 0; }
@@ -314,6 +324,37 @@ public:
 
   ///@{
   /**
+   * Leave out particles that are not within x0, x1, y0, y1, z0, z1 (unit L; sides may be infinite), as if they were
+   * not there, whatever their values are. All 0 (the default): none are left out.
+   */
+  vtkSetVector6Macro(Within, double);
+  vtkGetVector6Macro(Within, double);
+  ///@}
+
+  ///@{
+  /**
+   * Leave out particles whose value in this point array is not from `low` to `high`, likewise. Of several arrays, all
+   * must agree; of several ranges of one array, any may hold. None by default.
+   */
+  void AddOnly(const char* name, double low, double high);
+  void ClearOnly();
+  ///@}
+
+#ifndef __VTK_WRAP__
+  /**
+   * The particles that these leave: the set itself where these are all.
+   */
+  vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
+
+  /**
+   * The box of the fluid's particles, without the few (0.1 %, or 8) that are farther from the others' box than it is
+   * long. Collective where processes share a run. False where no particle is fluid.
+   */
+  bool FindFluidBounds(vtkPointSet* particles, double bounds[6]);
+#endif
+
+  ///@{
+  /**
    * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each is
    * processed by itself (APART), as the blocks of a probe's points always are.
    */
@@ -479,6 +520,10 @@ protected:
     WARN_WALL_BLOCK        ///< walls in a block of their own, which is taken by itself
   };
 
+  /** The warnings of the core that need no surface. */
+  void WarnOfParticles(
+    const mcor_input& core, const mcor_options& options, const mcor_statistics& statistics);
+
   /**
    * The array chosen by SetInputArrayToProcess(index, ...).
    */
@@ -524,12 +569,6 @@ protected:
   bool CallCoreDistributed(
     vtkSPHRanksRun& run, vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
   ///@}
-
-  /**
-   * The box of the fluid's particles, without the few (0.1 %, or 8) that are farther from the others' box than it is
-   * long. Collective where processes share a run. False where no particle is fluid.
-   */
-  bool FindFluidBounds(vtkPointSet* particles, double bounds[6]);
 
   /** The input that has the particles, and its port. */
   vtkDataObject* GetParticles();

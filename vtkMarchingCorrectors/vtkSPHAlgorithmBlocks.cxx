@@ -9,12 +9,16 @@
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHReals.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
@@ -122,6 +126,34 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
   return kept.Joined;
 }
 
+vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakePresent(vtkPointSet* particles) const
+{
+  const std::vector<bool> present = vtkSPHLeavesOut(*this) && particles
+    ? vtkSPHFindPresent(*this, particles)
+    : std::vector<bool>();
+  if (std::count(present.begin(), present.end(), false) == 0)
+  {
+    return particles;
+  }
+  auto taken = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkPointData *from = particles->GetPointData(), *to = taken->GetPointData();
+  points->SetDataType(particles->GetPoints()->GetDataType());
+  to->CopyAllOn();
+  to->CopyAllocate(from);
+  for (std::size_t i = 0; i < present.size(); ++i)
+  {
+    if (present[i])
+    {
+      const auto id = static_cast<vtkIdType>(i);
+      to->CopyData(from, id, points->InsertNextPoint(particles->GetPoint(id)));
+    }
+  }
+  taken->SetPoints(points);
+  taken->SetFieldData(particles->GetFieldData());
+  return taken;
+}
+
 void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output)
 {
   const vtkSmartPointer<vtkPointSet> particles = this->TakeParticles(input);
@@ -160,7 +192,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
   if (this->IsShared())
   {
     ranks.reset(new vtkSPHRanks(this->Controller));
-    own = vtkSPHTakeParticles(*ranks, particles);
+    own = vtkSPHTakeParticles(*ranks, particles, choice);
     this->FindFluid(choice, own, ranks->MergeRanges());
     gather = [&ranks](const List& mine)
     {
@@ -175,6 +207,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
   else
 #endif
   {
+    own = this->TakePresent(particles);
     this->FindFluid(choice, own);
   }
   vtkDataArray* fluid = own->GetPointData()->GetArray(choice.FluidArrayName.c_str());

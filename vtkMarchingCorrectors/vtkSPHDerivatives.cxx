@@ -11,11 +11,34 @@
 #include "vtkSPHDerivativesWanted.h"
 #include "vtkSPHParticles.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
-  vtkPointData* data, const mcor_derivatives& derivatives, bool asFloat) const
+namespace
+{
+/** The gradients of vectors in a plane that have two components, as those of vectors in space. */
+std::vector<double> InSpace(const mcor_derivatives& derivatives)
+{
+  const double* extent = derivatives.statistics.fluid_extent;
+  const size_t normal = extent[2] == 0.0 ? 2 : extent[1] == 0.0 ? 1 : 0;
+  const size_t axes[2] = { normal == 0 ? 1U : 0U, normal == 2 ? 1U : 2U };
+  std::vector<double> gradients(9 * static_cast<size_t>(derivatives.count));
+  for (size_t i = 0; i < static_cast<size_t>(derivatives.count); ++i)
+  {
+    for (size_t c = 0; c < 2; ++c)
+    {
+      std::copy_n(
+        derivatives.gradients[0] + 6 * i + 3 * c, 3, gradients.data() + 9 * i + 3 * axes[c]);
+    }
+  }
+  return gradients;
+}
+}
+
+bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(vtkPointData* data,
+  const mcor_derivatives& derivatives, const double* gradients, bool asFloat) const
 {
   const auto values =
     static_cast<size_t>(derivatives.count) * static_cast<size_t>(this->Components);
@@ -26,7 +49,7 @@ bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(
   }
   mcor_flow flow = {};
   flow.*this->Values = made;
-  mcor_decompose_gradients(derivatives.gradients[0], derivatives.count, &flow);
+  mcor_decompose_gradients(gradients, derivatives.count, &flow);
   vtkSPHAddArray(
     data, this->Name.c_str(), vtkSPHAdoptReal(made, this->Components, derivatives.count, asFloat));
   std::free(made); // where there are no particles
@@ -37,12 +60,16 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
 {
   const bool asFloat = from.Array->GetDataType() == VTK_FLOAT;
+  const bool isPlane = derivatives.statistics.dimension == 2;
+  const std::vector<double> inSpace =
+    isPlane && from.Components == 2 ? InSpace(derivatives) : std::vector<double>();
+  const double* gradients = inSpace.empty() ? derivatives.gradients[0] : inSpace.data();
   for (const Quantity& quantity : this->Quantities)
   {
     const bool exists = // in two dimensions no eigenvalue is in the middle
-      derivatives.statistics.dimension != 2 || quantity.Values != &mcor_flow::lambda2;
-    if (quantity.IsWanted && exists && from.Components == 3 &&
-      !quantity.AddTo(data, derivatives, asFloat))
+      !isPlane || quantity.Values != &mcor_flow::lambda2;
+    if (quantity.IsWanted && exists && from.Components == (inSpace.empty() ? 3 : 2) &&
+      !quantity.AddTo(data, derivatives, gradients, asFloat))
     {
       return false;
     }
@@ -170,6 +197,7 @@ void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, v
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
+  this->WarnOfParticles(input.Core, options, derivatives.statistics);
   const vtkSPHAttribute& array = input.Interpolated[0];
   if (derivatives.attribute_not_finite[0] >= 0)
   {

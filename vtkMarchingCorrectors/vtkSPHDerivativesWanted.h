@@ -28,7 +28,8 @@ struct vtkSPHDerivatives::vtkWanted
     bool IsWanted;
 
     /** False if memory ran out. */
-    bool AddTo(vtkPointData* data, const mcor_derivatives& derivatives, bool asFloat) const;
+    bool AddTo(vtkPointData* data, const mcor_derivatives& derivatives, const double* gradients,
+      bool asFloat) const;
   };
 
   /** Takes memory out of `derivatives`, which are of the array `from`. False if memory ran out. */

@@ -237,6 +237,7 @@ void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
+  this->WarnOfParticles(input.Core, options, found.statistics);
   this->Fill(output, gauges, found, input.FluidCount > 0);
   mcor_free_gauges(&found);
 }

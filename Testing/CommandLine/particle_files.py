@@ -98,7 +98,10 @@ def drop_at(time, n=10, numbers=None, velocity=2.0):
 
 
 def write_pvd(path, entries):
-    """entries: (time, file) each."""
+    """entries: (time, file) each; those of one time are parts of one set."""
+    entries = list(entries)
+    parts = [sum(time == other for other, _ in entries[:i]) for i, (time, _) in enumerate(entries)]
     path.write_text('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>' + "".join(
-        f'<DataSet timestep="{time}" group="" part="0" file="{name}"/>' for time, name in entries) +
+        f'<DataSet timestep="{time}" group="" part="{part}" file="{name}"/>'
+        for part, (time, name) in zip(parts, entries)) +
         '</Collection></VTKFile>')

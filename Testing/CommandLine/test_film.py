@@ -90,11 +90,11 @@ class Film(CommandLineTest):
             self.assertGreater(step["wall_seconds"], 0)
 
     def test_steps_are_as_surfaces_alone(self):
-        """Buffers that live on change no byte; file order is that of the shell."""
+        """Buffers that live on change no byte; files are in the order of their numbers."""
         paths = self.write_steps(3)
         self.good(*paths[::-1])
         self.assertEqual([t for t, _ in self.listed()], [0, 1, 2])
-        for path, (_, surface) in zip(paths[::-1], self.listed()):
+        for path, (_, surface) in zip(paths, self.listed()):
             self.assertEqual(self.extract(*FREE, source=path).returncode, 0)
             self.assertEqual(self.output.read_bytes().decode(), self.without_mark(surface))
 

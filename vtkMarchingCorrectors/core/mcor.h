@@ -143,6 +143,8 @@ extern "C"
   int mcor_is_given(const mcor_array* array);
 
 #define MCOR_MAGNITUDE (-1)
+/* In mcor_input.solid. */
+#define MCOR_ABSENT 2
 
   typedef struct mcor_input
   {
@@ -176,7 +178,9 @@ extern "C"
 
     /* [count], borrowed; nonzero: a solid (wall) particle. NULL: all particles are fluid. Solid
      * particles never take part in the field. They count in the weight used for trimming unless
-     * ignore_solids is set; the surface may end at them, see mcor_options.wall_share. */
+     * ignore_solids is set; the surface may end at them, see mcor_options.wall_share. MCOR_ABSENT: the
+     * particle is left out of everything. Nothing of absent particles, and of solids that play no part, is
+     * looked at, so they may hold NaN. */
     const uint8_t* solid;
     int ignore_solids;
 
@@ -343,6 +347,10 @@ extern "C"
     double seconds[MCOR_PHASE_COUNT];
     double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
+    /* Particles too far away from all others for the virtual grid, which are left out: at most 0.1 %, or 8; number
+     * and position of the first of them. */
+    int64_t far_particles, far_first;
+    double far_place[3];
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
     /* Medians over a sample of the fluid particles: smoothing length; number of particles within the
@@ -373,6 +381,7 @@ extern "C"
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
+    int64_t triangles_below_threshold; /* where there are none of the former: those without a node threshold */
     int64_t cap_triangles; /* not included in triangles_before_trimming */
     /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume that a
      * closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In two
@@ -495,6 +504,7 @@ extern "C"
     MCOR_VELOCITY,
     MCOR_PARTICLE_ID,   /* a whole number that identifies the particle at all times */
     MCOR_PARTICLE_TYPE, /* tells fluid from solids */
+    MCOR_SPACING,       /* distance of particles; says nothing by itself */
     MCOR_QUANTITY_COUNT
   } mcor_quantity;
 
@@ -604,11 +614,15 @@ extern "C"
     MCOR_WARN_TRIMMED,   /* a threshold leaves nothing of the surface */
     MCOR_WARN_PRECISION, /* positions are rounded too much, see position_error */
     MCOR_WARN_TOLERANCE, /* vertices are off the iso value by more than rounding, see vertices_above_tolerance */
+    MCOR_WARN_FAR,       /* particles far away are left out, see far_particles */
+    MCOR_WARN_PERIOD,    /* the particles go farther than the period */
+    MCOR_WARN_COARSE,    /* positions were rounded by about their distances before they came here */
     MCOR_WARNING_COUNT
   } mcor_warning;
 
   /* The warning in words, with numbers; free it with free(). NULL if there is no such warning, or if
-   * memory ran out. Pass the input, options and surface of mcor_extract. */
+   * memory ran out. Pass the input, options and surface of mcor_extract. The last three kinds hold for any call; they
+   * read nothing of the surface but its statistics. */
   char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 

@@ -166,18 +166,28 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   mcor_status status = mcor_flatten(context, input, options, &flat);
   context->run.options = &flat.options;
   status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
+  mcor_far far = { 0 };
+  if (status == MCOR_OUT_OF_CAPACITY && context->run.is_too_long && !options->globals)
+  {
+    status = mcor_leave_out_far(context, &flat.input, &far);
+    flat.input.solid = status == MCOR_OK ? far.solid : flat.input.solid;
+    context->run.far = status == MCOR_OK ? &far : NULL;
+    status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
+  }
   if (status == MCOR_OUT_OF_CAPACITY)
   {
     mcor_blame_outlier(context, &flat.input);
   }
+  const bool is_all = !context->run.far;
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
+  free(far.solid);
   mcor_end_fill(context);
   context->cl.observer = NULL;
   context->run = (mcor_run){ .fraction = context->run.fraction };
   mcor_end_box(context);
   mcor_end_caps(context);
-  if (status != MCOR_OK)
+  if (status != MCOR_OK || !is_all)
   {
     context->kept.grid = context->kept.value = context->kept.nodes = false;
   }

@@ -97,6 +97,40 @@ static mcor_status mcor_extract_all(
   return mcor_finish_statistics(context);
 }
 
+/* Progress of a run in a run that is nearly done. */
+static int mcor_report_end(void* user, double fraction, const char* phase)
+{
+  const mcor_options* options = user;
+  (void)fraction;
+  return options->progress(options->progress_user, 1, phase);
+}
+
+/* Of an empty surface: whether the node threshold is why. A failure says nothing. */
+static void mcor_count_below_threshold(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_statistics* statistics)
+{
+  mcor_surface surface = { 0 };
+  mcor_options own = *options;
+  mcor_input without = *input;
+  if (own.progress)
+  {
+    own.progress = mcor_report_end;
+    own.progress_user = (void*)(uintptr_t)options;
+  }
+  own.node_threshold = 0;
+  own.preview = 1;
+  own.outputs = 0;
+  own.capping = own.filled = 0;
+  without.attribute_count = 0;
+  if (mcor_run_call(context, &without, &own, mcor_uses_solids(input, options), &surface.statistics,
+        mcor_extract_all, &surface) == MCOR_OK)
+  {
+    statistics->triangles_below_threshold = surface.statistics.triangles_before_trimming;
+  }
+  mcor_free_surface(&surface);
+  context->kept.value = context->kept.nodes = false;
+}
+
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface)
 {
@@ -111,6 +145,19 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     ? mcor_extract_widened(context, input, options, surface)
     : mcor_run_call(context, input, options, mcor_uses_solids(input, options),
         &surface->statistics, mcor_extract_all, surface);
+  const mcor_statistics* s = &surface->statistics;
+  bool may_exist = false;
+  for (int i = 0; status == MCOR_OK && i < options->iso_count; ++i)
+  {
+    may_exist = may_exist || options->field != MCOR_SHEPARD ||
+      (options->iso_values[i] >= s->scalar_min && options->iso_values[i] <= s->scalar_max);
+  }
+  if (may_exist && s->triangles_before_trimming == 0 && s->fluid_particles > 0 &&
+    options->field != MCOR_WEIGHT_SUM && options->widen == 1 && options->node_threshold > 0 && !options->ranks &&
+    !options->globals)
+  {
+    mcor_count_below_threshold(context, input, options, &surface->statistics);
+  }
   if (status != MCOR_OK)
   {
     mcor_free_surface(surface);

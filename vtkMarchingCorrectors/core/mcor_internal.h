@@ -76,6 +76,12 @@ static inline double mcor_real_of(const mcor_context* context, double value)
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
 /* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-9 cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
+/* Cubes from one end of the particles to the other where it is around a box alone, for those of long supports: then
+ * it keeps 2^-7. */
+#define MCOR_CUT_LIMIT (1 << 22)
+/* Keys have bits for so many nodes along an axis, and so many cells: see MCOR_RING_CELL. */
+#define MCOR_NODE_LIMIT (1 << 21)
+#define MCOR_KEY_LIMIT 4.6e18
 
 /* Whether vertex v is put out, being used by a triangle: as point scanned[v] of its mesh. */
 static inline bool mcor_is_output(const cl_int* scanned, int64_t v)

@@ -49,6 +49,10 @@ extern "C"
     double wall_share;  /* if the options ask for it; 0: not yet measured */
     mcor_plane plane;
     double plane_normal[3], plane_extent; /* as in mcor_statistics */
+    int64_t far_count, far_first;         /* far_particles and far_first of mcor_statistics */
+    double far_place[3];
+    int cut; /* the lattice is around a box or points alone, because it does not fit around all particles */
+    double cut_high[3]; /* where the box or points then end, which `high` is beyond */
   } mcor_measure;
 
   /* Facts about all particles that a call with only some of them needs for the surface of its box. */

@@ -232,6 +232,7 @@ typedef struct mcor_box
   int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
   int halves[6];          /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
   bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
+  bool has_points;        /* these are known */
   double points[6];
   int whole_first[3], whole_last[3], whole_halves[6]; /* cells that any rank owns */
   mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
@@ -244,6 +245,8 @@ typedef struct mcor_run
 {
   const mcor_options* options;
   bool uses_solids;          /* solid particles are to be on the device */
+  bool is_too_long;          /* the lattice around all particles would be, see mcor_far.c */
+  struct mcor_far* far;      /* what is done about that; NULL: nothing */
   struct mcor_filling* fill; /* of iso values that are done, see mcor_fill.h; NULL */
   mcor_statistics* statistics;
   int iso_number; /* of the iso value under way */

@@ -82,6 +82,8 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   s->build_seconds = context->cl.build_seconds;
   s->fluid_particles = m->fluid_count;
   s->solid_particles = m->solid_count;
+  s->far_particles = m->far_count;
+  s->far_first = m->far_first;
   s->particles_in_reach = context->grid.count;
   s->smoothing_length_min = m->h_min;
   s->smoothing_length_max = m->h_max;
@@ -93,6 +95,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   {
     s->fluid_extent[a] = m->x_high[a] < m->x_low[a] ? 0 : m->x_high[a] - m->x_low[a];
     s->plane_normal[a] = m->plane_normal[a];
+    s->far_place[a] = m->far_place[a];
   }
   s->plane_extent = m->plane_extent;
   s->wall_share = m->solid_count > 0 && context->kept.uses_solids ? mcor_wall_share(context) : 0;

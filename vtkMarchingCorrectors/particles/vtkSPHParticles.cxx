@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <sstream>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -126,9 +127,28 @@ bool vtkSPHParticles::CollectSmoothingLength()
       (this->FindLayout() == "DualSPHysics"
           ? std::string("DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ")
           : std::string()) +
+      this->DescribeSpacing() +
       this->ListPointArrays();
   }
   return this->Error.empty();
+}
+
+// Where one array holds the distance of all particles.
+std::string vtkSPHParticles::DescribeSpacing() const
+{
+  vtkDataArray* spacing = vtkSPHDetect(this->Points, MCOR_SPACING, 1);
+  double range[2] = { 0.0, -1.0 };
+  if (spacing && this->Core.count > 0)
+  {
+    spacing->GetRange(range, 0);
+  }
+  std::ostringstream text;
+  if (range[0] == range[1] && range[0] > 0.0)
+  {
+    text << "By " << Quote(NameOf(spacing)) << ", particles are " << range[0] << " apart: "
+         << 1.3 * range[0] << " is usual. ";
+  }
+  return text.str();
 }
 
 mcor_options vtkSPHParticles::OwnOptions() const
@@ -351,6 +371,16 @@ void vtkSPHParticles::Sign()
   SignObject(particles, this->Density);
   SignObject(particles, this->Fluid);
   particles.push_back(BitsOf(this->Description.FluidValue));
+  for (const double side : this->Description.Within)
+  {
+    particles.push_back(BitsOf(side));
+  }
+  for (const vtkSPHOnly& only : this->Description.Only)
+  {
+    SignObject(particles, this->Points->GetPointData()->GetAbstractArray(only.Name.c_str()));
+    particles.push_back(BitsOf(only.Low));
+    particles.push_back(BitsOf(only.High));
+  }
   particles.push_back(BitsOf(this->Core.smoothing_length.constant));
   particles.push_back(BitsOf(this->Core.mass.constant));
   particles.push_back(BitsOf(this->Core.density.constant));

@@ -111,6 +111,11 @@ public:
   std::string DescribeFluid() const;
 
   /**
+   * Why no particle is fluid: "No particle has ParticleType = 0", "No particle is within ...".
+   */
+  std::string DescribeNoFluid() const;
+
+  /**
    * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else empty.
    */
   std::string DescribeUnusedType();
@@ -125,6 +130,7 @@ public:
   vtkSmartPointer<vtkDataArray> Density;
   vtkSmartPointer<vtkDataArray> Fluid;
   vtkIdType FluidCount = 0;
+  bool AllAbsent = false; // see vtkSPHAlgorithm::SetWithin() and AddOnly()
 
   std::vector<vtkSPHAttribute> Interpolated;      // in the order of Core.attributes
   std::vector<vtkSPHAttribute> FromNearest;       // identifiers, integers, strings
@@ -150,6 +156,7 @@ protected:
 
   /** "Density", summed from masses, which gives volumes, too, from then on; null, and Error, where it fails. */
   vtkDataArray* SumDensities();
+  bool CollectAbsent();
 
   vtkSmartPointer<vtkPointSet> Points;
 
@@ -160,6 +167,7 @@ private:
   vtkSmartPointer<vtkDataArray> Compute(
     const char* name, const std::function<int(const mcor_options&, double*, char**)>& call);
   vtkSmartPointer<vtkDataArray> Summed; // density
+  std::string DescribeSpacing() const;
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
   void Sign();
 

@@ -22,7 +22,7 @@ bool vtkSPHParticles::CollectSolids()
   const std::string name = RealName(this->Description.FluidArrayName);
   if (name.empty())
   {
-    return true;
+    return this->CollectAbsent();
   }
   this->Fluid = this->Find("fluid", name);
   if (!this->Fluid)
@@ -33,7 +33,103 @@ bool vtkSPHParticles::CollectSolids()
   this->FluidCount =
     vtkSPHMarkSolids(this->Fluid, this->Description.FluidValue, this->Solid.data());
   this->Core.solid = this->Solid.data();
+  return this->CollectAbsent();
+}
+
+// Of several ranges of one array, any may hold.
+bool vtkSPHParticles::CollectAbsent()
+{
+  if (!vtkSPHLeavesOut(this->Description) || this->Core.count == 0)
+  {
+    return true;
+  }
+  for (const vtkSPHOnly& only : this->Description.Only)
+  {
+    if (!this->Find("choice of particles", only.Name))
+    {
+      return false;
+    }
+  }
+  this->Solid.resize(static_cast<size_t>(this->Core.count)); // 0: fluid
+  vtkIdType fluid = 0, there = 0;
+  const std::vector<bool> present = vtkSPHFindPresent(this->Description, this->Points);
+  for (size_t i = 0; i < present.size(); ++i)
+  {
+    this->Solid[i] = present[i] ? this->Solid[i] : MCOR_ABSENT;
+    fluid += this->Solid[i] == 0 ? 1 : 0;
+    there += present[i] ? 1 : 0;
+  }
+  this->FluidCount = fluid;
+  this->AllAbsent = there == 0;
+  this->Core.solid = this->Solid.data();
   return true;
+}
+
+bool vtkSPHLeavesOut(const vtkSPHParticlesChoice& choice)
+{
+  return !choice.Only.empty() ||
+    std::any_of(choice.Within, choice.Within + 6, [](double side) { return side != 0.0; });
+}
+
+std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points)
+{
+  const vtkIdType count = points->GetNumberOfPoints();
+  std::vector<bool> present(static_cast<size_t>(count), true);
+  const double* b = choice.Within;
+  const bool isWithin = std::any_of(b, b + 6, [](double side) { return side != 0.0; });
+  for (vtkIdType i = 0; isWithin && i < count; ++i)
+  {
+    double x[3];
+    points->GetPoint(i, x);
+    present[static_cast<size_t>(i)] = x[0] >= b[0] && x[0] <= b[1] && x[1] >= b[2] &&
+      x[1] <= b[3] && x[2] >= b[4] && x[2] <= b[5];
+  }
+  std::map<std::string, std::vector<std::pair<double, double>>> ranges;
+  for (const vtkSPHOnly& only : choice.Only)
+  {
+    ranges[only.Name].emplace_back(only.Low, only.High);
+  }
+  for (const auto& each : ranges)
+  {
+    vtkDataArray* array = points->GetPointData()->GetArray(each.first.c_str());
+    for (vtkIdType i = 0; array && i < count; ++i)
+    {
+      const double value = array->GetComponent(i, 0);
+      present[static_cast<size_t>(i)] = present[static_cast<size_t>(i)] &&
+        std::any_of(each.second.begin(), each.second.end(),
+          [value](const std::pair<double, double>& range)
+          { return value >= range.first && value <= range.second; });
+    }
+  }
+  return present;
+}
+
+std::string vtkSPHParticles::DescribeNoFluid() const
+{
+  std::ostringstream text;
+  const double* b = this->Description.Within;
+  if (!this->AllAbsent)
+  {
+    text << "No particle has " << this->Description.FluidArrayName << " = "
+         << this->Description.FluidValue;
+    return text.str();
+  }
+  text << "No particle is ";
+  if (std::any_of(b, b + 6, [](double side) { return side != 0.0; }))
+  {
+    text << "within " << b[0] << "," << b[1] << "," << b[2] << "," << b[3] << "," << b[4] << ","
+         << b[5] << (this->Description.Only.empty() ? "" : " and ");
+  }
+  for (size_t i = 0; i < this->Description.Only.size(); ++i)
+  {
+    const vtkSPHOnly& only = this->Description.Only[i];
+    text << (i ? " and " : "left by ") << only.Name << "=" << only.Low;
+    if (only.High != only.Low)
+    {
+      text << ":" << only.High;
+    }
+  }
+  return text.str();
 }
 
 std::vector<std::string> vtkSPHParticles::ListTypes(

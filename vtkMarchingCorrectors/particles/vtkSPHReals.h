@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 inline bool vtkSPHIsReal(vtkAbstractArray* array)
@@ -69,6 +70,13 @@ void vtkSPHForValues(vtkDataArray* array, const WorkT& work)
 
 /** Writes 0 to `solid` where the array has the value `fluid`, else 1. Returns how many are 0. */
 vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid);
+
+struct vtkSPHParticlesChoice;
+class vtkPointSet;
+
+/** Whether the choice leaves any particles out, and which of them it leaves; arrays that are not there choose none. */
+bool vtkSPHLeavesOut(const vtkSPHParticlesChoice& choice);
+std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
 /** How often each value occurs in an array of one component; empty if there are more than `most`. */
 std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most);

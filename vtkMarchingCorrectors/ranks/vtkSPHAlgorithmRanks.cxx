@@ -19,7 +19,7 @@ VTK_ABI_NAMESPACE_BEGIN
 bool vtkSPHAlgorithm::BeginDistributed(
   vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken)
 {
-  run.Own = vtkSPHTakeParticles(run.Ranks, particles, taken);
+  run.Own = vtkSPHTakeParticles(run.Ranks, particles, *this, taken);
   std::int64_t counts[2] = { run.Own->GetNumberOfPoints(), this->IsAborted() ? 1 : 0 };
   run.Ranks.Reduce(vtkSPHRanks::SUM, counts, 2);
   run.Particles = counts[0];
@@ -98,7 +98,7 @@ int vtkSPHAlgorithm::FindDimensionDistributed(vtkPointSet* particles)
 {
   vtkSPHParticlesChoice choice(*this);
   vtkSPHRanks ranks(this->Controller);
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles, choice);
   this->FindFluid(choice, own, ranks.MergeRanges());
   vtkSPHRanksCalls calls(ranks);
   const int found = vtkSPHParticles(choice, own).FindDimension(calls.Get(), this->Dimension);

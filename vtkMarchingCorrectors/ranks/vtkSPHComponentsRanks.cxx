@@ -130,7 +130,7 @@ void Renumber(vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
 vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkSPHRanks& ranks, vtkPointSet* particles) const
 {
-  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles);
+  const vtkSmartPointer<vtkPolyData> own = vtkSPHTakeParticles(ranks, particles, {});
   vtkPointData* data = own->GetPointData();
   const auto find = [&](const std::string& name, mcor_quantity quantity, int components)
   { return name.empty() ? vtkSPHDetect(own, quantity, components) : data->GetArray(name.c_str()); };

@@ -12,6 +12,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHReals.h"
 #include "vtkSPHRanksTuples.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -32,8 +33,8 @@ struct Form
 
   bool IsLike(const Form& other) const
   {
-    return this->Name == other.Name && this->Type == other.Type &&
-      this->Labels.size() == other.Labels.size();
+    return this->Name == other.Name && this->Labels.size() == other.Labels.size() &&
+      (this->Type == VTK_STRING) == (other.Type == VTK_STRING);
   }
 };
 
@@ -110,10 +111,14 @@ Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
       continue;
     }
     common[0].Type = std::max(common[0].Type, other[0].Type); // VTK_FLOAT < VTK_DOUBLE
-    const auto isMissing = [&other](const Form& form)
+    const auto isMissing = [&other](Form& form)
     {
-      return std::none_of(other.begin() + 1, other.end(),
-        [&form](const Form& theirs) { return form.IsLike(theirs); });
+      const auto theirs = std::find_if(other.begin() + 1, other.end(),
+        [&form](const Form& one) { return form.IsLike(one); });
+      const bool isThere = theirs != other.end();
+      // Numbers of several types become doubles, as where one process joins the pieces of a file.
+      form.Type = isThere && form.Type != theirs->Type ? VTK_DOUBLE : form.Type;
+      return !isThere;
     };
     common.erase(std::remove_if(common.begin() + 1, common.end(), isMissing), common.end());
   }
@@ -175,15 +180,22 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkPolyData* from, const Layout& layout,
   return taken;
 }
 
-/** Lists the points that no other rank has. */
-vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
+/** Lists the points that no other rank has, and that are not left out. */
+vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data, const vtkSPHParticlesChoice& choice)
 {
   auto own = vtkSmartPointer<vtkIdList>::New();
   const vtkIdType count = data ? data->GetNumberOfPoints() : 0;
   vtkUnsignedCharArray* marks = count > 0 ? data->GetPointGhostArray() : nullptr;
+  const std::vector<bool> present = count > 0 && vtkSPHLeavesOut(choice)
+    ? vtkSPHFindPresent(choice, data)
+    : std::vector<bool>(static_cast<size_t>(count), true);
   own->Allocate(count);
   for (vtkIdType i = 0; i < count; ++i)
   {
+    if (!present[static_cast<size_t>(i)])
+    {
+      continue;
+    }
     if (!marks || !(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
     {
       own->InsertNextId(i);
@@ -194,7 +206,8 @@ vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data)
 }
 
 vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
-  vtkSPHRanks& ranks, vtkPointSet* data, std::vector<vtkIdType>* taken)
+  vtkSPHRanks& ranks, vtkPointSet* data, const vtkSPHParticlesChoice& choice,
+  std::vector<vtkIdType>* taken)
 {
   vtkNew<vtkPolyData> view;
   if (data && data->GetNumberOfPoints() > 0)
@@ -202,7 +215,7 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
     view->SetPoints(data->GetPoints());
     view->GetPointData()->ShallowCopy(data->GetPointData());
   }
-  const vtkSmartPointer<vtkIdList> own = ListOwn(data);
+  const vtkSmartPointer<vtkIdList> own = ListOwn(data, choice);
   auto particles = TakePoints(view, AgreeOnLayout(ranks, Describe(view)), own);
   if (data)
   {
@@ -223,6 +236,10 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHPartic
   for (const vtkSPHAttribute& attribute : used.Interpolated)
   {
     arrays.push_back(attribute.Array);
+  }
+  for (const vtkSPHOnly& only : used.Description.Only)
+  {
+    arrays.push_back(own->GetPointData()->GetAbstractArray(only.Name.c_str()));
   }
   auto kept = vtkSmartPointer<vtkPolyData>::New();
   kept->SetPoints(own->GetPoints());

@@ -15,15 +15,16 @@ VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
+struct vtkSPHParticlesChoice;
 
 /**
  * This rank's particles (`data` may be null), without those that vtkGhostType marks as another
- * rank's. They have the same point arrays on all ranks, in one order: those that all ranks with
- * particles have, with one type and number of components. Their field data stay. `taken`: their indices in `data`,
+ * rank's, and those that the choice leaves out. They have the same point arrays on all ranks, in one order: those that all ranks with
+ * particles have, with one number of components, as doubles where types differ. Their field data stay. `taken`: their indices in `data`,
  * if that is wanted. Collective.
  */
-vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
-  vtkSPHRanks& ranks, vtkPointSet* data, std::vector<vtkIdType>* taken = nullptr);
+vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
+  const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken = nullptr);
 
 /**
  * The same with those arrays alone that describe the particles or are interpolated.

@@ -68,6 +68,7 @@ struct Job
   std::string Output;
   std::vector<double> Times; ///< of a film or gauges, ascending; empty: all that are stored
   double TimeStep = 1.0;     ///< between the steps of a film of particle files
+  bool HasTimeStep = false;  ///< else the files may tell of times
   std::string IdArray;       ///< that particles are matched by between steps; empty: found
   std::string ProbeFile;
   SliceOptions Slice;

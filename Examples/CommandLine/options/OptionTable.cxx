@@ -12,6 +12,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <limits>
 
 namespace
 {
@@ -38,6 +39,40 @@ void SetFluid(Job& job, Text option, Text text)
   }
   SetAll(job, &vtkSPHAlgorithm::SetFluidArrayName, Printable(text.substr(0, equals)).c_str());
   SetAll(job, &vtkSPHAlgorithm::SetFluidValue, ToNumber(option, text.substr(equals + 1)));
+}
+
+void AddOnly(Job& job, Text option, Text text)
+{
+  const std::size_t equals = text.rfind('=');
+  const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
+  if (equals == std::string::npos || equals == 0)
+  {
+    throw UsageError(option + " needs NAME=VALUE or NAME=LOW:HIGH, not '" + text + "'");
+  }
+  const std::string name = Printable(text.substr(0, equals));
+  const double low = ToNumber(option, text.substr(equals + 1, colon - equals - 1));
+  const double high = colon == std::string::npos ? low : ToNumber(option, text.substr(colon + 1));
+  if (low > high)
+  {
+    throw UsageError(option + " needs the lower value first, not '" + text + "'");
+  }
+  for (vtkSPHAlgorithm* filter : job.All())
+  {
+    filter->AddOnly(name.c_str(), low, high);
+  }
+}
+
+void SetWithin(Job& job, Text option, Text text)
+{
+  std::vector<double> sides = ToBox(option, text);
+  if (std::count(sides.begin(), sides.end(), 0.0) == 6) // to the filters, no choice
+  {
+    sides[0] = -std::numeric_limits<double>::denorm_min();
+  }
+  for (vtkSPHAlgorithm* filter : job.All())
+  {
+    filter->SetWithin(sides.data());
+  }
 }
 
 void SetSmoothingLength(Job& job, Text option, Text text)
@@ -220,6 +255,12 @@ const Options TheParticles = {
     [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
   { "--fluid", "NAME=VALUE",
     "particles with this value of this array are fluid, all others are solid", SetFluid },
+  { "--within", "X0,X1,Y0,Y1,Z0,Z1",
+    "leave out particles that are not in these bounds, whose sides may be inf or -inf", SetWithin },
+  { "--only", "NAME=VALUE[:VALUE]",
+    "leave out particles whose value in this array is another one, or not in this range; may be given more than "
+    "once: of several ranges of one array any counts, of several arrays all do",
+    AddOnly, true },
   { "--walls", "FILE",
     "the particles of this file are walls, in addition to INPUT; may be given more than once; a "
     ".pvd "
@@ -386,8 +427,13 @@ const Options Output = {
   { "--ids", "NAME",
     "with --times, array of ids that tell which particle of a step is which of the next",
     [](Job& j, Text, Text v) { j.IdArray = Printable(v); } },
-  { "--time-step", "DT", "for a film: time between one INPUT and the next (default 1)",
-    [](Job& j, Text n, Text v) { j.TimeStep = ToPositive(n, v); } },
+  { "--time-step", "DT",
+    "for a film: time between one INPUT and the next (default: the times in their field data, else 1)",
+    [](Job& j, Text n, Text v)
+    {
+      j.TimeStep = ToPositive(n, v);
+      j.HasTimeStep = true;
+    } },
   { "--stats", "FILE.json", "write the statistics of the run",
     [](Job& j, Text, Text v) { j.StatisticsFile = v; } },
   { "--repeat", "N", "run N times, and write the statistics of each run (default 1)",

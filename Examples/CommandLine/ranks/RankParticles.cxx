@@ -21,12 +21,17 @@ namespace
 
 /// Processes without particles get the arrays, without values, that the first one with some has: what a
 /// name in the options is must not depend on who asks.
-vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet* particles)
+vtkSmartPointer<vtkPointSet> GiveArrays(
+  const RankSession& session, vtkPointSet* particles, bool mayBeEmpty)
 {
   vtkMPIController* controller = session.GetController();
   const int own = particles->GetNumberOfPoints() > 0 ? session.GetRank() : session.GetCount();
   int from = own;
   controller->AllReduce(&own, &from, 1, vtkCommunicator::MIN_OP);
+  if (from == session.GetCount() && mayBeEmpty)
+  {
+    return particles;
+  }
   if (from == session.GetCount())
   {
     throw std::runtime_error("the input holds no points");
@@ -58,23 +63,27 @@ vtkSmartPointer<vtkPointSet> GiveArrays(const RankSession& session, vtkPointSet*
 
 vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(RankSession& session,
   const std::vector<std::string>& files, const std::vector<std::string>& walls,
-  MessageCapture* messages)
+  MessageCapture* messages, bool mayBeEmpty)
 {
   if (files.size() > 1 || !walls.empty())
   {
-    return ShareParticles(session,
-      [&] { return AddWalls(ReadParticles(files, messages), ReadWalls(walls, messages)); });
+    return ShareParticles(
+      session,
+      [&] {
+        return AddWalls(ReadParticles(files, messages, mayBeEmpty), ReadWalls(walls, messages));
+      },
+      mayBeEmpty);
   }
   vtkSmartPointer<vtkPointSet> particles;
   session.RunOnAll(
     [&] {
       particles = ReadParticlesPart(files.front(), session.GetRank(), session.GetCount(), messages);
     });
-  return GiveArrays(session, particles);
+  return GiveArrays(session, particles, mayBeEmpty);
 }
 
-vtkSmartPointer<vtkPointSet> ShareParticles(
-  RankSession& session, const std::function<vtkSmartPointer<vtkPointSet>()>& make)
+vtkSmartPointer<vtkPointSet> ShareParticles(RankSession& session,
+  const std::function<vtkSmartPointer<vtkPointSet>()>& make, bool mayBeEmpty)
 {
   vtkSmartPointer<vtkPointSet> particles = vtkSmartPointer<vtkPolyData>::New();
   session.RunOnAll(
@@ -85,7 +94,7 @@ vtkSmartPointer<vtkPointSet> ShareParticles(
         particles = make();
       }
     });
-  return GiveArrays(session, particles);
+  return GiveArrays(session, particles, mayBeEmpty);
 }
 
 void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles)

@@ -19,11 +19,11 @@ struct Job;
 /// Throws std::runtime_error on all of them alike.
 vtkSmartPointer<vtkPointSet> ReadParticlesDistributed(
   RankSession& session, const std::vector<std::string>& files,
-  const std::vector<std::string>& walls, MessageCapture* messages);
+  const std::vector<std::string>& walls, MessageCapture* messages, bool mayBeEmpty = false);
 
 /// The same of particles that the first process makes.
-vtkSmartPointer<vtkPointSet> ShareParticles(
-  RankSession& session, const std::function<vtkSmartPointer<vtkPointSet>()>& make);
+vtkSmartPointer<vtkPointSet> ShareParticles(RankSession& session,
+  const std::function<vtkSmartPointer<vtkPointSet>()>& make, bool mayBeEmpty = false);
 
 /// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
 void ResolvePeriod(Job& job, RankSession& session, vtkPointSet* particles);

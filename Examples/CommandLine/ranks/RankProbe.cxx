@@ -14,28 +14,6 @@
 #include "vtkPolyData.h"
 #include "vtkSPHProbe.h"
 
-namespace
-{
-
-/// Of the particles of all processes.
-void FindBounds(const RankSession& session, vtkPointSet* particles, double bounds[6])
-{
-  double lowest[6], own[6]; // and the highest, negative
-  particles->GetBounds(own);
-  for (int i = 0; i < 6; ++i)
-  {
-    own[i] *= i % 2 ? -1.0 : 1.0;
-    own[i] = particles->GetNumberOfPoints() > 0 ? own[i] : VTK_DOUBLE_MAX;
-  }
-  session.GetController()->AllReduce(own, lowest, 6, vtkCommunicator::MIN_OP);
-  for (int i = 0; i < 6; ++i)
-  {
-    bounds[i] = lowest[i] * (i % 2 ? -1.0 : 1.0);
-  }
-}
-
-}
-
 void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
 {
   vtkSmartPointer<vtkDataSet> points;
@@ -50,16 +28,12 @@ void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
   const vtkSmartPointer<vtkPointSet> particles =
     ReadParticlesDistributed(session, { job.Inputs.front() }, job.Walls, messages);
   ResolvePeriod(job, session, particles);
-  double bounds[6];
-  FindBounds(session, particles, bounds);
   double seconds = 0.0;
   session.RunOnAll(
     [&]
     {
-      if (!points && session.IsFirst())
-      {
-        points = MakePoints(job, bounds);
-      }
+      const vtkSmartPointer<vtkDataSet> made = job.ProbeFile.empty() ? MakePoints(job, particles) : nullptr;
+      points = points || !session.IsFirst() ? points : made;
       points = points ? points : vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkPolyData>::New());
       SetUpProbe(job, points, particles);
     });

@@ -19,9 +19,9 @@ vtkSmartPointer<vtkPointSet> ReadStep(RankSession& session, MessageCapture* mess
   if (times.IsStored(time))
   {
     return ReadParticlesDistributed(
-      session, times.ListFiles(time), times.ListWalls(time), messages);
+      session, times.ListFiles(time), times.ListWalls(time), messages, true);
   }
-  return ShareParticles(session, [&] { return times.At(time, warnings); });
+  return ShareParticles(session, [&] { return times.At(time, warnings); }, true);
 }
 
 }

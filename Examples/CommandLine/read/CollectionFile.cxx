@@ -74,12 +74,54 @@ std::string Resolved(const std::string& list, const std::string& file)
 
 }
 
+namespace
+{
+
+/// A run that was repeated into the same folder adds its steps to the list: the last ones count.
+std::vector<CollectionEntry> TakeRepeated(const std::vector<CollectionEntry>& entries,
+  const std::string& file, std::vector<std::string>& warnings)
+{
+  std::vector<CollectionEntry> kept;
+  std::size_t again = 0;
+  double first = 0.0;
+  for (const CollectionEntry& entry : entries)
+  {
+    const auto same = std::find_if(kept.begin(), kept.end(),
+      [&entry](const CollectionEntry& other)
+      {
+        return other.Time == entry.Time &&
+          (other.File == entry.File || (!entry.Part.empty() && other.Part == entry.Part));
+      });
+    if (same == kept.end())
+    {
+      kept.push_back(entry);
+      continue;
+    }
+    *same = entry;
+    first = again == 0 ? entry.Time : first;
+    ++again;
+  }
+  if (again > 0)
+  {
+    char time[32];
+    const auto end = std::to_chars(time, time + sizeof(time), first);
+    warnings.push_back(file + " lists " + std::to_string(again) +
+      (again == 1 ? " file" : " files") +
+      " of a time and a part that it had before, the first at time " + std::string(time, end.ptr) +
+      "; the later ones were taken");
+  }
+  return kept;
+}
+
+}
+
 bool IsCollectionFile(const std::string& file)
 {
   return EndsWith(file, ".pvd");
 }
 
-std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapture* messages)
+std::vector<CollectionEntry> ReadCollection(
+  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings)
 {
   const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection", messages);
   std::vector<CollectionEntry> entries;
@@ -98,7 +140,9 @@ std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapt
         name.empty() ? "entry " + std::to_string(i) + " names no file"
                      : "the time of " + name + " is '" + time + "', not a number");
     }
-    entries.push_back({ value, Resolved(file, name) });
+    const std::string part = AttributeOf(element, "part");
+    entries.push_back({ value, Resolved(file, name),
+      part.empty() ? "" : AttributeOf(element, "group") + " part " + part });
   }
   if (entries.empty())
   {
@@ -106,7 +150,7 @@ std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapt
   }
   std::stable_sort(entries.begin(), entries.end(),
     [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
-  return entries;
+  return TakeRepeated(entries, file, warnings);
 }
 
 std::string CollectionText(const std::vector<CollectionEntry>& entries)

@@ -13,14 +13,16 @@ struct CollectionEntry
 {
   double Time;
   std::string File; ///< as it can be opened: from the working directory, not from the .pvd file
+  std::string Part; ///< what the list says it is a part of; empty: nothing
 };
 
 /// Whether the name ends as that of a .pvd file.
 bool IsCollectionFile(const std::string& file);
 
-/// In the order of time; several of one time in that of the file. Throws std::runtime_error with one
-/// sentence.
-std::vector<CollectionEntry> ReadCollection(const std::string& file, MessageCapture* messages);
+/// In the order of time; several of one time in that of the file, but a file once, and of one part the last. Throws
+/// std::runtime_error with one sentence; `warnings` gets others.
+std::vector<CollectionEntry> ReadCollection(
+  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings);
 
 /// The text of a .pvd file beside which the entries' files lie.
 std::string CollectionText(const std::vector<CollectionEntry>& entries);

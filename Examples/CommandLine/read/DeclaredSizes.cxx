@@ -270,7 +270,11 @@ void CheckLegacy(const std::string& file, View text)
 void CheckDeclaredSizes(const std::string& file)
 {
   const MappedFile mapped(file);
-  const View text = mapped.Get();
+  CheckDeclaredSizes(file, mapped.Get());
+}
+
+void CheckDeclaredSizes(const std::string& file, std::string_view text)
+{
   if (text.substr(0, 5) == "# vtk")
   {
     CheckLegacy(file, text);

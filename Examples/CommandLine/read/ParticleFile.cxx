@@ -8,6 +8,7 @@
 #include "FileFormat.h"
 #include "MessageCapture.h"
 #include "ParticleParts.h"
+#include "ParticleTable.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
 
@@ -23,7 +24,9 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHVertices.h"
 #include "vtkVersion.h"
 #include "vtkVersionMacros.h"
 #include "vtkXMLDataParser.h"
@@ -33,6 +36,7 @@
 #include "vtkXMLStructuredGridReader.h"
 #include "vtkXMLUnstructuredGridReader.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -169,24 +173,42 @@ vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
 
 /// Every format that is read; all that is known of one stands here. Without a function: a list of
 /// files that hold parts of the particles.
-using Reader = std::function<vtkSmartPointer<vtkDataObject>(const std::string& file)>;
+using Reader =
+  std::function<vtkSmartPointer<vtkDataObject>(const std::string& file, std::size_t step)>;
+
+/// A reader of files that hold one step.
+template <vtkSmartPointer<vtkDataObject> (*read)(const std::string&)>
+vtkSmartPointer<vtkDataObject> ReadOne(const std::string& file, std::size_t)
+{
+  return read(file);
+}
+
 const std::vector<FileFormat<Reader>> Formats = {
-  { ".vtp", ReadXmlWith<vtkXMLPolyDataReader> },
-  { ".vtu", ReadXmlWith<vtkXMLUnstructuredGridReader> },
+  { ".vtp", ReadOne<ReadXmlWith<vtkXMLPolyDataReader>> },
+  { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
   { ".pvtp", {} },
   { ".pvtu", {} },
-  { ".vtkhdf", ReadHdf },
-  { ".vtk", ReadLegacy },
+  { ".vtkhdf", ReadOne<ReadHdf> },
+  { ".vtk", ReadOne<ReadLegacy> },
+  { ".csv", ReadOne<ReadCsv> },
+  { ".tsv", ReadOne<ReadCsv> },
+  { ".txt", ReadColumns },
+  { ".dat", ReadColumns },
+  { ".xyz", ReadXyz },
+  { ".extxyz", ReadXyz },
+  { ".lammpstrj", ReadLammps },
+  { ".dump", ReadLammps },
 };
 
 /// The same of data sets of any class.
 const std::vector<FileFormat<Reader>> DataFormats = {
-  { ".vti", ReadXmlWith<vtkXMLImageDataReader> },
-  { ".vtr", ReadXmlWith<vtkXMLRectilinearGridReader> },
-  { ".vts", ReadXmlWith<vtkXMLStructuredGridReader> },
-  { ".vtp", ReadXmlWith<vtkXMLPolyDataReader> },
-  { ".vtu", ReadXmlWith<vtkXMLUnstructuredGridReader> },
-  { ".vtk", ReadLegacy },
+  { ".vti", ReadOne<ReadXmlWith<vtkXMLImageDataReader>> },
+  { ".vtr", ReadOne<ReadXmlWith<vtkXMLRectilinearGridReader>> },
+  { ".vts", ReadOne<ReadXmlWith<vtkXMLStructuredGridReader>> },
+  { ".vtp", ReadOne<ReadXmlWith<vtkXMLPolyDataReader>> },
+  { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
+  { ".vtk", ReadOne<ReadLegacy> },
+  { ".csv", ReadOne<ReadCsv> },
 };
 
 /// What numbers of points and particles are counted in.
@@ -217,15 +239,15 @@ void CheckReadable(
 
 /// VTK's reader at work. Its exceptions are those of the standard library where it asks for memory
 /// by sizes that a damaged file gave it.
-vtkSmartPointer<vtkDataObject> ReadWithCare(
-  const std::string& file, const std::vector<FileFormat<Reader>>& formats = Formats)
+vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file,
+  const std::vector<FileFormat<Reader>>& formats = Formats, std::size_t step = 0)
 {
   const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
   const Silence silence;
   CheckDeclaredSizes(file);
   try
   {
-    return FindFormat(formats, file)->Process(file);
+    return FindFormat(formats, file)->Process(file, step);
   }
   catch (const std::bad_alloc&)
   {
@@ -269,12 +291,22 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
 
 /// The points' arrays alone, all that is used of the data: no cells (one per particle, for nothing),
 /// and nothing that was not checked.
-vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet* data)
+vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet* all)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
+  CheckArrays(file, all->GetPointData(), all->GetNumberOfPoints(), " points");
+  CheckArrays(file, all->GetCellData(), all->GetNumberOfCells(), " cells");
+  const vtkSmartPointer<vtkPointSet> data = vtkSPHTakeVertices(all);
+  const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
+  static bool isSaid = false; // of a film's steps once
+  if (others > 0 && !isSaid)
+  {
+    isSaid = true;
+    Say("note: " + std::to_string(others) + " of " + std::to_string(all->GetNumberOfPoints()) +
+      " points of " + file + " are nodes of a mesh and no particles, as no vertex cell uses them");
+  }
   particles->SetPoints(data->GetPoints());
   vtkPointData* arrays = data->GetPointData();
-  CheckArrays(file, arrays, data->GetNumberOfPoints(), " points");
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     particles->GetPointData()->AddArray(arrays->GetAbstractArray(i));
@@ -283,12 +315,36 @@ vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet*
   return particles;
 }
 
-/// Throws std::runtime_error; may have no points.
-vtkSmartPointer<vtkPointSet> ReadFile(const std::string& file, MessageCapture* messages)
+vtkSmartPointer<vtkPointSet> NoParticles()
 {
+  auto none = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  none->SetPoints(points);
+  return none;
+}
+
+/// NAME#N is step N of the file NAME, unless a file has that name.
+void TakeStep(std::string& file, std::size_t& step)
+{
+  std::error_code error;
+  const std::size_t at = file.rfind('#');
+  const bool isNumber = at != std::string::npos && at + 1 < file.size() && file.size() - at < 12 &&
+    file.find_first_not_of("0123456789", at + 1) == std::string::npos;
+  if (isNumber && !fs::exists(file, error))
+  {
+    step = std::strtoull(file.c_str() + at + 1, nullptr, 10);
+    file.resize(at);
+  }
+}
+
+/// Throws std::runtime_error; may have no points.
+vtkSmartPointer<vtkPointSet> ReadFile(std::string file, MessageCapture* messages)
+{
+  std::size_t step = 0;
+  TakeStep(file, step);
   CheckReadable(file);
   messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadWithCare(file);
+  vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, Formats, step);
   // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
   if (!messages->GetErrors().empty())
   {
@@ -302,11 +358,7 @@ vtkSmartPointer<vtkPointSet> ReadFile(const std::string& file, MessageCapture* m
       (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
       ", not particles (poly data or an unstructured grid)");
   }
-  if (points->GetNumberOfPoints() == 0)
-  {
-    return vtkSmartPointer<vtkPolyData>::New();
-  }
-  return TakeParticles(file, points);
+  return points->GetNumberOfPoints() == 0 ? NoParticles() : TakeParticles(file, points);
 }
 
 bool IsList(const std::string& file)
@@ -318,11 +370,11 @@ bool IsList(const std::string& file)
 /// The pieces of a list of them, or the file itself.
 std::vector<std::string> ListParts(const std::string& file, MessageCapture* messages)
 {
-  CheckReadable(file);
   if (!IsList(file))
   {
     return { file };
   }
+  CheckReadable(file);
   const std::vector<std::string> parts = ReadPieces(file, messages);
   for (const std::string& part : parts)
   {
@@ -358,7 +410,7 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCaptu
 }
 
 vtkSmartPointer<vtkPointSet> ReadParticles(
-  const std::vector<std::string>& files, MessageCapture* messages)
+  const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty)
 {
   std::vector<vtkSmartPointer<vtkPointSet>> parts;
   for (const std::string& file : files)
@@ -368,12 +420,25 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
       ReadPart(part, parts, messages);
     }
   }
+  if (parts.empty() && mayBeEmpty)
+  {
+    return NoParticles();
+  }
   if (parts.empty())
   {
     throw std::runtime_error(files.front() + " holds no points");
   }
   const bool isWhole = files.size() == 1 && !IsList(files.front());
   return isWhole ? parts.front() : JoinParts(parts);
+}
+
+std::vector<double> ListTimes(const std::string& file)
+{
+  const auto ends = [&file](const char* ending) { return EndsWith(file, ending); };
+  return ends(".xyz") || ends(".extxyz") || ends(".lammpstrj") || ends(".dump") || ends(".txt") ||
+      ends(".dat")
+    ? ListTimesInText(file)
+    : std::vector<double>();
 }
 
 vtkSmartPointer<vtkPointSet> ReadWalls(

@@ -21,9 +21,14 @@ std::string ParticleFileEndings();
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages);
 
 /// The same for files that each hold a part of the particles. Arrays that are not in all of them are
-/// left out, and so are particles that a part marks as another one's (vtkGhostType).
+/// left out, and so are particles that a part marks as another one's (vtkGhostType). A step of a film may have no
+/// points.
 vtkSmartPointer<vtkPointSet> ReadParticles(
-  const std::vector<std::string>& files, MessageCapture* messages);
+  const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty = false);
+
+/// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ...; none where it is a format of one
+/// step. Throws std::runtime_error.
+std::vector<double> ListTimes(const std::string& file);
 
 /// What --walls names, as one set; null where that is nothing. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(

@@ -3,6 +3,7 @@
 #include "ParticleSteps.h"
 
 #include "CollectionFile.h"
+#include "FileTime.h"
 #include "Job.h"
 #include "ParticleFile.h"
 #include "StepName.h"
@@ -15,6 +16,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -27,10 +29,11 @@ namespace
 using Steps = std::vector<ParticleSteps::Step>;
 
 /// Those of a .pvd file.
-Steps ListedSteps(const std::string& file, MessageCapture* messages)
+Steps ListedSteps(
+  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings)
 {
   Steps steps;
-  for (const CollectionEntry& entry : ReadCollection(file, messages))
+  for (const CollectionEntry& entry : ReadCollection(file, messages, warnings))
   {
     if (steps.empty() || steps.back().Time != entry.Time)
     {
@@ -41,10 +44,111 @@ Steps ListedSteps(const std::string& file, MessageCapture* messages)
   return steps;
 }
 
-/// The walls that a .pvd file lists: those of each step's time, or, where steps are in a list without times, in its order.
-void AddListedWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages)
+/// A file's name as what stands between numbers, and these.
+struct NumberedName
 {
-  const Steps walls = ListedSteps(file, messages);
+  std::string Words;
+  std::vector<std::string> Numbers; ///< without zeros in front
+
+  explicit NumberedName(const std::string& name)
+  {
+    for (std::size_t i = 0; i < name.size(); ++i)
+    {
+      const bool isDigit = name[i] >= '0' && name[i] <= '9';
+      if (!isDigit)
+      {
+        this->Words += name[i];
+        continue;
+      }
+      if (this->Words.empty() || this->Words.back() != '\0')
+      {
+        this->Words += '\0';
+        this->Numbers.emplace_back();
+      }
+      if (name[i] != '0' || !this->Numbers.back().empty())
+      {
+        this->Numbers.back() += name[i];
+      }
+    }
+  }
+
+  bool IsBefore(const NumberedName& other) const
+  {
+    return std::lexicographical_compare(this->Numbers.begin(), this->Numbers.end(),
+      other.Numbers.begin(), other.Numbers.end(),
+      [](const std::string& a, const std::string& b)
+      { return a.size() != b.size() ? a.size() < b.size() : a < b; });
+  }
+};
+
+/// In the order of the numbers in their names, where these differ in nothing else: shells list tank_10 before
+/// tank_9.
+std::vector<std::string> InOrder(std::vector<std::string> files)
+{
+  const NumberedName first(files.front());
+  if (std::all_of(files.begin(), files.end(),
+        [&first](const std::string& file) { return NumberedName(file).Words == first.Words; }))
+  {
+    std::stable_sort(files.begin(), files.end(),
+      [](const std::string& a, const std::string& b)
+      { return NumberedName(a).IsBefore(NumberedName(b)); });
+  }
+  return files;
+}
+
+/// Those of files given one by one, at the times that the files tell of.
+Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::string>& warnings)
+{
+  std::vector<std::string> files;
+  std::vector<double> times;
+  for (const std::string& file : InOrder(job.Inputs))
+  {
+    const std::vector<double> steps = ListTimes(file);
+    for (std::size_t k = 0; k < steps.size() && steps.size() > 1; ++k)
+    {
+      files.push_back(file + "#" + std::to_string(k));
+    }
+    if (steps.size() > 1)
+    {
+      times.insert(times.end(), steps.begin(), steps.end());
+      continue;
+    }
+    files.push_back(file);
+    double time = 0.0;
+    if (job.Inputs.size() > 1 && (!steps.empty() || ReadTime(file, messages, time)))
+    {
+      times.push_back(steps.empty() ? time : steps.front());
+    }
+  }
+  if (job.HasTimeStep)
+  {
+    times.clear();
+  }
+  const bool areAll = times.size() == files.size();
+  const bool ascend =
+    std::adjacent_find(times.begin(), times.end(), std::greater_equal<double>()) == times.end();
+  if (!times.empty() && !(areAll && ascend))
+  {
+    warnings.push_back("the times in the field data of the files " +
+      std::string(
+        areAll ? "do not ascend with the numbers in their names" : "are missing in some") +
+      ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
+  }
+  Steps steps;
+  for (std::size_t i = 0; i < files.size(); ++i)
+  {
+    steps.push_back(
+      { !times.empty() && areAll && ascend ? times[i] : static_cast<double>(i) * job.TimeStep,
+        { files[i] }, {} });
+  }
+  return steps;
+}
+
+/// The walls that a .pvd file lists: those of each step's time, or, where steps are in a list without times, in its order.
+void AddListedWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages,
+  std::vector<std::string>& warnings)
+{
+  const Steps walls = ListedSteps(file, messages, warnings);
   if (!haveTimes && walls.size() != steps.size())
   {
     throw std::runtime_error("--walls: " + file + " lists " + std::to_string(walls.size()) +
@@ -65,11 +169,12 @@ void AddListedWalls(const std::string& file, bool haveTimes, Steps& steps, Messa
 }
 
 /// One --walls: a file of all steps, of each by its number, or a list.
-void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages)
+void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages,
+  std::vector<std::string>& warnings)
 {
   if (IsCollectionFile(file))
   {
-    AddListedWalls(file, haveTimes, steps, messages);
+    AddListedWalls(file, haveTimes, steps, messages, warnings);
     return;
   }
   for (ParticleSteps::Step& step : steps)
@@ -128,7 +233,7 @@ int ParticleSteps::RequestData(
   output->Initialize(); // the step before it, so that there are never three
   try
   {
-    output->ShallowCopy(ReadParticles(step->Files, this->Messages));
+    output->ShallowCopy(ReadParticles(step->Files, this->Messages, true));
   }
   catch (const std::exception& error)
   {
@@ -146,17 +251,15 @@ std::vector<ParticleSteps::Step>::const_iterator FindStep(
     [](const ParticleSteps::Step& step, double t) { return step.Time < t; });
 }
 
-std::vector<ParticleSteps::Step> ListSteps(const Job& job, MessageCapture* messages)
+std::vector<ParticleSteps::Step> ListSteps(
+  const Job& job, MessageCapture* messages, std::vector<std::string>& warnings)
 {
   const bool haveTimes = IsCollectionFile(job.Inputs.front());
-  Steps steps = haveTimes ? ListedSteps(job.Inputs.front(), messages) : Steps();
-  for (std::size_t i = 0; !haveTimes && i < job.Inputs.size(); ++i)
-  {
-    steps.push_back({ static_cast<double>(i) * job.TimeStep, { job.Inputs[i] }, {} });
-  }
+  Steps steps = haveTimes ? ListedSteps(job.Inputs.front(), messages, warnings)
+                          : GivenSteps(job, messages, warnings);
   for (const std::string& walls : job.Walls)
   {
-    AddStepWalls(walls, haveTimes, steps, messages);
+    AddStepWalls(walls, haveTimes, steps, messages, warnings);
   }
   return steps;
 }

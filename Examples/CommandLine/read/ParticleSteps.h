@@ -54,7 +54,8 @@ private:
 std::vector<ParticleSteps::Step>::const_iterator FindStep(
   const std::vector<ParticleSteps::Step>& steps, double time);
 
-/// The steps that the options name. Throws std::runtime_error with one sentence.
-std::vector<ParticleSteps::Step> ListSteps(const Job& job, MessageCapture* messages);
+/// The steps that the options name. Throws std::runtime_error with one sentence; `warnings` gets others.
+std::vector<ParticleSteps::Step> ListSteps(
+  const Job& job, MessageCapture* messages, std::vector<std::string>& warnings);
 
 #endif

@@ -72,9 +72,9 @@ vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, v
 
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
 {
-  if (!walls)
+  if (!walls || fluid->GetNumberOfPoints() == 0)
   {
-    return fluid;
+    return fluid; // without fluid there is nothing for walls to end
   }
   vtkPointData* arrays = fluid->GetPointData();
   if (arrays->HasArray(WallArrayName))

@@ -68,7 +68,7 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   vtkMarchingCorrectors* surface = this->Options->Surface;
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
-  split->SetParticlesData(particles);
+  split->SetParticlesData(surface->TakePresent(particles));
   if (!surface->GetCapping()) // caps end pieces
   {
     split->SetPeriodicBounds(surface->GetPeriodicBounds());

@@ -272,7 +272,7 @@ private:
     {
       if (step.Error.empty())
       {
-        entries.push_back({ step.Time, step.Output });
+        entries.push_back({ step.Time, step.Output, "" });
       }
     }
     return CollectionText(entries);

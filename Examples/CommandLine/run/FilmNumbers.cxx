@@ -55,8 +55,9 @@ void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* me
   vtkNew<vtkTable> row;
   AddNumber(row, "time", time);
   AddNumber(row, "triangles", static_cast<double>(run.Surface->GetNumberOfPolys()));
-  AddNumber(row, "area", NumberOf(run.Statistics, "Area"));
-  AddNumber(row, "volume", NumberOf(run.Statistics, "Volume"));
+  const bool hasRun = run.Statistics->HasArray("Triangles"); // else there is no fluid
+  AddNumber(row, "area", hasRun ? NumberOf(run.Statistics, "Area") : 0.0);
+  AddNumber(row, "volume", hasRun ? NumberOf(run.Statistics, "Volume") : 0.0);
   if (!this->Options.ComponentFile.empty())
   {
     AddNumber(row, "pieces", NumberOf(run.Statistics, "Pieces"));

@@ -8,6 +8,8 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
+#include "RankLaunch.h"
+#include "SafeText.h"
 #include "Walls.h"
 
 #include "vtkPolyData.h"
@@ -62,9 +64,16 @@ ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
   : Messages(messages)
   , HasTimes(IsCollectionFile(job.Inputs.front()))
   , Ids(job.IdArray)
-  , Stored(ListSteps(job, messages))
+  , Stored(ListSteps(job, messages, this->Notes))
   , Times(ListTimes(job, this->Stored))
 {
+  for (const std::string& note : this->Notes)
+  {
+    if (LaunchedRank() == 0)
+    {
+      Say("warning: " + note);
+    }
+  }
   const bool wallsMove = std::any_of(this->Stored.begin(), this->Stored.end(),
     [this](const ParticleSteps::Step& step) { return step.Walls != this->Stored.front().Walls; });
   for (double time : this->Times)

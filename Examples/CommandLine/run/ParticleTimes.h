@@ -53,6 +53,7 @@ private:
   MessageCapture* const Messages;
   const bool HasTimes; ///< of their own, in a .pvd file
   const std::string Ids;
+  std::vector<std::string> Notes; ///< what is said of the list of steps
   const Steps Stored;
   const std::vector<double> Times;
   vtkSmartPointer<vtkPointSet> Walls;

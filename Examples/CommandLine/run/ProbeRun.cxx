@@ -164,8 +164,15 @@ vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)
   return points;
 }
 
-vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, const double bounds[6])
+vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 {
+  double bounds[6];
+  vtkNew<vtkSPHProbe> all; // walls, too
+  const bool hasBounds = all->FindFluidBounds(job.Probe->TakePresent(particles), bounds);
+  if (job.Slice.Axis >= 0 && !hasBounds)
+  {
+    throw std::runtime_error("--slice has no plane to show, as --within and --only leave no particles");
+  }
   return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
 }
 
@@ -200,7 +207,7 @@ void ProbePoints(const Job& job, MessageCapture* messages)
   vtkSmartPointer<vtkDataSet> points = ReadPoints(job, messages);
   vtkSmartPointer<vtkPointSet> particles =
     AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));
-  points = points ? points : MakePoints(job, particles->GetBounds());
+  points = points ? points : MakePoints(job, particles);
   SetUpProbe(job, points, particles);
   ReportProbe(job, RunProbe(job, messages), messages);
   auto* result = vtkDataSet::SafeDownCast(job.Probe->GetOutput());

@@ -21,7 +21,7 @@ void CheckProbeFiles(const Job& job, MessageCapture* messages);
 vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages);
 
 /// Those of a slice or a line, which needs the bounds of all particles. Throws std::runtime_error.
-vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, const double bounds[6]);
+vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles);
 
 /// As SetUpSurface() of SurfaceRun.h.
 void SetUpProbe(const Job& job, vtkDataSet* points, vtkPointSet* particles);

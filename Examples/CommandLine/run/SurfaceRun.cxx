@@ -131,7 +131,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
   for (const std::string& name : names)
   {
-    if (!data->HasArray(name.c_str()))
+    if (particles->GetNumberOfPoints() > 0 && !data->HasArray(name.c_str()))
     {
       throw std::runtime_error(
         "there is no point array '" + name + "' to interpolate (--attributes)");

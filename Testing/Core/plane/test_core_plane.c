@@ -196,7 +196,11 @@ static void test_what_is_no_plane(void** state)
   set.has_solids = 1;
   input = core_input(&set);
   expect_error(*state, &input, &options, "solid ones have 1.000000001");
-  set.position[5] = NAN;
+  set.position[5] = NAN; /* of a solid that plays no part */
+  surface = core_extract(*state, &input, &options);
+  assert_int_equal(surface.statistics.dimension, 2);
+  mcor_free_surface(&surface);
+  set.solid[1] = 0;
   expect_error(*state, &input, &options, "position of particle 1 is not a number");
   core_free_set(&set);
 }

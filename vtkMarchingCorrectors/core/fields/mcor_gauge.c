@@ -50,10 +50,6 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
   const mcor_options* options, const mcor_gauge_job* job)
 {
   double* sides = context->box.points;
-  if (!job->box && input->particles_version != 0)
-  {
-    return MCOR_OK; /* another call may take the search grid */
-  }
   if (job->box)
   {
     const double h = options->globals->measured.h_min;
@@ -79,7 +75,9 @@ static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* in
       sides[2 * a + 1] = fmax(sides[2 * a + 1], fmax(from, to));
     }
   }
-  context->box.of_points = true;
+  context->box.has_points = true;
+  /* Another call may take the search grid, unless it is cut. */
+  context->box.of_points = job->box || input->particles_version == 0 || context->run.far;
   return MCOR_OK;
 }
 

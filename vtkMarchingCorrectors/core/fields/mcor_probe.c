@@ -359,10 +359,9 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   {
     mcor_bound_by_box(context, options);
   }
-  else if (input->particles_version == 0)
+  else
   {
-    mcor_bound_probe(
-      context, run->points, samples->count); /* no other call takes the search grid */
+    mcor_bound_probe(context, run->points, samples->count, input->particles_version == 0);
   }
   MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));

@@ -24,7 +24,8 @@ typedef struct mcor_probe_run
 
 /* mcor_probe_points.c. The box around the finite points of the caller, which only particles nearby are
  * needed for. */
-void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count);
+void mcor_bound_probe(
+  mcor_context* context, const mcor_array* points, int64_t count, bool alone);
 /* The same, where the caller said where its points are. */
 void mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 

@@ -10,15 +10,17 @@
 #include <math.h>
 #include <string.h>
 
-void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count)
+void mcor_bound_probe(
+  mcor_context* context, const mcor_array* points, int64_t count, bool alone)
 {
   mcor_array all = *points;
   all.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    mcor_find_range(context, &all, NULL, count, a, context->box.points + 2 * a);
+    mcor_find_range(context, &all, NULL, MCOR_SKIP_SOLIDS, count, a, context->box.points + 2 * a);
   }
-  context->box.of_points = true;
+  context->box.has_points = true;
+  context->box.of_points = alone || context->run.far;
 }
 
 void mcor_bound_by_box(mcor_context* context, const mcor_options* options)

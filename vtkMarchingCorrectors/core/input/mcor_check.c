@@ -165,15 +165,15 @@ static mcor_status mcor_check_form(
 }
 
 /* The array has the right form, and every element that is used is finite, and above 0
- * where it must be. solid: NULL, or whose particles' elements are not used. */
-static mcor_status mcor_check_array(mcor_context* context, const mcor_array* array,
-  const uint8_t* solid, const char* role, int64_t count, int components, bool positive)
+ * where it must be. */
+static mcor_status mcor_check_array(mcor_context* context, const mcor_input* input,
+  const mcor_array* array, mcor_skip skip, const char* role, int components, bool positive)
 {
   const char* name = mcor_array_name(array, role);
   const bool same = strcmp(name, role) == 0;
   MCOR_TRY(mcor_check_form(context, array, role, components));
   int c = 0;
-  const int64_t i = mcor_find_illegal(context, array, solid, count, positive, &c);
+  const int64_t i = mcor_find_illegal(context, array, input->solid, skip, input->count, positive, &c);
   if (i < 0)
   {
     return MCOR_OK;
@@ -220,36 +220,36 @@ static mcor_status mcor_check_scalar(
   MCOR_TRY(mcor_check_scalar_form(context, input));
   const int components = mcor_components(&input->scalar);
   MCOR_TRY(mcor_check_array(
-    context, &input->scalar, input->solid, "scalar", input->count, components, false));
-  return input->scalar_dot.data ? mcor_check_array(context, &input->scalar_dot, input->solid,
-                                    "scalar", input->count, components, false)
+    context, input, &input->scalar, MCOR_SKIP_SOLIDS, "scalar", components, false));
+  return input->scalar_dot.data ? mcor_check_array(context, input, &input->scalar_dot,
+                                    MCOR_SKIP_SOLIDS, "scalar", components, false)
                                 : MCOR_OK;
 }
 
 static mcor_status mcor_check_particles(mcor_context* context, const mcor_input* input)
 {
-  const int64_t n = input->count;
+  const mcor_skip skip = context->run.uses_solids ? MCOR_SKIP_ABSENT : MCOR_SKIP_SOLIDS;
   mcor_array positions = input->positions;
   positions.components = 3;
-  MCOR_TRY(mcor_check_array(context, &positions, NULL, "position", n, 3, false));
+  MCOR_TRY(mcor_check_array(context, input, &positions, skip, "position", 3, false));
   if (!input->estimate_smoothing_length)
   {
     MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
       MCOR_INVALID_ARGUMENT,
       "There is no smoothing length. Name its array, give a constant, or have it estimated.");
-    MCOR_TRY(
-      mcor_check_array(context, &input->smoothing_length, NULL, "smoothing length", n, 1, true));
+    MCOR_TRY(mcor_check_array(
+      context, input, &input->smoothing_length, skip, "smoothing length", 1, true));
   }
   if (mcor_is_given(&input->volume))
   {
-    MCOR_TRY(mcor_check_array(context, &input->volume, NULL, "volume", n, 1, true));
+    MCOR_TRY(mcor_check_array(context, input, &input->volume, skip, "volume", 1, true));
   }
   else if (mcor_is_given(&input->mass))
   {
-    MCOR_TRY(mcor_check_array(context, &input->mass, NULL, "mass", n, 1, true));
+    MCOR_TRY(mcor_check_array(context, input, &input->mass, skip, "mass", 1, true));
     if (mcor_is_given(&input->density))
     {
-      MCOR_TRY(mcor_check_array(context, &input->density, NULL, "density", n, 1, true));
+      MCOR_TRY(mcor_check_array(context, input, &input->density, skip, "density", 1, true));
     }
   }
   return MCOR_OK;

@@ -74,7 +74,7 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
-  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, &input->mass, input->count, 0) : 0;
+  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {

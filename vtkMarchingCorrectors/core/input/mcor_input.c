@@ -72,17 +72,33 @@ void mcor_read_positions(const mcor_input* input, int64_t first, int count, doub
   }
 }
 
-/* Moves to the front what is of fluid, of a chunk that begins with particle `first`; returns how many. All
+/* Moves to the front what is not skipped, of a chunk that begins with particle `first`; returns how many. All
  * where `solid` is NULL. */
-static int mcor_keep_fluid(const uint8_t* solid, int64_t first, int count, double* x)
+static int mcor_keep(
+  const uint8_t* solid, mcor_skip skip, int64_t first, int count, double* x)
 {
   int kept = 0;
   for (int i = 0; i < count && solid; ++i)
   {
     x[kept] = x[i];
-    kept += !solid[first + i];
+    kept += !mcor_is_skipped(solid, skip, first + i) && isfinite(x[i]);
   }
   return solid ? kept : count;
+}
+
+int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
+{
+  int kept = 0;
+  for (int i = 0; i < count && input->solid; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a][kept] = x[a][i];
+    }
+    kept += mcor_is_present(input, first + i) && isfinite(x[0][i]) && isfinite(x[1][i]) &&
+      isfinite(x[2][i]);
+  }
+  return input->solid ? kept : count;
 }
 
 /* Elements that are looked at together: each alone would wait for the one before. */
@@ -121,6 +137,7 @@ typedef struct mcor_range_job
 {
   const mcor_array* array;
   const uint8_t* solid;
+  mcor_skip skip;
   int component;
   double low[MCOR_SLICES], high[MCOR_SLICES];
 } mcor_range_job;
@@ -133,16 +150,16 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   {
     const int count = mcor_chunk_of(last - begin);
     mcor_read_array(job->array, begin, count, job->component, x);
-    mcor_widen_range(x, mcor_keep_fluid(job->solid, begin, count, x), &low, &high);
+    mcor_widen_range(x, mcor_keep(job->solid, job->skip, begin, count, x), &low, &high);
   }
   job->low[slice] = low;
   job->high[slice] = high;
 }
 
-void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
-  int64_t count, int component, double range[2])
+void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip, int64_t count,
+  int component, double range[2])
 {
-  mcor_range_job job = { .array = array, .solid = solid, .component = component };
+  mcor_range_job job = { .array = array, .solid = solid, .skip = skip, .component = component };
   const int slices = mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
   range[0] = DBL_MAX;
   range[1] = -DBL_MAX;
@@ -153,10 +170,10 @@ void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8
   }
 }
 
-double mcor_largest(mcor_context* context, const mcor_array* array, int64_t count, int component)
+double mcor_largest(mcor_context* context, const mcor_input* input, const mcor_array* array, int component)
 {
   double range[2];
-  mcor_find_range(context, array, NULL, count, component, range);
+  mcor_find_range(context, array, input->solid, MCOR_SKIP_ABSENT, input->count, component, range);
   return mcor_largest_of(range[0], range[1]);
 }
 
@@ -165,12 +182,12 @@ void mcor_measure_component(mcor_context* context, const mcor_input* input, int 
 {
   const mcor_array* array = &input->attributes[attribute];
   double range[2];
-  mcor_find_range(context, array, input->solid, input->count, component, range);
+  mcor_find_range(context, array, input->solid, MCOR_SKIP_SOLIDS, input->count, component, range);
   found->low = range[0];
   found->high = range[1];
   if (input->solid && !(range[0] < range[1]))
   {
-    mcor_find_range(context, array, NULL, input->count, component, range);
+    mcor_find_range(context, array, NULL, MCOR_SKIP_SOLIDS, input->count, component, range);
   }
   found->varies = range[0] < range[1];
   found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
@@ -221,7 +238,7 @@ static bool mcor_is_legal(
   return !illegal;
 }
 
-int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip,
   int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
@@ -231,7 +248,7 @@ int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const 
   }
   for (int64_t i = 0; i < (array->data ? count : 1); ++i)
   {
-    for (int c = 0; c < components && !(array->data && solid && solid[i]); ++c)
+    for (int c = 0; c < components && !(array->data && mcor_is_skipped(solid, skip, i)); ++c)
     {
       const double x = mcor_array_at(array, i, c);
       if (!isfinite(x) || (positive && !(x > 0)))
@@ -248,7 +265,7 @@ int64_t mcor_find_not_finite(
   mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count)
 {
   int component;
-  return mcor_find_illegal(context, array, solid, count, false, &component);
+  return mcor_find_illegal(context, array, solid, MCOR_SKIP_SOLIDS, count, false, &component);
 }
 
 /* The power of 2 just above all components of particle i; 0 if they are 0 or not finite. */

@@ -24,7 +24,27 @@ static inline double mcor_array_at(const mcor_array* array, int64_t i, int compo
 /* Solid particles take no part where they are ignored, nor in the free surface. */
 static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
 {
-  return context->kept.uses_solids || !input->solid || !input->solid[i];
+  return !input->solid || !input->solid[i] ||
+    (context->kept.uses_solids && input->solid[i] != MCOR_ABSENT);
+}
+
+/* Whether a particle counts as a neighbour, and where dimensions are found: solids that are not used, too. */
+static inline bool mcor_is_present(const mcor_input* input, int64_t i)
+{
+  return !input->solid || !input->solid[i] ||
+    (!input->ignore_solids && input->solid[i] != MCOR_ABSENT);
+}
+
+/* Which particles a look at values leaves out, by their number in mcor_input.solid, and those above. */
+typedef enum mcor_skip
+{
+  MCOR_SKIP_SOLIDS = 1,
+  MCOR_SKIP_ABSENT = MCOR_ABSENT
+} mcor_skip;
+
+static inline bool mcor_is_skipped(const uint8_t* solid, mcor_skip skip, int64_t i)
+{
+  return solid && solid[i] && (skip == MCOR_SKIP_SOLIDS || solid[i] == MCOR_ABSENT);
 }
 
 #define MCOR_CHUNK 1024
@@ -58,32 +78,50 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
 /* All three coordinates of at most MCOR_CHUNK particles. */
 void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
+/* Moves to the front the positions of particles that are present, and finite; returns how many. */
+int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
 /* At most MCOR_CHUNK of them. Not finite where a derived scalar does not exist as a number. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
-/* Least and greatest value of one component, solids left out where `solid` is not NULL; of none DBL_MAX,
- * -DBL_MAX. */
-void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
-  int64_t count, int component, double range[2]);
+/* Least and greatest value of one component, without particles that are skipped where `solid` is not NULL; of none
+ * DBL_MAX, -DBL_MAX. */
+void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip, int64_t count,
+  int component, double range[2]);
 /* The largest absolute value in a range, and of one component; of none 0. */
 static inline double mcor_largest_of(double low, double high)
 {
   return low > high ? 0 : fmax(-low, high);
 }
-double mcor_largest(mcor_context* context, const mcor_array* array, int64_t count, int component);
+/* Of the particles that are not absent, and of ignored solids what is finite. */
+double mcor_largest(mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
+
+/* mcor_far.c. Of a lattice that does not fit: marks particles as absent, in `far`, so that it does. Ends with the
+ * status and sentence of before where too many are in the way. */
+typedef struct mcor_far mcor_far;
+struct mcor_far
+{
+  uint8_t* solid; /* [count], freed by the caller; takes the place of the input's */
+  bool is_cut;    /* the lattice is that of a region: of a box, or of a probe's points */
+  double region[6];
+  int64_t count, first; /* absent ones, and the first of them */
+  double place[3];
+};
+mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
+/* Of a lattice that is cut, the bounds: `low` and `high` of the positions of all that is used. */
+void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
 /* Where what failed is for a lattice that is too large, and one smoothing length is far from the others: adds
  * which one to the sentence. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
-/* The first particle, solids left out where `solid` is not NULL, of which any component is not finite, or
+/* The first particle, without those skipped where `solid` is not NULL, of which any component is not finite, or
  * not above 0 where it must be; -1 if there is none. */
-int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip,
   int64_t count, bool positive, int* component);
-int64_t mcor_find_not_finite(
-  mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
+/* The same of fluid particles. */
+int64_t mcor_find_not_finite(mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
 
 /* mcor_attribute.c. Components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);

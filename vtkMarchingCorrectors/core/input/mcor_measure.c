@@ -49,7 +49,8 @@ enum
   MCOR_LENGTHS = 6, /* smoothing lengths of fluid particles */
   MCOR_SUPPORTS = 7,
   MCOR_SCALARS = 8,
-  MCOR_RANGES = 9
+  MCOR_SPOTS = 9, /* positions of all particles that are used; x, y, z */
+  MCOR_RANGES = 12
 };
 
 typedef struct mcor_ranges
@@ -98,6 +99,7 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
     const double* x = chunk->x[a];
     double low = DBL_MAX, high = -DBL_MAX;
     mcor_widen_range(x, chunk->count, &low, &high);
+    mcor_add_range(r, MCOR_SPOTS + a, low, high);
     if (!solids)
     {
       mcor_add_range(r, MCOR_PLACES + a, low, high);
@@ -120,7 +122,7 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
   }
 }
 
-/* Takes the solids out of a chunk; `solid` is of its particles, or NULL. */
+/* Takes the solids out of a chunk, and what is absent; `solid` is of its particles, or NULL. */
 static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk* solids)
 {
   const int count = chunk->count;
@@ -133,7 +135,8 @@ static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk*
     {
       to->x[a][to->count] = chunk->x[a][i];
     }
-    to->h[to->count++] = chunk->h[i];
+    to->h[to->count] = chunk->h[i];
+    to->count += solid[i] != MCOR_ABSENT;
   }
 }
 
@@ -175,12 +178,16 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   {
     chunk.count = mcor_chunk_of(last - begin);
     mcor_read_chunk(job->context, input, begin, &chunk);
-    mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
     if (job->context->run.options->field != MCOR_WEIGHT_SUM)
     {
       mcor_measure_scalar(input, begin, &chunk, &r);
     }
     mcor_part_chunk(input->solid ? input->solid + begin : NULL, &chunk, &solids);
+    mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
+    if (!input->ignore_solids)
+    {
+      mcor_watch_positions(job->watch, slice, solids.count, (const double(*)[MCOR_CHUNK])solids.x);
+    }
     r.counts[0] += chunk.count;
     r.counts[1] += solids.count;
     mcor_measure_chunk(&chunk, false, job->reach, &r);
@@ -256,6 +263,22 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
   return MCOR_OK;
 }
 
+/* Whether keys have the bits for all nodes of a lattice, and its cells, up to where surfaces are. */
+static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice)
+{
+  const double unit = lattice->top > 0 ? ldexp(MCOR_BRICK, lattice->top + 1) : MCOR_BLOCK_CUBES;
+  double cells = lattice->top > 0 ? 8.0 / 7 : 1; /* bricks of all levels are counted */
+  bool good = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double end = m->cut ? m->cut_high[a] : m->high[a];
+    const double nodes = (end - m->low[a]) / lattice->edge[a] + 2 * unit;
+    cells *= a == 2 ? nodes : (m->high[a] - m->low[a]) / lattice->edge[a] + 3 * unit;
+    good = good && nodes <= MCOR_NODE_LIMIT;
+  }
+  return good && cells < MCOR_KEY_LIMIT;
+}
+
 /* The virtual grid that covers what the particles' supports reach. */
 static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
 {
@@ -273,6 +296,10 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
   lattice->top = mcor_tree_top(m, options);
   MCOR_TRY(mcor_fit_period(context, options, cube));
+  while (lattice->top > 0 && !mcor_has_keys(m, lattice))
+  {
+    --lattice->top;
+  }
   /* Whole bricks of all levels; with space around, so that finer bricks beside it have a place. */
   const int64_t unit = lattice->top > 0 ? (int64_t)MCOR_BRICK << (lattice->top + 1) : 0;
   int64_t extent = 0;
@@ -280,10 +307,12 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   {
     const double edge = lattice->edge[a];
     const double first = floor(m->low[a] / edge) - 1, last = ceil(m->high[a] / edge) + 1;
-    MCOR_RETURN_IF(!(last - first <= MCOR_LATTICE_LIMIT), context, MCOR_OUT_OF_CAPACITY,
+    const int limit = m->cut ? MCOR_CUT_LIMIT : MCOR_LATTICE_LIMIT;
+    context->run.is_too_long = !(last - first <= limit);
+    MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
       "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. "
       "Use a larger cube size, or remove particles that are far away from the rest.",
-      edge, last - first, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
+      edge, last - first, mcor_axis_letter(context, a), limit);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
     if (a == 2 && mcor_is_plane(context)) /* one layer of cells */
     {
@@ -305,6 +334,11 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       : 0;
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
+  context->run.is_too_long = !mcor_has_keys(m, lattice);
+  MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
+    "With cube size %g the virtual grid would be %.3g cells long, which is too long together with its other sides. "
+    "Use a larger cube size, or remove particles that are far away from the rest.",
+    cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
   /* Where smoothing lengths differ much, lattices are long, and the last bit is needed. */
   const int bits = options->precision == MCOR_FLOAT64 ? 62 : lattice->top > 0 ? 31 : 30;
@@ -335,6 +369,10 @@ mcor_status mcor_measure_input(
   MCOR_TRY(mcor_measure_particles(
     context, input, mcor_support_factor(options->sph_kernel) * options->h_scale, &ranges));
   MCOR_TRY(mcor_keep_ranges(context, &ranges));
+  if (context->run.far)
+  {
+    mcor_cut_bounds(context, ranges.least + MCOR_SPOTS, ranges.most + MCOR_SPOTS);
+  }
   MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
     "None of the %lld particles is marked as fluid.", (long long)m->solid_count);
   if (options->field == MCOR_WEIGHT_SUM)

@@ -8,6 +8,7 @@
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,6 +81,7 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   const mcor_sampling* job = data;
   const uint8_t* solid = job->input->solid;
   const bool any = job->which == MCOR_ALL_PARTICLES, solids = job->which == MCOR_SOLID_PARTICLES;
+  const mcor_input* input = job->input;
   double x[3][MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
@@ -87,9 +89,11 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
     mcor_read_positions(job->input, begin, count, x);
     for (int i = 0; i < count; ++i)
     {
-      if (any || (solid && solid[begin + i]) == solids)
+      const bool present = any || solids ? mcor_is_present(input, begin + i) : true;
+      const double at[3] = { x[0][i], x[1][i], x[2][i] };
+      if (present && (any || (solid && solid[begin + i]) == solids) && isfinite(at[0]) &&
+        isfinite(at[1]) && isfinite(at[2]))
       {
-        const double at[3] = { x[0][i], x[1][i], x[2][i] };
         mcor_sample_particle(job, &job->found[slice], begin + i, at);
       }
     }

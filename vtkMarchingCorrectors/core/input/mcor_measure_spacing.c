@@ -56,8 +56,9 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   double x[3][MCOR_CHUNK], d2[MCOR_CHUNK];
   for (int64_t begin = 0; begin < job->input->count; begin += MCOR_CHUNK)
   {
-    const int count = mcor_chunk_of(job->input->count - begin);
+    int count = mcor_chunk_of(job->input->count - begin);
     mcor_read_positions(job->input, begin, count, x);
+    count = mcor_keep_present(job->input, begin, count, x);
     for (int64_t s = first; s < last; ++s)
     {
       const double* at = job->samples.sample[s].x;
@@ -131,7 +132,7 @@ static mcor_status mcor_scale_positions(
   positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    largest[a] = mcor_largest(context, &positions, input->count, a);
+    largest[a] = mcor_largest(context, input, &positions, a);
   }
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
   for (int a = 0; a < 3; ++a)

@@ -118,7 +118,10 @@ static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
     for (int i = 0; i < count; ++i)
     {
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
-      mcor_wall_add(wall, slice, begin + i, at, h[i]);
+      if (mcor_is_used(wall->context, wall->input, begin + i))
+      {
+        mcor_wall_add(wall, slice, begin + i, at, h[i]);
+      }
     }
   }
 }
@@ -187,7 +190,7 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 {
   const mcor_input* input = wall->input;
   MCOR_TRY(mcor_place_samples(context, wall));
-  wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, &input->mass, input->count, 0) : 1;
+  wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
   int slices;
   MCOR_TRY(

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define MCOR_NAMES 13
+#define MCOR_NAMES 14
 
 /* The most usual name first; in small letters and digits alone. */
 static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
@@ -19,9 +19,10 @@ static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_DENSITY] = { "density", "densities", "particledensity", "rho", "rhop" },
   [MCOR_VELOCITY] = { "velocity", "velocities", "vel", "v" },
   [MCOR_PARTICLE_ID] = { "idp", "particleid", "particleids", "partid", "id", "ids", "globalids",
-    "globalid", "gid", "pid", "iorig", "originalid", "unsortedparticleid" },
+    "globalid", "gid", "pid", "iorig", "originalid", "unsortedparticleid", "index" },
   [MCOR_PARTICLE_TYPE] = { "particletype", "type", "particletypes", "parttype", "ptype", "itype",
     "isboundary", "iswall", "issolid", "isfluid", "wallblock" },
+  [MCOR_SPACING] = { "particlespacing", "spacing", "particledistance" },
 };
 
 static bool mcor_is_same_name(const char* name, const char* usual)
@@ -82,13 +83,15 @@ int mcor_view_priority(const char* name, int components, int is_real, int varies
   {
     return -1;
   }
+  const bool is_vector = components == 2 || components == 3;
   const bool describes = mcor_name_priority(MCOR_SMOOTHING_LENGTH, name) >= 0 ||
-    mcor_name_priority(MCOR_VOLUME, name) >= 0 || mcor_name_priority(MCOR_MASS, name) >= 0;
-  return !is_real                                                     ? 5
-    : components == 3 && mcor_name_priority(MCOR_VELOCITY, name) >= 0 ? 0
-    : components == 3                                                 ? 1
-    : components == 1                                                 ? 2 + describes
-                                                                      : 4;
+    mcor_name_priority(MCOR_VOLUME, name) >= 0 || mcor_name_priority(MCOR_MASS, name) >= 0 ||
+    mcor_name_priority(MCOR_SPACING, name) >= 0;
+  return !is_real                                               ? 5
+    : is_vector && mcor_name_priority(MCOR_VELOCITY, name) >= 0 ? 0
+    : is_vector                                                 ? 1
+    : components == 1                                           ? 2 + describes
+                                                                : 4;
 }
 
 /* By which names a solver's output is told, as above; sources: Documentation/Guide/your-data.md. Those

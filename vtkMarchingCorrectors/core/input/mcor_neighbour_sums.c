@@ -459,7 +459,7 @@ static mcor_status mcor_begin_densities(
     MCOR_RETURN_IF(!mcor_is_given(arrays[k]), context, MCOR_INVALID_ARGUMENT,
       "There is no %s, from which densities are summed. Name its array, or give one value.",
       names[k]);
-    const int64_t i = mcor_find_illegal(NULL, arrays[k], NULL, input->count, true, &c);
+    const int64_t i = mcor_find_illegal(NULL, arrays[k], NULL, MCOR_SKIP_SOLIDS, input->count, true, &c);
     MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
       "The %s of particle %lld is not a number above 0. Remove such particles.", names[k],
       (long long)i);

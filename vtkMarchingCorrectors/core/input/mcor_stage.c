@@ -68,7 +68,7 @@ double mcor_size_scale(mcor_context* context, const mcor_input* input)
     return 1;
   }
   const mcor_globals* globals = options->globals;
-  return 1 / (globals ? globals->mass_max : mcor_largest(context, &input->mass, input->count, 0));
+  return 1 / (globals ? globals->mass_max : mcor_largest(context, input, &input->mass, 0));
 }
 
 typedef struct mcor_stage_job

@@ -135,9 +135,80 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
     wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
+/* Steps of single precision that are less than so many to the nearest particle. */
+#define MCOR_COARSE_STEPS 8
+
+/* The longest step between the coordinates that single precision can hold, where all of the fluid's were rounded to
+ * such; else 0. */
+static double mcor_step_of(const mcor_input* input, int* axis)
+{
+  double largest = 0;
+  const int64_t n = input->positions.data ? input->count : 0;
+  for (int64_t i = 0; i < 3 * n; ++i)
+  {
+    const double x = input->positions.type == MCOR_FLOAT64
+      ? ((const double*)input->positions.data)[i]
+      : (double)((const float*)input->positions.data)[i];
+    if (input->solid && input->solid[i / 3])
+    {
+      continue;
+    }
+    if ((double)(float)x != x)
+    {
+      return 0;
+    }
+    *axis = fabs(x) > largest ? (int)(i % 3) : *axis;
+    largest = fmax(largest, fabs(x));
+  }
+  return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
+}
+
+static bool mcor_warn_coarse(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  int axis = 0;
+  const double step = n->spacing_median > 0 && n->fluid_particles >= MCOR_FEW_PARTICLES
+    ? mcor_step_of(s->input, &axis)
+    : 0;
+  return step * MCOR_COARSE_STEPS > n->spacing_median &&
+    mcor_say(s,
+      "The positions are too coarse: they were stored in single precision, which rounds %c to "
+      "steps of %.3g, and the "
+      "nearest particle is %.3g away (median). Surfaces and volumes are wrong by about as much. "
+      "Subtract a constant "
+      "from the coordinates, or store them in double precision, where they are written.",
+      "xyz"[axis], step, n -> spacing_median);
+}
+
+/* Particles may be a little beyond a period; not by more than this many smoothing lengths. */
+#define MCOR_BEYOND_PERIOD 1
+
+static bool mcor_warn_period(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double* p = s->options->periodic + 2 * a;
+    if (p[1] > p[0] &&
+      n->fluid_extent[a] > p[1] - p[0] + MCOR_BEYOND_PERIOD * n->smoothing_length_median)
+    {
+      return mcor_say(s,
+        "The fluid particles extend over %.6g along %c, farther than the period %.6g: those beyond "
+        "it were moved by "
+        "whole periods, onto others. Is the period right?",
+        n->fluid_extent[a], "xyz"[a], p[1] - p[0]);
+    }
+  }
+  return false;
+}
+
 static bool mcor_warn_plane(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
+  if (mcor_warn_coarse(s))
+  {
+    return false; /* rounding made it flat */
+  }
   const double h = n->smoothing_length_median;
   for (int a = 0; a < 3; ++a)
   {
@@ -207,16 +278,24 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
-  if (o->field == MCOR_WEIGHT_SUM || mcor_has_box(o) || n->filled_median == 0 ||
-    n->filled_median > o->node_threshold)
+  if (o->field != MCOR_WEIGHT_SUM && !mcor_has_box(o) && n->filled_median > 0 &&
+    n->filled_median <= o->node_threshold)
   {
-    return false;
+    return mcor_say(s,
+      "There is no surface, because the node threshold %g discards all cells of lower weight sum: "
+      "the particle volumes fill only %.3g of the supports (median). Are volumes, or masses and "
+      "densities, in the same units as the smoothing length?",
+      o->node_threshold, n->filled_median);
   }
-  return mcor_say(s,
-    "There is no surface, because the node threshold %g discards all cells of lower weight sum: "
-    "the particle volumes fill only %.3g of the supports (median). Are volumes, or masses and "
-    "densities, in the same units as the smoothing length?",
-    o->node_threshold, n->filled_median);
+  return n->triangles_below_threshold > 0 &&
+    mcor_say(s,
+      "The node threshold %g removed the whole surface of %lld %s: all its nodes have a lower "
+      "weight sum. If the fluid "
+      "ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as the node "
+      "threshold and the vertex "
+      "threshold; else check the units of volumes, or of masses and densities.",
+      o->node_threshold, (long long)n->triangles_below_threshold,
+      n->dimension == 2 ? "lines" : "triangles");
 }
 
 /* All that trimming did, or could do, to a surface that is not there. */
@@ -255,7 +334,9 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
     plane ? "them" : "the surface", eigenvalue ? "boundary eigenvalue" : "weight sum",
     o->vertex_threshold, wall ? ", or " : "", share,
     eigenvalue ? "Try 0.3."
-               : "In the fluid, weights are about 1 if volumes, masses and densities are right.");
+               : "In the fluid, weights are about 1 if volumes, masses and densities are right. If "
+                 "the fluid ends in a "
+                 "vacuum, as gas and planets do, use the sum as the field, and thresholds of 0.");
 }
 
 /* As a share of the smallest smoothing length: residuals then are off by about as much of the range. */
@@ -307,6 +388,20 @@ static bool mcor_warn_tolerance(mcor_suspicion* s)
                                             : "a larger tolerance");
 }
 
+static bool mcor_warn_far(mcor_suspicion* s)
+{
+  const mcor_statistics* n = &s->surface->statistics;
+  const bool one = n->far_particles == 1;
+  return n->far_particles > 0 &&
+    mcor_say(s,
+      "%lld %s so far away from all others that the virtual grid cannot reach %s, and %s left out: "
+      "%sparticle %lld is at (%.6g, %.6g, %.6g). If that is not meant, leave %s out by a range of "
+      "positions, or use a larger cube size.",
+      (long long)n->far_particles, one ? "particle is" : "particles are", one ? "it" : "them",
+      one ? "was" : "were", one ? "" : "the first one, ", (long long)n->far_first, n->far_place[0],
+      n->far_place[1], n->far_place[2], one ? "it" : "them");
+}
+
 static char* mcor_copy_text(const char* text)
 {
   const size_t size = strlen(text) + 1;
@@ -319,7 +414,7 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
 {
   bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
     mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_precision,
-    mcor_warn_tolerance };
+    mcor_warn_tolerance, mcor_warn_far, mcor_warn_period, mcor_warn_coarse };
   /* With globals the input is a part of the particles. */
   if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
     input->count == 0 || options->globals)

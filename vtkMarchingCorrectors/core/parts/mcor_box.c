@@ -421,7 +421,7 @@ void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);
   context->box.kept = NULL;
-  context->box.of_points = false;
+  context->box.of_points = context->box.has_points = false;
 }
 
 void mcor_release_box(mcor_context* context)

@@ -80,7 +80,7 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
       for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
-        if (!solid || !input->ignore_solids)
+        if (mcor_is_present(input, begin + i) && (finite || !solid))
         {
           mcor_extend_spread(&spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
         }
@@ -152,7 +152,7 @@ static mcor_status mcor_refuse_plane(
                            "positions, or use three dimensions";
   mcor_array positions = input->positions;
   positions.components = 3;
-  if (mcor_find_not_finite(context, &positions, NULL, input->count) >= 0)
+  if (mcor_find_not_finite(context, &positions, input->solid, input->count) >= 0)
   {
     return MCOR_OK; /* for mcor_check_input to say */
   }
@@ -164,7 +164,8 @@ static mcor_status mcor_refuse_plane(
       "The fluid particles have %c = %.10g, but the solid ones have %.10g: %s.", "xyz"[a], at,
       solids, rule);
     int64_t i = 0;
-    while (in_plane && i < input->count && mcor_array_at(&positions, i, a) == at)
+    while (in_plane && i < input->count &&
+      (mcor_array_at(&positions, i, a) == at || !mcor_is_present(input, i)))
     {
       ++i;
     }
@@ -191,6 +192,60 @@ static bool mcor_is_apart(const mcor_spread* spread)
   return planes == 1 && apart;
 }
 
+/* Particles that stand for all in the search for twins. */
+#define MCOR_TWIN_SAMPLES 32
+/* Of the distance that particles evenly strewn over the plane would have: a step of single precision that may have
+ * made them flat. */
+#define MCOR_COARSE_SHARE 0.125
+
+/* Whether the plane is one of rounding: its coordinate is so large that single precision, which holds it, rounds by
+ * about the distance of the particles, and most of them lie on others. */
+static mcor_status mcor_is_rounding(
+  mcor_context* context, const mcor_input* input, const mcor_spread* spread, bool* rounding)
+{
+  const mcor_plane* plane = &context->plane;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  int64_t counts[3] = { 0 }; /* particles; samples, and those with a twin */
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    counts[0] += mcor_is_present(input, i);
+  }
+  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, counts));
+  double area = 1;
+  for (int a = 0; a < 2; ++a)
+  {
+    const int axis = mcor_plane_axis(plane, a);
+    area *= fmax(spread->high[axis], spread->high[3 + axis]) -
+      fmin(spread->low[axis], spread->low[3 + axis]);
+  }
+  const double spacing = sqrt(area / (double)(counts[0] > 0 ? counts[0] : 1));
+  *rounding = plane->at != 0 && (double)(float)plane->at == plane->at &&
+    ldexp(1, ilogb(plane->at) - 23) > MCOR_COARSE_SHARE * spacing;
+  if (!*rounding)
+  {
+    return MCOR_OK;
+  }
+  for (int64_t i = 0; i < input->count && counts[1] < MCOR_TWIN_SAMPLES; ++i)
+  {
+    bool has_twin = false;
+    for (int64_t k = 0; k < input->count && !has_twin; ++k)
+    {
+      has_twin = k != i;
+      for (int a = 0; a < 2 && has_twin; ++a)
+      {
+        const int axis = mcor_plane_axis(plane, a);
+        has_twin = mcor_array_at(&positions, i, axis) == mcor_array_at(&positions, k, axis);
+      }
+    }
+    counts[1] += mcor_is_present(input, i);
+    counts[2] += mcor_is_present(input, i) && has_twin;
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts + 1, 2));
+  *rounding = 2 * counts[2] > counts[1];
+  return MCOR_OK;
+}
+
 /* In ranks and globals, the same for all. */
 static mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
@@ -204,8 +259,14 @@ static mcor_status mcor_find_plane(
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.low, 6));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.high, 6));
   context->plane = mcor_plane_of(&spread, options->dimension);
+  bool rounding = false;
+  if (mcor_is_plane(context) && options->dimension == 0)
+  {
+    MCOR_TRY(mcor_is_rounding(context, input, &spread, &rounding));
+  }
+  context->plane = rounding ? (mcor_plane){ 0 } : context->plane;
   const bool some = spread.low[0] <= spread.high[0] || spread.low[3] <= spread.high[3];
-  const bool refused = options->dimension == 2 ? some : mcor_is_apart(&spread);
+  const bool refused = options->dimension == 2 ? some : !rounding && mcor_is_apart(&spread);
   return refused && !mcor_is_plane(context) ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;
 }
 
@@ -382,12 +443,15 @@ void mcor_turn_measure(mcor_measure* measure, bool back)
     measure->x_low[t] = a < 2 ? from.x_low[f] : at;
     measure->x_high[t] = a < 2 ? from.x_high[f] : at;
     measure->edge[t] = from.edge[f];
+    measure->cut_high[t] = a < 2 ? from.cut_high[f] : at + from.support_max;
   }
 }
 
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* s)
 {
   mcor_turn_back(plane, s->fluid_extent, sizeof *s->fluid_extent);
+  mcor_turn_back(plane, s->far_place, sizeof *s->far_place);
+  s->far_place[plane->axis - 1] = plane->at;
   mcor_turn_back(plane, s->lattice_origin, sizeof *s->lattice_origin);
   mcor_turn_back(plane, s->lattice_cells, sizeof *s->lattice_cells);
 }

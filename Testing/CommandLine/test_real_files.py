@@ -1,0 +1,383 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files as people have them, by the program marching-correctors: test_real_files.py PROGRAM PRELOAD."""
+import csv
+import json
+import math
+import re
+
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+FREE = ["--free-surface", "--quiet"]
+H = ["--smoothing-length", "0.13"]
+
+
+def block(sides, spacing=0.1, origin=(0, 0, 0)):
+    return [tuple(o + (i + 0.5) * spacing for o, i in zip(origin, place))
+            for place in ((i, j, k) for k in range(sides[2]) for j in range(sides[1]) for i in range(sides[0]))]
+
+
+def write_csv(path, points, arrays):
+    """Text that may hold nan and inf, as VTK's formats may not."""
+    columns = [[p[a] for p in points] for a in range(3)] + list(arrays.values())
+    path.write_text(",".join(["x", "y", "z", *arrays]) + "\n" +
+                    "\n".join(",".join(map(repr, row)) for row in zip(*columns)) + "\n")
+
+
+class RealFiles(CommandLineTest):
+    def refuse(self, result, status, sentence):
+        """Of a run that may have a surface of one before it."""
+        self.one_sentence(result, status, sentence)
+
+    def volume(self, source, *options, words=""):
+        """Of the free surface; `words` must stand in what is said, which is nothing where there are none."""
+        statistics = self.directory / "statistics.json"
+        result = self.extract(*FREE, *options, "--stats", statistics, source=source)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.said = result.stderr
+        if words:
+            self.assertRegex(result.stderr, words)
+        else:
+            self.assertEqual(result.stderr, "")
+        self.statistics = json.loads(statistics.read_text())["statistics"]
+        return self.statistics.get("volume", self.statistics.get("area"))
+
+    def levels(self, sources, *options, gauge="a=0.25,0.25,-1:0.25,0.25,2", words=None):
+        table = self.directory / "levels.csv"
+        result = self.run_program(*sources, table, "--quiet", "--gauge", gauge, *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stderr, words) if words else self.assertEqual(result.stderr, "")
+        with table.open() as file:
+            return [(float(row["time"]), row["state"], float(row["z"]) if row["state"] == "wet" else None)
+                    for row in csv.DictReader(file)]
+
+    # ---- particles far from all others ----
+
+    def test_far_particles(self):
+        near = block((10, 10, 10))
+        file = self.directory / "far.csv"
+        write_csv(file, near, {"A": [1000.0] * len(near)})
+        in_box = self.volume(file, *H, "--box", "-1,2,-1,2,-1,0.5")
+        self.assertGreater(in_box, 0)
+        expected = self.volume(file, *H)
+        for far in ([(0.5, 0.5, -1e5)], [(1e7, 0.5, 0.5)], [(3e5 * i, -1e5 * i, 1e6) for i in range(1, 9)]):
+            write_csv(file, near + far, {"A": [1000.0] * len(near) + [math.nan] * len(far)})
+            self.assertEqual(self.volume(file, *H, words=f"(?s){len(far)} particles? (is|are) so far away.*"
+                                         "particle 1000 is at " + re.escape(f"({far[0][0]:g},")), expected)
+            self.assertEqual(self.statistics["fluid_particles"], 1000)
+            (time, state, level), = self.levels([file], *H, gauge="a=0.5,0.5,-1:0.5,0.5,3")
+            self.assertAlmostEqual(level, 1.0, delta=0.02)
+            self.assertEqual(self.run_program(file, self.directory / "slice.vti", "--slice", "y=0.5", *H, "--quiet",
+                                              "--resolution", "50").returncode, 0)
+            slice = (self.directory / "slice.vti").read_text()
+            self.assertRegex(slice, 'WholeExtent="0 4[0-9] 0 0 0 (49|50)"|WholeExtent="0 49 0 0 0 4[0-9]"')
+        nine = [(1e6, 0.0, 1e6 + i) for i in range(9)]
+        write_csv(file, near + nine, {})
+        self.refuse(self.extract(*FREE, *H, source=file), 1, "far away from the rest")
+        self.assertEqual(self.volume(file, *H, "--box", "-1,2,-1,2,-1,0.5"), in_box)
+        self.assertEqual(self.volume(file, *H, "--within=-1,2,-1,2,-1,2"), expected)
+        self.assertEqual(self.volume(file, *H, "--within=-inf,2,-inf,inf,-inf,inf"), expected)
+
+    def test_choice(self):
+        near = block((10, 10, 10))
+        file = self.directory / "kinds.csv"
+        kinds = {"Kind": [i % 5 if i < 20 else 1 for i in range(1000)] + [7, 8, 3], "Level": [0.5] * 1000 + [9.0, 9.0, math.nan]}
+        write_csv(file, near + [(5, 5, 5), (5.1, 5, 5), (math.nan, 0, 0)], kinds)
+        self.refuse(self.extract(*FREE, *H, source=file), 1, "position of particle 1002 is not a number")
+        expected = self.volume(file, *H, "--only", "Level=0.5")
+        self.assertEqual(self.statistics["fluid_particles"], 1000)
+        self.assertEqual(self.volume(file, *H, "--only", "Level=0:1"), expected)
+        self.assertEqual(self.volume(file, *H, "--only", "Kind=0:2", "--only", "Kind=3:6", "--within", "0,2,0,2,0,2"), expected)
+        self.volume(file, *H, "--only", "Kind=0:6", "--only", "Kind=8", "--only", "Level=0:10")
+        self.assertEqual(self.statistics["fluid_particles"], 1001)
+        components = self.directory / "pieces.csv"
+        self.volume(file, *H, "--only", "Level=0:10", "--components", components)
+        with components.open() as rows:
+            large, small = [int(row["particles"]) for row in csv.DictReader(rows)]
+            self.assertEqual((large > 900, small), (True, 2))
+        self.volume(file, *H, "--only", "Kind=99", words="No particle is left by Kind=99, so there is no fluid")
+        for bad, sentence in [("Kind", "needs NAME=VALUE or"), ("Kind=2:1", "lower value first"), ("Kind=a", "finite number")]:
+            self.refuse(self.extract(*FREE, *H, "--only", bad, source=file), 2, sentence)
+        self.refuse(self.extract(*FREE, *H, "--only", "Nothing=1", source=file), 1,
+                    "There is no point array 'Nothing' for the choice of particles")
+
+    def test_what_plays_no_part(self):
+        near = block((10, 10, 10))
+        file = self.directory / "walls.csv"
+        bad = {"h": [0.13] * 1000 + [-1.0], "Mass": [1.0] * 1000 + [math.nan], "Density": [1000.0] * 1000 + [0.0],
+               "Kind": [0] * 1000 + [1], "A": [p[0] for p in near] + [math.inf]}
+        write_csv(file, near + [(math.nan, 1, 1)], bad)
+        self.volume(file, "--fluid", "Kind=0")  # the free surface has no use for solids
+        fluid = ["--scalar", "A", "--iso", "0.4", "--fluid", "Kind=0"]
+        self.refuse(self.extract(*fluid, source=file), 1, "particle 1000 is not a number")
+        result = self.extract(*fluid, "--solids", "ignore", "--quiet", source=file)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    # ---- films ----
+
+    def write_tank(self, number, layers, time=None, name="TIME"):
+        points = block((5, 5, layers))
+        field = f"FIELD FieldData 1\n{name} 1 1 double\n{time}\n" if time is not None else ""
+        path = self.directory / f"tank_{number}.vtk"
+        path.write_text(f"# vtk DataFile Version 3.0\ntank\nASCII\nDATASET POLYDATA\n{field}"
+                        f"POINTS {len(points)} float\n" + files.text_of(points) + "\n")
+        return path
+
+    def test_order_and_times(self):
+        for name in ["TIME", "TimeValue", "time"]:
+            paths = [self.write_tank(n, 5 + n, 0.05 * n, name) for n in (2, 8, 9, 10, 11)]
+            for order in (sorted(paths), paths[::-1]):
+                levels = self.levels(order, *H)
+                self.assertEqual([round(time, 9) for time, _, _ in levels], [0.1, 0.4, 0.45, 0.5, 0.55])
+                heights = [level for _, _, level in levels]
+                self.assertEqual(heights, sorted(heights))
+                self.assertAlmostEqual(heights[0], 0.7, delta=0.02)
+        # --time-step sets others; where some files have no time, there is a word.
+        self.assertEqual([time for time, _, _ in self.levels(paths, *H, "--time-step", "0.5")], [0, 0.5, 1, 1.5, 2])
+        self.write_tank(9, 14)
+        self.assertEqual([time for time, _, _ in self.levels(paths, *H, words="are missing in some")], [0, 1, 2, 3, 4])
+
+    def test_times_in_xml(self):
+        paths = []
+        for number, kind in [(3, "ascii"), (12, "binary"), (7, "appended")]:
+            path = self.directory / f"run_{number}.vtp"
+            files.write_vtp(path, block((5, 5, 5)), {})
+            value = {"ascii": f'format="ascii">{0.25 * number}', "appended": f'format="appended" RangeMin="{0.25 * number}" '
+                     f'RangeMax="{0.25 * number}" offset="0">',
+                     "binary": 'format="binary">CAAAAAAAAAAAAAhA'}[kind]  # 8 bytes: 3.0
+            text = path.read_text().replace("<PolyData>", '<PolyData><FieldData><DataArray type="Float64" Name="TimeValue" '
+                                            f'NumberOfTuples="1" {value}</DataArray></FieldData>')
+            if kind == "appended":
+                text = text.replace("</PolyData>", '</PolyData><AppendedData encoding="base64">_CAAAAAAAAAAAAPw/</AppendedData>')
+            path.write_text(text)
+            paths.append(path)
+        self.assertEqual([time for time, _, _ in self.levels(paths, *H)], [0.75, 1.75, 3.0])
+
+    def test_repeated_times(self):
+        old, new, other = (self.directory / f"{name}.vtp" for name in ("old", "new", "other"))
+        files.write_vtp(old, block((5, 5, 4)), {})
+        files.write_vtp(new, block((5, 5, 6)), {})
+        files.write_vtp(other, block((5, 5, 2), origin=(0, 0, 0.6)), {})
+        pvd = self.directory / "run.pvd"
+
+        def levels(entries, **options):
+            pvd.write_text("<VTKFile><Collection>" + "".join(
+                f'<DataSet timestep="{time}" {part} file="{file}"/>' for time, part, file in entries) + "</Collection></VTKFile>")
+            return [round(level, 1) for _, _, level in self.levels([pvd], *H, **options)]
+
+        part = ['part="0"', 'part="1"', ""]
+        self.assertEqual(levels([(0, part[0], "old.vtp"), (1, part[0], "new.vtp"), (0, part[0], "new.vtp")],
+                                words="lists 1 file of a time and a part that it had before, the first at time 0"), [0.6, 0.6])
+        self.assertEqual(levels([(0, part[0], "old.vtp"), (0, part[0], "old.vtp"), (2, part[2], "new.vtp"),
+                                 (2, part[2], "new.vtp")], words="lists 2 files"), [0.4, 0.6])
+        for other_part in part[1:]:
+            self.assertEqual(levels([(0, part[0], "new.vtp"), (0, other_part, "other.vtp")]), [0.8])
+
+    def test_steps_without_fluid(self):
+        paths = [self.write_tank(n, layers, 0.1 * n) for n, layers in enumerate([0, 5, 0])]
+        self.assertEqual([state for _, state, _ in self.levels(paths, *H)], ["dry", "wet", "dry"])
+        numbers = self.directory / "numbers.csv"
+        result = self.run_program(*paths, self.directory / "film.pvd", *FREE, *H, "--numbers", numbers,
+                                  "--gauge", "a=0.25,0.25,-1:0.25,0.25,2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual((self.directory / "film.pvd").read_text().count("<DataSet"), 3)
+        with numbers.open() as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([float(row["volume"]) > 0 for row in rows], [False, True, False])
+        self.assertEqual([float(row["volume"]) for row in rows][::2], [0, 0])
+        self.assertEqual([float(row["a.depth"]) > 0 for row in rows], [False, True, False])
+
+    # ---- particles among meshes ----
+
+    def test_vertices(self):
+        particles = block((6, 6, 6))
+        nodes = [(i, j, k) for k in (-3, -2) for j in (0, 1) for i in (0, 1)]
+        points = nodes[:4] + particles + nodes[4:]
+        hexahedron = [0, 1, 3, 2, 220, 221, 223, 222]
+        for shared in (False, True):  # polygons beside vertices in poly data, too
+            cells = [[4 + i] for i in range(len(particles))]
+            head = f"# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET {'POLYDATA' if shared else 'UNSTRUCTURED_GRID'}\n"
+            text = head + f"POINTS {len(points)} double\n{files.text_of(points)}\n"
+            if shared:
+                text += (f"VERTICES {len(cells)} {2 * len(cells)}\n" + "\n".join(f"1 {c[0]}" for c in cells) +
+                         "\nPOLYGONS 1 5\n4 0 1 3 2\n")
+            else:
+                cells.append(hexahedron)
+                text += (f"CELLS {len(cells)} {sum(1 + len(c) for c in cells)}\n" +
+                         "\n".join(f"{len(c)} {' '.join(map(str, c))}" for c in cells) +
+                         f"\nCELL_TYPES {len(cells)}\n" + " ".join(["1"] * len(particles) + ["12"]) + "\n")
+            values = [0.25 * p[2] for p in particles] + [99.0]
+            text += (f"CELL_DATA {len(particles) + 1}\nSCALARS Height double 1\nLOOKUP_TABLE default\n" +
+                     " ".join(map(repr, values)) + f"\nPOINT_DATA {len(points)}\nSCALARS NODE_ID int 1\nLOOKUP_TABLE default\n" +
+                     " ".join(map(str, range(len(points)))) + "\n")
+            file = self.directory / "mesh.vtk"
+            file.write_text(text)
+            volume = self.volume(file, *H, words="note: 8 of 224 points of .* are nodes of a mesh and no particles")
+            self.assertAlmostEqual(volume, 0.6 ** 3, delta=0.17 * 0.6 ** 3)
+            self.assertEqual(self.statistics["fluid_particles"], 216)
+            result = self.extract("--scalar", "Height", "--iso", "0.07", *H, "--quiet", "--stats", self.directory / "s.json",
+                                  source=file)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            low, high = json.loads((self.directory / "s.json").read_text())["statistics"]["scalar_range"]
+            self.assertAlmostEqual(high, 0.25 * 0.55)
+
+    # ---- vectors of two components ----
+
+    def test_vectors_in_a_plane(self):
+        for normal in range(3):
+            axes = [a for a in range(3) if a != normal]
+            flat = [(0.1 * i, 0.1 * j) for j in range(12) for i in range(12)]
+            points = []
+            for p in flat:
+                x = [0.0] * 3
+                x[axes[0]], x[axes[1]], x[normal] = p[0], p[1], 0.5
+                points.append(tuple(x))
+            file = self.directory / "plane.vtu"
+            files.write_vtu(file, points, {"velocity": [(-2 * y, 2 * x) for x, y in flat], "index": list(range(len(flat))),
+                                           "particle_spacing": [0.1] * len(flat)})
+            result = self.extract("--derive", "velocity", "--scalar", "Vorticity", "--component", str(normal), "--iso",
+                                  "4", *H, "--stats", self.directory / "s.json", source=file)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            low, high = json.loads((self.directory / "s.json").read_text())["statistics"]["scalar_range"]
+            for value in (low, high):
+                self.assertAlmostEqual(abs(value), 4, delta=1e-5)
+            self.assertEqual(low > 0, normal != 1)  # x, z around y turn the other way
+            self.extract("--derive", "velocity", "--scalar", "Divergence", "--iso", "1", *H, "--stats",
+                         self.directory / "s.json", source=file)
+            low, high = json.loads((self.directory / "s.json").read_text())["statistics"]["scalar_range"]
+            self.assertLess(max(abs(low), abs(high)), 1e-5)
+        self.refuse(self.extract("--free-surface", source=file), 1,
+                    "By 'particle_spacing', particles are 0.1 apart: 0.13 is usual. ")
+
+    # ---- coordinates that are too coarse, periods that are too short, thresholds ----
+
+    def test_coarse_coordinates(self):
+        import struct
+        single = lambda x: struct.unpack("f", struct.pack("f", x))[0]
+        points = [(500000 + x, 5000000 + y, z) for x, y, z in block((10, 10, 10))]
+        file = self.directory / "map.vtp"
+        files.write_vtp(file, [tuple(map(single, p)) for p in points], {})
+        self.volume(file, *H, words="positions are too coarse: .* rounds y to steps of 0.5")
+        self.assertNotIn("plane", self.said)
+        self.assertNotIn("neither", self.said)
+        files.write_vtp(file, points, {})
+        self.assertGreater(self.volume(file, *H), 0.9)
+
+    def test_short_period(self):
+        file = self.directory / "long.vtp"
+        files.write_vtp(file, block((20, 10, 10)), {})
+        self.volume(file, *H, "--periodic", "2,1,1", words="empty")
+        self.volume(file, *H, "--periodic", "1.5,0,0", words="extend over 1.9 along x, farther than the period 1.5")
+        self.levels([file], *H, "--periodic", "1.5,0,0", words="extend over 1.9 along x", gauge="a=1,0.5,-1:1,0.5,2")
+
+    def test_bodies_in_vacuum(self):
+        """The threshold that leaves nothing is named; without it there is the body in thin gas."""
+        near = block((8, 8, 8), origin=(-0.4, -0.4, -0.4))
+        gas = [(0.8 * i, 0.8 * j, 0.8 * k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) != (0, 0, 0)]
+        file = self.directory / "planet.vtp"
+        files.write_vtp(file, near + gas, {"rho": [1.0] * len(near) + [1e-6] * len(gas), "m": [1e-3] * len(near) + [1e-12] * len(gas),
+                                           "h": [0.13] * len(near) + [0.8] * len(gas)})
+        options = ["--scalar", "rho", "--iso", "0.4"]
+        result = self.extract("--scalar", "Radius", "--iso", "0.75", "--node-threshold", "0.5")
+        self.assertRegex(result.stderr, r"The node threshold 0.5 removed the whole surface of \d+ triangles.*use the sum as the "
+                         "field")
+        result = self.extract(*options, "--field", "sum", "--node-threshold", "0", "--vertex-threshold", "0", "--quiet",
+                              "--stats", self.directory / "s.json", source=file)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        volume = json.loads((self.directory / "s.json").read_text())["statistics"]["volume"]
+        self.assertAlmostEqual(volume / 0.8 ** 3, 1, delta=0.1)
+
+    # ---- tables ----
+
+    def check_table(self, name, text, volume=0.216, **options):
+        file = self.directory / name
+        file.write_text(text)
+        self.assertAlmostEqual(self.volume(file, *H, **options), volume, delta=0.18 * volume)
+        return file
+
+    def test_csv(self):
+        points = block((6, 6, 6))
+        rows = list(enumerate(points))
+        paraview = "\n".join(['"Density","Vel:0","Vel:1","Vel:2","Points:0","Points:1","Points:2","Point ID"'] + [
+            f"1000,{p[0]},{2 * p[1]},0,{p[0]},{p[1]},{p[2]},{i}" for i, p in rows])
+        file = self.check_table("paraview.csv", paraview)
+        surface = self.output.read_text()
+        self.assertIn('Name="Vel" NumberOfComponents="3"', surface)
+        self.assertRegex(surface, 'type="Int64"[^>]*Name="Point ID"')
+        self.check_table("crlf.csv", paraview.replace("\n", "\r\n") + "\r\n")
+        self.check_table("spaces.csv", "x, y , z, rho\n" + "\n".join(f"{x}, {y}, {z}, 1e3" for x, y, z in points))
+        self.check_table("excel.csv", "\ufeffPos.x [m];Pos.y [m];Pos.z [m];Rhop [kg/m^3]\n" + "\n".join(
+            ";".join(repr(v).replace(".", ",") for v in (*p, 1000.5)) for p in points))
+        self.check_table("bare.tsv", "\n".join("\t".join(map(repr, p)) for p in points))
+        result = self.extract("--scalar", "Vel", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for text, sentence in [("a,b\n1,2\n", "no columns of positions, which are called x, y and z, .* there are a, b"),
+                               ("x,y,z\n1,2\n", "line 2 has 2 values for 3 columns"), ("", "no row of values"),
+                               ("x,y,z\n", "holds no points"), ("x,y,z\nnan,0,0\n", "not a number"),
+                               ("x\0y,z\n1,2,3\n", "line 1 is no text")]:
+            bad = self.directory / "bad.csv"
+            bad.write_text(text)
+            self.refuse(self.extract(*FREE, *H, source=bad), 1, sentence)
+
+    def test_columns(self):
+        points = block((6, 6, 6))
+        body = "\n".join(f" {x:.6E}  {y:.6e}\t{z:+.6f} 1.0D3 {i}" for i, (x, y, z) in enumerate(points))
+        file = self.check_table("run.txt", "# a header\n# x y z rho id\n" + body + "\n# the end\n")
+        self.assertRegex(self.output.read_text(), 'type="Int64"[^>]*Name="id"')
+        self.check_table("unnamed.dat", body)
+        self.assertIn('Name="Column4"', self.output.read_text())
+        self.check_table("two.txt", "\n".join(f"{x} {y}" for x, y, z in points if z < 0.1), volume=0.36)
+
+    def test_xyz(self):
+        points = block((6, 6, 6))
+        lines = "\n".join(f"Ar {x} {y} {z}" for x, y, z in points)
+        self.check_table("plain.xyz", f"216\na comment\n{lines}\n")
+        self.check_table("cloud.xyz", "\n".join(f"{x} {y} {z}" for x, y, z in points))
+        header = ('Lattice="2 0 0 0 2 0 0 0 2" Properties=species:S:1:pos:R:3:vel:R:3:id:I:1 Time=0.5 pbc="T F F"')
+        body = "\n".join(f"H {x} {y} {z} {x} 0 0 {i}" for i, (x, y, z) in enumerate(points))
+        file = self.check_table("extended.extxyz", f"216\n{header}\n{body}\n", words="may be a period .0,2,0,0,0,0.")
+        result = self.extract("--scalar", "vel", "--component", "0", "--iso", "0.3", *H, "--quiet", "--periodic", "auto",
+                              source=file)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        steps = "".join(f"{25 * n}\nTime={0.1 * n}\n" + "".join(f"A {x} {y} {z}\n" for x, y, z in block((5, 5, n)))
+                        for n in (4, 6, 9))
+        film = self.directory / "film.xyz"
+        film.write_text(steps)
+        self.assertEqual([(round(t, 9), round(level, 1)) for t, _, level in self.levels([film], *H)],
+                         [(0.4, 0.4), (0.6, 0.6), (0.9, 0.9)])
+        for text, sentence in [("5\nx\nA 1 2 3\n", "it ends before all particles of a step"), ("3\n", "ends before the second line"),
+                               ("1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns"),
+                               ("1\nc\nA 1 2 3\nB 1 2 3\nC\n", None), ("999999999999\nc\nA 1 2 3\n", "ends before")]:
+            bad = self.directory / "bad.xyz"
+            bad.write_text(text)
+            result = self.extract(*FREE, *H, source=bad)
+            if sentence:
+                self.refuse(result, 1, sentence)
+
+    def test_lammps(self):
+        def step(number, layers, columns="id type x y z vx", scaled=False):
+            points = block((5, 5, layers))
+            text = (f"ITEM: TIMESTEP\n{number}\nITEM: NUMBER OF ATOMS\n{len(points)}\n"
+                    "ITEM: BOX BOUNDS pp ff ff\n-1 1\n0 2\n0 4\n" f"ITEM: ATOMS {columns}\n")
+            for i, (x, y, z) in enumerate(points):
+                x, y, z = ((x + 1) / 2, y / 2, z / 4) if scaled else (x, y, z)
+                text += f"{i + 1} 1 {x} {y} {z} {10 * i}\n"
+            return text
+
+        file = self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="may be a period .-1,1,0,0,0,0.")
+        self.check_table("scaled.dump", step(100, 5, "id type xs ys zs vx", True), volume=0.125, words="period")
+        self.check_table("dump.txt", step(100, 5), volume=0.125, words="period")
+        film = self.directory / "film.dump"
+        film.write_text("".join(step(100 * n, n) for n in (4, 6, 9)))
+        self.assertEqual([(t, round(level, 1)) for t, _, level in self.levels([film], *H)],
+                         [(400, 0.4), (600, 0.6), (900, 0.9)])
+        for text, sentence in [("ITEM: TIMESTEP\nx\n", "line 2 is no time"), ("ITEM: ATOMS x y\n", "holds no points"),
+                               (step(1, 5)[:-200], "ends before|values for 6 columns"), ("hello\n", "none of a dump")]:
+            bad = self.directory / "bad.dump"
+            bad.write_text(text)
+            self.refuse(self.extract(*FREE, *H, source=bad), 1, sentence)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,252 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Particles that are absent, or ignored, play no part whatever they hold. Those too far away for the virtual grid do
+ * not stop a run: with a box, or at points, they do not matter; else a few of them are left out, with a warning. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SIDE 10
+#define BLOCK (SIDE * SIDE * SIDE)
+
+/* The block, and `more` particles behind it, in which nothing is as it should be. */
+static core_set add_particles(const core_set* block, int more)
+{
+  core_set set = core_make_set(block->count + more);
+  memcpy(set.position, block->position, 3 * (size_t)block->count * sizeof *set.position);
+  memcpy(set.smoothing_length, block->smoothing_length, (size_t)block->count * sizeof(double));
+  memcpy(set.volume, block->volume, (size_t)block->count * sizeof(double));
+  memcpy(set.scalar, block->scalar, (size_t)block->count * sizeof(double));
+  memset(set.solid, 0, (size_t)set.count);
+  for (int64_t i = block->count; i < set.count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = NAN;
+    }
+    set.smoothing_length[i] = -1;
+    set.volume[i] = NAN;
+    set.scalar[i] = INFINITY;
+    set.solid[i] = MCOR_ABSENT;
+  }
+  return set;
+}
+
+/* The set's surface is the block's, to the last bit. */
+static void check_same(mcor_context* context, const core_set* block, const core_set* set,
+  mcor_input (*input_of)(const core_set*), const mcor_options* options)
+{
+  const mcor_input one = input_of(block), other = input_of(set);
+  mcor_surface expected = core_extract(context, &one, options);
+  mcor_surface surface = core_extract(context, &other, options);
+  assert_true(expected.triangle_count > 0);
+  assert_true(core_hash(&surface) == core_hash(&expected));
+  assert_int_equal(surface.statistics.fluid_particles, expected.statistics.fluid_particles);
+  assert_true(surface.statistics.neighbours_median == expected.statistics.neighbours_median);
+  mcor_free_surface(&surface);
+  mcor_free_surface(&expected);
+}
+
+static mcor_input input_with_solids(const core_set* set)
+{
+  mcor_input input = core_input(set);
+  input.solid = set->solid;
+  return input;
+}
+
+static mcor_input input_of_masses(const core_set* set)
+{
+  mcor_input input = input_with_solids(set);
+  input.mass = input.volume;
+  input.volume = (mcor_array){ 0 };
+  return input;
+}
+
+static mcor_input input_with_estimate(const core_set* set)
+{
+  mcor_input input = input_with_solids(set);
+  input.estimate_smoothing_length = 1;
+  return input;
+}
+
+static mcor_input input_without_solids(const core_set* set)
+{
+  mcor_input input = input_with_solids(set);
+  input.ignore_solids = 1;
+  return input;
+}
+
+static void test_absent(void** state)
+{
+  const double iso = 0;
+  core_set block = core_make_block(SIDE, 0.2, 3, core_ball);
+  core_set set = add_particles(&block, 5);
+  mcor_options options = core_options(&iso);
+  options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
+  memset(block.solid, 0, (size_t)block.count);
+  check_same(*state, &block, &set, input_with_solids, &options);
+  check_same(*state, &block, &set, input_of_masses, &options);
+  check_same(*state, &block, &set, input_with_estimate, &options);
+  for (int i = 0; i < BLOCK / 4; ++i)
+  {
+    block.solid[i] = set.solid[i] = 1;
+  }
+  check_same(*state, &block, &set, input_with_solids, &options);
+  /* Solids that are ignored may hold anything, too. */
+  memset(block.solid, 0, (size_t)block.count);
+  memset(set.solid, 0, (size_t)set.count);
+  memset(set.solid + block.count, 1, (size_t)(set.count - block.count));
+  check_same(*state, &block, &set, input_without_solids, &options);
+  const mcor_input input = input_with_solids(&set);
+  mcor_surface surface;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
+  assert_non_null(strstr(mcor_last_error(*state), "position of particle 1000"));
+  core_free_set(&set);
+  core_free_set(&block);
+}
+
+/* `far` particles at great distances behind the block, else like its first one. */
+static core_set add_far(const core_set* block, int far)
+{
+  core_set set = add_particles(block, far);
+  for (int64_t i = block->count; i < set.count; ++i)
+  {
+    const double place[3] = { 0.5, i % 2 ? 1e7 : -3e9, 1e6 * (double)(i - block->count) };
+    memcpy(set.position + 3 * i, place, sizeof place);
+    set.smoothing_length[i] = block->smoothing_length[0];
+    set.volume[i] = block->volume[0];
+    set.scalar[i] = NAN;
+    set.solid[i] = 0;
+  }
+  return set;
+}
+
+/* A scalar that is not a number is no matter where the particle is left out; for mcor_check_input it is. */
+static void test_few(void** state)
+{
+  const double iso = 0.5;
+  core_set block = core_make_block(SIDE, 0.2, 3, core_ball);
+  core_set set = add_far(&block, 8);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  check_same(*state, &block, &set, core_input, &options);
+  mcor_input input = core_input_to_keep(&set);
+  for (int again = 0; again < 2; ++again) /* nothing of such a run is kept */
+  {
+    mcor_surface surface = core_extract(*state, &input, &options);
+    assert_int_equal(surface.statistics.far_particles, 8);
+    assert_int_equal(surface.statistics.far_first, BLOCK);
+    assert_true(surface.statistics.far_place[1] == -3e9);
+    char* text = mcor_describe_warning(MCOR_WARN_FAR, &input, &options, &surface);
+    assert_non_null(text);
+    assert_non_null(strstr(text, "8 particles are so far away"));
+    assert_non_null(strstr(text, "particle 1000 is at (0.5, -3e+09, 0)"));
+    free(text);
+    mcor_free_surface(&surface);
+  }
+  core_free_set(&set);
+  set = add_far(&block, 9);
+  input = core_input(&set);
+  mcor_surface surface;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  assert_non_null(strstr(mcor_last_error(*state), "far away from the rest"));
+  core_free_set(&set);
+  core_free_set(&block);
+}
+
+/* Nine are too many, but not where there is a box, or points. */
+static void test_region(void** state)
+{
+  const double iso = 0.5, box[6] = { -3, 20, -2.5, 30, -40, 3 };
+  core_set block = core_make_block(SIDE, 0.2, 3, core_ball);
+  core_set set = add_far(&block, 9);
+  const mcor_input near = core_input(&block), input = core_input(&set);
+  mcor_options options = core_options(&iso);
+  options.field = MCOR_WEIGHT_SUM;
+  memcpy(options.box, box, sizeof box);
+  check_same(*state, &block, &set, core_input, &options);
+  memset(options.box, 0, sizeof box);
+  const mcor_gauge_line lines[2] = { { .from = { 0, 0, -20 }, .to = { 0, 0, 20 } },
+    { .from = { 50, 0, 0 }, .to = { 60, 0, 0 } } };
+  mcor_gauges expected, gauges;
+  CORE_OK(*state, mcor_gauge(*state, &near, &options, lines, 2, &expected));
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, 2, &gauges));
+  assert_true(expected.readings[0].crossing_count == 2);
+  assert_true(gauges.readings[0].last == expected.readings[0].last);
+  assert_int_equal(gauges.readings[1].state, expected.readings[1].state);
+  mcor_free_gauges(&expected);
+  mcor_free_gauges(&gauges);
+  const double places[6] = { 0.25, 0.5, 1, 3, 2, 1 };
+  const mcor_array points = core_array(places, 3);
+  for (int kept = 0; kept < 2; ++kept)
+  {
+    const mcor_input kept_near = core_input_to_keep(&block), kept_all = core_input_to_keep(&set);
+    mcor_samples one, other;
+    CORE_OK(*state, mcor_probe(*state, kept ? &kept_near : &near, &options, &points, 2, &one));
+    CORE_OK(*state, mcor_probe(*state, kept ? &kept_all : &input, &options, &points, 2, &other));
+    assert_true(one.weight_sum[0] > 0.9 && one.weight_sum[0] == other.weight_sum[0]);
+    assert_true(one.weight_sum[1] == other.weight_sum[1]);
+    mcor_free_samples(&one);
+    mcor_free_samples(&other);
+  }
+  core_free_set(&set);
+  core_free_set(&block);
+}
+
+/* A zoom: small particles in a lattice of large ones that reach them all. */
+static void test_zoom(void** state)
+{
+  const double iso = 0.5;
+  core_set small = core_make_block(SIDE, 0, 1, core_slope);
+  core_set set = core_make_set(small.count + 64);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const int64_t k = i - small.count;
+    const bool is_small = k < 0;
+    const double grid[3] = { (double)(k % 4) - 1.3, (double)(k / 4 % 4) - 1.7,
+      (double)(k / 16) - 1.1 };
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * i + a] = is_small ? small.position[3 * i + a] : 4e5 * grid[a];
+    }
+    set.smoothing_length[i] = is_small ? 1.3 : 5.2e5;
+    set.volume[i] = is_small ? 1 : 6.4e16;
+    set.scalar[i] = is_small ? 1 : 1e-9;
+  }
+  const mcor_input input = core_input(&set), alone = core_input(&small);
+  mcor_options options = core_options(&iso);
+  mcor_surface surface;
+  options.field = MCOR_SUM;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  const double box[6] = { -20, 20, -20, 20, -20, 20 };
+  memcpy(options.box, box, sizeof box);
+  options.field = MCOR_WEIGHT_SUM;
+  mcor_surface expected = core_extract(*state, &alone, &options);
+  options.field = MCOR_SUM;
+  for (int uniform = 0; uniform < 2; ++uniform)
+  {
+    options.level_limit = uniform ? 0 : MCOR_CUBE_LEVELS - 1;
+    surface = core_extract(*state, &input, &options);
+    core_check_mesh(&surface);
+    core_check_mesh(&surface);
+    assert_true(surface.statistics.is_closed);
+    /* The sum of densities 1 is the weight sum of the small ones. */
+    CORE_CHECK(fabs(surface.statistics.volume / expected.statistics.volume - 1) < 0.005,
+      "%g for %g", surface.statistics.volume, expected.statistics.volume);
+    mcor_free_surface(&surface);
+  }
+  mcor_free_surface(&expected);
+  core_free_set(&set);
+  core_free_set(&small);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_absent), cmocka_unit_test(test_few),
+    cmocka_unit_test(test_region), cmocka_unit_test(test_zoom) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -1,0 +1,250 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Particles that are so far away that the virtual grid around all of them would be too long. A call has then failed
+ * where the grid was measured, and runs once more without particles in the way: with a box, or with the points of a
+ * probe, without all that do not reach these; else without those that are farthest away, where they are few. Which
+ * ones depends on all particles alone, so ranks agree. */
+
+#include "mcor_box.h"
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+#include "mcor_ranks.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* Far particles that are left out: one in so many, and in any case so many. */
+#define MCOR_FAR_SHARE 1000
+#define MCOR_FAR_FEW 8
+
+/* How far from a box a particle matters beyond its support, in cubes of its size: see MCOR_LEVEL_MARGIN. */
+#define MCOR_BOX_SLACK 6.5
+/* The same from a probe's points. */
+#define MCOR_POINTS_SLACK 0.5
+/* Cubes of the grid around a region. */
+#define MCOR_REGION_MARGIN 16
+
+typedef struct mcor_far_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  mcor_far* far;
+  bool open[3]; /* axes without a period */
+  double reach,
+    slack;       /* of a particle, per smoothing length: support radius, and what it needs beyond */
+  double radius; /* as if no reach were less */
+  double centre[3], half; /* without a region: how far from there the grid may go */
+  /* By slice: particles that are used, and absent from now on; fluid that stays; the first absent one, and the
+   * largest reach of one that stays. */
+  int64_t used[MCOR_SLICES], absent[MCOR_SLICES], fluid[MCOR_SLICES], first[MCOR_SLICES];
+  double farthest[MCOR_SLICES];
+} mcor_far_job;
+
+static bool mcor_is_far(const mcor_far_job* job, const double x[3], double h)
+{
+  const mcor_far* far = job->far;
+  const double own = h * (job->reach + job->slack);
+  bool is_far = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double low = far->region[2 * a] - x[a], high = x[a] - far->region[2 * a + 1];
+    const double beyond = far->is_cut ? fmax(low, high) - fmax(own, job->radius)
+                                      : fabs(x[a] - job->centre[a]) - job->half;
+    is_far = is_far || (job->open[a] && !(beyond <= 0));
+  }
+  return is_far;
+}
+
+static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_far_job* job = data;
+  const mcor_input* input = job->input;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  job->used[slice] = job->absent[slice] = job->fluid[slice] = 0;
+  job->first[slice] = INT64_MAX;
+  job->farthest[slice] = 0;
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    const int count = mcor_chunk_of(last - begin);
+    mcor_read_positions(input, begin, count, x);
+    mcor_read_smoothing_length(job->context, input, begin, count, h);
+    for (int i = 0; i < count; ++i)
+    {
+      const int64_t particle = begin + i;
+      const uint8_t was = input->solid ? input->solid[particle] : 0;
+      const double at[3] = { x[0][i], x[1][i], x[2][i] };
+      const bool is_used = mcor_is_used(job->context, input, particle);
+      const bool is_far = is_used && mcor_is_far(job, at, h[i]);
+      job->far->solid[particle] = is_far ? MCOR_ABSENT : was;
+      job->used[slice] += is_used;
+      job->absent[slice] += is_far;
+      job->fluid[slice] += !is_far && !was;
+      job->first[slice] = is_far && particle < job->first[slice] ? particle : job->first[slice];
+      job->farthest[slice] =
+        is_used && !is_far ? fmax(job->farthest[slice], h[i] * job->reach) : job->farthest[slice];
+    }
+  }
+}
+
+/* Marks; adds up slices and ranks into those of slice 0. But for `first`, which is this rank's. */
+static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
+{
+  int slices;
+  MCOR_TRY(
+    mcor_parallel_run(context, job->input->count, MCOR_HEAVY_GRAIN, mcor_far_slice, job, &slices));
+  int64_t counts[3] = { 0 };
+  job->far->first = INT64_MAX;
+  double farthest = 0;
+  for (int s = 0; s < slices; ++s)
+  {
+    counts[0] += job->used[s];
+    counts[1] += job->absent[s];
+    counts[2] += job->fluid[s];
+    job->far->first = job->first[s] < job->far->first ? job->first[s] : job->far->first;
+    farthest = fmax(farthest, job->farthest[s]);
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts, 3));
+  MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &farthest));
+  job->used[0] = counts[0];
+  job->absent[0] = counts[1];
+  job->fluid[0] = counts[2];
+  job->farthest[0] = farthest;
+  return MCOR_OK;
+}
+
+/* Around a box or points: all that reaches them, and what volumes, pairs and nearest particles there are made of. */
+static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
+{
+  const mcor_options* options = context->run.options;
+  MCOR_TRY(mcor_mark_far(context, job));
+  if (job->fluid[0] > 0)
+  {
+    const double largest = job->farthest[0];
+    const double volumes =
+      mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
+    job->radius = largest > 0 ? volumes + largest + 2 * context->measure.h_min : 0;
+    return mcor_mark_far(context, job);
+  }
+  /* There is no fluid. A run needs some, wherever that is. */
+  mcor_samples_found one = { .most = 1 };
+  MCOR_TRY(mcor_choose_samples(context, job->input, MCOR_FLUID_PARTICLES, &one));
+  for (int64_t i = 0; i < job->input->count; ++i)
+  {
+    mcor_array positions = job->input->positions;
+    positions.components = 3;
+    bool same = !(job->input->solid && job->input->solid[i]);
+    for (int a = 0; a < 3; ++a)
+    {
+      same = same && mcor_array_at(&positions, i, a) == one.sample[0].x[a];
+    }
+    job->far->solid[i] = same ? 0 : job->far->solid[i];
+  }
+  return MCOR_OK;
+}
+
+/* Around the middle of a sample of the fluid. */
+static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, bool* good)
+{
+  mcor_samples_found samples = { .most = MCOR_SAMPLES };
+  mcor_far* far = job->far;
+  double x[MCOR_SAMPLES];
+  MCOR_TRY(mcor_choose_samples(context, job->input, MCOR_FLUID_PARTICLES, &samples));
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int s = 0; s < samples.count; ++s)
+    {
+      x[s] = samples.sample[s].x[a];
+    }
+    job->centre[a] = mcor_median_of(x, samples.count);
+  }
+  MCOR_TRY(mcor_mark_far(context, job));
+  const int64_t share = job->used[0] / MCOR_FAR_SHARE;
+  far->count = job->absent[0];
+  *good = far->count > 0 && far->count <= (share > MCOR_FAR_FEW ? share : MCOR_FAR_FEW) &&
+    2 * far->count < job->used[0] && job->fluid[0] > 0;
+  if (!*good)
+  {
+    return MCOR_OK;
+  }
+  /* The place is that of a rank whose first one has the least number of all. */
+  const int64_t own = far->first;
+  MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &far->first));
+  bool is_mine = own == far->first;
+  mcor_array positions = job->input->positions;
+  positions.components = 3;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double at = is_mine ? mcor_array_at(&positions, own, a) : DBL_MAX;
+    far->place[a] = at;
+    MCOR_TRY(mcor_reduce_double(context, MCOR_LEAST, &far->place[a]));
+    is_mine = is_mine && at == far->place[a];
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far)
+{
+  const mcor_options* options = context->run.options;
+  const mcor_measure* m = &context->measure;
+  const double edge =
+    fmax(context->lattice.edge[0], fmax(context->lattice.edge[1], context->lattice.edge[2]));
+  const bool has_box = mcor_has_box(options) != 0;
+  far->is_cut = has_box || context->box.has_points;
+  for (int side = 0; side < 6; ++side)
+  {
+    far->region[side] = has_box ? options->box[side] : context->box.points[side];
+  }
+  mcor_far_job* job = calloc(1, sizeof *job);
+  far->solid = malloc((size_t)input->count + 1);
+  mcor_status status = mcor_allocated(context, job && far->solid);
+  bool good = true;
+  if (status == MCOR_OK)
+  {
+    job->context = context;
+    job->input = input;
+    job->far = far;
+    job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale;
+    job->slack = (has_box ? MCOR_BOX_SLACK : MCOR_POINTS_SLACK) * edge / m->h_min;
+    job->half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job->reach * m->h_median;
+    for (int a = 0; a < 3; ++a)
+    {
+      job->open[a] = context->lattice.period[a] == 0;
+    }
+    status =
+      far->is_cut ? mcor_mark_out_of_reach(context, job) : mcor_mark_farthest(context, job, &good);
+  }
+  free(job);
+  MCOR_TRY(status);
+  if (!good)
+  {
+    return MCOR_OUT_OF_CAPACITY; /* its sentence is there */
+  }
+  context->error[0] = '\0';
+  context->kept.grid = context->kept.value = context->kept.nodes = false;
+  return MCOR_OK;
+}
+
+void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3])
+{
+  mcor_measure* m = &context->measure;
+  const mcor_options* options = context->run.options;
+  const mcor_far* far = context->run.far;
+  const double cube =
+    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  m->far_count = far->count;
+  m->far_first = far->first;
+  m->cut = far->is_cut;
+  for (int a = 0; a < 3; ++a)
+  {
+    m->far_place[a] = far->place[a];
+    if (m->cut)
+    {
+      const double margin = MCOR_REGION_MARGIN * cube;
+      m->low[a] = fmax(m->low[a], fmin(low[a], far->region[2 * a]) - margin);
+      m->cut_high[a] = fmin(m->high[a], far->region[2 * a + 1] + margin);
+      m->high[a] = fmin(m->high[a], fmax(high[a], far->region[2 * a + 1]) + margin);
+    }
+  }
+}

@@ -12,7 +12,7 @@
 int mcor_tree_level_of(double h, double h_min, int top)
 {
   int level = 0;
-  while (level < top && h >= ldexp(h_min, level + 1))
+  for (double next = 2 * h_min; level < top && h >= next; next *= 2)
   {
     ++level;
   }

@@ -19,6 +19,7 @@
 #include "mcor_tree.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 /* ---- Clusters ---- */
@@ -99,8 +100,14 @@ typedef struct mcor_tree_job
   int64_t begin; /* the first particle of this loop */
   double reach;  /* of a support radius in smoothing lengths, in cubes */
   bool is_cube;  /* the support */
+  double edge[MCOR_TREE_LEVEL_LIMIT + 2][3]; /* of a level's bricks, in cubes */
   mcor_brick_set split[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 2];
   bool failed[MCOR_SLICES];
+  /* Of bricks with particles, by all slices. A place may be lost to another brick. */
+  _Atomic uint64_t* around; /* key << 27 | which of the 3^3 bricks around it are split */
+  _Atomic uint64_t* done;   /* of 2^3 bricks, key << 8 | around which of them all are */
+  uint64_t around_mask, done_mask;
+  int64_t spared[MCOR_SLICES]; /* particles that split nothing, less others */
 } mcor_tree_job;
 
 /* Distance from x to the brick's interval along an axis, squared; edge: of the brick. */
@@ -152,22 +159,110 @@ static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int clust
   return bricks;
 }
 
-/* Splits the bricks of a level that are within `reach` of x. */
-static bool mcor_split_reached(
-  const mcor_tree_job* job, int level, const double x[3], double reach, mcor_brick_set* set)
+/* Which place a key has among mask + 1. */
+static uint64_t mcor_place_of(uint64_t key, uint64_t mask)
 {
+  return (key * UINT64_C(0x9E3779B97F4A7C15)) >> 32 & mask;
+}
+
+/* Which of the 3^3 bricks around one are within `reach` of x, which is in it. */
+static uint32_t mcor_reached_around(
+  const double x[3], const int home[3], const double edge[3], double reach, bool plane)
+{
+  double square[3][3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const double below = x[a] - home[a] * edge[a], above = (home[a] + 1) * edge[a] - x[a];
+    square[a][0] = below * below;
+    square[a][1] = 0;
+    square[a][2] = above * above;
+  }
+  uint32_t bricks = 0;
+  for (int z = plane ? 1 : 0; z < (plane ? 2 : 3); ++z)
+  {
+    for (int y = 0; y < 3; ++y)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        const bool in = square[0][column] + square[1][y] + square[2][z] <= reach * reach;
+        bricks |= (uint32_t)in << (column + 3 * y + 9 * z);
+      }
+    }
+  }
+  return bricks;
+}
+
+/* 3^3 bricks as the first of 4^3. */
+static uint64_t mcor_widen_27(uint32_t bricks)
+{
+  uint64_t wide = 0;
+  for (int row = 0; row < 9; ++row)
+  {
+    wide |= (uint64_t)(bricks >> 3 * row & 7) << (row / 3 * 16 + row % 3 * 4);
+  }
+  return wide;
+}
+
+/* Splits the bricks of a level that are within `reach` of x. Nearly all particles reach no farther than the bricks
+ * around the one they are in, and these are split already, on behalf of others in it. Where
+ * particles follow each other in no order, looking that up costs more than it saves, and ends. */
+static bool mcor_split_reached(
+  mcor_tree_job* job, int slice, int level, const double x[3], double reach)
+{
+  mcor_brick_set* set = &job->split[slice][level];
+  const bool plane = job->tree->is_plane;
+  const mcor_rung* rung = &job->tree->rungs[level];
+  int home[3];
+  bool near = job->done && !job->is_cube && job->spared[slice] > -4 * MCOR_HEAVY_GRAIN;
+  for (int a = 0; a < 3; ++a)
+  {
+    home[a] = plane && a == 2 ? 0 : (int)(x[a] / job->edge[level][a]);
+    near = near && reach < 0.999 * job->edge[level][a];
+  }
+  const int corner[3] = { home[0] & ~1, home[1] & ~1, home[2] & ~1 };
+  const uint64_t corner_key = mcor_tree_key(rung, corner);
+  const uint64_t bit = 1u << ((home[0] & 1) | (home[1] & 1) << 1 | (home[2] & 1) << 2);
+  _Atomic uint64_t* at = near ? job->done + mcor_place_of(corner_key, job->done_mask) : NULL;
+  uint64_t done = near ? atomic_load_explicit(at, memory_order_relaxed) : 0;
+  done = done >> 8 == corner_key ? done : corner_key << 8;
+  if (near && (done & bit))
+  {
+    ++job->spared[slice];
+    return true;
+  }
+  if (near)
+  {
+    --job->spared[slice];
+    const uint64_t all = plane ? 0x3fe00 : 0x7ffffff, key = mcor_tree_key(rung, home);
+    _Atomic uint64_t* place = job->around + mcor_place_of(key, job->around_mask);
+    const uint64_t last = atomic_load_explicit(place, memory_order_relaxed);
+    const uint64_t known = last >> 27 == key ? last & all : 0;
+    const int below[3] = { home[0] - 1, home[1] - 1, home[2] - 1 };
+    const uint64_t found =
+      known == all ? all : known | mcor_reached_around(x, home, job->edge[level], reach, plane);
+    if (found != known &&
+      !mcor_split_cube(job->tree, level, below, mcor_widen_27((uint32_t)(found & ~known)), set))
+    {
+      return false;
+    }
+    if (found != known)
+    {
+      atomic_store_explicit(place, key << 27 | found, memory_order_relaxed);
+    }
+    if (found == all)
+    {
+      atomic_store_explicit(at, done | bit, memory_order_relaxed);
+    }
+    return true;
+  }
   mcor_reached reached = { .reach = reach, .is_cube = job->is_cube };
   for (int a = 0; a < 3; ++a)
   {
-    const double edge = ldexp(MCOR_BRICK * mcor_edge_of(&job->context->lattice, a), level);
+    const bool flat = plane && a == 2;
     reached.x[a] = x[a];
-    reached.edge[a] = edge;
-    reached.first[a] = (int)ceil((x[a] - reach) / edge) - 1;
-    reached.last[a] = (int)floor((x[a] + reach) / edge);
-  }
-  if (job->tree->is_plane)
-  {
-    reached.first[2] = reached.last[2] = 0;
+    reached.edge[a] = job->edge[level][a];
+    reached.first[a] = flat ? 0 : (int)ceil((x[a] - reach) / reached.edge[a]) - 1;
+    reached.last[a] = flat ? 0 : (int)floor((x[a] + reach) / reached.edge[a]);
   }
   const int* first = reached.first;
   int c[3];
@@ -216,11 +311,12 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
         at[a] = x[a][i] / lattice->edge[a] - (double)lattice->origin[a];
         const double from = at[a] - lattice->period_first[a], period = lattice->period[a];
         at[a] -= period > 0 ? floor(from / period) * period : 0;
-        at[a] = fmin(fmax(at[a], 0), (double)lattice->last[a]) * mcor_edge_of(lattice, a);
+        const double inside = at[a] > 0 ? at[a] : 0, end_of_lattice = (double)lattice->last[a];
+        at[a] = (inside < end_of_lattice ? inside : end_of_lattice) * mcor_edge_of(lattice, a);
       }
-      job->failed[slice] =
-        !mcor_split_reached(job, level, at, own * job->reach, &job->split[slice][level]) ||
-        mcor_are_too_many(job->split[slice]);
+      const size_t before = job->split[slice][level].count;
+      job->failed[slice] = !mcor_split_reached(job, slice, level, at, own * job->reach) ||
+        (job->split[slice][level].count > before && mcor_are_too_many(job->split[slice]));
     }
   }
 }
@@ -288,6 +384,17 @@ static mcor_status mcor_split_by_particles(
   job->tree = tree;
   job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale / context->lattice.cube;
   job->is_cube = mcor_is_tensor(options->sph_kernel);
+  for (int i = 0; i < 3 * (tree->top + 2); ++i)
+  {
+    job->edge[i / 3][i % 3] = ldexp(MCOR_BRICK * mcor_edge_of(&context->lattice, i % 3), i / 3);
+  }
+  /* A mere speed-up, so it may fail. */
+  const uint64_t places = input->count < 1 << 20 ? 1 << 16 : 1 << 18;
+  const bool fits = tree->key_limit >> (64 - 27) == 0;
+  job->around = fits ? calloc(places, sizeof *job->around) : NULL;
+  job->done = job->around ? calloc(places / 4, sizeof *job->done) : NULL;
+  job->around_mask = places - 1;
+  job->done_mask = places / 4 - 1;
   mcor_status status = mcor_split_in_slices(context, job);
   status = status == MCOR_OK ? mcor_join_slices(context, job, tree) : status;
   for (int s = 0; s < MCOR_SLICES; ++s)
@@ -297,6 +404,8 @@ static mcor_status mcor_split_by_particles(
       mcor_table_free(&job->split[s][l].clusters);
     }
   }
+  free((void*)job->around);
+  free((void*)job->done);
   free(job);
   return status;
 }

@@ -233,7 +233,7 @@ void TestDefaultValue()
   CHECK(std::fabs(used() - middle) < 0.02);
   filter->SetNumberOfContours(0);
   test::AddArray<vtkDoubleArray>(cube, "Decades", 1,
-    [&](vtkIdType i, int) { return std::pow(10.0, -3.0 + 4.0 * cube->GetPoint(i)[0]); });
+    [&](vtkIdType i, int) { return std::pow(10.0, -3.0 + 2.0 * cube->GetPoint(i)[0]); });
   test::AddArray<vtkIntArray>(
     cube, "Whole", 1, [&](vtkIdType i, int) { return std::floor(9.0 * cube->GetPoint(i)[0]); });
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Decades");

@@ -124,7 +124,7 @@ class TestColours(unittest.TestCase):
             pieces.SetInputData(1, inputs[1])
             found, told = run(pieces, inputs[0])
             self.assertEqual((told, active(found)), ([], "ComponentId"))
-            self.assertEqual(pieces.GetTable().GetColumnByName("particles").GetValue(0), 1920)
+            self.assertEqual(pieces.GetTable().GetColumnByName("particles").GetValue(0), 1912)
 
 
 class TestForgotten(unittest.TestCase):

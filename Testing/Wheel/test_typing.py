@@ -39,7 +39,7 @@ def check(programs):
         # Other packages have no types, and the guide's functions need none.
         words = ["--strict", "--disable-error-code=import-untyped", "--disable-error-code=no-untyped-def"]
         mypy = subprocess.run([sys.executable, "-m", "mypy", *words, *programs], cwd=folder, stdout=subprocess.PIPE, text=True)
-        pyright = subprocess.run([sys.executable, "-m", "pyright", "--outputjson", "."], cwd=folder, stdout=subprocess.PIPE,
+        pyright = subprocess.run([sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "--outputjson", "."], cwd=folder, stdout=subprocess.PIPE,
                                  text=True).stdout
     found = re.findall(r"^(\w+\.py):(\d+): (error|note): (.*)", mypy.stdout, re.M)
     others = json.loads(pyright[pyright.index("{"):])["generalDiagnostics"]

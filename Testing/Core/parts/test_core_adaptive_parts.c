@@ -58,8 +58,8 @@ static void rough_surfaces(void** state)
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   options.cube_size_factor = 1.0;
   options.h_scale = 0.7;
-  options.node_threshold = 0.9;
-  options.vertex_threshold = 0.92;
+  options.node_threshold = 0.6;
+  options.vertex_threshold = 0.62;
   core_check_cuts(*state, "noise, computed volumes", &input, &options);
   options.preview = 1;
   options.sph_kernel = MCOR_M_PRIME_4;

@@ -40,9 +40,9 @@ real mcor_trim_fraction(real wa, real wb, real w)
 }
 
 /* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the end inside, offset. It
- * keeps off the ends, as cut vertices of several edges would meet there, and begins at the end inside, so its bits
- * do not depend on the order of vertices. Writes in place of its gradient how far that end is, and whether
+ * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the nearer end, offset. It
+ * keeps off the ends, as cut vertices of several edges would meet there. Its bits do not depend on the order of
+ * vertices. Writes in place of its gradient how far that end is, and whether
  * it is the fluid that ends. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
@@ -67,11 +67,13 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int level = node[low].w >> MCOR_LEVEL_SHIFT;
   const int up = (node[a].w >> MCOR_LEVEL_SHIFT) - level;
   const int up_b = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
-  const int4 n = node[a] << up, d = (node[b] << up_b) - n;
-  const real4 from = offset[a] * (real)(1 << up);
-  const real4 along = offset[b] * (real)(1 << up_b) + (real4)(d.x, d.y, d.z, 0) - from;
-  node[vertex_count + i] = (int4)(n.x, n.y, n.z, level << MCOR_LEVEL_SHIFT);
-  offset[vertex_count + i] = from + s * along;
+  const int4 n = node[a] << up, m = node[b] << up_b, d = m - n;
+  const real4 from = offset[a] * (real)(1 << up), to = offset[b] * (real)(1 << up_b);
+  const real4 along = to + (real4)(d.x, d.y, d.z, 0) - from;
+  const bool is_near = s <= (real)0.5f; /* of two ends the nearer one: so near cuts do not meet by rounding */
+  const int4 begin = is_near ? n : m;
+  node[vertex_count + i] = (int4)(begin.x, begin.y, begin.z, level << MCOR_LEVEL_SHIFT);
+  offset[vertex_count + i] = is_near ? from + s * along : to - ((real)1 - s) * along;
   gradient[vertex_count + i] = (real4)(-s * along.x, -s * along.y, -s * along.z, lacks);
 }
 

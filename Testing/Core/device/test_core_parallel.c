@@ -325,14 +325,15 @@ static void test_ranges(void** state)
     solid[i] = i < count / 2 || i % 7 == 0;
   }
   const mcor_array array = { .data = values, .type = MCOR_FLOAT32 };
+  const mcor_input input = { .count = count };
   double range[2];
-  mcor_find_range(NULL, &array, solid, count, 0, range);
+  mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0, range);
   assert_true(range[0] == (double)(count / 2) && range[1] == (double)(count - 1));
-  assert_true(mcor_largest(NULL, &array, count, 0) == (double)(count - 1));
+  assert_true(mcor_largest(NULL, &input, &array, 0) == (double)(count - 1));
   values[3] = -1e9f;
-  assert_true(mcor_largest(NULL, &array, count, 0) == 1e9);
+  assert_true(mcor_largest(NULL, &input, &array, 0) == 1e9);
   memset(solid, 1, (size_t)count);
-  mcor_find_range(NULL, &array, solid, count, 0, range);
+  mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0, range);
   assert_true(range[0] > range[1] && mcor_largest_of(range[0], range[1]) == 0);
   free(values);
   free(solid);

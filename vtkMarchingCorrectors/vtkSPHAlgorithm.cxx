@@ -268,7 +268,7 @@ void vtkSPHAlgorithm::WarnOfFluid(
 bool vtkSPHAlgorithm::Accept(
   vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
 {
-  this->SetUsedNames(&particles);
+  this->SetUsedNames(&particles, isUsable);
   if (isUsable)
   {
     this->WarnOfFluid(particles, particles.FluidCount, consequence);
@@ -405,14 +405,15 @@ bool vtkSPHAlgorithm::IsShared() const
 #endif
 }
 
-void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles)
+void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles, bool isUsable)
 {
   const auto nameOf = [](vtkDataArray* array)
   { return std::string(array && array->GetName() ? array->GetName() : ""); };
   this->UsedSmoothingLengthArrayName = nameOf(particles ? particles->SmoothingLength : nullptr);
   this->UsedVolumeArrayName = nameOf(particles ? particles->Volume : nullptr);
-  this->UsedVolume =
-    particles ? vtkSPHTakeText(mcor_describe_volume(&particles->Core)) : std::string();
+  this->UsedVolume = particles && isUsable
+    ? vtkSPHTakeText(mcor_describe_volume(&particles->Core))
+    : std::string();
   this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
   this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
   this->UsedFluid = particles ? particles->DescribeFluid() : "";

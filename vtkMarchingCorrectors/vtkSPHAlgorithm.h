@@ -589,7 +589,7 @@ protected:
   bool SetPeriodDistributed(vtkPointSet* particles, mcor_options& options);
   /** False, and reported, where none was found, or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
-  void SetUsedNames(const vtkSPHParticles* particles);
+  void SetUsedNames(const vtkSPHParticles* particles, bool isUsable = true);
   /** A line "Name: 1 2 3" of PrintSelf(). */
   static void PrintNumbers(
     ostream& os, vtkIndent indent, const char* name, const double* values, int count);

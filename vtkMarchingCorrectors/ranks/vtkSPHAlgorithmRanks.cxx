@@ -29,7 +29,7 @@ bool vtkSPHAlgorithm::BeginDistributed(
 bool vtkSPHAlgorithm::AcceptDistributed(
   vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
 {
-  this->SetUsedNames(&particles);
+  this->SetUsedNames(&particles, isUsable);
   if (!this->AgreeDistributed(run.Ranks, isUsable ? "" : particles.Error))
   {
     return false;

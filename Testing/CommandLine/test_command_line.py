@@ -273,9 +273,9 @@ class BadData(CommandLineTest):
         self.refuse_with("nothing.vtp cannot be read: No such file",
                        source=self.directory / "nothing.vtp")
         self.refuse_with("cannot be read: it is a directory", source=self.directory)
-        table = self.directory / "table.csv"
+        table = self.directory / "table.doc"
         table.write_text("x,y,z\n")
-        self.refuse_with("table.csv is not a .vtp, .vtu, .pvtp, .pvtu, .vtkhdf or .vtk file", source=table)
+        self.refuse_with("table.doc is not a .vtp, .vtu, .pvtp, .pvtu, .vtkhdf, .vtk, .csv, .*file", source=table)
         fifo = self.directory / "fifo.vtp"
         os.mkfifo(fifo)
         self.refuse_with("fifo.vtp cannot be read: it is not a regular file", source=fifo)

@@ -199,7 +199,7 @@ const std::vector<Case> Cases = {
       f->DetectArraysOff();
       f->SetCubeSizeModeToUniform();
       f->SetBoundaryDetectionToEigenvalue();
-      f->SetVertexThreshold(0.3);
+      f->SetVertexThreshold(0.1);
       f->ComputeBoundaryEigenvalueOn();
     } },
   { "lines, topology of the field, double precision", InPlane,

@@ -12,7 +12,7 @@ from marchingcorrectors import (vtkSPHAlgorithm, vtkSPHComponents, vtkSPHDerivat
 PLUGIN = pathlib.Path(os.environ["MCOR_PLUGIN_XML"])
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
-NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds", "ReleaseDeviceMemory",
+NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory",
                        "SetOrigin", "SetNormal", "SetPoint1", "SetPoint2", "SetBounds", "SetDimensions"}
 # Setters without a property: (automatic) in the panel's lists stands for the first. A probe's particles are one set.
 NOT_IN_XML = {"SetController", "SetDetectArrays"}

@@ -14,7 +14,7 @@ TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorP
 NO_NAMES = ("(automatic)", "(none)")  # the filter's empty array name
 # Setters of more or less than one value.
 NOT_SCALAR = ("SetInputConnection", "SetInputArrayToProcess", "SetValue", "AddExcludedArray",
-              "SetPanelBoxPosition", "SetPanelBoxLength", "SetPeriodicBounds", "ReleaseDeviceMemory")
+              "SetPanelBoxPosition", "SetPanelBoxLength", "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory")
 
 # Defaults that are not the filter's, and what those are: a panel shows what was found.
 DIFFERENT = {"DetectFluid": "0"}

@@ -122,6 +122,33 @@ class Program(unittest.TestCase):
                 self.assertIsNotNone(alone.GetPointData().GetArray("Normals"))
                 self.check_point_data(alone, ranks)
 
+    def test_types_of_pieces(self):
+        """An array that is int8 in one piece and float64 in the others comes out alike, whoever reads that piece."""
+        whole = read(PARTICLES)
+        steps = numpy_to_vtk(np.floor(vtk_to_numpy(whole.GetPointData().GetArray("Speed"))), deep=True)
+        steps.SetName("Steps")
+        whole.GetPointData().AddArray(steps)
+        write(whole, self.path("whole.vtp"))
+        how = ["--scalar", "Steps", "--iso", "1.5", "--quiet"]
+        self.good(self.run_alone(self.path("whole.vtp"), self.path("alone.vtp"), *how))
+        alone = read(self.path("alone.vtp"))
+        self.assertGreater(alone.GetNumberOfPolys(), 1000)
+        for odd in range(3):
+            pieces = write_pieces(self.path("whole.vtp"), self.folder.name, 3)
+            part = read(self.path(f"piece_{odd}.vtp"))
+            small = numpy_to_vtk(vtk_to_numpy(part.GetPointData().GetArray("Steps")).astype(np.int8), deep=True)
+            small.SetName("Steps")
+            part.GetPointData().AddArray(small)
+            write(part, self.path(f"piece_{odd}.vtp"))
+            for run in self.run_alone, self.run_ranks:
+                self.good(run(pieces, self.path("ranks.vtp"), *how))
+                found = read(self.path("ranks.vtp"))
+                np.testing.assert_array_equal(corners(alone), corners(found))
+                self.check_point_data(alone, found)
+                self.good(run(pieces, self.path("ranks.vtp"), "--scalar", "Speed", "--iso", "2", "--quiet"))
+                kind = read(self.path("ranks.vtp")).GetPointData().GetArray("Steps")
+                self.assertEqual(kind and kind.GetDataTypeAsString(), "double")
+
     def test_warnings(self):
         """What the core finds strange is said once, as by one process."""
         tilted = read(PARTICLES)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -11,6 +12,7 @@ import pyvista
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import _functions, _gauge
+from ._arrays import choose
 from ._context import Context
 from ._library import InvalidArgument
 from ._options import (DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, Function, Options, check_names,
@@ -25,7 +27,9 @@ from .io._particles import Body
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._functions import Progress
+    from numpy.typing import ArrayLike
+
+    from ._functions import Only, Progress
 
 Quantity = Union[None, str, float, np.ndarray]
 ABOUT_PARTICLES = '''
@@ -33,6 +37,9 @@ ABOUT_PARTICLES = '''
             for all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass;
             rho, ...). volume="computed": by the particles' distances, whatever arrays there are.
         fluid: ("ParticleType", 0): where this point array has another value, there are solids.
+        within: (x0, x1, y0, y1, z0, z1): particles beyond these bounds are left out.
+        only: {"ParticleType": 1} or {"ParticleType": (1, 3)}: particles with other values in these
+            point arrays are left out.
         attributes: names of the point arrays to be carried along; by default all, and vx, vy, vz as
             one vector "Velocity".
         context, device, progress: as in marchingcorrectors.isosurface().
@@ -50,6 +57,8 @@ class Particles(Options, total=False):
     mass: Quantity
     density: Quantity
     fluid: Optional[Tuple[str, float]]
+    within: Optional[ArrayLike]
+    only: Optional[Only]
     attributes: Optional[Iterable[str]]
     context: Optional[Context]
     device: Union[None, str, int]
@@ -242,8 +251,10 @@ class SphAccessor:
             words["solid"] = np.asarray(self._array(fluid[0])) != fluid[1]
         elif WALL_BLOCK in self._particles.point_data:
             words.setdefault("solid", self._array(WALL_BLOCK))
-        else:
+        elif words.get("only") is None:
             self._warn_of_unused_type()
+        if isinstance(words.get("only"), Mapping):
+            words["only"] = choose(words["only"], self._array)
         if isinstance(words.get("periodic"), str):
             words["periodic"] = self._period(words["periodic"])
         names: Optional[Iterable[str]] = words.pop("attributes", None)

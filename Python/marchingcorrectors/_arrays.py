@@ -9,11 +9,12 @@ import numpy as np
 from . import _structs as c
 from ._library import ERRORS, Error, InvalidArgument, lib
 from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
-from ._units import plain, unit_of
+from ._units import plain, unit_of, without_unit
 from ._warnings import take_text
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
+ABSENT = 2  # MCOR_ABSENT
 WORDS = {int: "whole number", float: "number"}
 # As the header spells them: "cubic_spline" is "cubic".
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
@@ -82,6 +83,24 @@ def as_named(attributes):
             for name, array in attributes.items()}
 
 
+def choose(only, array_of):
+    """Which particles have the values of `only`, {name: value or (low, high)}. array_of(name): an array."""
+    present = True
+    for name, wanted in only.items():
+        array = as_array(without_unit(array_of(name)), f"array '{name}' of only")
+        if array.ndim != 1 or array.dtype.kind not in "fiub":
+            raise InvalidArgument(f"only names the array '{name}', of {array.dtype} and of the shape {array.shape}; it must "
+                                  "have one number for each particle.")
+        ends = [wanted, wanted] if isinstance(wanted, str) or np.ndim(wanted) == 0 else list(wanted)
+        if len(ends) != 2:
+            raise InvalidArgument(f"only['{name}'] is {wanted!r}; it must be a value, or the lowest and the highest one.")
+        low, high = [convert(float, f"value of '{name}' in only", end) for end in ends]
+        if not low <= high:
+            raise InvalidArgument(f"only['{name}'] is {wanted!r}; the lower value comes first.")
+        present = present & (array >= low) & (array <= high)
+    return None if present is True else present
+
+
 def as_bytes(text):
     """For the core's messages; what has no place in UTF-8 (names of files, say) becomes "?"."""
     return text.encode(errors="replace")
@@ -91,7 +110,7 @@ class Arguments:
     """Structures filled for one call. Keeps the arrays alive, which the core borrows."""
 
     def __init__(self, positions):
-        self.kept = []
+        self.kept, self.present = [], None
         self.input, self.options = c.mcor_input(), c.mcor_options()
         lib.mcor_set_default_options(ctypes.byref(self.options))
         self.input.scalar_component = -1  # the magnitude
@@ -134,20 +153,39 @@ class Arguments:
                 continue
             setattr(self.input, name, self.per_particle(values, name.replace("_", " "), constant=True))
 
-    def set_solid(self, solid):
-        if solid is None:
+    def set_solid(self, solid, present=None):
+        """present: None, or which particles are not left out."""
+        if solid is None and present is None:
             return
-        marks = as_array(solid, "array of solid particles' marks")
+        self.present = present
+        marks = as_array(np.zeros(self.count, bool) if solid is None else solid, "array of solid particles' marks")
         if marks.dtype.kind not in "fiub":
             raise InvalidArgument(f"The marks of solid particles are not numbers but {marks.dtype}.")
         if marks.shape != (self.count,):
             raise InvalidArgument(f"The marks of solid particles have the shape {marks.shape}; for "
                                   f"{self.count} particles it is ({self.count},).")
-        if marks.dtype != np.uint8:
+        if marks.dtype != np.uint8 or (marks == ABSENT).any():
             marks = marks != 0
         marks = np.ascontiguousarray(marks).view(np.uint8)
+        if present is not None:
+            marks = np.where(present, marks, np.uint8(ABSENT))
         self.kept.append(marks)
         self.input.solid = marks.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
+
+    def find_present(self, within, only):
+        """Which particles are not left out; None where all are taken. only: None, or marks of those that are taken."""
+        if only is not None:
+            only = as_array(only, "array of only")
+            if only.dtype != bool or only.shape != (self.count,):
+                raise InvalidArgument(f"only is {{name: value}}, or True or False for each of {self.count} particles, not an "
+                                      f"array of {only.dtype} of the shape {only.shape}.")
+        if within is None:
+            return only
+        sides = np.ravel(contiguous(within, "list of numbers of within"))
+        if len(sides) != 6 or not (sides[::2] <= sides[1::2]).all():
+            raise InvalidArgument(f"within is {within!r}; it must be six bounds (x0, x1, y0, y1, z0, z1), the lower ones first.")
+        inside = ((self.positions >= sides[::2]) & (self.positions <= sides[1::2])).all(axis=1)
+        return inside if only is None else inside & only
 
     def set_attributes(self, attributes):
         """{name: array}; returns the names in the order of the core's results."""
@@ -210,8 +248,8 @@ class Arguments:
             return period
         lengths = np.ravel(contiguous(period, "list of numbers of periodic")).astype(np.float64)
         extent = [0.0] * 6
-        if self.count:
-            positions = self.positions
+        positions = self.positions if self.present is None else self.positions[self.present]
+        if len(positions):
             extent = np.stack([positions.min(axis=0), positions.max(axis=0)], axis=1).ravel().tolist()
         return place_period(lengths, extent)
 

@@ -6,16 +6,18 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import functools
-from typing import TYPE_CHECKING, Any, Callable, Dict, Mapping, Optional, Sequence, Union, cast
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Sequence, Tuple, Union, cast
 
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (Arguments, as_bytes, as_named, as_points, contiguous, is_real, left_out, number, statistics, take,
-                      take_all, take_each, take_lines)
+from ._arrays import (Arguments, as_bytes, as_named, as_points, choose, contiguous, is_real, left_out, number, statistics,
+                      take, take_all, take_each, take_lines)
 from ._context import Context, default_context
-from ._library import ERRORS, InvalidArgument, lib
-from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, check_names, with_options
+from ._library import ERRORS, InvalidArgument, InvalidData, lib
+from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, check_names, did_you_mean,
+                       with_options)
 from ._surface import Derivatives, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
 from ._warnings import describe_unused_type, describe_warnings, warn
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     Positions = Union[ArrayLike, Particles]
     Progress = Union[bool, Callable[[float, str], Any]]
     Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
+    Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
 
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 
@@ -49,7 +52,14 @@ def prepare(units, attributes, given, options):
     _warn_of_ignored(given, options)
     arguments = Arguments(units.positions)
     arguments.set_quantities(units.quantities(given))
-    arguments.set_solid(given["solid"])
+    only = given["only"]
+    if isinstance(only, Mapping):
+        only = choose(only, functools.partial(_attribute, as_named(given.get("attributes"))))
+    present = arguments.find_present(units.lengths(given["within"], "within"), only)
+    if present is not None and arguments.count and not present.any():
+        names = " and ".join(name for name in ("within", "only") if given[name] is not None)
+        raise InvalidData(f"None of the {arguments.count} particles is left by {names}. Give wider bounds or other values.")
+    arguments.set_solid(given["solid"], present)
     names = arguments.set_attributes(attributes)
     estimate = options.get("estimate_smoothing_length")
     if isinstance(estimate, str):
@@ -58,6 +68,13 @@ def prepare(units, attributes, given, options):
     if isinstance(estimate, str):
         arguments.estimate_by_neighbours(estimate)
     return arguments, names
+
+
+def _attribute(attributes, name):
+    if name not in attributes:
+        raise InvalidArgument(f"only names '{name}', which is not among the attributes.{did_you_mean(name, attributes)} "
+                              f"Attributes: {', '.join(attributes) or 'none'}.")
+    return attributes[name]
 
 
 def _warn_of_ignored(given, options):
@@ -141,8 +158,10 @@ def of_files(function: Function) -> Function:
         for name in ("scalar", "scalar_dot", "solid", *QUANTITIES):
             if isinstance(words.get(name), str) and (name, words[name]) != ("volume", "computed"):
                 words[name] = positions.array(words[name])
-        words = positions.words(words)
-        if words.get("solid") is None:
+        words, only = positions.words(words), words.get("only")
+        if isinstance(only, Mapping):
+            words["only"] = choose(only, positions.array)
+        if words.get("solid") is None and only is None:
             _warn_of_unused_type(positions)
         return function(positions.positions, *given, **words)
 
@@ -159,6 +178,8 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
                attributes: Optional[Attributes] = None,
                scalar_dot: Optional[ArrayLike] = None,
                solid: Optional[ArrayLike] = None,
+               within: Optional[ArrayLike] = None,
+               only: Optional[Only] = None,
                context: Optional[Context] = None,
                device: Union[None, str, int] = None,
                progress: Optional[Progress] = None,
@@ -186,6 +207,11 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
         the particles around, integers and bools from the nearest particle.
     scalar_dot: a second vector for each particle; the scalar is then the dot product.
     solid: (particles,), True or not 0 for walls. They take no part in the field.
+    within: (x0, x1, y0, y1, z0, z1), L: particles beyond these bounds are left out, whatever their values
+        are; sides may be infinite.
+    only: {"Type": 1} or {"Type": (1, 3)}: particles whose value in this array, of the file or of the
+        attributes, is another, or not from the lowest to the highest one, are left out likewise. All names
+        must agree. Or (particles,), True for those that are taken.
     context: a Context, to keep particles on the device between calls; else one of our own per
         device, which keeps compiled programs alone.
     device: a number or part of a name as in devices(), where no context is given.
@@ -280,6 +306,8 @@ def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5,
                  density: Optional[ArrayLike] = None,
                  attributes: Optional[Attributes] = None,
                  solid: Optional[ArrayLike] = None,
+                 within: Optional[ArrayLike] = None,
+                 only: Optional[Only] = None,
                  context: Optional[Context] = None,
                  device: Union[None, str, int] = None,
                  progress: Optional[Progress] = None,
@@ -308,6 +336,8 @@ def probe(positions: Positions, points: ArrayLike, *,
           density: Optional[ArrayLike] = None,
           attributes: Optional[Attributes] = None,
           solid: Optional[ArrayLike] = None,
+          within: Optional[ArrayLike] = None,
+          only: Optional[Only] = None,
           context: Optional[Context] = None,
           device: Union[None, str, int] = None,
           progress: Optional[Progress] = None,
@@ -362,6 +392,8 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
                 mass: Optional[ArrayLike] = None,
                 density: Optional[ArrayLike] = None,
                 solid: Optional[ArrayLike] = None,
+                within: Optional[ArrayLike] = None,
+                only: Optional[Only] = None,
                 context: Optional[Context] = None,
                 device: Union[None, str, int] = None,
                 progress: Optional[Progress] = None,

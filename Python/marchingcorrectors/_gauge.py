@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from ._functions import Positions, Progress
+    from ._functions import Only, Positions, Progress
     from ._options import Options
 
 STATES = np.array(["dry", "wet", "full"])
@@ -93,6 +93,8 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, *,
           mass: Optional[ArrayLike] = None,
           density: Optional[ArrayLike] = None,
           solid: Optional[ArrayLike] = None,
+          within: Optional[ArrayLike] = None,
+          only: Optional[Only] = None,
           context: Optional[Context] = None,
           device: Union[None, str, int] = None,
           progress: Optional[Progress] = None,

@@ -124,6 +124,54 @@ class Results(unittest.TestCase):
         self.assertEqual(surface.statistics["solid_particles"], solid.sum())
         self.assertGreater(surface.points[:, 0].min(), 0.2)
 
+    def test_left_out(self):
+        """As if they were not there, whatever they hold."""
+        kind = np.arange(N ** 3) % 4
+        near = POSITIONS[:, 0] < 0.7
+        for more, present in (({"within": (-np.inf, 0.7, -1, 2, -1, 2)}, near),
+                              ({"only": kind > 0}, kind > 0), ({"only": {"kind": (1, 3)}}, kind > 0),
+                              ({"only": {"kind": (0, np.int8(2)), "high": True}}, (kind < 3) & (DISTANCE > 0.3)),
+                              ({"only": {"kind": [1, 3]}, "within": np.array([-1, 0.7, -1, 2, -1, 2])}, near & (kind > 0))):
+            x, d, h = (np.where(present if array.ndim == 1 else present[:, None], array, np.nan)
+                       for array in (POSITIONS, DISTANCE, np.full(N ** 3, H)))
+            x[~present & ~near] = 1e9
+            given = {"smoothing_length": h, "volume": V, "attributes": {"kind": kind, "high": DISTANCE > 0.3, "d": d}, **more}
+            alone = {"smoothing_length": H, "volume": V, "attributes": {"kind": kind[present], "d": d[present]}}
+            found = mc.isosurface(x, d, 0.4, **given)
+            expected = mc.isosurface(x[present], d[present], 0.4, **alone)
+            self.assertGreater(len(expected.triangles), 100)
+            for name in ("kind", "d"):
+                self.assertEqual(found.attributes[name].tobytes(), expected.attributes[name].tobytes(), more)
+            self.assertEqual(found.points.tobytes(), expected.points.tobytes(), more)
+            self.assertEqual(quietly(mc.free_surface, x, periodic=(1.4, 0, 0), **given).points.tobytes(),
+                             quietly(mc.free_surface, x[present], periodic=(1.4, 0, 0), **alone).points.tobytes(), more)
+            samples = mc.probe(x, POSITIONS[:9], **given), mc.probe(x[present], POSITIONS[:9], **alone)
+            self.assertEqual(*[each.values["d"].tobytes() for each in samples], more)
+            gradients = mc.derivatives(x, **given).gradients["d"]
+            self.assertEqual(gradients.shape, (N ** 3, 3))
+            self.assertEqual(gradients[present].tobytes(), mc.derivatives(x[present], **alone).gradients["d"].tobytes(), more)
+        line, level = ((0.65, 0.65, 0.65), (3, 0.65, 0.65)), {"smoothing_length": H, "volume": V}
+        self.assertEqual(mc.gauge(POSITIONS, line, within=(-1, 1, -1, 2, -1, 2), **level).last,
+                         mc.gauge(POSITIONS[POSITIONS[:, 0] <= 1], line, **level).last)
+        self.assertLess(mc.gauge(POSITIONS, line, only=near, **level).last[0], 0.2)
+        solid = np.full(N ** 3, 2, np.uint8)  # the core's number of what is left out
+        solid[near] = 0
+        self.assertEqual(sphere(solid=solid), sphere(solid=~near))
+
+    def test_left_out_errors(self):
+        wall = np.arange(N ** 3) % 4
+        for words, sentence in (
+                ({"within": (0, 1)}, "six bounds"), ({"within": (1, 0, 0, 1, 0, 1)}, "lower ones first"),
+                ({"within": "abcdef"}, "within does not hold numbers"), ({"within": (0, np.nan, 0, 1, 0, 1)}, "six bounds"),
+                ({"within": (5, 6, 5, 6, 5, 6)}, "None of the 2744 particles is left by within"),
+                ({"only": {"walls": 1}}, "Did you mean 'wall'.*Attributes: wall, x"), ({"only": {"wall": "a"}}, "not a number"),
+                ({"only": {"wall": (1, 2, 3)}}, "lowest and the highest"), ({"only": {"wall": (3, 1)}}, "lower value"),
+                ({"only": {"x": 1}}, "'x'.*one number for each"), ({"only": wall}, "True or False for each of 2744")):
+            with self.subTest(words), self.assertRaisesRegex((mc.InvalidArgument, mc.InvalidData), sentence):
+                sphere(attributes={"wall": wall, "x": POSITIONS}, **words)
+        with self.assertRaisesRegex(mc.InvalidArgument, "Attributes: none"):
+            mc.gauge(POSITIONS, ((0, 0, 0), (1, 1, 1)), smoothing_length=H, only={"wall": 1})
+
     def test_free_surface(self):
         surface = mc.free_surface(POSITIONS, smoothing_length=H)
         edges = np.sort(np.concatenate([surface.triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)

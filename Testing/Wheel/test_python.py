@@ -177,6 +177,24 @@ class Objects(unittest.TestCase):
         np.testing.assert_allclose(np.linalg.norm(joined.attributes["Velocity"], axis=1), 0.4, atol=0.03)
         told = caught(mc.free_surface, particles, smoothing_length=H, volume=V)
         self.assertIn("say solid=particles['Type'] != VALUE", str(told[0].message))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            left = [mc.free_surface(particles, smoothing_length=H, volume=V, only={"Type": 1}),
+                    mc.free_surface(particles, smoothing_length=H, volume=V, only={"Type": (1, 3), "distance": (0, 9)}),
+                    mc.free_surface(POSITIONS[1::2].astype(particles.positions.dtype), smoothing_length=H, volume=V)]
+            shown = [data.sph.free_surface(smoothing_length=H, volume=V, only={"Type": 1}),
+                     data.sph.free_surface(smoothing_length=H, volume=V, only={"Type": (1, 1)}, within=(-1, 2, -1, 2, -1, 2))]
+            rows = data.sph.derivatives("Velocity", smoothing_length=H, volume=V, only={"Type": 1})
+            gauges = [each(((0.6, 0.6, 0.6), (0.6, 0.6, 2)), smoothing_length=H, volume=V, only={"Type": 1}).last[0]
+                      for each in (data.sph.gauge, lambda *line, **words: mc.gauge(particles, *line, **words))]
+        for each in left[:2] + shown:
+            self.assertEqual(np.asarray(each.points).tobytes(), left[2].points.tobytes())
+        self.assertEqual((rows.n_points, len(rows["Gradients"]), gauges[0]), (COUNT, COUNT, gauges[1]))
+        self.assertEqual(set(shown[0]["Type"]), {1})
+        for call in (lambda **words: mc.free_surface(particles, smoothing_length=H, **words),
+                     lambda **words: data.sph.free_surface(smoothing_length=H, **words)):
+            with self.assertRaisesRegex(ValueError, "'Typ'.*Did you mean 'Type'.*rrays: distance, Type"):
+                call(only={"Typ": 1})
         self.assertEqual(quietly(mc.gauge, again, [[[0.6, 0.6, -1], [0.6, 0.6, 2]]], smoothing_length="distance").names, ["0"])
 
     def test_context_is_not_copied(self):

@@ -90,7 +90,7 @@ def with_properties(kind):
         if is_flag:
             setattr(kind, name + "On", lambda self, set_it=set_it: set_it(self, 1))
             setattr(kind, name + "Off", lambda self, set_it=set_it: set_it(self, 0))
-    for name in (*NOTHING, "Box", "PeriodicBounds", "ErrorMessage", "RunStatistics"):
+    for name in (*NOTHING, "Box", "PeriodicBounds", "Within", "ErrorMessage", "RunStatistics"):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "Cells", "Fluid", "Array"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
@@ -104,7 +104,7 @@ def with_properties(kind):
     words = [(name, word, value) for name in words for value, word in enumerate(words[name])]
     for name, word, value in [*words, ("ScalarComponent", "Magnitude", -1)]:
         setattr(kind, f"Set{name}To{word}", lambda self, n=name, v=value: getattr(self, "Set" + n)(v))
-    for name in ("Box", "PeriodicBounds"):
+    for name in ("Box", "PeriodicBounds", "Within"):
         setattr(kind, "Set" + name, lambda self, *sides, name=name: self._set_sides(name, sides))
     for values, called_here in (("ContourValues", "NumberOfContours"), ("FreeSurfaceValues", "NumberOfFreeSurfaceValues")):
         setattr(kind, "Get" + called_here, lambda self, values=values: getattr(self, values).GetNumberOfContours())
@@ -126,7 +126,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL, SOLIDS_AUTO = range(4)
     TOGETHER, APART = range(2)
     MAGNITUDE = -1
-    Box, PeriodicBounds = (0.0, 1.0) * 3, (0.0,) * 6
+    Box, PeriodicBounds, Within = (0.0, 1.0) * 3, (0.0,) * 6, (0.0,) * 6
 
     def __init__(self):
         VTKPythonAlgorithmBase.__init__(self, nInputPorts=1, nOutputPorts=1, outputType="vtkDataObject")
@@ -137,7 +137,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
         self._joined = None, None, 0
-        self.ExcludedArrays, self.ErrorMessage, self.BlockName = [], "", ""
+        self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
         self._signatures, self._versions = (None, None), [0, 0]
@@ -222,6 +222,14 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def AddExcludedArray(self, name):
         self.ExcludedArrays.append(name)
+        self.Modified()
+
+    def AddOnly(self, name, low, high):
+        self.Only.append((name, low, high))
+        self.Modified()
+
+    def ClearOnly(self):
+        self.Only.clear()
         self.Modified()
 
     def ClearExcludedArrays(self):
@@ -379,8 +387,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._fail(str(sentence))
 
     def _choice(self):
-        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Box=self.Box,
-                               PeriodicBounds=self.PeriodicBounds,
+        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Only=list(self.Only), Box=self.Box,
+                               PeriodicBounds=self.PeriodicBounds, Within=self.Within,
                                IgnoreSolids=int(self.Solids == self.SOLIDS_IGNORE),
                                **{name: getattr(self, name) for name in PROPERTIES})
 

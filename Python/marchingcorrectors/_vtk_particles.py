@@ -174,7 +174,7 @@ class Particles:
         self.values = {}  # arrays or constants for the core, by quantity
         self.scalar_name, self.iso_value_name = "", "IsoValue"
         self.interpolated, self.from_nearest = [], []
-        self.solid = None
+        self.solid = self.present = None
 
     def collect(self, requests, taken):
         if not self.choice.FreeSurface:
@@ -239,6 +239,10 @@ class Particles:
         # A density alone says nothing of volumes.
         if not self.collect_quantity("volume", may_detect=not is_set) and self.collect_quantity("mass"):
             self.collect_quantity("density")
+        if choice.ParticleVolume > 0 and "volume" not in self.values and not {"mass", "density"} <= set(self.values):
+            self.values["volume"], self.used["mass"], self.used["density"] = choice.ParticleVolume, None, None
+            self.values.pop("mass", None)
+            self.values.pop("density", None)
 
     def collect_quantity(self, quantity, may_detect=True):
         """A constant goes before a name, a name before the usual names. Whether there is one."""
@@ -258,6 +262,21 @@ class Particles:
         if name:
             self.fluid = self.find("fluid", name)
             self.solid = to_numpy(self.fluid) != self.choice.FluidValue
+        self.present = self.find_present()
+
+    def find_present(self):
+        """Which particles Within and Only leave; None: all. Of several ranges of one array, any may hold."""
+        bounds, present = self.choice.Within, np.ones(self.count, bool)
+        if not any(bounds) and not self.choice.Only:
+            return None
+        if any(bounds):
+            x = to_numpy(self.positions)
+            present = ((x >= bounds[::2]) & (x <= bounds[1::2])).all(axis=1)
+        for name in {name for name, *_ in self.choice.Only}:
+            values = to_numpy(self.find("only", name))
+            present &= np.any([(values >= low) & (values <= high) for each, low, high in self.choice.Only if each == name],
+                              axis=0)
+        return present
 
     def name_scalar(self, taken):
         """Computed arrays keep their names, which users look for."""
@@ -290,7 +309,7 @@ class Particles:
         def view(array):
             return result.view(to_numpy(array), name_of(array))
 
-        result.set_solid(self.solid)
+        result.set_solid(self.solid, self.present)
         for quantity, value in self.values.items():
             setattr(result.input, quantity, c.mcor_array(constant=value) if isinstance(value, float) else view(value))
         if self.scalar is not None:

@@ -189,6 +189,10 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   {
     this->Extract(input, options, vtkPolyData::SafeDownCast(output));
   }
+  else
+  {
+    this->SetUsedNames(&input, false); // no volumes were used
+  }
 }
 
 // What an observer of the progress may change is read before the run.

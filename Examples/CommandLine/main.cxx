@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The command line program: particles from a file, surface to a file. See --help.
+#include "ArrayList.h"
 #include "ColorScale.h"
 #include "ComponentRun.h"
 #include "Ending.h"
@@ -140,6 +141,14 @@ bool Execute(Job& job)
   vtkNew<MessageCapture> messages;
   vtkOutputWindow::SetInstance(messages);
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  if (job.ListArrays)
+  {
+    if (LaunchedRank() == 0)
+    {
+      std::cout << DescribeArrays(*ReadParticles(job.Inputs.front(), messages));
+    }
+    return true;
+  }
 #if MCOR_HAS_RANKS
   if (LaunchedCount() > 1)
   {

@@ -16,7 +16,7 @@ import xml.etree.ElementTree
 import zlib
 
 import particle_files as files
-from command_line_test import ISO, WITH_DISPLAY, CommandLineTest, main
+from command_line_test import FIRST_COMPILATION, ISO, WITH_DISPLAY, CommandLineTest, main
 
 
 def read_png(path):
@@ -55,7 +55,7 @@ class Usage(CommandLineTest):
                 --mass --density --dp --coefh --kernel --fluid --walls --solids --wall-share --h-scale --cube-factor --cube-size
                 --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
                 --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
-                --memory-limit --list-devices --stats --screenshot --repeat --quiet --help
+                --memory-limit --list-devices --list-arrays --stats --screenshot --repeat --quiet --help
                 --version --precision --support-radius --output-precision --box --periodic --capping --filled --times
                 --time-step --slice --line --resolution --color-by --color-range --up --view""".split():
             self.assertRegex(result.stdout, rf"(?m)^  {option} ")
@@ -82,8 +82,11 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--stats", self.input], "would overwrite the input"),
             ([*good, *ISO, "--stats", "../" + self.directory.name + "/surface.vtp"], "written twice"),
             ([*good, *ISO, "--stats", "a.png", "--screenshot", "a.png"], "written twice"),
-            ([*good], "needs --scalar NAME and --iso V, or --free-surface"),
-            ([*good, "--scalar", "Radius"], "needs an iso value"),
+            ([*good], "needs --scalar NAME, or --free-surface"),
+            (["--list-arrays"], "--list-arrays needs FILE"),
+            (["--list-arrays", *good], "--list-arrays FILE stands alone"),
+            ([self.input, "--list-arrays=" + str(self.input)], "--list-arrays FILE stands alone"),
+            (["--list-arrays", "Part_0001.bi4"], "is a solver's own file"),
             ([*good, "--free-surface", "--scalar", "Radius"], "leave out --scalar"),
             ([*good, *ISO, "--sharp"], "unknown option --sharp"),
             ([*good, *ISO, "--preview=1"], "--preview takes no value"),
@@ -371,6 +374,62 @@ class Options(CommandLineTest):
                               "output"}, set(seconds))
         self.assertAlmostEqual(total, sum(seconds.values()), places=6)
 
+    def test_chosen_iso_value(self):
+        """Without --iso, a value about the median, which is told; a film keeps it, also where its steps differ."""
+        sentence = r"(?m)^iso value   (\S+), chosen for Radius, whose range is (\S+) \.\. (\S+) \("
+        statistics = self.directory / "statistics.json"
+        result = self.extract("--scalar", "Radius", "--stats", statistics)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        value, low, high = map(float, re.search(sentence, result.stdout).groups())
+        radii = sorted(self.arrays["Radius"])
+        self.assertAlmostEqual(value, radii[len(radii) // 2], places=5)
+        self.assertAlmostEqual(low, radii[0], places=5)
+        self.assertAlmostEqual(high, radii[-1], places=5)
+        found = json.loads(statistics.read_text())
+        self.assertAlmostEqual(found["parameters"]["iso_values"][0], value, places=5)
+        given = self.succeed("--scalar", "Radius", f"--iso={found['parameters']['iso_values'][0]!r}")
+        self.assertEqual(given["statistics"]["triangles"], found["statistics"]["triangles"])
+        self.assertEqual(self.extract("--scalar", "Radius", "--quiet").stdout, "")
+        self.arrays["Radius"] = [2 * r for r in self.arrays["Radius"]]
+        files.write_vtp(self.directory / "later.vtp", self.points, self.arrays)
+        film = self.run_program(self.input, "later.vtp", "film.pvd", "--scalar", "Radius", "--stats", statistics)
+        self.assertEqual((film.returncode, film.stderr), (0, ""))
+        self.assertEqual(len(re.findall(sentence, film.stdout)), 1)
+        self.assertAlmostEqual(json.loads(statistics.read_text())["parameters"]["iso_values"][0], value, places=5)
+
+    def test_list_arrays(self):
+        self.arrays["ParticleType"] = self.arrays.pop("Kind")
+        self.arrays["Radius"][3] = float("nan")
+        files.write_vtp(self.input, self.points, self.arrays)
+        result = self.run_program("--list-arrays", self.input)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        radii = [r for r in self.arrays["Radius"] if r == r]
+        low, high = re.search(r"(?m)^array             Radius: 1 component, \w+, (\S+) \.\. (\S+)$",
+                              result.stdout).groups()
+        self.assertAlmostEqual(float(low), min(radii), places=6)
+        self.assertAlmostEqual(float(high), max(radii), places=6)
+        for line in [f"particles         {len(self.points)}", "smoothing length  SmoothingLength",
+                     "volume            Mass / Density", "velocity          Velocity",
+                     r"fluid             ParticleType = 0 \(give --fluid ParticleType=0\)", "period            none",
+                     "dimension         3", r"array             Velocity: 3 components, \w+, \(\S+, \S+, \S+\) \.\. \(.*\)"]:
+            self.assertRegex(result.stdout, f"(?m)^{line}$")
+        files.write_vtp(self.input, [(x, y, 0.5) for x, y, _ in self.points], {})
+        result = self.run_program("--list-arrays", self.input)
+        for line in [r"smoothing length  none \(give .*estimate\)", "volume            computed from the positions",
+                     "velocity          none", "fluid             all particles", "dimension         2"]:
+            self.assertRegex(result.stdout, f"(?m)^{line}$")
+        self.refuse(self.run_program("--list-arrays", "none.vtp"), 1, "none.vtp")
+
+    def test_first_compilation(self):
+        """A driver without kept programs is waited for, which is said once."""
+        if "Portable" not in self.run_program("--list-devices").stdout:
+            self.skipTest("there is no PoCL")
+        environment = {**os.environ, "POCL_CACHE_DIR": str(self.directory / "cache")}
+        result = self.extract(*ISO, "--device", "Portable", env=environment, told=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        if float(re.search(r"program build ([\d.]+)", result.stdout)[1]) > 10:
+            self.assertEqual(result.stderr, FIRST_COMPILATION)
+
     def test_derive(self):
         """Arrays made of one of the particles', to contour and to carry; they go before stored ones."""
         self.arrays["Lambda2"] = [17.0] * len(self.points)
@@ -599,7 +658,7 @@ class Options(CommandLineTest):
             (["--smoothing-length", "0.26"], "neighbours.*smoothing length is 0.26.*support radius"),
             (["--support-radius"], "neighbours.*smoothing length is 0.065"),
             (["--scalar", "Radius", "--iso", "0.3,99"], "Iso value 99 is outside the range of Radius, 0.0"),
-            (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5"),
+            (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5.*the sum as the field .--field sum --node-threshold 0 "),
             (["--density", "1e6"], "node threshold 0.1"),
         ]:
             with self.subTest(arguments):

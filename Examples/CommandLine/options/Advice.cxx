@@ -46,6 +46,8 @@ const Advice All[] = {
   { "there is an option for that", "there is an option for that: --support-radius",
     "--support-radius" },
   { "Use a node threshold", "Use a node threshold (--node-threshold)", "--node-threshold" },
+  { "use the sum as the field",
+    "use the sum as the field (--field sum --node-threshold 0 --vertex-threshold 0)", "--field" },
   { "with the value of the fluid", "with the value of the fluid (--fluid NAME=VALUE)", "--fluid" },
   { "pthread_create has failed: Resource temporarily unavailable",
     "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },

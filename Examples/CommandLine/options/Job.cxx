@@ -205,6 +205,10 @@ void Check(const Job& job)
       }
     }
   }
+  if (job.ListArrays)
+  {
+    return;
+  }
   Exclude("particles are matched between steps, which only --times asks for; leave out ",
     { { !job.IdArray.empty() && job.Times.empty(), "--ids" } });
   Exclude("--walls tells which particles are fluid; leave out ",
@@ -255,11 +259,7 @@ void Check(const Job& job)
   }
   if (!isFree && job.Scalar.empty())
   {
-    throw UsageError("needs --scalar NAME and --iso V, or --free-surface");
-  }
-  if (!isFree && !job.HasIsoValues)
-  {
-    throw UsageError("--scalar needs an iso value, --iso V");
+    throw UsageError("needs --scalar NAME, or --free-surface");
   }
 }
 
@@ -315,6 +315,10 @@ public:
       {
         this->TakeFile(word);
       }
+    }
+    if (this->Target.ListArrays && (this->Words.size() > 2 || !this->Files.empty()))
+    {
+      throw UsageError("--list-arrays FILE stands alone; leave out the rest");
     }
     if (this->Files.size() > 1)
     {

@@ -102,6 +102,7 @@ struct Job
   int Repeat = 1;
   bool Quiet = false;
   bool ListDevices = false;
+  bool ListArrays = false; ///< of the only input
   bool Help = false;
   bool Version = false;
 };

@@ -153,8 +153,7 @@ void SetField(Job& job, Text option, Text text)
 
 void SetBoundary(Job& job, Text option, Text text)
 {
-  const int boundary = ToChoice(
-    option, text == "weight" ? "weight_sum" : text, // its word of old
+  const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text, // its word of old
     { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
   job.Surface->SetBoundaryDetection(boundary);
   if (!job.HasVertexThreshold)
@@ -190,7 +189,8 @@ const Options WhatToContour = {
   { "--component", "N|magnitude",
     "component of a vector, counted from 0, or its magnitude (default)", SetComponent },
   { "--iso", "V[,V...]",
-    "iso values of the scalar, or of the weight sum with --free-surface (default 0.5)",
+    "iso values of the scalar (default: chosen, about the median, and told), or of the weight sum "
+    "with --free-surface (default 0.5)",
     SetIsoValues },
   { "--free-surface", "", "contour the weight sum, which needs no scalar",
     [](Job& j, Text, Text) { j.Surface->FreeSurfaceOn(); } },
@@ -258,8 +258,8 @@ const Options TheParticles = {
   { "--within", "X0,X1,Y0,Y1,Z0,Z1",
     "leave out particles that are not in these bounds, whose sides may be inf or -inf", SetWithin },
   { "--only", "NAME=VALUE[:VALUE]",
-    "leave out particles whose value in this array is another one, or not in this range; may be given more than "
-    "once: of several ranges of one array any counts, of several arrays all do",
+    "leave out particles whose value in this array is another one, or not in this range; may be "
+    "given more than once: of several ranges of one array any counts, of several arrays all do",
     AddOnly, true },
   { "--walls", "FILE",
     "the particles of this file are walls, in addition to INPUT; may be given more than once; a "
@@ -339,7 +339,8 @@ const Options TheMethod = {
       j.Surface->SetSeedMode(
         ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }));
     } },
-  { "--widen", "S", "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
+  { "--widen", "S",
+    "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
     [](Job& j, Text n, Text v) { j.Surface->SetWidening(ToPositive(n, v)); } },
   { "--topology", "table|field", "resolve ambiguous cells by the table (default), or by the field",
     [](Job& j, Text n, Text v)
@@ -428,7 +429,8 @@ const Options Output = {
     "with --times, array of ids that tell which particle of a step is which of the next",
     [](Job& j, Text, Text v) { j.IdArray = Printable(v); } },
   { "--time-step", "DT",
-    "for a film: time between one INPUT and the next (default: the times in their field data, else 1)",
+    "for a film: time between one INPUT and the next (default: the times in their field data, "
+    "else 1)",
     [](Job& j, Text n, Text v)
     {
       j.TimeStep = ToPositive(n, v);
@@ -472,6 +474,12 @@ const Options DeviceAndHelp = {
     { SetAll(j, &vtkSPHAlgorithm::SetDeviceMemoryLimit, ToCount(n, v, 1)); } },
   { "--list-devices", "", "list the OpenCL devices",
     [](Job& j, Text, Text) { j.ListDevices = true; } },
+  { "--list-arrays", "FILE", "list the arrays of these particles, and what is found among them",
+    [](Job& j, Text, Text v)
+    {
+      j.Inputs = { v };
+      j.ListArrays = true;
+    } },
   { "--help", "", "print this text (also -h)", [](Job& j, Text, Text) { j.Help = true; } },
   { "--version", "", "print the version", [](Job& j, Text, Text) { j.Version = true; } },
 };

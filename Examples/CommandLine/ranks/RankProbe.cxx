@@ -32,7 +32,8 @@ void ShareProbe(Job& job, RankSession& session, MessageCapture* messages)
   session.RunOnAll(
     [&]
     {
-      const vtkSmartPointer<vtkDataSet> made = job.ProbeFile.empty() ? MakePoints(job, particles) : nullptr;
+      const vtkSmartPointer<vtkDataSet> made =
+        job.ProbeFile.empty() ? MakePoints(job, particles) : nullptr;
       points = points || !session.IsFirst() ? points : made;
       points = points ? points : vtkSmartPointer<vtkDataSet>(vtkSmartPointer<vtkPolyData>::New());
       SetUpProbe(job, points, particles);

@@ -171,7 +171,8 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
   const bool hasBounds = all->FindFluidBounds(job.Probe->TakePresent(particles), bounds);
   if (job.Slice.Axis >= 0 && !hasBounds)
   {
-    throw std::runtime_error("--slice has no plane to show, as --within and --only leave no particles");
+    throw std::runtime_error(
+      "--slice has no plane to show, as --within and --only leave no particles");
   }
   return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
 }

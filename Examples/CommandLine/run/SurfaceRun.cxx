@@ -8,6 +8,7 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "PeriodOfData.h"
+#include "RankLaunch.h"
 #include "SafeText.h"
 #include "SurfaceFile.h"
 #include "Walls.h"
@@ -22,9 +23,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <mutex>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include <unistd.h>
@@ -187,23 +194,97 @@ std::string ReasonForNoSurface(vtkFieldData* statistics)
   return stream.str();
 }
 
+/// Where none was given, the one that the filter has chosen is told, and stays for the next steps.
+void KeepIsoValue(const Job& job, vtkFieldData* statistics)
+{
+  vtkDataArray* values = statistics->GetArray("IsoValues");
+  vtkDataArray* range = statistics->GetArray("ScalarRange");
+  if (job.Scalar.empty() || job.Surface->GetNumberOfContours() > 0 || !range || !values ||
+    values->GetNumberOfValues() == 0)
+  {
+    return;
+  }
+  const double value = values->GetComponent(0, 0);
+  job.Surface->SetValue(0, value);
+  if (!job.Quiet && LaunchedRank() == 0)
+  {
+    std::cout << "iso value   " << value << ", chosen for " << job.Scalar << ", whose range is "
+              << range->GetComponent(0, 0) << " .. " << range->GetComponent(0, 1)
+              << " (--iso gives another one)" << std::endl;
+  }
+}
+
+/// Says so, once, where an update that shows no progress has waited for a driver for a few seconds.
+class BuildNotice
+{
+public:
+  ~BuildNotice()
+  {
+    {
+      const std::lock_guard<std::mutex> guard(this->Lock);
+      this->IsOver = true;
+    }
+    this->Ends.notify_all();
+    if (this->Waiting.joinable())
+    {
+      this->Waiting.join();
+    }
+  }
+
+  void Begin()
+  {
+    if (this->Waiting.joinable())
+    {
+      return;
+    }
+    try
+    {
+      this->Waiting = std::thread([this] { this->Wait(); });
+    }
+    catch (const std::system_error&) // no more threads: nothing is said
+    {
+    }
+  }
+
+private:
+  void Wait()
+  {
+    std::unique_lock<std::mutex> guard(this->Lock);
+    if (!this->Ends.wait_for(guard, std::chrono::seconds(3), [this] { return this->IsOver; }))
+    {
+      Say("the OpenCL driver compiles its programs for the first time, which may take a minute");
+    }
+  }
+
+  std::mutex Lock;
+  std::condition_variable Ends;
+  bool IsOver = false;
+  std::thread Waiting;
+};
+
 /// What is said of a run's progress.
 struct Progress
 {
   std::string Before; ///< the words before it
   bool IsShown;
+  bool IsQuiet;
+  BuildNotice Notice;
 };
 
 void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
 {
   KeepWatchOfCrashes();
   auto* progress = static_cast<Progress*>(data);
-  if (!progress->IsShown)
-  {
-    return;
-  }
   auto* filter = static_cast<vtkAlgorithm*>(caller);
   const char* phase = filter->GetProgressText();
+  if (!progress->IsShown)
+  {
+    if (!progress->IsQuiet && phase && std::strstr(phase, "first time"))
+    {
+      progress->Notice.Begin();
+    }
+    return;
+  }
   std::fprintf(stderr, "\r\033[K%s%3.0f %% %s", progress->Before.c_str(),
     100.0 * filter->GetProgress(), Printable(phase ? phase : "").c_str());
   std::fflush(stderr);
@@ -261,7 +342,7 @@ void SetUpSurface(const Job& job, vtkPointSet* input)
 double Update(
   vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages, const std::string& before)
 {
-  Progress progress = { before, ShowsProgress(job) };
+  Progress progress{ before, ShowsProgress(job), job.Quiet || LaunchedRank() > 0, {} };
   vtkNew<vtkCallbackCommand> observer;
   observer->SetCallback(TakeProgress);
   observer->SetClientData(&progress);
@@ -294,6 +375,7 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
   filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
   run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
+  KeepIsoValue(job, run.Statistics);
   return run;
 }
 

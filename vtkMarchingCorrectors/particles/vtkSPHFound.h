@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the project: what is found among particles' arrays where nothing is chosen.
+ */
+#ifndef vtkSPHFound_h
+#define vtkSPHFound_h
+
+#include "vtkMarchingCorrectorsModule.h"
+
+#include <string>
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkPointSet;
+
+/** Names of arrays, empty where there is none. */
+struct vtkSPHFound
+{
+  std::string SmoothingLength, Volume, Mass, Density, Velocity;
+  std::string
+    Fluid; ///< clearly tells which particles are fluid, see vtkSPHAlgorithm::SetDetectFluid()
+  double FluidValue = 0.0;
+};
+
+VTKMARCHINGCORRECTORS_EXPORT vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles);
+VTK_ABI_NAMESPACE_END
+
+#endif

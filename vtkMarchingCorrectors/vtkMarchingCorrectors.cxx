@@ -217,14 +217,15 @@ void vtkMarchingCorrectors::Extract(
   }
   vtkMarchingCorrectorsOutput builder(input, options, surface);
   this->Summarize(input, options, surface.statistics);
-  this->WarnOf(input, surface, input.Core, options);
+  this->WarnOf(input, surface, input.Core, options, builder.FindLargestFloat(precision));
   builder.AddRun(this->RunStatistics);
   builder.BuildMesh(output, precision);
   mcor_free_surface(&surface);
 }
 
 void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
-  const mcor_surface& surface, const mcor_input& core, const mcor_options& options)
+  const mcor_surface& surface, const mcor_input& core, const mcor_options& options,
+  double largestFloat)
 {
   for (const std::string& sentence : input.ListLeftOut(surface.attribute_not_finite, "the surface"))
   {
@@ -236,6 +237,8 @@ void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
       vtkSPHTakeText(
         mcor_describe_warning(static_cast<mcor_warning>(kind), &core, &options, &surface)));
   }
+  this->WarnOnce(WARN_SINGLE_POINTS,
+    vtkSPHTakeText(mcor_describe_single_points(largestFloat, surface.statistics.cube_size)));
 }
 
 void vtkMarchingCorrectors::ClearSummary()

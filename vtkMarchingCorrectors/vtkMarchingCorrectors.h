@@ -548,8 +548,9 @@ private:
     const mcor_input& own, vtkPolyData* output);
   void FinishDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& input,
     mcor_options options, mcor_surface& surface, vtkPolyData* output);
+  /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
-    const mcor_input& core, const mcor_options& options);
+    const mcor_input& core, const mcor_options& options, double largestFloat);
   void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);

@@ -485,6 +485,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         precision, data, arrays = particles.choice.OutputPointsPrecision, output.GetPointData(), found.point_arrays()
         if precision == vtkAlgorithm.SINGLE_PRECISION or (
                 precision == vtkAlgorithm.DEFAULT_PRECISION and is_single(particles.positions)):
+            self._warn_once("single points", take_text(lib.mcor_describe_single_points(
+                np.abs(found.points).max(initial=0.0), self.UsedCubeSize)))
             found.points = found.points.astype(np.float32)
         nearest, iso = arrays.pop("NearestParticle", None), arrays.pop("IsoValue", None)
         if iso is not None:

@@ -85,6 +85,7 @@ def _open():
         "mcor_describe_estimate": (ctypes.c_void_p, [ctypes.c_double]),
         "mcor_describe_smoothing_length": (ctypes.c_void_p, [pointer(c.mcor_input), pointer(c.mcor_statistics)]),
         "mcor_describe_volume": (ctypes.c_void_p, [pointer(c.mcor_input)]),
+        "mcor_describe_single_points": (ctypes.c_void_p, [ctypes.c_double, ctypes.c_double]),
         "mcor_describe_measures": (ctypes.c_void_p, [pointer(c.mcor_statistics)]),
         "mcor_find_iso_value": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_ranks),
                                                pointer(ctypes.c_double), pointer(ctypes.c_double)]),

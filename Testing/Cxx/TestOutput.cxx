@@ -300,6 +300,35 @@ void TestPrecision()
   CHECK(filter->GetOutput()->GetPoints()->GetDataType() == VTK_FLOAT);
 }
 
+// Floats that are too coarse for the surface are told of; these steps are 0.0625, the cubes 0.065.
+void TestCoarsePoints()
+{
+  auto cube = test::MakeCube();
+  auto filter = test::MakeSphereFilter(cube);
+  int warnings = 0;
+  test::CountEvents(filter, vtkCommand::WarningEvent, &warnings);
+  const auto warned = [&filter, &warnings](int precision)
+  {
+    warnings = 0;
+    filter->SetOutputPointsPrecision(precision);
+    filter->Update();
+    CHECK(filter->GetOutput()->GetNumberOfCells() > 100);
+    return warnings;
+  };
+  CHECK(warned(vtkAlgorithm::SINGLE_PRECISION) == 0);
+  vtkNew<vtkPoints> far;
+  far->SetDataTypeToDouble();
+  for (vtkIdType i = 0; i < cube->GetNumberOfPoints(); ++i)
+  {
+    const double* x = cube->GetPoint(i);
+    far->InsertNextPoint(x[0], x[1] - 1e6, x[2]);
+  }
+  cube->SetPoints(far);
+  CHECK(warned(vtkAlgorithm::DOUBLE_PRECISION) == 0);
+  CHECK(warned(vtkAlgorithm::DEFAULT_PRECISION) == 0);
+  CHECK(warned(vtkAlgorithm::SINGLE_PRECISION) == 1);
+}
+
 void TestFieldData()
 {
   auto filter = test::MakeSphereFilter(MakeParticles());
@@ -415,6 +444,7 @@ int TestOutput(int, char*[])
   TestNames();
   TestComputedArrays();
   TestPrecision();
+  TestCoarsePoints();
   TestFieldData();
   TestRunStatistics();
   TestMeasures();

@@ -631,6 +631,10 @@ extern "C"
    * one value or more than MCOR_PARTICLE_TYPES, or if memory ran out. */
   char* mcor_describe_unused_type(
     const char* name, const double* values, const int64_t* counts, int count);
+
+  /* A warning that single precision is too coarse for the points of a surface whose largest coordinate, in magnitude,
+   * is that; free it with free(). NULL if it is fine, or if memory ran out. */
+  char* mcor_describe_single_points(double largest, double cube_size);
 #define MCOR_PARTICLE_TYPES 8
 /* The array that marks, in blocks joined to one set, the particles of blocks with names of walls. */
 #define MCOR_WALL_BLOCK "WallBlock"

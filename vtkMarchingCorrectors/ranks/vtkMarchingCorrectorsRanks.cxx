@@ -21,6 +21,7 @@
 #include "vtkSPHRanksStatistics.h"
 #include "vtkSPHRanksWork.h"
 
+#include <algorithm>
 #include <memory>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -131,6 +132,9 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
   {
     vtkSPHMeasure(ranks, surface, numbers.OfPoints, surface.statistics);
   }
+  vtkMarchingCorrectorsOutput builder(input, options, surface);
+  const std::vector<double> largest =
+    ranks.Gather(builder.FindLargestFloat(this->OutputPointsPrecision));
   if (ranks.GetRank() == 0)
   {
     mcor_surface all = {};
@@ -143,10 +147,9 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
     core.count = run.Particles;
     mcor_options asked = options;
     asked.dimension = this->Dimension; // not as found
-    this->WarnOf(input, all, core, asked);
+    this->WarnOf(input, all, core, asked, *std::max_element(largest.begin(), largest.end()));
   }
   this->Summarize(input, options, surface.statistics);
-  vtkMarchingCorrectorsOutput builder(input, options, surface);
   builder.AddRun(this->RunStatistics);
   vtkSPHAddCount(this->RunStatistics, "Points", { numbers.Points });
   vtkSPHAddCount(this->RunStatistics, "Triangles", { numbers.Triangles });

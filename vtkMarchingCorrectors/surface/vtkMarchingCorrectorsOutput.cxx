@@ -20,7 +20,9 @@
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -75,14 +77,26 @@ std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_
   return names;
 }
 
+bool vtkMarchingCorrectorsOutput::StoresFloats(int precision) const
+{
+  return precision == vtkAlgorithm::SINGLE_PRECISION ||
+    (precision == vtkAlgorithm::DEFAULT_PRECISION &&
+      this->Input.Core.positions.type == MCOR_FLOAT32);
+}
+
+double vtkMarchingCorrectorsOutput::FindLargestFloat(int precision) const
+{
+  const int64_t count = this->StoresFloats(precision) ? 3 * this->Surface.point_count : 0;
+  return std::accumulate(this->Surface.points, this->Surface.points + count, 0.0,
+    [](double largest, double x) { return std::max(largest, std::fabs(x)); });
+}
+
 void vtkMarchingCorrectorsOutput::BuildMesh(
   vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge)
 {
-  const bool asFloat = precision == vtkAlgorithm::SINGLE_PRECISION ||
-    (precision == vtkAlgorithm::DEFAULT_PRECISION &&
-      this->Input.Core.positions.type == MCOR_FLOAT32);
   vtkNew<vtkPoints> points;
-  points->SetData(vtkSPHAdoptReal(this->Surface.points, 3, this->Surface.point_count, asFloat));
+  points->SetData(vtkSPHAdoptReal(
+    this->Surface.points, 3, this->Surface.point_count, this->StoresFloats(precision)));
   output->SetPoints(points);
   BuildCells(this->Surface, output);
   this->BuildInterpolatedArrays(output);

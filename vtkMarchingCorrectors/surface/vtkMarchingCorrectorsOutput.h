@@ -32,6 +32,8 @@ public:
 
   /** The surface, and its iso values. precision: of the points, as vtkAlgorithm has it. */
   void BuildMesh(vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge = nullptr);
+  /** The points' largest coordinate, in magnitude, where that mesh has them as floats; else 0. */
+  double FindLargestFloat(int precision) const;
   /** Statistics and parameters: but for what it cost a function of the input and the options alone. */
   void AddRun(vtkFieldData* run) const;
 
@@ -39,6 +41,7 @@ public:
   static void BuildCells(mcor_surface& surface, vtkPolyData* output);
 
 private:
+  bool StoresFloats(int precision) const;
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
   void BuildIsoValue(vtkPolyData* output);

@@ -32,6 +32,8 @@ const Advice All[] = {
   { "or no caps", "or no caps (leave out --capping)", "--capping" },
   { "set the dimension to 3", "set the dimension to 3 (--dimension 3)", "--dimension" },
   { "use three dimensions", "use three dimensions (--dimension 3)", "--dimension" },
+  { "Set Output Points Precision to Double", "Give --output-precision double",
+    "--output-precision" },
   { "Try double precision", "Try double precision (--precision double)", "--precision" },
   { "hoose another device", "hoose another device (--device)", "--device" },
   { "se single precision", "se single precision (--precision single)", "--precision" },

@@ -299,6 +299,18 @@ static void test_without_input(void** state)
   core_free_set(&call.set);
 }
 
+static void test_single_points(void** state)
+{
+  assert_null(mcor_describe_single_points(0, 0.5));
+  assert_null(mcor_describe_single_points(INFINITY, 0.5));
+  assert_null(mcor_describe_single_points(1e6, 6.25));
+  char* text = mcor_describe_single_points(1e6, 6.24);
+  assert_non_null(text);
+  assert_non_null(strstr(text, "as large as 1e+06 to steps of 0.062, and cubes are 6.2:"));
+  free(text);
+  (void)state;
+}
+
 static void test_unused_type(void** state)
 {
   const double values[9] = { 0, 3, 0.5 };
@@ -344,6 +356,6 @@ int main(void)
     cmocka_unit_test(test_iso_value), cmocka_unit_test(test_trimmed),
     cmocka_unit_test(test_tolerance), cmocka_unit_test(test_precision),
     cmocka_unit_test(test_told_residual), cmocka_unit_test(test_without_input),
-    cmocka_unit_test(test_unused_type) };
+    cmocka_unit_test(test_single_points), cmocka_unit_test(test_unused_type) };
   return cmocka_run_group_tests_name("warning", tests, core_set_up, core_tear_down);
 }

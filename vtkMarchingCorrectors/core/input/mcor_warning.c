@@ -138,6 +138,12 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
 /* Steps of single precision that are less than so many to the nearest particle. */
 #define MCOR_COARSE_STEPS 8
 
+/* The distance of the numbers that single precision has there. */
+static double mcor_single_step(double largest)
+{
+  return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
+}
+
 /* The longest step between the coordinates that single precision can hold, where all of the fluid's were rounded to
  * such; else 0. */
 static double mcor_step_of(const mcor_input* input, int* axis)
@@ -160,7 +166,7 @@ static double mcor_step_of(const mcor_input* input, int* axis)
     *axis = fabs(x) > largest ? (int)(i % 3) : *axis;
     largest = fmax(largest, fabs(x));
   }
-  return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
+  return mcor_single_step(largest);
 }
 
 static bool mcor_warn_coarse(mcor_suspicion* s)
@@ -472,5 +478,24 @@ char* mcor_describe_unused_type(
   }
   snprintf(end, (size_t)(text + sizeof text - end),
     ". If it tells fluid from walls, select it together with the value of the fluid%s.", seems);
+  return mcor_copy_text(text);
+}
+
+/* Steps of coordinates, as a share of the cube size: some triangles are far smaller than cubes. */
+#define MCOR_MOST_STEP 0.01
+
+char* mcor_describe_single_points(double largest, double cube_size)
+{
+  const double step = mcor_single_step(largest);
+  char text[MCOR_SENTENCE];
+  if (!(step > MCOR_MOST_STEP * cube_size))
+  {
+    return NULL;
+  }
+  snprintf(text, sizeof text,
+    "The surface's points are stored in single precision, which rounds coordinates as large as "
+    "%.3g to steps of %.2g, and cubes are %.2g: triangles are distorted or have no area. Set "
+    "Output Points Precision to Double, or subtract a constant from the coordinates.",
+    largest, step, cube_size);
   return mcor_copy_text(text);
 }

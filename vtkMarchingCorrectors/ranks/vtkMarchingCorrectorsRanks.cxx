@@ -145,6 +145,8 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input core = input.Core;
     core.count = run.Particles;
+    core.positions.data = nullptr; // those at hand are a part
+    core.solid = nullptr;
     mcor_options asked = options;
     asked.dimension = this->Dimension; // not as found
     this->WarnOf(input, all, core, asked, *std::max_element(largest.begin(), largest.end()));

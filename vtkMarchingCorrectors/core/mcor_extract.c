@@ -105,7 +105,7 @@ static int mcor_report_end(void* user, double fraction, const char* phase)
   return options->progress(options->progress_user, 1, phase);
 }
 
-/* Of an empty surface: whether the node threshold is why. A failure says nothing. */
+/* Tells whether the node threshold is why a surface is empty. A failure says nothing. */
 static void mcor_count_below_threshold(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_statistics* statistics)
 {

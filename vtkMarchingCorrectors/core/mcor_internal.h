@@ -240,7 +240,7 @@ mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
-/* Of `count` bricks from `first` on, the nodes that are needed. */
+/* The nodes that are needed of `count` bricks from `first` on. */
 mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);

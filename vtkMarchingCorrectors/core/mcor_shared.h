@@ -83,7 +83,7 @@ typedef struct mcor_level
 #define MCOR_EVALUATED (1 << 16)
 #define MCOR_OPEN_SIDES (1 << 17)
 
-/* Of a leaf: it is to be examined; its nodes' values are known. */
+/* A leaf is to be examined; its nodes' values are known. */
 #define MCOR_CHOSEN 1
 #define MCOR_CHOSEN_EVALUATED 2
 

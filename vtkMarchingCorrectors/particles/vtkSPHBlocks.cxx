@@ -121,7 +121,7 @@ vtkPointSet* PointsOf(vtkDataObject* data)
   return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
 }
 
-/** What a block of this name is as a fluid array. */
+/** The name that stands for this block as a fluid array. */
 std::string FluidArrayOf(const std::string& name)
 {
   return "Block: " + name;

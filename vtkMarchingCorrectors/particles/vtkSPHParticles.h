@@ -161,7 +161,7 @@ protected:
   vtkSmartPointer<vtkPointSet> Points;
 
 private:
-  /** What sums over neighbours depend on. */
+  /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
   /** Fills an array of this name by the core's function; null, and Error, where it fails. */
   vtkSmartPointer<vtkDataArray> Compute(

@@ -32,7 +32,7 @@ static const mcor_buffer* mcor_seeds(const mcor_context* context)
                                   : &context->bricks.seeds;
 }
 
-/* Of cells that finer ones touch, those that are used, and their edges. */
+/* Finds, among the cells that finer ones touch, those that are used, and their edges. */
 static mcor_status mcor_find_hanging(mcor_context* context)
 {
   mcor_adaptive* adaptive = &context->adaptive;

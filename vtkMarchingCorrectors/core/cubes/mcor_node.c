@@ -42,7 +42,7 @@ mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer
   return mcor_spread_signs(context);
 }
 
-/* Of values, which only another call could use any more. */
+/* Gives back values, which only another call could use any more. */
 void mcor_release_nodes(mcor_context* context)
 {
   MCOR_RELEASE(context, &context->bricks.now.value, &context->bricks.now.weight);

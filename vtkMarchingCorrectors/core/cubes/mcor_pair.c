@@ -63,7 +63,7 @@ static mcor_status mcor_place_reached(mcor_context* context, double iso, bool fi
   return mcor_sign_nodes(context, iso, &bricks->need);
 }
 
-/* What growth needs of slots. It stays where nodes have right values: in the period, whose particles are on the
+/* Finds what growth needs of slots. It stays where nodes have right values: in the period, whose particles are on the
  * device, and the ring around it. */
 static mcor_status mcor_begin_growth(mcor_context* context)
 {

@@ -78,7 +78,7 @@ static mcor_status mcor_test_regions(
   return mcor_place_bricks(context);
 }
 
-/* Of the listed regions' bricks, tests and evaluates those of which nothing is known; requests known ones alone. */
+/* Tests and evaluates, among the listed regions' bricks, those of which nothing is known; requests known ones alone. */
 static mcor_status mcor_test_bricks(
   mcor_context* context, double iso, const mcor_buffer* list, int listed)
 {

@@ -65,7 +65,7 @@ static uint64_t mcor_layers(int axis, int count)
   return layers[axis][count];
 }
 
-/* The same of 4^3 bricks from any one on. */
+/* Bits of 4^3 bricks from any one on. */
 static bool mcor_split_cube(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {

@@ -21,7 +21,7 @@
 
 /* How far from a box a particle matters beyond its support, in cubes of its size: see MCOR_LEVEL_MARGIN. */
 #define MCOR_BOX_SLACK 6.5
-/* The same from a probe's points. */
+/* The distance from a probe's points. */
 #define MCOR_POINTS_SLACK 0.5
 /* Cubes of the grid around a region. */
 #define MCOR_REGION_MARGIN 16

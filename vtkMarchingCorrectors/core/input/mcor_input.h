@@ -120,7 +120,7 @@ void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
  * not above 0 where it must be; -1 if there is none. */
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip,
   int64_t count, bool positive, int* component);
-/* The same of fluid particles. */
+/* For fluid particles alone. */
 int64_t mcor_find_not_finite(mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
 
 /* mcor_attribute.c. Components of all attributes together. */

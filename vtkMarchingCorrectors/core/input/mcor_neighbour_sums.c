@@ -170,7 +170,7 @@ static bool mcor_add_neighbour(mcor_neighbour_list* list, double distance, doubl
   return true;
 }
 
-/* Those within `radius` of a place. */
+/* Lists the particles within `radius` of a place. */
 static bool mcor_list_around(
   const mcor_neighbour_job* job, const double x[3], double radius, mcor_neighbour_list* list)
 {

@@ -138,7 +138,7 @@ static double mcor_rounding_of(const mcor_download* d, int64_t v)
     d->sum_rounding;
 }
 
-/* What the device's rounding of the sums themselves may add to a residual: some units of rounding of the greatest term
+/* The device's rounding of the sums themselves may add to a residual: some units of rounding of the greatest term
  * against the iso value. For a plain sum weights may be any; there they count as 1, as inside of fluid. */
 static double mcor_sum_rounding(const mcor_context* context, double iso)
 {

@@ -25,7 +25,7 @@ __kernel void mcor_adaptive_scale(
 
 #endif
 
-/* Of a slot a state is known, MCOR_EXAMINE where its nodes' values are needed, or MCOR_UNTRIED. */
+/* The state of a slot: a known one, MCOR_EXAMINE where its nodes' values are needed, or MCOR_UNTRIED. */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
 /* ---- Bounds and proofs ---- */
@@ -37,7 +37,7 @@ __kernel void mcor_adaptive_scale(
 /* The nodes of a leaf of which its state is to tell, as an extent. */
 #define MCOR_LEAF_EXTENT(finer) ((finer) ? MCOR_BRICK : MCOR_BRICK - 1)
 
-/* What is entered for a leaf of which a state is known. */
+/* The entry for a leaf of which a state is known. */
 int mcor_leaf_state(int state, uint finer)
 {
   return state * MCOR_EVERYWHERE | (state == MCOR_EXAMINE && finer ? MCOR_OPEN_SIDES : 0);

@@ -132,7 +132,7 @@ void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mc
   bound->count += tile->count;
 }
 
-/* What the sums say. */
+/* The state that the sums prove. */
 int mcor_bound_state(const mcor_bound* bound, real iso, real node_threshold)
 {
   const real k = (2 * (real)bound->count + MCOR_BOUND_ROUNDINGS) * MCOR_UNIT_ROUNDOFF;

@@ -6,7 +6,7 @@
  * are at whole numbers 0 to 8 of the finer cells from the leaf's first node, and are in the slots of
  * the level below; other edges in those of the leaf's level. */
 
-/* What is known of a leaf's nodes. */
+/* Facts about a leaf's nodes. */
 typedef struct
 {
   __global const int* slots; /* of mcor_adaptive_tables */
@@ -223,10 +223,10 @@ void mcor_leaf_mark(
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* Of bricks, where cubes have several levels: which cells are plain, which leaf a brick is. */
+/* For bricks, where cubes have several levels: which cells are plain, which leaf a brick is. */
 #define MCOR_PLAIN_PARAMS const int levels, __global const ulong *plain, __global const int *leaf_of
 
-/* Of mcor_march_triangles and mcor_plane_lines, which are launched alike. */
+/* Parameters of mcor_march_triangles and mcor_plane_lines, which are launched alike. */
 #define MCOR_EMIT_PARAMS                                                                           \
   const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,  \
     const int follows, __global const mcor_rung *rungs, __global const int4 *bricks,               \
@@ -275,7 +275,7 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   {
     number += (int)((e[a] >> edge.node & 1) + (e[6 + a] >> edge.node & 1));
   }
-  /* Of a pinched edge the second one is that of the cell below in the first other axis. */
+  /* A pinched edge's second vertex is that of the cell below in the first other axis. */
   const bool below = (edge.quadrants & 5) == 0;
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }

@@ -37,7 +37,7 @@ __kernel void mcor_pair_request(
 /* ---- Cells between pairs ---- */
 
 #if MCOR_OF_FIELD
-/* What marking takes, last among a kernel's parameters. */
+/* Parameters of marking, last among a kernel's. */
 #define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* reached
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
@@ -92,7 +92,7 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
  * rounding does not decide where particles lie on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* What rounding may do, at most, to the square of a distance within the smoothing length 1 / inv_h, as
+/* Rounding error, at most, of the square of a distance within the smoothing length 1 / inv_h, as
  * positions count from the query's origin. */
 real mcor_pair_slack(const mcor_query* query, real inv_h)
 {

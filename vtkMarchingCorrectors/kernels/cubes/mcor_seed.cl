@@ -16,7 +16,7 @@
  * and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
 
-/* What a node's side depends on. side_margin: how far rounding may move a mean of values that are
+/* Parameters on which a node's side depends. side_margin: how far rounding may move a mean of values that are
  * all on one side, as a share of each; see mcor_side_margin in mcor_seed.c. */
 typedef struct
 {
@@ -182,7 +182,7 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* With less than this filled, a brick is taken to be near the surface. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
-/* Of each particle's support. */
+/* A share of each particle's support. */
 #define MCOR_INSIDE_SHARE 0.5f
 
 /* Whether the particles within half their support of a brick's nodes, an eighth of all, which make

@@ -11,7 +11,7 @@
  * all other ambiguous faces are as in the case table. Which faces these are is up to the leaves alone, so that cells
  * on both sides agree. */
 
-/* What the field is at a sample. */
+/* The field at a sample. */
 #define MCOR_SAMPLE_BELOW 0
 #define MCOR_SAMPLE_ABOVE 1
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */

@@ -205,7 +205,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
 #define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1
 
-/* Those of a brick's cells, of its level, whose centres are in the box. */
+/* Keeps those of a brick's cells, of its level, whose centres are in the box. */
 ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
 {
   ulong cells = ~0UL;

@@ -375,7 +375,7 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 #endif
 }
 
-/* What the density is to be multiplied by: 1 + 5/3 D^2, D^2 = variance |g|^2 / n^2, which makes up for the side that
+/* The factor of the density: 1 + 5/3 D^2, D^2 = variance |g|^2 / n^2, which makes up for the side that
  * has no neighbours: one_sided = 5/3 variance. Solids fill that side, but not more: of their share of g goes in
  * what leaves least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)

@@ -18,17 +18,17 @@ static mcor_status mcor_extract_iso(
 {
   const mcor_options* options = context->run.options;
   const bool last = i + 1 == options->iso_count;
-  const double value = options->iso_values[i], iso = value - context->value_shift;
-  context->run.iso_number = i;
+  const double value = options->iso_values[i];
+  context->run.iso = (mcor_iso){ i, value, value - context->value_shift };
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   /* [III-B, III-C] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
-  MCOR_TRY(mcor_is_adaptive(context) ? mcor_select_leaves(context, input, iso)
-                                     : mcor_select_seeds(context, iso));
+  MCOR_TRY(
+    mcor_is_adaptive(context) ? mcor_select_leaves(context, input) : mcor_select_seeds(context));
   /* [III-D.1] */
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));
-  MCOR_TRY(mcor_march(context, iso));
+  MCOR_TRY(mcor_march(context));
   if (last && input->scalar_version == 0)
   {
     mcor_release_nodes(context);
@@ -40,11 +40,11 @@ static mcor_status mcor_extract_iso(
   {
     MCOR_TRY(mcor_load_attributes(context, input, 0));
   }
-  MCOR_TRY(mcor_correct(context, iso));
+  MCOR_TRY(mcor_correct(context));
   /* [III-D.3] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
-  MCOR_TRY(mcor_trim(context, iso));
-  MCOR_TRY(mcor_cap(context, iso));
+  MCOR_TRY(mcor_trim(context));
+  MCOR_TRY(mcor_cap(context));
   MCOR_TRY(mcor_take_lines(context));
   /* [III-D.4] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));
@@ -53,7 +53,7 @@ static mcor_status mcor_extract_iso(
   {
     mcor_release_grid(context);
   }
-  return mcor_append_output(context, input, value, false, surface);
+  return mcor_append_output(context, input, false, surface);
 }
 
 static mcor_status mcor_extract_all(
@@ -143,8 +143,8 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
     !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
   const mcor_status status = options->widen != 1
     ? mcor_extract_widened(context, input, options, surface)
-    : mcor_run_call(context, input, options, mcor_uses_solids(input, options),
-        &surface->statistics, mcor_extract_all, surface);
+    : mcor_run_call(context, input, options, mcor_uses_solids(input, options), &surface->statistics,
+        mcor_extract_all, surface);
   const mcor_statistics* s = &surface->statistics;
   bool may_exist = false;
   for (int i = 0; status == MCOR_OK && i < options->iso_count; ++i)
@@ -153,8 +153,8 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
       (options->iso_values[i] >= s->scalar_min && options->iso_values[i] <= s->scalar_max);
   }
   if (may_exist && s->triangles_before_trimming == 0 && s->fluid_particles > 0 &&
-    options->field != MCOR_WEIGHT_SUM && options->widen == 1 && options->node_threshold > 0 && !options->ranks &&
-    !options->globals)
+    options->field != MCOR_WEIGHT_SUM && options->widen == 1 && options->node_threshold > 0 &&
+    !options->ranks && !options->globals)
   {
     mcor_count_below_threshold(context, input, options, &surface->statistics);
   }

@@ -228,9 +228,9 @@ void mcor_release_mesh(mcor_context* context);
 void mcor_release_topology(mcor_context* context);
 void mcor_release_trim(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
-mcor_status mcor_make_blocks(mcor_context* context, double iso);
+mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_request_known(mcor_context* context);
-mcor_status mcor_select_seeds(mcor_context* context, double iso);
+mcor_status mcor_select_seeds(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
@@ -243,14 +243,14 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 /* The nodes that are needed of `count` bricks from `first` on. */
 mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
-mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated);
-mcor_status mcor_march(mcor_context* context, double iso);
-mcor_status mcor_find_side_flags(mcor_context* context, double iso);
-mcor_status mcor_resolve_topology(mcor_context* context, double iso);
-mcor_status mcor_correct(mcor_context* context, double iso);
+mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated);
+mcor_status mcor_march(mcor_context* context);
+mcor_status mcor_find_side_flags(mcor_context* context);
+mcor_status mcor_resolve_topology(mcor_context* context);
+mcor_status mcor_correct(mcor_context* context);
 /* The boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
-mcor_status mcor_trim(mcor_context* context, double iso);
+mcor_status mcor_trim(mcor_context* context);
 /* The quantity by which trimming decides, at the vertices on lattice edges, and its threshold. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
@@ -272,7 +272,7 @@ mcor_status mcor_add_attributes(
 bool mcor_output_evaluates(const mcor_context* context);
 /* all: vertices that no triangle uses, too. */
 mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface);
+  mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface);
 /* mcor_surface.c. Prepares the surface's attributes: those to leave out, and of the others the components that vary. */
 mcor_status mcor_begin_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
@@ -354,9 +354,9 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
     MCOR_BUFFER(&(c)->grid.trim_weight), MCOR_BUFFER(&(c)->grid.value)
 
 /* Kernel arguments of MCOR_SEED_PARAMS. */
-#define MCOR_SEED_ARGS(c, iso)                                                                     \
-  MCOR_BUFFER(&(c)->grid.side_flags), MCOR_REAL(mcor_side_margin(c)), MCOR_REAL(iso),              \
-    MCOR_REAL((c)->run.options->node_threshold)
+#define MCOR_SEED_ARGS(c)                                                                          \
+  MCOR_BUFFER(&(c)->grid.side_flags), MCOR_REAL(mcor_side_margin(c)),                              \
+    MCOR_REAL((c)->run.iso.relative), MCOR_REAL((c)->run.options->node_threshold)
 
 #define MCOR_BLOCK_ARGS(c)                                                                         \
   MCOR_INT((c)->bricks.block_count), MCOR_INT((c)->bricks.block_shift),                            \

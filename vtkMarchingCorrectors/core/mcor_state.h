@@ -240,6 +240,13 @@ typedef struct mcor_box
   uint8_t* kept;       /* per triangle of the surface: 1 of an owned cell; NULL: all are */
 } mcor_box;
 
+/* The iso value under way. Filling has none: its points are evaluated with 0. */
+typedef struct mcor_iso
+{
+  int number;             /* in options.iso_values; behind these where filling adds its points */
+  double value, relative; /* as the caller has it; relative to A0, as the device does */
+} mcor_iso;
+
 /* The call under way; options are NULL between calls. */
 typedef struct mcor_run
 {
@@ -249,7 +256,7 @@ typedef struct mcor_run
   struct mcor_far* far;      /* what is done about that; NULL: nothing */
   struct mcor_filling* fill; /* of iso values that are done, see mcor_fill.h; NULL */
   mcor_statistics* statistics;
-  int iso_number; /* of the iso value under way */
+  mcor_iso iso;
   mcor_phase phase;
   double phase_begin, phase_built; /* cl.build_seconds then */
   const char* doing;               /* what runs, as last reported */

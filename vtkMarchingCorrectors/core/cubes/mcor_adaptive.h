@@ -57,9 +57,8 @@ typedef struct mcor_span
 
 mcor_status mcor_next_span(mcor_context* context, mcor_span* span);
 
-/* In place of mcor_select_seeds: the leaves where there may be surface, with their nodes' values. iso: relative to A0,
- * here and below. */
-mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso);
+/* In place of mcor_select_seeds: the leaves where there may be surface, with their nodes' values. */
+mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input);
 void mcor_release_adaptive(mcor_context* context);
 
 /* mcor_adaptive_seed.c. What is known of the nodes of all leaves, while slots are made. */
@@ -77,7 +76,7 @@ typedef struct mcor_leaf_nodes
 mcor_status mcor_write_tree(mcor_context* context);
 /* Finds the leaves that may have surface: adaptive.count, cells, finer. found: their nodes' values are kept
  * there; NULL: they are not evaluated. */
-mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_nodes* found);
+mcor_status mcor_choose_leaves(mcor_context* context, mcor_leaf_nodes* found);
 /* Takes over to the slots what was found. */
 mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found);
 

@@ -77,7 +77,7 @@ static bool mcor_tries_proofs(const mcor_context* context)
 }
 
 /* Calls for all slots, level by level, each seen in its cells. */
-static mcor_status mcor_evaluate_levels(mcor_context* context, double iso, bool prove)
+static mcor_status mcor_evaluate_levels(mcor_context* context, bool prove)
 {
   const mcor_adaptive* adaptive = &context->adaptive;
   const mcor_brick_data* now = &context->bricks.now;
@@ -91,8 +91,8 @@ static mcor_status mcor_evaluate_levels(mcor_context* context, double iso, bool 
     {
       MCOR_TRY(prove ? MCOR_LAUNCH(context, "mcor_adaptive_prove", MCOR_HEAVY, span.count,
                          MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
-                         MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known), MCOR_REAL(iso),
-                         MCOR_BUFFER(&adaptive->proofs))
+                         MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
+                         MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&adaptive->proofs))
                      : mcor_evaluate_needed(context, span.first, span.count));
       MCOR_TRY(mcor_next_span(context, &span));
     }
@@ -100,9 +100,8 @@ static mcor_status mcor_evaluate_levels(mcor_context* context, double iso, bool 
   return mcor_view_level(context, 0);
 }
 
-/* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. iso:
- * relative to A0. */
-static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
+/* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. */
+static mcor_status mcor_evaluate_slots(mcor_context* context)
 {
   const mcor_adaptive* adaptive = &context->adaptive;
   const mcor_brick_data* now = &context->bricks.now;
@@ -110,21 +109,21 @@ static mcor_status mcor_evaluate_slots(mcor_context* context, double iso)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_tries_proofs(context) ? mcor_evaluate_levels(context, iso, true) : MCOR_OK);
+  MCOR_TRY(mcor_tries_proofs(context) ? mcor_evaluate_levels(context, true) : MCOR_OK);
   MCOR_TRY(mcor_reserve(context, &context->bricks.need, (size_t)now->count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_unknown", MCOR_LIGHT, now->count,
     MCOR_INT(now->count), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
     MCOR_BUFFER(&context->bricks.need)));
-  MCOR_TRY(mcor_evaluate_levels(context, iso, false));
+  MCOR_TRY(mcor_evaluate_levels(context, false));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_sign", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_BUFFER(&adaptive->proofs), MCOR_BUFFER(&now->value), MCOR_BUFFER(&now->weight),
-    MCOR_REAL(iso), MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&now->known),
-    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
+    MCOR_REAL(context->run.iso.relative), MCOR_REAL(context->run.options->node_threshold),
+    MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
   return mcor_spread_signs(context);
 }
 
 /* Finds the leaves in which there is surface, and evaluates what they need. */
-static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
+static mcor_status mcor_complete_leaves(mcor_context* context)
 {
   mcor_adaptive* adaptive = &context->adaptive;
   mcor_bricks* bricks = &context->bricks;
@@ -140,7 +139,7 @@ static mcor_status mcor_complete_leaves(mcor_context* context, double iso)
     MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->bricks.now.valid),
     MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&adaptive->proofs)));
-  MCOR_TRY(mcor_evaluate_slots(context, iso));
+  MCOR_TRY(mcor_evaluate_slots(context));
   MCOR_TRY(mcor_fill(context, &bricks->cells, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &bricks->plain, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &bricks->leaf_of, n * sizeof(cl_int)));
@@ -175,8 +174,8 @@ static mcor_status mcor_place_leaves(mcor_context* context, const mcor_leaf_node
   return MCOR_OK;
 }
 
-/* Ends with all nodes of leaves where there may be surface. iso: relative to A0. */
-mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, double iso)
+/* Ends with all nodes of leaves where there may be surface. */
+mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input)
 {
   if (!context->tree.leaves)
   {
@@ -190,12 +189,12 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
     context->bricks.now.count = 0;
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_find_side_flags(context, iso));
+  MCOR_TRY(mcor_find_side_flags(context));
   const bool at_once =
     context->cl.lanes > 1 && context->bricks.now.count == 0 && !mcor_is_plane(context);
   context->adaptive.dropped = context->bricks.now.count == 0 ? 0 : context->adaptive.dropped;
   mcor_leaf_nodes found = { 0 };
-  mcor_status status = mcor_choose_leaves(context, iso, at_once ? &found : NULL);
+  mcor_status status = mcor_choose_leaves(context, at_once ? &found : NULL);
   if (status == MCOR_OK)
   {
     status = mcor_place_leaves(context, at_once ? &found : NULL);
@@ -203,8 +202,8 @@ mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input, d
   MCOR_RELEASE(context, &found.value, &found.weight, &found.place, &found.part_value,
     &found.part_weight, &found.counts);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_evaluate_slots(context, iso));
-  return mcor_complete_leaves(context, iso);
+  MCOR_TRY(mcor_evaluate_slots(context));
+  return mcor_complete_leaves(context);
 }
 
 void mcor_release_adaptive(mcor_context* context)

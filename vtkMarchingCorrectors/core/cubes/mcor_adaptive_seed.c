@@ -98,8 +98,8 @@ static mcor_status mcor_find_finer(mcor_context* context)
        job.begin += MCOR_FINER_STEP)
   {
     const int64_t rest = tree->region_count - job.begin;
-    mcor_parallel_for(context, rest < MCOR_FINER_STEP ? rest : MCOR_FINER_STEP, MCOR_HEAVY_GRAIN / 8,
-      mcor_find_finer_slice, &job);
+    mcor_parallel_for(context, rest < MCOR_FINER_STEP ? rest : MCOR_FINER_STEP,
+      MCOR_HEAVY_GRAIN / 8, mcor_find_finer_slice, &job);
     MCOR_TRY(mcor_report_launch(context));
   }
   return MCOR_OK;
@@ -136,7 +136,7 @@ mcor_status mcor_write_tree(mcor_context* context)
 /* ---- States ---- */
 
 /* Leaf by leaf, or in the plane by region. */
-static mcor_status mcor_find_states(mcor_context* context, double iso)
+static mcor_status mcor_find_states(mcor_context* context)
 {
   const mcor_tree* tree = &context->tree;
   mcor_adaptive* adaptive = &context->adaptive;
@@ -149,12 +149,12 @@ static mcor_status mcor_find_states(mcor_context* context, double iso)
     MCOR_TRY(plane ? MCOR_LAUNCH(context, "mcor_adaptive_plane_regions", MCOR_HEAVY, count,
                        MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
                        MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
-                       MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso),
+                       MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context),
                        MCOR_BUFFER(&adaptive->states))
                    : MCOR_LAUNCH(context, "mcor_adaptive_states", MCOR_HEAVY, count,
                        MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
                        MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->leaf_finer),
-                       MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&adaptive->states)));
+                       MCOR_SEED_ARGS(context), MCOR_BUFFER(&adaptive->states)));
   }
   return mcor_view_level(context, 0);
 }
@@ -190,8 +190,7 @@ static mcor_status mcor_pack_values(
 
 /* The same where particles are gathered for many lanes, with the values of nodes if `found`, as all their
  * particles are at hand. */
-static mcor_status mcor_find_region_states(
-  mcor_context* context, double iso, mcor_leaf_nodes* found)
+static mcor_status mcor_find_region_states(mcor_context* context, mcor_leaf_nodes* found)
 {
   const mcor_tree* tree = &context->tree;
   mcor_adaptive* adaptive = &context->adaptive;
@@ -211,7 +210,7 @@ static mcor_status mcor_find_region_states(
         MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_regions", MCOR_HEAVY, span.count,
           MCOR_GRID_ARGS(context), MCOR_INT(span.first), MCOR_INT(span.count),
           MCOR_BUFFER(&adaptive->regions), MCOR_BUFFER(&adaptive->leaves),
-          MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context, iso), MCOR_INT(found != NULL),
+          MCOR_BUFFER(&adaptive->leaf_finer), MCOR_SEED_ARGS(context), MCOR_INT(found != NULL),
           MCOR_INT(first), MCOR_BUFFER(&adaptive->states),
           MCOR_BUFFER(found ? &found->part_value : &none.value),
           MCOR_BUFFER(found ? &found->part_weight : &none.weight)));
@@ -309,7 +308,7 @@ static mcor_status mcor_list_examined(mcor_context* context)
   return status;
 }
 
-mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_nodes* found)
+mcor_status mcor_choose_leaves(mcor_context* context, mcor_leaf_nodes* found)
 {
   mcor_adaptive* adaptive = &context->adaptive;
   const mcor_tree* tree = &context->tree;
@@ -324,8 +323,8 @@ mcor_status mcor_choose_leaves(mcor_context* context, double iso, mcor_leaf_node
     MCOR_TRY(mcor_reserve(context, &found->place, n * sizeof(cl_int)));
   }
   MCOR_TRY(context->cl.lanes == 1 || mcor_is_plane(context)
-      ? mcor_find_states(context, iso)
-      : mcor_find_region_states(context, iso, found));
+      ? mcor_find_states(context)
+      : mcor_find_region_states(context, found));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_choose", MCOR_MEDIUM, tree->region_count,
     MCOR_REGION_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->leaf_finer),
     MCOR_BUFFER(&adaptive->states), MCOR_BUFFER(&adaptive->chosen)));

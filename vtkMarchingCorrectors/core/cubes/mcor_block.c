@@ -64,7 +64,7 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
 /* States of the cubes whose keys are the block keys now, and which of them are inactive. children:
  * see mcor_void_kept, 0 where no blocks are kept. */
 static mcor_status mcor_test_cubes(
-  mcor_context* context, double iso, const mcor_rung* rungs, int level, int children)
+  mcor_context* context, const mcor_rung* rungs, int level, int children)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count;
@@ -74,7 +74,7 @@ static mcor_status mcor_test_cubes(
   MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
     MCOR_INT(count), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->block_states)));
+    MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->block_states)));
   MCOR_TRY(mcor_void_cubes(context));
   if (children > 0)
   {
@@ -135,8 +135,8 @@ mcor_status mcor_request_known(mcor_context* context)
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
 
-/* The active blocks, and those of bricks that are known, which are requested. iso: relative to A0. */
-mcor_status mcor_make_blocks(mcor_context* context, double iso)
+/* The active blocks, and those of bricks that are known, which are requested. */
+mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1] = { 0 };
@@ -161,14 +161,14 @@ mcor_status mcor_make_blocks(mcor_context* context, double iso)
     : status;
   for (; level > 0 && status == MCOR_OK; --level)
   {
-    status = mcor_test_cubes(context, iso, rungs, level, 0);
+    status = mcor_test_cubes(context, rungs, level, 0);
     status = status == MCOR_OK
       ? mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &children)
       : status;
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_test_cubes(context, iso, rungs, 0, kept_count > 0 ? children : 0));
+  MCOR_TRY(mcor_test_cubes(context, rungs, 0, kept_count > 0 ? children : 0));
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));

@@ -126,7 +126,7 @@ static mcor_status mcor_count_edges(mcor_context* context)
   return MCOR_OK;
 }
 
-static mcor_status mcor_emit_vertices(mcor_context* context, double iso)
+static mcor_status mcor_emit_vertices(mcor_context* context)
 {
   const mcor_brick_data* now = &context->bricks.now;
   mcor_mesh* mesh = &context->mesh;
@@ -137,7 +137,7 @@ static mcor_status mcor_emit_vertices(mcor_context* context, double iso)
   return MCOR_LAUNCH(context, "mcor_march_vertices", MCOR_MEDIUM, now->count,
     MCOR_BRICK_ARGS(context), MCOR_INT(now->count), MCOR_BUFFER(&context->bricks.neighbours),
     MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&now->value),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(iso), MCOR_BUFFER(&mesh->node),
+    MCOR_BUFFER(&mesh->vertex_base), MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&mesh->node),
     MCOR_BUFFER(&mesh->ends));
 }
 
@@ -176,8 +176,8 @@ static mcor_status mcor_count_triangles(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Vertices and triangles. iso: relative to A0. */
-mcor_status mcor_march(mcor_context* context, double iso)
+/* Vertices and triangles. */
+mcor_status mcor_march(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
   mesh->march_count = mesh->vertex_count = mesh->triangle_count = 0;
@@ -189,13 +189,13 @@ mcor_status mcor_march(mcor_context* context, double iso)
   MCOR_TRY(mcor_uses_pairs(context) ? MCOR_OK : mcor_find_neighbours(context)); /* growth has */
   MCOR_TRY(mcor_find_cells(context));
   MCOR_TRY(mcor_find_used(context));
-  MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context, iso) : MCOR_OK);
+  MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));
   if (mesh->triangle_count == 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_emit_vertices(context, iso));
+  MCOR_TRY(mcor_emit_vertices(context));
   MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
   return mcor_count_triangles(context);
 }

@@ -31,14 +31,14 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
 }
 
 /* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */
-mcor_status mcor_sign_nodes(mcor_context* context, double iso, const mcor_buffer* evaluated)
+mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   mcor_bricks* bricks = &context->bricks;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_node_sides", MCOR_MEDIUM, bricks->now.count,
     MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight), MCOR_REAL(iso),
-    MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&bricks->now.valid)));
+    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight),
+    MCOR_REAL(context->run.iso.relative), MCOR_REAL(context->run.options->node_threshold),
+    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid)));
   return mcor_spread_signs(context);
 }
 

@@ -26,15 +26,15 @@ static size_t mcor_pair_items(const mcor_context* context)
 }
 
 /* Marks the cells between pairs. */
-static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
+static mcor_status mcor_mark_pairs(mcor_context* context)
 {
   mcor_pairs* pairs = &context->pairs;
   const size_t bytes = mcor_count_places(context) * sizeof(cl_ulong);
   MCOR_TRY(mcor_fill(context, &pairs->reached, 0, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, mcor_pair_items(context),
-    MCOR_GRID_ARGS(context), MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(iso),
-    MCOR_REAL(context->run.options->h_scale), MCOR_BLOCK_ARGS(context),
-    MCOR_BUFFER(&pairs->reached)));
+    MCOR_GRID_ARGS(context), MCOR_BUFFER(&context->grid.side_flags),
+    MCOR_REAL(context->run.iso.relative), MCOR_REAL(context->run.options->h_scale),
+    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached)));
   MCOR_TRY(mcor_reserve(context, &pairs->marked, bytes));
   MCOR_TRY(mcor_copy(context, &pairs->reached, &pairs->marked, 0, bytes));
   return mcor_fill(context, &pairs->grown, 0, bytes);
@@ -42,7 +42,7 @@ static mcor_status mcor_mark_pairs(mcor_context* context, double iso)
 
 /* Gives slots to the bricks that have nodes of reached cells, and evaluates these. *placed: whether
  * some had none. */
-static mcor_status mcor_place_reached(mcor_context* context, double iso, bool first, bool* placed)
+static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
@@ -58,9 +58,9 @@ static mcor_status mcor_place_reached(mcor_context* context, double iso, bool fi
     return MCOR_OK;
   }
   MCOR_TRY(mcor_place_bricks(context));
-  MCOR_TRY(first ? mcor_sign_nodes(context, iso, &bricks->now.known) : MCOR_OK);
+  MCOR_TRY(first ? mcor_sign_nodes(context, &bricks->now.known) : MCOR_OK);
   MCOR_TRY(mcor_evaluate_nodes(context));
-  return mcor_sign_nodes(context, iso, &bricks->need);
+  return mcor_sign_nodes(context, &bricks->need);
 }
 
 /* Finds what growth needs of slots. It stays where nodes have right values: in the period, whose particles are on the
@@ -81,10 +81,10 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
   cl_int flag;
   MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_grow", MCOR_MEDIUM, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours),
-    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
-    MCOR_BUFFER(&bricks->now.bricks), MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->domain),
-    MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&bricks->now.bricks), MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&pairs->domain), MCOR_BUFFER(&pairs->grown), MCOR_BUFFER(&pairs->reached),
+    MCOR_BUFFER(&pairs->found)));
   MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));
   *grown = flag != 0;
   ++context->run.statistics->march_rounds;
@@ -111,7 +111,7 @@ static mcor_status mcor_wrap_reached(mcor_context* context, bool* reached)
   return MCOR_OK;
 }
 
-mcor_status mcor_find_reached(mcor_context* context, double iso)
+mcor_status mcor_find_reached(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_pairs* pairs = &context->pairs;
@@ -119,11 +119,11 @@ mcor_status mcor_find_reached(mcor_context* context, double iso)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_mark_pairs(context, iso));
+  MCOR_TRY(mcor_mark_pairs(context));
   for (bool first = true, more = true; more; first = false)
   {
     bool placed;
-    MCOR_TRY(mcor_place_reached(context, iso, first, &placed));
+    MCOR_TRY(mcor_place_reached(context, first, &placed));
     MCOR_TRY(placed ? mcor_begin_growth(context) : MCOR_OK);
     for (bool grown = true; grown;)
     {
@@ -143,6 +143,6 @@ mcor_status mcor_find_reached(mcor_context* context, double iso)
 void mcor_release_pairs(mcor_context* context)
 {
   mcor_pairs* p = &context->pairs;
-  MCOR_RELEASE(context, &p->reached, &p->marked, &p->cells, &p->seeds, &p->domain, &p->grown,
-    &p->found);
+  MCOR_RELEASE(
+    context, &p->reached, &p->marked, &p->cells, &p->seeds, &p->domain, &p->grown, &p->found);
 }

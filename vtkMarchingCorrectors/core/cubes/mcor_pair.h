@@ -8,8 +8,8 @@
 #include "mcor_adaptive.h"
 
 /* Ends with the cells that pairs reach in pairs.cells, all of whose nodes are evaluated; pairs.seeds: those that pairs
- * mark. iso: relative to A0. */
-mcor_status mcor_find_reached(mcor_context* context, double iso);
+ * mark. */
+mcor_status mcor_find_reached(mcor_context* context);
 void mcor_release_pairs(mcor_context* context);
 
 #endif

@@ -43,8 +43,7 @@ static mcor_status mcor_count_seeds(mcor_context* context)
 }
 
 /* Requests the bricks that the regions leave uncertain, and lists these regions. */
-static mcor_status mcor_find_regions(
-  mcor_context* context, double iso, mcor_buffer* list, int* listed)
+static mcor_status mcor_find_regions(mcor_context* context, mcor_buffer* list, int* listed)
 {
   mcor_bricks* bricks = &context->bricks;
   const int regions = bricks->block_count * MCOR_BLOCK_REGIONS;
@@ -53,9 +52,9 @@ static mcor_status mcor_find_regions(
   MCOR_TRY(mcor_fill(context, list_count, 0, sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_regions", MCOR_HEAVY, regions, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states),
-    MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits),
-    MCOR_BUFFER(list), MCOR_BUFFER(list_count)));
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(list),
+    MCOR_BUFFER(list_count)));
   cl_int count;
   MCOR_TRY(mcor_read(context, list_count, 0, &count, sizeof count));
   *listed = count;
@@ -64,14 +63,13 @@ static mcor_status mcor_find_regions(
 
 /* Places the bricks that the regions leave uncertain, which are the seeds, and those that are known
  * from earlier iso values; lists these regions. */
-static mcor_status mcor_test_regions(
-  mcor_context* context, double iso, mcor_buffer* list, int* listed)
+static mcor_status mcor_test_regions(mcor_context* context, mcor_buffer* list, int* listed)
 {
   mcor_bricks* bricks = &context->bricks;
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
-  MCOR_TRY(mcor_is_plane(context) ? mcor_find_seeds_in_plane(context, iso)
-                                  : mcor_find_regions(context, iso, list, listed));
+  MCOR_TRY(mcor_is_plane(context) ? mcor_find_seeds_in_plane(context)
+                                  : mcor_find_regions(context, list, listed));
   MCOR_TRY(mcor_void_bricks(context));
   MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_request_known(context));
@@ -79,14 +77,13 @@ static mcor_status mcor_test_regions(
 }
 
 /* Tests and evaluates, among the listed regions' bricks, those of which nothing is known; requests known ones alone. */
-static mcor_status mcor_test_bricks(
-  mcor_context* context, double iso, const mcor_buffer* list, int listed)
+static mcor_status mcor_test_bricks(mcor_context* context, const mcor_buffer* list, int listed)
 {
   mcor_bricks* bricks = &context->bricks;
   /* One item per region where one gathers for many lanes, else one per brick. */
   const size_t items = (size_t)listed * (context->cl.lanes == 1 ? 8 : 1);
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list), MCOR_SEED_ARGS(context, iso),
+    MCOR_BRICK_ARGS(context), MCOR_INT(listed), MCOR_BUFFER(list), MCOR_SEED_ARGS(context),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&bricks->now.valid)));
@@ -97,15 +94,15 @@ static mcor_status mcor_test_bricks(
 
 /* Places every brick whose nodes must be evaluated, and evaluates most of them; none in a plane, where bounds
  * on bricks cost more than their few nodes. */
-static mcor_status mcor_place_complete(mcor_context* context, double iso)
+static mcor_status mcor_place_complete(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer* list = &bricks->regions;
   int listed = 0;
-  MCOR_TRY(mcor_test_regions(context, iso, list, &listed));
+  MCOR_TRY(mcor_test_regions(context, list, &listed));
   MCOR_TRY(mcor_count_seeds(context));
-  MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->now.known));
-  MCOR_TRY(mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, iso, list, listed));
+  MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
+  MCOR_TRY(mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, list, listed));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
     bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
     MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
@@ -113,21 +110,21 @@ static mcor_status mcor_place_complete(mcor_context* context, double iso)
   return mcor_place_bricks(context);
 }
 
-/* Ends with the bricks in place, and the values of their nodes. iso: relative to A0. */
-mcor_status mcor_select_seeds(mcor_context* context, double iso)
+/* Ends with the bricks in place, and the values of their nodes. */
+mcor_status mcor_select_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_find_side_flags(context, iso));
-  MCOR_TRY(mcor_make_blocks(context, iso));
+  MCOR_TRY(mcor_find_side_flags(context));
+  MCOR_TRY(mcor_make_blocks(context));
   if (mcor_uses_pairs(context))
   {
-    return mcor_find_reached(context, iso);
+    return mcor_find_reached(context);
   }
-  MCOR_TRY(mcor_place_complete(context, iso));
+  MCOR_TRY(mcor_place_complete(context));
   for (bool grown = true; grown;)
   {
     MCOR_TRY(mcor_evaluate_nodes(context));
-    MCOR_TRY(mcor_sign_nodes(context, iso, &bricks->need));
+    MCOR_TRY(mcor_sign_nodes(context, &bricks->need));
     ++context->run.statistics->march_rounds;
     MCOR_TRY(mcor_grow_bricks(context, &grown));
   }

@@ -21,7 +21,7 @@ double mcor_side_margin(const mcor_context* context)
 }
 
 /* The sides of the iso value on which particles are, where the field has values at particles. */
-mcor_status mcor_find_side_flags(mcor_context* context, double iso)
+mcor_status mcor_find_side_flags(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
   const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
@@ -30,6 +30,6 @@ mcor_status mcor_find_side_flags(mcor_context* context, double iso)
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
         MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
-        MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)), MCOR_REAL(iso),
-        MCOR_BUFFER(&grid->side_flags));
+        MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)),
+        MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags));
 }

@@ -36,7 +36,7 @@ static mcor_status mcor_first_sample(mcor_context* context, int level, int* firs
 }
 
 /* Evaluates the samples, level by level. */
-static mcor_status mcor_find_sides(mcor_context* context, double iso, int sample_count)
+static mcor_status mcor_find_sides(mcor_context* context, int sample_count)
 {
   mcor_topology_data* topology = &context->topology;
   const int top = context->lattice.top;
@@ -49,8 +49,8 @@ static mcor_status mcor_find_sides(mcor_context* context, double iso, int sample
     MCOR_TRY(mcor_make_groups(context, &topology->sample_node, first, end - first, &groups));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups,
       MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-      MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset), MCOR_REAL(iso),
-      MCOR_BUFFER(&topology->sample_side)));
+      MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset),
+      MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&topology->sample_side)));
   }
   return mcor_view_level(context, 0);
 }
@@ -58,7 +58,7 @@ static mcor_status mcor_find_sides(mcor_context* context, double iso, int sample
 /* Makes room for the samples that sample_base counts and lets `locate` place them; evaluates
  * them. */
 static mcor_status mcor_evaluate_samples(
-  mcor_context* context, const char* locate, double iso, int* sample_count)
+  mcor_context* context, const char* locate, int* sample_count)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_topology_data* topology = &context->topology;
@@ -71,18 +71,18 @@ static mcor_status mcor_evaluate_samples(
   MCOR_TRY(MCOR_LAUNCH(context, locate, MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&bricks->now.value),
-    MCOR_BUFFER(&topology->sample_base), MCOR_REAL(iso), MCOR_BUFFER(&topology->sample_node),
-    MCOR_BUFFER(&topology->sample_offset)));
-  return mcor_find_sides(context, iso, *sample_count);
+    MCOR_BUFFER(&topology->sample_base), MCOR_REAL(context->run.iso.relative),
+    MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset)));
+  return mcor_find_sides(context, *sample_count);
 }
 
-static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
+static mcor_status mcor_resolve_faces(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
   mcor_buffer* counts = &topology->counts;
   int faces, joined;
-  MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_saddles", iso, &faces));
+  MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_saddles", &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
@@ -93,7 +93,7 @@ static mcor_status mcor_resolve_faces(mcor_context* context, double iso)
   return MCOR_OK;
 }
 
-static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
+static mcor_status mcor_resolve_cells(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
   const int count = context->bricks.now.count;
@@ -103,7 +103,7 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
-  MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", iso, &samples));
+  MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", &samples));
   context->run.statistics->ambiguous_cells += samples / 2;
   return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
@@ -111,8 +111,8 @@ static mcor_status mcor_resolve_cells(mcor_context* context, double iso)
 }
 
 /* Decides on the ambiguous faces between cells that no finer ones touch; then on those of these cells whose loops may
- * be a tunnel. iso: relative to A0. */
-mcor_status mcor_resolve_topology(mcor_context* context, double iso)
+ * be a tunnel. */
+mcor_status mcor_resolve_topology(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
   const mcor_bricks* bricks = &context->bricks;
@@ -126,8 +126,8 @@ mcor_status mcor_resolve_topology(mcor_context* context, double iso)
     MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&bricks->plain),
     MCOR_BUFFER(mcor_plain_used(context)), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
-  MCOR_TRY(mcor_resolve_faces(context, iso));
-  return mcor_resolve_cells(context, iso);
+  MCOR_TRY(mcor_resolve_faces(context));
+  return mcor_resolve_cells(context);
 }
 
 /* The tables stay. */

@@ -76,6 +76,7 @@ mcor_status mcor_begin_fill(mcor_context* context)
     return MCOR_OK;
   }
   mcor_filling* fill = context->run.fill = calloc(1, sizeof *fill);
+  context->run.iso = (mcor_iso){ .number = 0 };
   MCOR_TRY(mcor_allocated(context, fill));
   fill->lines = calloc((size_t)options->iso_count, sizeof *fill->lines);
   MCOR_TRY(mcor_allocated(context, fill->lines));
@@ -101,7 +102,7 @@ static mcor_fill_line* mcor_line_under_way(const mcor_context* context)
   mcor_filling* fill = context->run.fill;
   for (int i = 0; fill && i < fill->line_count; ++i)
   {
-    if (fill->lines[i].iso_number == context->run.iso_number)
+    if (fill->lines[i].iso_number == context->run.iso.number)
     {
       return &fill->lines[i];
     }

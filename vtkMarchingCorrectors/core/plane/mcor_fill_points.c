@@ -149,12 +149,12 @@ static mcor_status mcor_append_fill_points(mcor_context* context, const mcor_inp
 {
   mcor_mesh* mesh = &context->mesh;
   mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
-  context->run.iso_number = context->run.options->iso_count;
+  context->run.iso = (mcor_iso){ .number = context->run.options->iso_count };
   MCOR_TRY(mcor_load_attributes(context, input, 0));
   MCOR_TRY(mcor_reserve_vertices(context, (int)count));
-  MCOR_TRY(mcor_append_cap_vertices(context, vertices, count, 0));
+  MCOR_TRY(mcor_append_cap_vertices(context, vertices, count));
   mcor_release(context, &context->attributes.sorted);
-  return mcor_append_output(context, input, 0, true, surface);
+  return mcor_append_output(context, input, true, surface);
 }
 
 /* Makes the points' iso values and residuals those of their bands. */

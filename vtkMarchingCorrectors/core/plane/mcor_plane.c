@@ -82,7 +82,8 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (mcor_is_present(input, begin + i) && (finite || !solid))
         {
-          mcor_extend_spread(&spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
+          mcor_extend_spread(
+            &spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
         }
       }
       everywhere = everywhere && spread.low[a] < spread.high[a];
@@ -468,14 +469,14 @@ mcor_status mcor_spread_signs(mcor_context* context)
 }
 
 /* Requests the bricks that are not certain. */
-mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso)
+mcor_status mcor_find_seeds_in_plane(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
   return MCOR_LAUNCH(context, "mcor_plane_seeds", MCOR_HEAVY,
     (size_t)bricks->block_count * MCOR_BLOCK_REGIONS, MCOR_GRID_ARGS(context),
     MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states),
-    MCOR_SEED_ARGS(context, iso), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
+    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
 }
 
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)

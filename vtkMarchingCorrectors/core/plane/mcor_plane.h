@@ -62,7 +62,7 @@ double mcor_plane_factor(mcor_sph_kernel kernel);
 
 /* Marching squares: what nodes in the plane are, those above are too; nothing else is a brick. */
 mcor_status mcor_spread_signs(mcor_context* context);
-mcor_status mcor_find_seeds_in_plane(mcor_context* context, double iso);
+mcor_status mcor_find_seeds_in_plane(mcor_context* context);
 /* Keeps of all cells those that are squares. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 

@@ -18,8 +18,8 @@ static inline bool mcor_caps_walls(const mcor_context* context)
     !mcor_is_plane(context) && mcor_fluid_share(context) > 0;
 }
 
-/* Adds the caps to the trimmed mesh. iso: relative to A0. */
-mcor_status mcor_cap(mcor_context* context, double iso);
+/* Adds the caps to the trimmed mesh. */
+mcor_status mcor_cap(mcor_context* context);
 
 /* The key of a node, or of anything with three such numbers; an axis has at most 2^20 + 64 nodes. */
 static inline uint64_t mcor_cap_key(const cl_int node[3])
@@ -36,7 +36,6 @@ typedef void (*mcor_take_cap_point)(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data);
 struct mcor_cap_points
 {
-  double iso; /* relative to A0 */
   int count;
   cl_int* node;                                 /* [MCOR_CAP_BATCH][4] */
   void* offset;                                 /* real [MCOR_CAP_BATCH][4] */
@@ -67,9 +66,9 @@ typedef struct mcor_cap_vertex
   uint8_t flag;    /* as the surface has it: MCOR_CAP_FLAG; of cuts 2, or 1 where they are exact */
 } mcor_cap_vertex;
 
-/* Appends vertices to the mesh, and evaluates the field there. iso: relative to A0. */
+/* Appends vertices to the mesh, and evaluates the field there. */
 mcor_status mcor_append_cap_vertices(
-  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count, double iso);
+  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count);
 /* Appends to a buffer of `old` bytes. */
 mcor_status mcor_append_bytes(
   mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes);

@@ -413,7 +413,7 @@ mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   points->take = mcor_take_cap_node;
   points->data = face;
   mcor_set_cap_extent(context, axis, upper, face);
-  MCOR_TRY(mcor_note_cap_tiles(context, points->iso + context->value_shift, face));
+  MCOR_TRY(mcor_note_cap_tiles(context, context->run.iso.value, face));
   MCOR_TRY(mcor_make_cap_nodes(context, face));
   MCOR_TRY(mcor_take_cap_masks(context, face));
   if (opposite)

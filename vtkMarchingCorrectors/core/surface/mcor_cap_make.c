@@ -158,10 +158,10 @@ static mcor_status mcor_append_caps(mcor_cap_job* job)
   MCOR_TRY(mcor_append_bytes(context, &context->box.cells, old * cell, job->cells, more * cell));
   mesh->triangle_count += (int)more;
   context->run.statistics->cap_triangles += job->owned_count;
-  return mcor_append_cap_vertices(context, job->vertices, job->vertex_count, job->points.iso);
+  return mcor_append_cap_vertices(context, job->vertices, job->vertex_count);
 }
 
-mcor_status mcor_cap(mcor_context* context, double iso)
+mcor_status mcor_cap(mcor_context* context)
 {
   mcor_end_caps(context);
   context->mesh.cap_first = context->mesh.vertex_count;
@@ -170,7 +170,6 @@ mcor_status mcor_cap(mcor_context* context, double iso)
     return MCOR_OK;
   }
   mcor_cap_job job = { .context = context,
-    .points.iso = iso,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
   mcor_mapping views[4];
   const int mapped = mcor_list_cap_views(&job, views);

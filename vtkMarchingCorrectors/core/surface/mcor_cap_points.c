@@ -34,7 +34,7 @@ static mcor_status mcor_evaluate_cap_points(mcor_context* context, mcor_cap_poin
   MCOR_TRY(mcor_make_groups(context, &p->nodes, 0, p->count, &groups));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
-    MCOR_REAL(p->iso), MCOR_BUFFER(&p->offsets), MCOR_BUFFER(&p->values),
+    MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&p->offsets), MCOR_BUFFER(&p->values),
     MCOR_BUFFER(&p->gradients), MCOR_BUFFER(&p->weights), MCOR_INT(0), MCOR_INT(0),
     MCOR_BUFFER(&p->values), MCOR_BUFFER(&p->weights)));
   if (!mcor_trims_by_eigenvalue(context))
@@ -230,7 +230,7 @@ static mcor_status mcor_keep_cap_keys(
 }
 
 mcor_status mcor_append_cap_vertices(
-  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count, double iso)
+  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
 {
   mcor_mesh* mesh = &context->mesh;
   const int old = mesh->vertex_count;
@@ -245,7 +245,7 @@ mcor_status mcor_append_cap_vertices(
   MCOR_TRY(mcor_make_groups(context, &mesh->node, old, (int)count, &groups));
   return MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
-    MCOR_REAL(iso), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
-    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight),
-    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+    MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&mesh->offset),
+    MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }

@@ -41,15 +41,16 @@ static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* o
 }
 
 /* Moves the vertices onto the surface, or evaluates them where linear interpolation puts them
- * (preview). iso: relative to A0. */
-mcor_status mcor_correct(mcor_context* context, double iso)
+ * (preview). */
+mcor_status mcor_correct(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
   MCOR_TRY(mcor_reserve_vertices(context, mesh->march_count));
   MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_EDGES, "mcor_correct_vertices",
-    MCOR_BUFFER(&mesh->ends), MCOR_REAL(iso), MCOR_REAL(options->tolerance * range),
+    MCOR_BUFFER(&mesh->ends), MCOR_REAL(context->run.iso.relative),
+    MCOR_REAL(options->tolerance * range),
     MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),

@@ -140,8 +140,9 @@ static double mcor_rounding_of(const mcor_download* d, int64_t v)
 
 /* The device's rounding of the sums themselves may add to a residual: some units of rounding of the greatest term
  * against the iso value. For a plain sum weights may be any; there they count as 1, as inside of fluid. */
-static double mcor_sum_rounding(const mcor_context* context, double iso)
+static double mcor_sum_rounding(const mcor_context* context)
 {
+  const double iso = context->run.iso.value;
   const double unit = context->cl.real_size == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
   const double low = context->measure.scalar_min, high = context->measure.scalar_max;
   const mcor_field field = context->run.options->field;
@@ -425,11 +426,11 @@ static void mcor_release_vertices(mcor_context* context)
 
 /* Appends the mesh of one iso value to the surface. */
 mcor_status mcor_append_output(
-  mcor_context* context, const mcor_input* input, double iso, bool all, mcor_surface* surface)
+  mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface)
 {
   mcor_download download = { .context = context,
-    .iso = iso,
-    .sum_rounding = mcor_sum_rounding(context, iso),
+    .iso = context->run.iso.value,
+    .sum_rounding = mcor_sum_rounding(context),
     .surface = surface };
   mcor_mapping mappings[MCOR_DOWNLOADS];
   mcor_release_construction(context);

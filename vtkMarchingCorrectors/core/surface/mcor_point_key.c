@@ -52,7 +52,7 @@ void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, cons
 {
   const int64_t cut = v - context->mesh.march_count;
   const bool of_cap = mcor_is_cap(context, v);
-  key[0] = 3 * (uint64_t)context->run.iso_number + (of_cap ? 2 : cut >= 0);
+  key[0] = 3 * (uint64_t)context->run.iso.number + (of_cap ? 2 : cut >= 0);
   if (of_cap)
   {
     memcpy(key + 1, context->mesh.cap_keys + 2 * (v - context->mesh.cap_first), 2 * sizeof *key);

@@ -93,7 +93,7 @@ mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
     if (surface->triangle_keys)
     {
       uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (base + i);
-      key[0] = (uint64_t)context->run.iso_number;
+      key[0] = (uint64_t)context->run.iso.number;
       key[1] = cells[i];
     }
   }

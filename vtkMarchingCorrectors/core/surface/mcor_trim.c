@@ -162,7 +162,7 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 }
 
 /* Places the cut vertices: linear cut, then both equations at once. */
-static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double iso)
+static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
@@ -181,11 +181,12 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count, double 
   MCOR_TRY(mcor_find_cut_levels(context, cut_count));
   const char* solve =
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
-  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve, MCOR_REAL(iso),
-    MCOR_REAL(options->tolerance * range), MCOR_REAL(mcor_vertex_threshold(context)),
-    MCOR_REAL(mcor_fluid_share(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
-    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
-    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve,
+    MCOR_REAL(context->run.iso.relative), MCOR_REAL(options->tolerance * range),
+    MCOR_REAL(mcor_vertex_threshold(context)), MCOR_REAL(mcor_fluid_share(context)),
+    MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(mcor_is_plane(context)),
+    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
+    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
@@ -197,8 +198,7 @@ static void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buff
   *from = (mcor_buffer){ 0 };
 }
 
-/* iso: relative to A0. */
-mcor_status mcor_trim(mcor_context* context, double iso)
+mcor_status mcor_trim(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
   mcor_trim_data* trim = &context->trim;
@@ -230,7 +230,7 @@ mcor_status mcor_trim(mcor_context* context, double iso)
   mcor_take_buffer(context, &trim->triangles, &mesh->triangles);
   mcor_take_buffer(context, &trim->cells, &context->box.cells);
   mesh->triangle_count = remaining;
-  return cut_count > 0 ? mcor_place_cuts(context, cut_count, iso) : MCOR_OK;
+  return cut_count > 0 ? mcor_place_cuts(context, cut_count) : MCOR_OK;
 }
 
 void mcor_release_trim(mcor_context* context)

@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Filling. First the field is evaluated at all nodes that particles reach. As soon as an iso value's lines are
- * trimmed, what is to be known of them is kept: vertices by lattice edges, cuts, and which nodes are above. So, when
- * all lines are made, each node is in a band, between two iso values that follow each other. The border of each
- * square, run through node by node and vertex by vertex, falls into parts of one band; parts that lines join are the
- * border of a polygon of that band. What trimming leaves of it becomes triangles. So triangles share the points of
- * lines, the nodes, and the points where trimming cuts lattice edges, with all that is beside them. A square is filled
- * where its nodes are valid, as those of a line are. */
+/* Filling. First the field is evaluated at all nodes that particles reach. Once an iso value's
+ * lines are trimmed, their vertices, cuts, and the nodes above are kept. When all lines are
+ * made, each node lies in a band between two successive iso values. The vertices of lines divide
+ * the border of each square into parts of one band each. Parts that lines join enclose a polygon
+ * of that band, and what trimming leaves of the polygon becomes triangles. Triangles thus share
+ * the points of lines, the nodes, and the points where trimming cuts lattice edges with all
+ * triangles beside them. A square is filled where its nodes are valid, as those of a line are. */
 
 #include "mcor_box.h"
 #include "mcor_fill.h"
@@ -15,9 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- before all lines ---- */
+/* ---- Before all lines ---- */
 
-/* Lists lines by their iso values; of equal ones the first. */
+/* Lists the lines by iso value; equal values become one line. */
 static void mcor_list_lines(const mcor_context* context, mcor_filling* fill)
 {
   const mcor_options* options = context->run.options;
@@ -40,7 +40,7 @@ static void mcor_list_lines(const mcor_context* context, mcor_filling* fill)
   }
 }
 
-/* All nodes of the box's squares. */
+/* Makes the nodes of the box's squares. */
 static mcor_status mcor_make_fill_nodes(mcor_context* context, mcor_filling* fill)
 {
   const mcor_box* box = &context->box;
@@ -94,9 +94,9 @@ mcor_status mcor_begin_fill(mcor_context* context)
   return status;
 }
 
-/* ---- one iso value's lines ---- */
+/* ---- The lines of one iso value ---- */
 
-/* The lines of the iso value under way, where they are to be filled; else NULL. */
+/* Returns the lines of the iso value under way if they are to be filled, else NULL. */
 static mcor_fill_line* mcor_line_under_way(const mcor_context* context)
 {
   mcor_filling* fill = context->run.fill;
@@ -153,7 +153,8 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Which nodes are above. Where marching has evaluated them its answer is taken, as lines are made of it. */
+/* Counts the bands: notes which nodes are above this level. Where marching has evaluated a node
+ * its answer is taken, since lines are made from that. */
 static mcor_status mcor_take_level(mcor_context* context, mcor_filling* fill, mcor_fill_line* line)
 {
   mcor_cap_face* face = &fill->face;

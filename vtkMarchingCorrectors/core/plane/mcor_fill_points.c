@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adds the filled region to the surface: triangles, and the points that lines do not have. */
+/* Adds the filled region to the surface: its triangles, and the points that no line has. */
 
 #include "mcor_box.h"
 #include "mcor_fill.h"
@@ -14,7 +14,8 @@
 
 /* ---- Cuts ---- */
 
-/* Where the margin would be 0 were it linear; where that does not halve what is between, the middle. */
+/* Chooses the next place of a cut: where a linear margin would be 0; the middle where that would
+ * not halve the bracket. */
 static double mcor_next_place(const mcor_fill_cut* cut, bool halve)
 {
   const double s = cut->inside_margin / (cut->inside_margin - cut->outside_margin);
@@ -24,8 +25,8 @@ static double mcor_next_place(const mcor_fill_cut* cut, bool halve)
   return cut->inside + part * (cut->outside - cut->inside);
 }
 
-/* The margin found narrows the part of the edge that a cut is on; of the end that stays twice it is taken
- * for half of what it is, so that it does not stay for ever. */
+/* Narrows the bracket of a cut by the margin found. The margin of an end that stays twice is
+ * halved, so that it does not stay for ever (the Illinois method). */
 static void mcor_narrow_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -51,7 +52,7 @@ static int mcor_compare_cuts(const void* x, const void* y)
   return first ? first : (a->key[1] > b->key[1]) - (a->key[1] < b->key[1]);
 }
 
-/* Puts cuts in order, and moves them to where the margin is 0; of a preview, to where it would be. */
+/* Sorts the cuts, and moves them to where the margin is 0; in a preview, to the linear estimate. */
 static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fill)
 {
   mcor_cap_points points = { .take = mcor_narrow_cut, .data = fill };
@@ -82,7 +83,7 @@ static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fil
 
 /* ---- Points ---- */
 
-/* Marks the nodes that triangles use by 0, and returns how many there are. */
+/* Marks the nodes that triangles use with 0, and returns their number. */
 static int64_t mcor_mark_nodes(const mcor_filling* fill)
 {
   int32_t* number = fill->number;
@@ -99,7 +100,7 @@ static int64_t mcor_mark_nodes(const mcor_filling* fill)
   return count;
 }
 
-/* The marked nodes, by 4 x 4 of them, and their numbers. */
+/* Lists the marked nodes, by squares of 4 x 4, and numbers them. */
 static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertex)
 {
   int32_t* number = fill->number;
@@ -128,7 +129,7 @@ static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_ver
   }
 }
 
-/* The cuts, and their numbers. */
+/* Lists the cuts and numbers them. */
 static void mcor_list_cuts(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertices)
 {
   for (int64_t i = 0; i < fill->cut_count; ++i)
@@ -143,7 +144,8 @@ static void mcor_list_cuts(const mcor_filling* fill, int64_t base, mcor_cap_vert
   }
 }
 
-/* Appends vertices to the surface: as a mesh that has these only, all like those of caps. */
+/* Appends vertices to the surface, as a mesh that consists of them alone, all like those of
+ * caps. */
 static mcor_status mcor_append_fill_points(mcor_context* context, const mcor_input* input,
   const mcor_cap_vertex* vertices, int64_t count, mcor_surface* surface)
 {
@@ -157,7 +159,7 @@ static mcor_status mcor_append_fill_points(mcor_context* context, const mcor_inp
   return mcor_append_output(context, input, true, surface);
 }
 
-/* Makes the points' iso values and residuals those of their bands. */
+/* Sets the iso values and residuals of the points to those of their bands. */
 static void mcor_set_bands(
   const mcor_filling* fill, const mcor_cap_vertex* vertices, int64_t base, mcor_surface* surface)
 {
@@ -175,7 +177,7 @@ static void mcor_set_bands(
   }
 }
 
-/* The points that lines have not, and where they are in the surface. */
+/* Makes the points that lines lack, and numbers them in the surface. */
 static mcor_status mcor_make_fill_points(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
@@ -248,7 +250,7 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
   {
     return MCOR_OK;
   }
-  free(fill->value); /* bands are known */
+  free(fill->value); /* the bands are known */
   fill->value = NULL;
   MCOR_TRY(mcor_fill_squares(context, fill));
   MCOR_TRY(mcor_place_fill_cuts(context, fill));

@@ -1,25 +1,26 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Squares cut into polygons of one band each, and what trimming leaves of these, as triangles. All run
- * through borders with what they enclose on their left. */
+/* Cuts squares into polygons of one band each, and makes triangles of what trimming leaves of
+ * them. Borders are run through with the inside on the left. */
 
 #include "mcor_fill.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* A node, or a line's vertex, on the border of a square, and the border's part from there to the next one. */
+/* A node, or a line's vertex, on the border of a square; and the part of the border from there
+ * to the next one. */
 typedef struct mcor_fill_corner
 {
   int32_t ref; /* see mcor_fill_triangle */
   double margin;
-  int level; /* of the line; -1: a node */
+  int level; /* the line's; -1: a node */
   int32_t vertex;
   bool falls; /* the border goes from above the line to below */
-  int band;   /* of the part */
-  bool done;  /* it is in a polygon */
-  /* Where the part is: on the edge of this lower node, the part-th from there; where it begins and ends. */
+  int band;   /* the part's */
+  bool done;  /* a polygon has it */
+  /* Where the part is: number `part` on the edge of this lower node; its ends along the edge. */
   cl_int node[3];
   int axis, part;
   double from, to;
@@ -32,7 +33,7 @@ typedef struct mcor_fill_side
   bool is_line;
 } mcor_fill_side;
 
-/* Corners of a polygon at most: nodes, and vertices of the two lines beside a band. */
+/* Corners of a polygon, at most: nodes, and vertices of the two lines beside its band. */
 #define MCOR_FILL_MOST 12
 
 typedef struct mcor_fill_job
@@ -55,7 +56,7 @@ static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corn
 
 /* ---- The border ---- */
 
-/* The key of a lattice edge, by its lower node, and of a part of the edge. */
+/* Packs a lattice edge and the number of a part of it into a key. */
 static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
 {
   const cl_int edge[3] = { corner->node[0], corner->node[1], corner->axis };
@@ -78,7 +79,7 @@ static mcor_status mcor_add_vertex(mcor_fill_job* job, int level, mcor_fill_corn
   return MCOR_OK;
 }
 
-/* Side s, from its first node to before the other one. */
+/* Adds side s to the border, without its last node. */
 static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
 {
   const mcor_filling* fill = job->fill;
@@ -110,8 +111,8 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
   return MCOR_OK;
 }
 
-/* The corner at the other end of the line from corner i. Of a level there are two on the border, or four
- * which lines join around what is below, or above. */
+/* Finds the corner at the other end of the line from corner i. A level has two corners on the
+ * border, or four, which lines then join around what is below, or above. */
 static int mcor_fill_mate(const mcor_fill_job* job, int i)
 {
   const mcor_fill_corner* corners = job->border;
@@ -142,7 +143,7 @@ static mcor_status mcor_add_fan(mcor_fill_job* job, const int32_t* refs, int cou
   return MCOR_OK;
 }
 
-/* Where trimming cuts a line. */
+/* Finds the point where trimming cuts a line. */
 static mcor_status mcor_find_line_cut(
   mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
 {
@@ -153,7 +154,7 @@ static mcor_status mcor_find_line_cut(
   return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
 }
 
-/* Where it cuts the border's part from corner p to q. */
+/* Finds, or makes, the point where trimming cuts the border from corner p to q. */
 static mcor_status mcor_find_border_cut(
   mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
 {
@@ -184,7 +185,8 @@ static mcor_status mcor_find_border_cut(
   return MCOR_OK;
 }
 
-/* Adds what trimming leaves of a polygon: each run of corners inside, with the cuts before and behind it. */
+/* Adds what trimming leaves of a polygon: each run of corners inside, between the cuts before
+ * and behind it. */
 static mcor_status mcor_add_polygon(
   mcor_fill_job* job, const mcor_fill_side* sides, int count, int band)
 {
@@ -219,7 +221,7 @@ static mcor_status mcor_add_polygon(
   return whole ? mcor_add_fan(job, run, length, band) : MCOR_OK;
 }
 
-/* The polygon that the border's part from corner i on is of. */
+/* Adds the polygon that has the border's part from corner i on. */
 static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
 {
   mcor_fill_side sides[MCOR_FILL_MOST];
@@ -246,7 +248,7 @@ static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
 
 /* ---- Squares ---- */
 
-/* Whether the nodes are valid, and some above the least level. */
+/* Whether all nodes are valid, and any is above the lowest level. */
 static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
 {
   bool valid = true, above = false;

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: the plane, how coordinates are turned, and what is done otherwise in the plane. */
+/* Two dimensions: finding the plane, turning coordinates into it and back, and launches that
+ * differ there. */
 
 #include "mcor_plane.h"
 #include "mcor_adaptive.h"
@@ -25,8 +26,8 @@ double mcor_plane_factor(mcor_sph_kernel kernel)
 
 /* ---- The plane ---- */
 
-/* How far particles go along x, y, z: the fluid, and behind it the solids that play a part. Nothing where there
- * are none. */
+/* The extent of the particles along x, y, z: first the fluid, then the solids that play a part.
+ * low > high: none. */
 typedef struct mcor_spread
 {
   double low[6], high[6];
@@ -44,7 +45,7 @@ static void mcor_extend_spread(mcor_spread* spread, int i, double low, double hi
   spread->high[i] = high > spread->high[i] ? high : spread->high[i];
 }
 
-/* Whether all are at the place where the fluid has been so far; written to be vectorised. */
+/* Whether all particles are where the fluid has been so far; written to be vectorised. */
 static bool mcor_is_all_at(const double* x, int count, double low, double high)
 {
   int off = low != high;
@@ -55,7 +56,7 @@ static bool mcor_is_all_at(const double* x, int count, double low, double high)
   return !off;
 }
 
-/* Along an axis, ends where the fluid is in no plane: how far it goes then does not matter. */
+/* Stops along an axis once the fluid is not flat there: how far it goes then does not matter. */
 static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spread_job* job = data;
@@ -92,7 +93,7 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
   job->slices[slice] = spread;
 }
 
-/* Whether there are positions that can be looked at; what is wrong otherwise is for mcor_check_input to say. */
+/* Whether positions can be read; mcor_check_input reports what is wrong otherwise. */
 static bool mcor_has_positions(const mcor_input* input)
 {
   return input->count > 0 && input->count <= MCOR_PARTICLE_LIMIT && input->positions.data &&
@@ -118,7 +119,8 @@ static mcor_spread mcor_spread_of(mcor_context* context, const mcor_input* input
   return job.slices[0];
 }
 
-/* A line or a point is not known to be in a plane; it is if the caller says so. */
+/* Chooses the plane. Particles on a line, or at a point, lie in no known plane, unless the
+ * caller says so. */
 static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
 {
   mcor_plane plane = { 0 };
@@ -155,7 +157,7 @@ static mcor_status mcor_refuse_plane(
   positions.components = 3;
   if (mcor_find_not_finite(context, &positions, input->solid, input->count) >= 0)
   {
-    return MCOR_OK; /* for mcor_check_input to say */
+    return MCOR_OK; /* mcor_check_input reports it */
   }
   for (int a = 2; a >= 0; --a)
   {
@@ -179,7 +181,7 @@ static mcor_status mcor_refuse_plane(
     "the particles into a plane of constant x, y or z, or use three dimensions.");
 }
 
-/* Fluid in one plane, solids in another one beside it: meant as two dimensions. */
+/* Refuses fluid in one plane and solids in another: meant as two dimensions. */
 static bool mcor_is_apart(const mcor_spread* spread)
 {
   int planes = 0;
@@ -193,14 +195,14 @@ static bool mcor_is_apart(const mcor_spread* spread)
   return planes == 1 && apart;
 }
 
-/* Particles that stand for all in the search for twins. */
+/* Particles sampled in the search for twins. */
 #define MCOR_TWIN_SAMPLES 32
-/* Of the distance that particles evenly strewn over the plane would have: a step of single precision that may have
- * made them flat. */
+/* The share of the spacing, of particles strewn evenly over the plane, that a step of single
+ * precision must have to have flattened them. */
 #define MCOR_COARSE_SHARE 0.125
 
-/* Whether the plane is one of rounding: its coordinate is so large that single precision, which holds it, rounds by
- * about the distance of the particles, and most of them lie on others. */
+/* Whether rounding made the plane: its coordinate is so large that single precision rounds it by
+ * about the particles' spacing, and most particles lie on others. */
 static mcor_status mcor_is_rounding(
   mcor_context* context, const mcor_input* input, const mcor_spread* spread, bool* rounding)
 {
@@ -247,7 +249,7 @@ static mcor_status mcor_is_rounding(
   return MCOR_OK;
 }
 
-/* In ranks and globals, the same for all. */
+/* With ranks and globals, all ranks find the same. */
 static mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
@@ -281,7 +283,7 @@ typedef struct mcor_flatten_job
   bool are_points; /* which may lie off the plane */
 } mcor_flatten_job;
 
-/* Positions in single precision, which they keep. */
+/* Turns positions in single precision, without converting them. */
 static void mcor_flatten_floats(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_flatten_job* job = data;
@@ -328,7 +330,7 @@ void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to
   }
   if (has && !isnan(sides[4]) && !isnan(sides[5]) && sides[4] <= sides[5])
   {
-    /* A flat box, around the particles, too. */
+    /* A flat box holds the plane it lies in. */
     const bool inside = sides[4] <= plane->at && (plane->at < sides[5] || plane->at == sides[4]);
     sides[4] = inside ? -INFINITY : DBL_MAX;
     sides[5] = INFINITY;
@@ -431,7 +433,7 @@ void mcor_unflatten_doubles(
   }
 }
 
-/* Beyond the plane all reaches as far as the largest support. */
+/* Across the plane, reach is the largest support everywhere. */
 void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;
@@ -468,7 +470,7 @@ mcor_status mcor_spread_signs(mcor_context* context)
         MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
-/* Requests the bricks that are not certain. */
+/* Requests the bricks whose side is not certain. */
 mcor_status mcor_find_seeds_in_plane(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;

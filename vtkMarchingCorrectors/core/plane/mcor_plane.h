@@ -3,12 +3,13 @@
 #ifndef mcor_plane_h
 #define mcor_plane_h
 
-/* Two dimensions. Particles that share one coordinate lie, for all phases, in the plane z = 0: the caller's
- * coordinates are turned at the border, (u, v, w) with w the constant one, and turned back in the result.
- * There the sums of three dimensions are those of two, if a particle's weight is c h times what it is (c:
- * mcor_plane_factor). The lattice is one layer of cells above the plane; what its nodes in the plane are
- * counts for those above, so that lines are where the surface of three dimensions would cross the plane.
- * Until they are handed over, lines are triangles whose last two corners are one. */
+/* Two dimensions. Particles that share one coordinate lie in the plane z = 0 for all phases. At
+ * the border the caller's coordinates are turned to (u, v, w), w being the constant one; results
+ * are turned back. In between, sums of three dimensions are those of two because each particle's
+ * weight is multiplied by c h (c: mcor_plane_factor). The lattice is one layer of cells above
+ * the plane, and its upper nodes copy the lower ones, so that lines lie where the surface of
+ * three dimensions would cross the plane. Until the output, a line is a triangle whose last two
+ * corners are one. */
 
 #include "mcor_internal.h"
 
@@ -27,49 +28,52 @@ static inline bool mcor_is_plane(const mcor_context* context)
   return context->plane.axis > 0;
 }
 
-/* Finds whether the particles lie in a plane, into context->plane, and turns what lies in one. */
+/* Finds whether the particles lie in a plane, sets context->plane, and turns input and options
+ * into it. */
 mcor_status mcor_flatten(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flat* flat);
-/* Points turned likewise, in *flat, to be freed: those off the plane become NaN. */
+/* Turns points likewise, into *flat, which the caller frees. Points off the plane become NaN. */
 mcor_status mcor_flatten_points(mcor_context* context, const mcor_array* points, int64_t count,
   mcor_array* turned, double** flat);
-/* The sides of a box, turned: of a plane inside all, else nothing. */
+/* Turns the sides of a box. Across the plane they hold all of it, or nothing. */
 void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to[6]);
 /* Turns the measures over all particles, or turns them back. */
 void mcor_turn_measure(mcor_measure* measure, bool back);
 /* Turns the numbers of the lattice and the extent back. */
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* statistics);
 
-/* The axis of the caller along which turned coordinate a goes; a = 2: the constant one. */
+/* Returns the caller's axis of turned coordinate a; a = 2: the constant one. */
 static inline int mcor_plane_axis(const mcor_plane* plane, int a)
 {
   return (plane->axis + a) % 3;
 }
-/* The letter of that axis, of the call under way. */
+/* Returns that axis' letter, in the call under way. */
 static inline char mcor_axis_letter(const mcor_context* context, int a)
 {
   return "xyz"[mcor_plane_axis(&context->plane, a)];
 }
 
-/* Turns three numbers of `width` bytes back, in place; the same of [count][3], where the constant coordinate becomes
- * `constant`. */
+/* Turns three numbers of `width` bytes back, in place; the second function: [count][3], the
+ * constant coordinate becoming `constant`. */
 void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
 
-/* Normalisation of the SPH kernel in two dimensions over that in three. */
+/* Returns the SPH kernel's normalisation in two dimensions over that in three. */
 double mcor_plane_factor(mcor_sph_kernel kernel);
 
-/* Marching squares: what nodes in the plane are, those above are too; nothing else is a brick. */
+/* Marching squares: gives the nodes above the plane the signs of those in it; the second
+ * function finds the seed bricks. */
 mcor_status mcor_spread_signs(mcor_context* context);
 mcor_status mcor_find_seeds_in_plane(mcor_context* context);
-/* Keeps of all cells those that are squares. */
+/* Keeps of all cells those that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 
-/* mcor_plane_lines.c: normals from lines where the gradient gives none, while all of the box's ring are there. */
+/* mcor_plane_lines.c. Makes normals from lines where the gradient gives none; needs the lines of
+ * the box's ring. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface);
-/* Makes the polylines of the surface from the lines that its triangles stand for, and
- * turns all back. */
+/* Makes the polylines of the surface from the lines that its triangles stand for, and turns all
+ * back. */
 mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface);
 
 #endif

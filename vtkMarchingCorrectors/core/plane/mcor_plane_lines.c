@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Lines on their way out: joined to polylines, with normals where the gradient gives none, and turned back
- * into the caller's coordinates. Triangles of what is filled are behind those that stand for lines. */
+/* Lines on their way out: joined to polylines, with normals where the gradient gives none, and
+ * turned back into the caller's coordinates. Triangles of filled regions follow those that stand
+ * for lines. */
 
 #include "mcor_plane.h"
 
@@ -10,12 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lines by their points: each point begins one line at most, and ends one. */
+/* Lines by their points: a point begins one line at most, and ends one. */
 typedef struct mcor_joining
 {
   int64_t count, points; /* lines */
-  int32_t *next, *last;  /* [points]: where a line from, to each point leads; -1 */
-  bool* done;            /* [points]: the line from it is in a polyline */
+  int32_t *next, *last;  /* [points]: the line that begins, that ends there; -1: none */
+  bool* done;            /* [points]: the line that begins there is in a polyline */
 } mcor_joining;
 
 static void mcor_free_joining(mcor_joining* j)
@@ -25,7 +26,7 @@ static void mcor_free_joining(mcor_joining* j)
   free(j->done);
 }
 
-/* Without any lines yet. */
+/* Begins without lines. */
 static bool mcor_create_joining(int64_t points, mcor_joining* j)
 {
   const size_t n = (size_t)points;
@@ -49,7 +50,7 @@ static void mcor_add_line(mcor_joining* j, int32_t from, int32_t to)
   j->last[to] = from;
 }
 
-/* Lines are triangles of which two corners are one. */
+/* Whether a triangle stands for a line: two of its corners are one. */
 static bool mcor_is_line(const int32_t* t)
 {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -63,7 +64,9 @@ static mcor_status mcor_read_lines(
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
-    if (t[0] != t[2] && mcor_is_line(t)) /* else the second half of a quad that is a line; filled */
+    if (t[0] != t[2] &&
+      mcor_is_line(
+        t)) /* else the second half of a quad that stands for a line, or a filled triangle */
     {
       mcor_add_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
     }
@@ -85,7 +88,7 @@ static void mcor_follow_line(mcor_joining* j, int32_t from, mcor_surface* surfac
   surface->line_offsets[++surface->line_count] = surface->line_point_count = to;
 }
 
-/* Open polylines from their ends, then closed ones, each from the first of its points. */
+/* Makes open polylines from their ends, then closed ones, each from its first point. */
 static bool mcor_join(mcor_joining* j, mcor_surface* surface)
 {
   const size_t lines = (size_t)j->count;
@@ -109,7 +112,7 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   return true;
 }
 
-/* The area of the filled region. */
+/* Sums the area of the filled region. */
 static double mcor_filled_area(const mcor_surface* surface, int u, int v)
 {
   const double* x = surface->points;
@@ -124,8 +127,8 @@ static double mcor_filled_area(const mcor_surface* surface, int u, int v)
   return area;
 }
 
-/* Length, and the area of what is filled, or that lines enclose if all are closed, about one of the points.
- * u, v: the axes of the plane. */
+/* Measures the length, and the area of the filled region, or the area that lines enclose if all
+ * are closed. Takes it about one of the points. u, v: the axes of the plane. */
 static void mcor_measure_lines(mcor_surface* surface, int u, int v)
 {
   mcor_statistics* s = &surface->statistics;
@@ -167,7 +170,7 @@ mcor_status mcor_join_lines(
   return made ? MCOR_OK : MCOR_OUT_OF_CAPACITY;
 }
 
-/* Leaves triangles that are filled, and their keys; NULL where there are none to be. */
+/* Keeps the filled triangles and their keys alone; leaves NULL if there are none. */
 static void mcor_keep_filled(mcor_surface* surface)
 {
   const bool filled = surface->band_value != NULL;
@@ -189,7 +192,7 @@ static void mcor_keep_filled(mcor_surface* surface)
   surface->triangle_count = count;
 }
 
-/* Turns normals back; of what is filled they are those of triangles in the plane. */
+/* Turns normals back; in filled regions they become those of the plane. */
 static void mcor_turn_normals(const mcor_plane* plane, mcor_surface* surface)
 {
   for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
@@ -202,7 +205,7 @@ static void mcor_turn_normals(const mcor_plane* plane, mcor_surface* surface)
   }
 }
 
-/* From lines, which they point to the right of: of all points in a preview, else where the gradient
+/* Makes normals, to the right of the lines: at all points of a preview, else where the gradient
  * vanishes. */
 mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surface)
 {

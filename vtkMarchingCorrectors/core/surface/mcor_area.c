@@ -1,16 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Area and volume of the whole surface, or of parts of it that are added up. Terms are rounded to a unit in which their
- * sums are exact: so whatever the order is, and whoever has which triangle, sums are the same to the last bit. */
+/* Area and volume of the whole surface, or of parts of it that are added up later. Each term is
+ * rounded to a unit in which the sums are exact. The sums are therefore the same to the last bit
+ * in any order, and however the triangles are spread over ranks. */
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"
 
 #include <math.h>
 
-/* A number of an edge that looks as if it were random: of edges that are not run through both ways, the sum
- * with signs is 0 by chance once in 2^64. Multiples of the golden ratio keep pairs of numbers apart. */
+/* Hashes an edge. A closed surface runs through each edge once each way, so the sum of the
+ * signed hashes is 0. Of a surface with a hole it is 0 by chance once in 2^64. Multiples of the
+ * golden ratio keep pairs of numbers apart. */
 static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
 {
   uint64_t x = (uint64_t)low * 0x9E3779B97F4A7C15u + (uint64_t)high;
@@ -43,20 +45,20 @@ static inline void mcor_measure_triangle(
   *volume = (c[0][0] * n[0] + c[0][1] * n[1] + c[0][2] * n[2]) / 6;
 }
 
-/* A power of two; sums of so many terms have 53 bits above it. */
+/* Finds a power of two that leaves 53 bits for the sum of so many terms. */
 static double mcor_exact_unit(double most, int64_t count)
 {
   const double bound = most * (double)count;
   return bound > 0 && bound < 1e300 ? ldexp(1, ilogb(bound) + 1 - 53) : 1;
 }
 
-/* To a multiple of the unit of which `large` is 1.5 * 2^52. */
+/* Rounds to a multiple of the unit whose 1.5 * 2^52 multiple is `large`. */
 static inline double mcor_round_term(double term, double large)
 {
   return (term + large) - large;
 }
 
-/* Measures of each slice of the triangles, as exact as those of parts. */
+/* What each slice of the triangles adds; as exact as the sums over parts. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;
@@ -159,7 +161,8 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
   statistics->volume = statistics->is_closed ? measures->volume : 0;
 }
 
-/* About one of the points, as coordinates may be large. Lines are measured where they are joined. */
+/* Takes volumes about one of the points, since coordinates may be large. Lines are measured
+ * where they are joined. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
   mcor_measures measures = { .open = 0 };

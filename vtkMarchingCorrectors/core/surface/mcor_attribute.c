@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Other particle arrays at the surface's points [III-D.4]. Of the components that vary, the first
- * MCOR_ATTRIBUTE_LIMIT are evaluated along with the correction, where each vertex's particles are
- * at hand; the rest, as many at a time, at the finished mesh's vertices. A mean of equal values,
- * often masses or smoothing lengths, is that value. */
+/* Other particle arrays at the surface's points [III-D.4]. The first MCOR_ATTRIBUTE_LIMIT
+ * components that vary are evaluated with the correction, while each vertex's particles are at
+ * hand. The rest follow in groups of that many, at the vertices of the finished mesh. The mean
+ * of equal values (masses, smoothing lengths) is that value, exactly. */
 
 #include "mcor_adaptive.h"
 #include "mcor_input.h"
@@ -13,8 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The power of 2 that brings the largest value of a component to 1 or a little less, so that no sum
- * overflows whatever the device's precision. */
+/* Finds the power of 2 that scales the largest value of a component to at most 1, so that no sum
+ * overflows in the device's precision. */
 static double mcor_component_scale(double largest)
 {
   int exponent = 0;
@@ -32,7 +32,7 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Room to list components in; none is listed. */
+/* Makes room for the list of components, which is empty at first. */
 static mcor_status mcor_clear_components(mcor_context* context, const mcor_input* input)
 {
   mcor_attributes* attributes = &context->attributes;
@@ -49,7 +49,7 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
   return MCOR_OK;
 }
 
-/* A component's shift and scale bring samples to [-1, 1]. */
+/* Sets the shift and scale that map a component's samples to [-1, 1]. */
 static mcor_component mcor_scale_component(
   int attribute, int component, bool of_surface, const mcor_global_component* found)
 {
@@ -67,8 +67,8 @@ static mcor_component mcor_scale_component(
   return scaled;
 }
 
-/* Finds the attributes to leave out, and of the others the components: of a surface those that vary, of samples
- * all. not_finite: [attribute_count], as in mcor_surface. */
+/* Decides which attributes to leave out, and lists the components of the others: those that vary
+ * (surface), or all of them (samples). not_finite: [attribute_count], as in mcor_surface. */
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {
@@ -105,15 +105,14 @@ mcor_status mcor_list_components(
   return MCOR_OK;
 }
 
-/* Whether something is left to be evaluated at the finished mesh's vertices. */
+/* Whether components are left to evaluate at the vertices of the finished mesh. */
 bool mcor_attributes_remain(const mcor_context* context)
 {
   return mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) ||
     context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT;
 }
 
-/* Takes up to MCOR_ATTRIBUTE_LIMIT of the components that vary to the device, from number `first`
- * on. */
+/* Copies up to MCOR_ATTRIBUTE_LIMIT varying components to the device, from number `first` on. */
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
 {
   mcor_attributes* attributes = &context->attributes;
@@ -133,7 +132,7 @@ mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-/* Means on their way from the vertices put out. */
+/* The means of the vertices that go to the output. */
 typedef struct mcor_means
 {
   const mcor_context* context;
@@ -165,7 +164,7 @@ static void mcor_store_means(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Hands over the means of the components on the device. */
+/* Writes the means of the components on the device to the surface. */
 static mcor_status mcor_store_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {
@@ -181,8 +180,8 @@ static mcor_status mcor_store_attributes(
   return status;
 }
 
-/* Hands over the components that do not vary: all that are not in the list, which has them in the
- * order of the arrays. */
+/* Writes the constant components: those missing from the list, which is in the order of the
+ * arrays. */
 static void mcor_store_constants(
   const mcor_context* context, const mcor_input* input, int64_t points, mcor_surface* surface)
 {
@@ -221,7 +220,7 @@ mcor_status mcor_find_nearest(mcor_context* context)
     MCOR_BUFFER(nearest));
 }
 
-/* Adds the attributes of the vertices that are put out, see mcor_is_output. */
+/* Adds the attributes of the vertices that go to the output, see mcor_is_output. */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)
 {

@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes where fluid meets solids: on which side of the iso value they are, and how far from where the solids'
- * share of the weight is too great. Where marching has evaluated them its answer is taken. */
+/* The nodes near both fluid and solids: which side of the iso value they are on, and how far
+ * they are from the place where the solids' share of the weight becomes too great. Where
+ * marching has evaluated a node, its answer is taken. */
 
 #include "mcor_cap_job.h"
 
@@ -24,7 +25,7 @@ const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[
   return number < 0 ? NULL : &wall->bricks[number];
 }
 
-/* ---- which bricks ---- */
+/* ---- The bricks ---- */
 
 static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
 {
@@ -47,8 +48,9 @@ static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, c
   return MCOR_OK;
 }
 
-/* Adds the bricks that a solid particle at x, in nodes, reaches; notes a fluid one, once these are there,
- * at them. A cell is looked at from its lowest node: one node more; another one for rounding. */
+/* Visits a particle at x (in nodes), in two passes: the first one adds the bricks that solids
+ * reach, the second one marks those that fluid reaches, too. Reach is widened by one node,
+ * because a cell is looked up by its lowest node, and by another one for rounding. */
 static mcor_status mcor_reach_wall(
   mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
 {
@@ -86,7 +88,7 @@ static int mcor_compare_wall_bricks(const void* x, const void* y)
   return (a->key > b->key) - (a->key < b->key);
 }
 
-/* Leaves the bricks that fluid reaches, too, in order. */
+/* Keeps the bricks that fluid reaches, too, and sorts them by key. */
 static mcor_status mcor_sort_wall(mcor_context* context, mcor_wall* wall)
 {
   int64_t count = 0;
@@ -111,7 +113,7 @@ static mcor_status mcor_sort_wall(mcor_context* context, mcor_wall* wall)
   return MCOR_OK;
 }
 
-/* ---- what marching knows ---- */
+/* ---- Nodes that marching has evaluated ---- */
 
 static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
 {
@@ -127,9 +129,9 @@ static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
   }
 }
 
-/* ---- what it does not know ---- */
+/* ---- The other nodes ---- */
 
-/* Takes node points->to[i], counted through all bricks. */
+/* Takes the field at node points->to[i], which counts the nodes of all bricks. */
 static void mcor_take_wall_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -141,7 +143,7 @@ static void mcor_take_wall_node(
   brick->margin[n] = mcor_cap_margin(context, points, i);
 }
 
-/* Evaluates the nodes above, and those of which it is not known whether they are. */
+/* Evaluates the nodes that are above, and those of unknown side. */
 static mcor_status mcor_evaluate_wall(
   mcor_context* context, mcor_wall* wall, mcor_cap_points* points)
 {

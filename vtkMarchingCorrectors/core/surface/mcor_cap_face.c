@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* One side of a period or a box, and what its nodes are: on which side of the iso value, and whether they are valid.
- * Where marching has evaluated them its answer is taken, so that a cap fits the surface; elsewhere no surface is near.
- * There are nodes where tiles are, squares of nodes that some particle reaches. Where none does there is nothing to
- * close, so that a side takes memory and time as far as there is something at it. */
+/* The nodes of one side of a period or box: whether each is above the iso value, and whether it
+ * is valid. Where marching has evaluated a node its answer is taken, so that the cap fits the
+ * surface. Nodes are kept in tiles, squares of nodes that some particle reaches. Where no
+ * particle reaches there is nothing to close, so memory and time go with what is at the side,
+ * not with its area. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -12,13 +13,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* ---- extent and tiles ---- */
+/* ---- Extent and tiles ---- */
 
-/* Places of a side's directory of tiles, at most. */
+/* Entries of a side's directory of tiles, at most. */
 #define MCOR_CAP_PLACE_LIMIT (1 << 24)
 
-/* Tiles of a side at most: 4 to 64 million nodes. Where few particles reach more, a smoothing length or the cube
- * size is a mistake. */
+/* The number of tiles at which a side is refused: 4 to 64 million nodes. Where few particles
+ * reach more than that, a smoothing length or the cube size is a mistake. */
 static int mcor_tile_limit(const mcor_context* context)
 {
   const int particles = context->grid.count / 2;
@@ -76,7 +77,7 @@ static void mcor_set_cap_extent(
     mcor_cap_range(context, a, range);
     face->first[i] = range[0];
     face->count[i] = range[1] - range[0] + 1;
-    if (a == 2 && mcor_is_plane(context)) /* one row of squares stands for the side's edges */
+    if (a == 2 && mcor_is_plane(context)) /* the edges of a plane's side: one row of squares */
     {
       face->first[i] = 0;
       face->count[i] = 2;
@@ -84,7 +85,7 @@ static void mcor_set_cap_extent(
   }
 }
 
-/* Notes the tiles with nodes from low to high, so far as there are any. */
+/* Marks the tiles that hold nodes from low to high. */
 static mcor_status mcor_note_tiles(
   mcor_context* context, mcor_cap_face* face, const double low[2], const double high[2])
 {
@@ -117,8 +118,9 @@ static mcor_status mcor_note_tiles(
   return MCOR_OK;
 }
 
-/* Notes the tiles that a particle reaches, whose support is at most a cube around it, where it is in nodes from
- * the lattice's origin. A square is looked at from its lowest node: that is one less. */
+/* Marks the tiles that a particle at x (in nodes) may reach; its support lies within a cube of
+ * half edge `reach`. The range is widened by one node, because a square is looked up by its
+ * lowest node. */
 static mcor_status mcor_note_particle(
   mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
 {
@@ -145,7 +147,8 @@ mcor_status mcor_visit_particles(mcor_context* context, mcor_visit_particle visi
 {
   const mcor_grid* g = &context->grid;
   const mcor_lattice* lattice = &context->lattice;
-  const size_t bytes = (size_t)g->count * context->cl.real_size; /* of fixed-point numbers, too */
+  const size_t bytes = (size_t)g->count *
+    context->cl.real_size; /* positions are fixed-point numbers of the same size */
   void* views[5] = { NULL };
   const mcor_mapping mappings[5] = { { &g->px, bytes, &views[0] }, { &g->py, bytes, &views[1] },
     { &g->pz, bytes, &views[2] }, { &g->inv_h, bytes, &views[3] },
@@ -170,7 +173,7 @@ mcor_status mcor_visit_particles(mcor_context* context, mcor_visit_particle visi
   return mcor_unmap_all(context, mappings, count, status);
 }
 
-/* Finds the tiles: those that particles reach, or all where empty space is above the iso value. */
+/* Marks the tiles that particles reach; all tiles where empty space is above the iso value. */
 mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face)
 {
   const bool empty_is_above = context->run.options->field != MCOR_SHEPARD && iso_value <= 0;
@@ -197,7 +200,7 @@ mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_ca
 
 mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face)
 {
-  /* The first one is for the nodes in none. */
+  /* Tile 0 stands for all nodes that no particle reaches. */
   const size_t nodes = ((size_t)face->tile_count + 1) * MCOR_CAP_TILE_NODES;
   face->node_count = (int64_t)nodes;
   face->place = malloc(((size_t)face->tile_count + 1) * sizeof *face->place);
@@ -240,10 +243,9 @@ mcor_status mcor_check_caps(mcor_context* context)
   return status;
 }
 
-/* ---- what marching knows ---- */
+/* ---- Nodes that marching has evaluated ---- */
 
-/* Sets `to` at those nodes of a brick that lie in a plane of the face, where their bits in a mask are
- * set. */
+/* Sets `flag` in `to` at the nodes of a brick that lie in the plane and have a bit in the mask. */
 static void mcor_mark_plane(
   const mcor_cap_face* face, const cl_int* brick, int plane, cl_ulong mask, int flag, uint8_t* to)
 {
@@ -313,9 +315,9 @@ mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_face* face)
   return mcor_see_bricks(context, mcor_take_brick, face);
 }
 
-/* ---- what it does not know ---- */
+/* ---- The other nodes ---- */
 
-/* Takes node number points->to[i]: of the side itself, or of those within. */
+/* Takes the field at node number points->to[i] of the side, or of the nodes one further in. */
 static void mcor_take_cap_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -334,8 +336,8 @@ static void mcor_take_cap_node(
   }
 }
 
-/* Whether a node of the side is to be evaluated: below it is of no use, but whether it is must be
- * known. Of those within, the validity, where a cell has no vertex on the side. */
+/* Whether a node must be evaluated. On the side: nodes above need their margin, unknown ones
+ * their side, too. Nodes further in: their validity, where a cell has no vertex on the side. */
 static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, int v)
 {
   const int64_t at = mcor_cap_index(face, u, v);
@@ -347,7 +349,8 @@ static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, i
     (face->state[at] & MCOR_CAP_VALID);
 }
 
-/* Tile by tile, by squares of 4 x 4 nodes, which are near each other. */
+/* Goes tile by tile, and there by squares of 4 x 4 nodes, so that successive points are near
+ * each other. */
 mcor_status mcor_ask_cap_nodes(
   mcor_context* context, const mcor_cap_face* face, bool within, mcor_cap_points* points)
 {
@@ -370,8 +373,8 @@ mcor_status mcor_ask_cap_nodes(
   return mcor_take_cap_points(context, points);
 }
 
-/* A period apart the sums have the same bits: takes from the side opposite what marching does not know of
- * this one's nodes, and how far they are inside. A tile that it has not is one that no particle reaches. */
+/* Copies what the opposite side of a period knows: a period apart, sums have the same bits. A
+ * tile that the opposite side lacks is one that no particle reaches. */
 static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* face)
 {
   const int64_t nodes = MCOR_CAP_TILE_NODES;

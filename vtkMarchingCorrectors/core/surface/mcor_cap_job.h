@@ -3,23 +3,25 @@
 #ifndef mcor_cap_job_h
 #define mcor_cap_job_h
 
-/* Private to the caps: what is made on the host before the mesh gets it. */
+/* Private to the caps: what the host makes before the mesh gets it. */
 
 #include "mcor_cap.h"
 #include "mcor_table.h"
 
-/* The line that a cut is on, from one end, 0, to the other, 1: where the cut is; where it is not beyond, and how
- * far inside of what trimming leaves these places are. */
+/* The line on which a cut is moved, from one end (0) to the other (1). at: the cut; side: the
+ * bracket around the root; margin: the trim margins at its ends. */
 typedef struct mcor_cap_line
 {
-  int64_t vertex; /* among the caps' vertices */
+  int64_t vertex; /* index among the caps' vertices */
   double from[3], to[3];
   double at, side[2], margin[2];
-  int last, moves; /* of the two, that was moved; how often the cut was */
+  int last,
+    moves; /* last: the end of the bracket that moved last; moves: how often the cut has moved */
   bool done;
 } mcor_cap_line;
 
-/* Edges that cutting the squares around a cell leaves, from one vertex to another: of a cap at walls. */
+/* The edges, each from one vertex to another, that cutting a cell's faces leaves; for a cap at a
+ * wall. */
 #define MCOR_CAP_BORDER 64
 typedef struct mcor_cap_border
 {
@@ -31,7 +33,8 @@ typedef struct mcor_cap_job
 {
   mcor_context* context;
   mcor_cap_points points;
-  /* The surface's vertices, by lower node and axis of their edge; of a pinched one the first. */
+  /* The surface's vertices by their lattice edge, lower node and axis; of a pinched edge the
+   * first one. */
   mcor_table edges[3];
   mcor_table nodes, cuts;
   mcor_cap_vertex* vertices;
@@ -40,35 +43,36 @@ typedef struct mcor_cap_job
     lines; /* of cuts that are placed exactly: of caps at walls, or in two dimensions */
   int64_t line_count, line_room;
   cl_int* triangles;
-  cl_ulong* cells; /* of the triangles, as in mcor_triangle_cell.c: squares, after all cells */
+  cl_ulong*
+    cells; /* of each triangle its square, numbered behind all cells, see mcor_triangle_cell.c */
   int64_t triangle_count, triangle_room, cell_room, owned_count;
-  cl_ulong square;  /* the one that is being capped */
-  uint64_t lookups; /* of vertices, by that one */
-  /* The surface's vertices, and the edges its own cuts are on, ascending. */
+  cl_ulong square;  /* the square that is being capped */
+  uint64_t lookups; /* how often it has looked up a vertex */
+  /* Views of the surface's vertices, and of the edges that its cuts are on, ascending. */
   void *node, *offset, *quantity, *cut_edges;
   double threshold;
-  mcor_cap_border* border; /* where the cuts of squares are wanted, and not what is left of them */
+  mcor_cap_border* border; /* where cuts are collected in place of triangles; NULL: nowhere */
 } mcor_cap_job;
 
-/* A square of a side, or of a cell's face: its lowest node, and of its nodes, in the order (0, 0), (1, 0), (1, 1),
- * (0, 1), which are above, and how far inside. */
+/* A square of a side, or of a cell's face. node: its lowest one. above, margin: of its nodes, in
+ * the order (0, 0), (1, 0), (1, 1), (0, 1). */
 typedef struct mcor_cap_square
 {
   int axis, upper;
   cl_int node[3];
   bool above[4];
   double margin[4];
-  bool is_joined; /* nodes above, where it is ambiguous */
+  bool is_joined; /* an ambiguous square joins its nodes above */
 } mcor_cap_square;
 
-/* mcor_cap_square.c. Begins square `number`, or a cell of a cap at walls, by its lowest node; across: the axis of the
- * side, along which the box does not end; -1: none. */
+/* mcor_cap_square.c. Begins a square, or a cell of a cap at a wall. node: its lowest one;
+ * across: the side's axis, along which the box does not end; -1: none. */
 void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across);
 /* Adds what trimming leaves of a square to the cap. */
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square);
 mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3]);
 mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
-/* Moves cuts to where trimming ends: those of caps at walls, where solids have their share, and of lines. */
+/* Moves the cuts to where the trim margin is 0. */
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job);
 
 /* ---- Caps at walls ---- */
@@ -79,27 +83,27 @@ typedef struct mcor_wall_brick
   cl_ulong key; /* of its first cell */
   cl_int at[3]; /* in bricks */
   bool has_fluid, is_known;
-  /* Bits of nodes, and of the cells and faces whose lowest node is here. */
+  /* Masks of nodes, and of the cells and faces whose lowest node is here. */
   cl_ulong above, used, joined[3];
-  double margin[MCOR_BRICK_NODES]; /* of nodes above */
+  double margin[MCOR_BRICK_NODES]; /* trim margins of nodes above */
 } mcor_wall_brick;
 
 typedef struct mcor_wall
 {
-  mcor_table index; /* numbers of bricks */
+  mcor_table index; /* numbers of bricks by place */
   mcor_wall_brick* bricks;
   int64_t count, room;
-  bool has_bricks; /* all that solids reach */
-  int range[3][2]; /* nodes, from and to: of the box, the ring around it, and what is beside */
+  bool has_bricks; /* all that solids reach are listed */
+  int range[3][2]; /* first and last node along each axis: of the box and its ring */
 } mcor_wall;
 
-/* mcor_cap_brick.c. The bricks where there may be caps, in the order of their keys. */
+/* mcor_cap_brick.c. Lists the bricks where there may be caps, by key. */
 mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall);
-/* NULL: there is none. */
+/* Returns NULL where there is none. */
 const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[3]);
 void mcor_free_wall(mcor_wall* wall);
 
-/* mcor_cap_wall.c. Caps where the surface ends at solids. */
+/* mcor_cap_wall.c. Adds caps where the surface ends at solids. */
 mcor_status mcor_cap_walls(mcor_cap_job* job);
 
 #endif

@@ -1,22 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps close the surface at the sides of a period, and of a box, where that is asked for, around what is above the
- * iso value. Each square of a side is cut as marching cuts it: along the lines between the surface's own vertices
- * there, which the cap shares. The other vertices are nodes. Where the surface is trimmed the cap is, too: at the
- * surface's own cut vertices, and linearly within the side. A square is capped where the cell beside
- * it is valid.
+/* Caps close the surface at the sides of a period or box, around the region above the iso value.
+ * Each square of a side is cut as marching cuts it, along lines between the surface's own vertices
+ * there, which the cap shares; its other vertices are nodes. A trimmed surface has a trimmed cap:
+ * cut at the surface's own cut vertices, and linearly within the side. A square is capped where the
+ * cell beside it is valid.
  *
- * Vertices of caps come after all others of the mesh, and take part in what is evaluated there. They are
- * numbered as squares meet them: by axis, lower and upper side, then square by square. A box caps the
- * squares of its cells, and of the ring around it: so its own squares' vertices have the keys, and the order,
- * that they have in the whole. */
+ * The vertices of caps follow all others of the mesh. They are numbered in the order in which
+ * squares meet them: by axis, by lower and upper side, then square by square. A box caps the
+ * squares of its own cells and of the ring around it, so that its vertices have the keys, and
+ * the order, that they have in the whole surface. */
 
 #include "mcor_cap_job.h"
 
 #include <stdlib.h>
 
-/* The surface's vertices on the sides. */
+/* Enters the surface's vertices on the sides into tables by lattice edge; with caps at walls,
+ * all vertices. */
 static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
 {
   const mcor_context* context = job->context;
@@ -42,7 +43,7 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* Whether the cell beside square (u, v), which the surface does not meet, is valid. */
+/* Whether the cell beside square (u, v) is valid, where the surface does not meet it. */
 static bool mcor_is_valid_beside(const mcor_cap_face* face, int u, int v)
 {
   bool valid = true;
@@ -54,7 +55,7 @@ static bool mcor_is_valid_beside(const mcor_cap_face* face, int u, int v)
   return valid;
 }
 
-/* Numbers of squares ascend, and are above the keys of all cells. */
+/* Caps one square. Its number is above the keys of all cells; numbers ascend. */
 static mcor_status mcor_visit_cap_square(void* data, const mcor_cap_face* face, int u, int v)
 {
   mcor_cap_job* job = data;
@@ -94,7 +95,7 @@ static mcor_status mcor_cap_side(
   return mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job);
 }
 
-/* The lower and the upper side of an axis, where the box has them. */
+/* Caps the lower and the upper side of an axis, as far as this call's box has them. */
 static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
 {
   const mcor_context* context = job->context;
@@ -126,7 +127,8 @@ static mcor_status mcor_make_caps(mcor_cap_job* job)
   return mcor_caps_walls(context) ? mcor_cap_walls(job) : MCOR_OK;
 }
 
-/* Views of the surface's vertices while caps are made. Returns how many: there are cuts only where it is trimmed. */
+/* Lists the views of the mesh that caps read. Returns their number: a mesh that is not trimmed
+ * has no cuts. */
 static int mcor_list_cap_views(mcor_cap_job* job, mcor_mapping views[4])
 {
   const mcor_context* context = job->context;
@@ -140,7 +142,7 @@ static int mcor_list_cap_views(mcor_cap_job* job, mcor_mapping views[4])
   return n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
 }
 
-/* The mesh gets the caps' vertices and triangles. */
+/* Appends the caps' vertices and triangles to the mesh. */
 static mcor_status mcor_append_caps(mcor_cap_job* job)
 {
   mcor_context* context = job->context;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Points of caps, and of what is filled: the field there, and those that become vertices of the mesh, behind all
- * others; and what the output asks of these. */
+/* Points of caps and of filled regions: the field there, and how they become vertices of the
+ * mesh, behind all others. */
 
 #include "mcor_cap.h"
 
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- the field ---- */
+/* ---- The field ---- */
 
 void mcor_free_cap_points(mcor_context* context, mcor_cap_points* p)
 {
@@ -21,7 +21,7 @@ void mcor_free_cap_points(mcor_context* context, mcor_cap_points* p)
   free(p->to);
 }
 
-/* Evaluates at the points. */
+/* Evaluates the field at a batch of points. */
 static mcor_status mcor_evaluate_cap_points(mcor_context* context, mcor_cap_points* p)
 {
   const size_t n = (size_t)p->count, real = context->cl.real_size;
@@ -88,7 +88,7 @@ mcor_status mcor_add_cap_point(mcor_context* context, mcor_cap_points* p, const 
   return p->count < MCOR_CAP_BATCH ? MCOR_OK : mcor_take_cap_points(context, p);
 }
 
-/* The fluid's own weight. */
+/* The weight of the fluid alone. */
 static double mcor_cap_fluid(const mcor_context* context, const mcor_cap_points* p, int64_t i)
 {
   return context->cl.build.solids ? mcor_get_real(context, p->gradient, 4 * i + 3)
@@ -140,7 +140,7 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper)
   return options->capping && periodic ? last : -1;
 }
 
-/* ---- vertices ---- */
+/* ---- Vertices ---- */
 
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
 {
@@ -154,7 +154,8 @@ void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float no
   }
   for (int a = 0; a < 3; ++a)
   {
-    normal[a] = square > 0 ? (float)(n[a] / sqrt(square)) : 0; /* at walls: from triangles */
+    normal[a] = square > 0 ? (float)(n[a] / sqrt(square))
+                           : 0; /* caps at walls get normals from their triangles */
   }
 }
 
@@ -179,7 +180,7 @@ mcor_status mcor_append_bytes(
   return status;
 }
 
-/* Places and flags. */
+/* Appends the vertices' places and flags. */
 static mcor_status mcor_append_places(
   mcor_context* context, const mcor_cap_vertex* vertices, size_t n)
 {

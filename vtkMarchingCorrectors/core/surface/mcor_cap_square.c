@@ -1,28 +1,29 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Squares of caps: cut along the lines between the surface's own vertices, and by what trims the surface. See
- * mcor_cap_make.c. Cuts of lattice edges, by caps at walls and in two dimensions, are linear at first, and then moved
- * to where the margin by which trimming leaves the fluid is 0. */
+/* Cuts one square of a cap: along the lines between the surface's own vertices (see
+ * mcor_cap_make.c), and where the surface is trimmed. Cuts of lattice edges in two dimensions,
+ * and of caps at walls, begin at the linear estimate and are then moved to where the trim margin
+ * is 0. */
 
 #include "mcor_cap_job.h"
 
 #include <string.h>
 
-/* Corner of a polygon: a vertex of the mesh; where it is, in cubes from the lattice's origin; how far
- * inside of what trimming leaves. */
+/* Corner of a polygon: its vertex of the mesh, its place in cubes from the lattice's origin, and
+ * its trim margin (above 0: it remains). */
 typedef struct mcor_cap_corner
 {
   int32_t vertex;
   double at[3], margin;
 } mcor_cap_corner;
 
-/* A square's corners; side k follows corner k. */
+/* Corners of a square; side k goes from corner k to the next one. */
 static const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
 
-/* ---- vertices ---- */
+/* ---- Vertices ---- */
 
-/* Puts a vertex at a place of the virtual grid, in cubes. */
+/* Splits a place, in cubes, into a node and an offset. */
 static void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
 {
   for (int a = 0; a < 3; ++a)
@@ -32,7 +33,7 @@ static void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
   }
 }
 
-/* Finds the vertex of a key, or makes one. */
+/* Finds the vertex that has this key, or makes it. */
 static mcor_status mcor_find_cap_vertex(
   mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], uint8_t flag, int32_t* v)
 {
@@ -55,7 +56,8 @@ static mcor_status mcor_find_cap_vertex(
   return MCOR_OK;
 }
 
-/* The node u, v beyond the lowest one. In two dimensions nodes above each other are one. */
+/* Finds the node (u, v) beyond the square's lowest one. In two dimensions nodes above each other
+ * are one. */
 static void mcor_square_node(
   const mcor_cap_job* job, const mcor_cap_square* square, int u, int v, cl_int node[3])
 {
@@ -79,7 +81,8 @@ static mcor_status mcor_cap_node_corner(
     job, &job->nodes, mcor_cap_key(node), corner->at, MCOR_CAP_FLAG, &corner->vertex);
 }
 
-/* The surface's vertex on side k: see mcor_cell_emit for pinched ones. */
+/* Takes the surface's vertex on side k. Of the two of a pinched edge (see mcor_cell_emit) it is
+ * the one on this cell's side. */
 static mcor_status mcor_cap_edge_corner(
   mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {
@@ -106,7 +109,7 @@ static mcor_status mcor_cap_edge_corner(
   return MCOR_OK;
 }
 
-/* The line of the cut that was made last. */
+/* Notes the line of the newest cut, along which it will be moved. */
 static mcor_status mcor_add_cap_line(
   mcor_cap_job* job, const mcor_cap_corner* low, const mcor_cap_corner* high, double at)
 {
@@ -123,7 +126,8 @@ static mcor_status mcor_add_cap_line(
   return MCOR_OK;
 }
 
-/* Where trimming cuts the line between two corners. */
+/* Finds the vertex where trimming cuts the line between two corners: the surface's own cut, else
+ * one of the cap's. */
 static mcor_status mcor_cap_cut(
   mcor_cap_job* job, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
 {
@@ -153,7 +157,7 @@ static mcor_status mcor_cap_cut(
   return is_placed && job->vertex_count > before ? mcor_add_cap_line(job, low, high, s) : MCOR_OK;
 }
 
-/* ---- polygons ---- */
+/* ---- Polygons ---- */
 
 mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3])
 {
@@ -178,8 +182,8 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
   return MCOR_OK;
 }
 
-/* In two dimensions, where corners above each other are one, what runs along the side: with what is inside on its
- * left, as a triangle whose last two corners are one. */
+/* Adds a line along the plane's side, with the inside on its left, as a triangle whose last two
+ * corners are one. In two dimensions corners above each other are one. */
 static mcor_status mcor_add_side_line(
   mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)
 {
@@ -196,7 +200,8 @@ static mcor_status mcor_add_side_line(
   return mcor_add_cap_triangle(job, line);
 }
 
-/* A fan. Corners go round as seen from above the axis. Or its last edge, where that is wanted. */
+/* Adds a polygon as a fan; corners go round as seen from above the axis. For a cap at a wall it
+ * adds only the polygon's last edge, if that is a cut. */
 static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* square,
   const mcor_cap_corner* corners, int count, bool cut)
 {
@@ -220,8 +225,8 @@ static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* sq
   return MCOR_OK;
 }
 
-/* Adds what trimming leaves of a polygon of up to 6 corners: each run of corners inside, with the cuts
- * before and behind it. */
+/* Adds what trimming leaves of a polygon of up to 6 corners: each run of corners inside, between
+ * the cuts before and behind it. */
 static mcor_status mcor_add_cap_polygon(
   mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)
 {
@@ -300,14 +305,15 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
   return apart ? MCOR_OK : mcor_add_cap_polygon(job, square, corners, count);
 }
 
-/* ---- places ---- */
+/* ---- Moving cuts ---- */
 
-/* More than any cut needs that is not in the ends' margins: every fourth move halves what encloses it. */
+/* More steps than any cut needs, unless it lies at an end of its line: every fourth step halves
+ * the bracket. */
 #define MCOR_PLACE_STEPS 100
-/* Where a cut stays: some units of rounding in single precision. */
+/* A margin at which a cut stays: some units of rounding in single precision. */
 #define MCOR_PLACE_ROOT 1e-6
 
-/* Moves a cut by the margin found there, unless that is none, within what encloses its root (the Illinois method). */
+/* Moves a cut within its bracket (the Illinois method), unless its margin is 0 up to rounding. */
 static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -331,7 +337,7 @@ static void mcor_move_cut(
     ++line->moves % 4 == 0 ? 0.5 : line->margin[0] / (line->margin[0] - line->margin[1]);
   const double s = line->side[0] + (line->side[1] - line->side[0]) * share;
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
-  line->done = line->at == before; /* in an end's margin, or as near as numbers are */
+  line->done = line->at == before; /* at an end of its line, or as exact as numbers are */
   double at[3];
   for (int a = 0; a < 3; ++a)
   {

@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps at walls close the free surface where it ends at solids: around the fluid, where their share of the weight
- * becomes too great. In each cell three things are cut there: the squares of its faces that are above the iso
- * value, as caps at sides are, and the surface's triangles, as trimming has done. The edges that these cuts
- * leave join to loops, and a cap fills each. A face is cut alike as seen from its two cells, so caps
- * fit each other, those at sides and the surface. Their vertices are cuts of lattice edges.
+/* Caps at walls close the free surface where it ends at solids, that is, where the solids' share of
+ * the weight becomes too great. In each such cell two kinds of edges appear: those that cutting the
+ * cell's six faces leaves, as caps at sides cut squares, and those that trimming has left of the
+ * surface's triangles. Together they form loops, and a cap fills each loop. A face is cut alike
+ * seen from both of its cells, so caps fit each other, the caps at sides, and the surface. Their
+ * vertices are cuts of lattice edges.
  *
- * Squares of caps are numbered as cells are, after all squares of sides. */
+ * The squares of these caps are numbered by cell, behind all squares of sides. */
 
 #include "mcor_box.h"
 #include "mcor_cap_job.h"
@@ -16,27 +17,28 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Beside the key of a cell: of a cap at walls. */
+/* Marks the key of a cell as that of a cap at a wall. */
 #define MCOR_WALL_CELL ((cl_ulong)1 << 61)
 
-/* An edge of the trimmed surface that trimming has made, as its triangle goes round; in which cell. */
+/* An edge that trimming has made, in the direction of its triangle, and its cell. */
 typedef struct mcor_wall_edge
 {
   cl_ulong cell;
   int32_t triangle, from, to;
 } mcor_wall_edge;
 
-/* The edges, loops and points of which caps at walls are made. */
+/* What caps at walls are made from. */
 typedef struct mcor_wall_job
 {
   mcor_cap_job* cap;
   mcor_wall wall;
-  mcor_wall_edge* edges;    /* ascending by cell, then triangle */
-  int64_t edge_count, edge; /* edge: the first one that is not of a cell before */
+  mcor_wall_edge* edges;    /* sorted by cell, then triangle */
+  int64_t edge_count, edge; /* edge: the first one of a cell that is still to come */
 } mcor_wall_job;
 
-/* A cell: its lowest node; of its corners x + 2 y + 4 z whether they are above, and their margins; of its
- * faces, by axis, lower and upper, whether ambiguous corners above are joined. */
+/* A cell. Of its corners, numbered x + 2 y + 4 z: whether they are above, and their trim
+ * margins. Of its faces, by axis, lower and upper: whether an ambiguous face joins its corners
+ * above. */
 typedef struct mcor_wall_cell
 {
   cl_int node[3];
@@ -46,7 +48,7 @@ typedef struct mcor_wall_cell
   double margin[8];
 } mcor_wall_cell;
 
-/* ---- edges that trimming has made ---- */
+/* ---- Edges that trimming has made ---- */
 
 static int mcor_compare_wall_edges(const void* x, const void* y)
 {
@@ -55,7 +57,7 @@ static int mcor_compare_wall_edges(const void* x, const void* y)
                             : (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-/* Lists the trimmed triangles' border edges: a triangle has one where two corners are cuts. */
+/* Lists the border edges of the trimmed triangles: an edge between two cuts. */
 static mcor_status mcor_list_wall_edges(
   mcor_wall_job* job, const cl_int* triangles, const cl_ulong* cells)
 {
@@ -97,9 +99,10 @@ static mcor_status mcor_load_wall_edges(mcor_wall_job* job)
   return mcor_unmap_all(context, mappings, 2, status);
 }
 
-/* ---- cells ---- */
+/* ---- Cells ---- */
 
-/* False where a corner is not near both fluid and solids, or the cell is none of those that are marched. */
+/* Loads a cell. Returns false where a corner is not near both fluid and solids, or the cell is
+ * not marched. */
 static bool mcor_load_wall_cell(
   const mcor_wall_job* job, const mcor_wall_brick* brick, int inner, mcor_wall_cell* cell)
 {
@@ -143,8 +146,8 @@ static bool mcor_load_wall_cell(
   return true;
 }
 
-/* Whether corners above, or vertices of the surface on the cell's edges, are on both sides of where the
- * surface ends. */
+/* Whether the surface ends in a cell: corners above, or vertices on its edges, lie on both sides
+ * of that end. */
 static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* cell)
 {
   const mcor_cap_job* cap = job->cap;
@@ -172,7 +175,7 @@ static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* ce
   return inside && outside && (!is_crossed || cell->is_used);
 }
 
-/* The edges that cutting one of the cell's faces leaves. */
+/* Cuts one face of a cell and keeps the edges that this leaves. */
 static mcor_status mcor_cut_wall_face(
   mcor_cap_job* cap, const mcor_wall_cell* cell, int axis, int upper)
 {
@@ -195,7 +198,7 @@ static mcor_status mcor_cut_wall_face(
   return is_cut ? mcor_add_cap_square(cap, &square) : MCOR_OK;
 }
 
-/* ---- loops ---- */
+/* ---- Loops ---- */
 
 static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
 {
@@ -210,7 +213,7 @@ static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
   }
 }
 
-/* The area of a fan around corner `first`. */
+/* Computes the area of the fan around corner `first`. */
 static double mcor_fan_area(double (*at)[3], int count, int first)
 {
   double area = 0;
@@ -229,7 +232,7 @@ static double mcor_fan_area(double (*at)[3], int count, int first)
   return area;
 }
 
-/* The fan of the least area: loops are not flat, and may not be convex. */
+/* Fills a loop with the fan of least area, since loops are not flat, and may not be convex. */
 static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, int count)
 {
   double at[MCOR_CAP_BORDER][3], least = INFINITY;
@@ -253,7 +256,7 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
   return MCOR_OK;
 }
 
-/* Joins the edges of a cell to loops, and fills these. */
+/* Joins the edges of a cell to loops, and fills them. */
 static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* cell)
 {
   mcor_cap_border* border = job->border;

@@ -40,8 +40,8 @@ static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* o
   return mcor_unmap(context, buffer, &view);
 }
 
-/* Moves the vertices onto the surface, or evaluates them where linear interpolation puts them
- * (preview). */
+/* Moves the vertices onto the surface. In a preview they stay where linear interpolation puts
+ * them, and are evaluated there. */
 mcor_status mcor_correct(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Normals from triangles [III-D.4]: of all vertices in a preview, else of those where the gradient
- * vanishes. The length of the cross product weighs a triangle by its area. */
+/* Normals from triangles [III-D.4]: at all vertices of a preview, else only where the gradient
+ * vanishes. The cross product weighs each triangle by its area. */
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"
@@ -14,7 +14,7 @@ typedef struct mcor_normals
 {
   mcor_surface* surface;
   double* sums; /* [point_count][3] */
-  double scale; /* a power of 2 that brings lengths to about 1 */
+  double scale; /* a power of 2 that scales lengths to about 1 */
   bool all;
 } mcor_normals;
 
@@ -51,10 +51,10 @@ static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Triangles between two reports. */
+/* Triangles between two progress reports. */
 #define MCOR_NORMAL_STEP (1 << 18)
 
-/* One thread: the order in which a point's triangles are added must not change. */
+/* Runs on one thread: the order in which a point's triangles are added must not change. */
 static mcor_status mcor_add_triangles(mcor_context* context, const mcor_normals* job)
 {
   const mcor_surface* surface = job->surface;

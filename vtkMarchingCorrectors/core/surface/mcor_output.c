@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Output [III-D.4]: hands the vertices that triangles use, renumbered, and the triangles to the
- * caller's surface, and adds up what the correction did. */
+/* Output [III-D.4]: copies the triangles, and the vertices that they use, to the caller's
+ * surface, and sums up what the correction did. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -28,16 +28,16 @@ typedef struct mcor_download
 {
   mcor_context* context;
   double iso, sum_rounding;
-  mcor_surface* surface; /* the first vertex put out becomes its point point_count */
-  /* Views of the mesh's, see mcor_is_output. */
+  mcor_surface* surface; /* index of the first new point */
+  /* Views of the mesh's buffers, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
-  void *eigenvalue, *nearest, *cuts; /* where they are asked for */
+  void *eigenvalue, *nearest, *cuts; /* where the caller asked for them */
   uint8_t* owned;                    /* see mcor_find_counted */
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 #define MCOR_DOWNLOADS 11
 
-/* Counts the vertices that a triangle uses, so that scanned[v] is the number of those before v. */
+/* Numbers the vertices that triangles use: scanned[v] becomes how many of them come before v. */
 static mcor_status mcor_count_used(mcor_context* context, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -48,7 +48,7 @@ static mcor_status mcor_count_used(mcor_context* context, int* count)
   return mcor_scan(context, &mesh->scanned, vertices, count);
 }
 
-/* Counts all vertices. */
+/* Numbers all vertices. */
 static mcor_status mcor_count_all(mcor_context* context, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -66,7 +66,7 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
   return status;
 }
 
-/* Returns how many. */
+/* Returns the number of vertices that go to the output. */
 static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
 {
   const mcor_context* context = d->context;
@@ -102,22 +102,22 @@ static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
   return (const cl_int*)d->node + 4 * v;
 }
 
-/* The surface's boundary flag of vertex v. A march vertex whose edge has an unused cell around it
- * lies on the border that the node threshold leaves. */
+/* Returns the surface's boundary flag of vertex v. A vertex lies on the border that the node
+ * threshold leaves if a cell around its edge is unused. */
 static int mcor_flag_of(const mcor_download* d, int64_t v)
 {
   return v < d->context->mesh.march_count ? (mcor_node_of(d, v)[3] >> 2 & 1) * 4
                                           : ((const uint8_t*)d->flag)[v];
 }
 
-/* Turns a length in cubes of vertex v's level into one in cubes of the grid: see mcor_adaptive.h. */
+/* Converts a length in cubes of vertex v's level to cubes of the grid, see mcor_adaptive.h. */
 static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 {
   const int level = mcor_node_of(d, v)[3] >> MCOR_LEVEL_SHIFT;
   return level > 0 ? ldexp(length, level) : length;
 }
 
-/* How far the correction moved vertex v, unit L. */
+/* Computes how far the correction moved vertex v, unit L. */
 static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
   return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
@@ -125,11 +125,11 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
                                           : 0;
 }
 
-/* How far rounded positions may move the value of vertex v. */
+/* Computes how far rounded positions may move the value of vertex v. */
 static double mcor_rounding_of(const mcor_download* d, int64_t v)
 {
   const mcor_context* context = d->context;
-  double gradient = 0; /* along all axes: each is rounded */
+  double gradient = 0; /* each axis is rounded */
   for (int a = 0; a < 3; ++a)
   {
     gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
@@ -138,8 +138,9 @@ static double mcor_rounding_of(const mcor_download* d, int64_t v)
     d->sum_rounding;
 }
 
-/* The device's rounding of the sums themselves may add to a residual: some units of rounding of the greatest term
- * against the iso value. For a plain sum weights may be any; there they count as 1, as inside of fluid. */
+/* Estimates what the device's rounding of sums may add to a residual: some units of rounding of
+ * the greatest term against the iso value. For a plain sum, whose weights may be any, weights
+ * count as 1, as inside of fluid. */
 static double mcor_sum_rounding(const mcor_context* context)
 {
   const double iso = context->run.iso.value;
@@ -191,8 +192,8 @@ static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
   s->residual_max = fmax(s->residual_max, tally->residual_max);
 }
 
-/* The normal against the gradient; zero where that vanishes. Scaled first, as the square of a small
- * gradient may vanish, and that of a large one overflow. */
+/* Computes the normal, opposite to the gradient; zero where that vanishes. Scales first: the
+ * square of a small gradient may vanish, that of a large one overflow. */
 static void mcor_store_normal(const double gradient[3], float normal[3])
 {
   double most = 0, square = 0;
@@ -210,7 +211,7 @@ static void mcor_store_normal(const double gradient[3], float normal[3])
   }
 }
 
-/* Vertex v becomes point `to` of the surface. */
+/* Writes vertex v as point `to` of the surface. */
 static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
 {
   const mcor_context* context = d->context;
@@ -221,7 +222,7 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
   double gradient[3];
   for (int a = 0; a < 3; ++a)
   {
-    /* The origin is a whole number of cells of all levels. */
+    /* The origin is a whole number of cells of every level. */
     const double node = (double)((context->lattice.origin[a] >> level) + at[a]);
     s->points[3 * to + a] = (node + mcor_get_real(context, d->offset, 4 * v + a)) *
       mcor_length_of(d, v, context->lattice.edge[a]);
@@ -359,7 +360,7 @@ static mcor_status mcor_evaluate_extras(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
   mcor_buffer* eigenvalue = &context->trim.eigenvalue;
-  if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming needs it at other vertices */
+  if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
   {
     MCOR_TRY(mcor_reserve(
       context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
@@ -406,7 +407,7 @@ bool mcor_output_evaluates(const mcor_context* context)
   return mcor_wants(context, MCOR_OUT_BOUNDARY_EIGENVALUE) || mcor_attributes_remain(context);
 }
 
-/* Gives back what only making the mesh needed, so that the output finds room. */
+/* Frees what only the mesh needed, so that the output finds room. */
 static void mcor_release_construction(mcor_context* context)
 {
   mcor_mesh* m = &context->mesh;
@@ -414,7 +415,7 @@ static void mcor_release_construction(mcor_context* context)
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
 }
 
-/* Gives back the vertices and attributes, so that the caller finds room for what it makes of the
+/* Frees the vertices and attributes, so that the caller finds room for what it makes of the
  * surface. */
 static void mcor_release_vertices(mcor_context* context)
 {

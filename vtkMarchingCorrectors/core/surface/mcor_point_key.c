@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Keys of the surface's points: functions of the vertices alone, whatever part of the surface a call
- * makes, and ascending in the order of the whole surface's points. */
+/* Keys of the surface's points. A key depends on its vertex alone, not on the part of the
+ * surface that a call makes, and keys ascend in the order of the whole surface's points. */
 
 #include "mcor_adaptive.h"
 #include "mcor_cap.h"
@@ -27,7 +27,8 @@ uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
   return block << 15 | inner;
 }
 
-/* A node's key with adaptive cubes: by the key of the brick of its level, then by node; see MCOR_TREE_KEY_BITS. */
+/* Computes a node's key with adaptive cubes: the key of its brick at its level, then the node;
+ * see MCOR_TREE_KEY_BITS. */
 static uint64_t mcor_adaptive_node_key(const mcor_tree* tree, const cl_int node[4])
 {
   const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
@@ -37,7 +38,8 @@ static uint64_t mcor_adaptive_node_key(const mcor_tree* tree, const cl_int node[
   return key << 6 | (uint64_t)inner;
 }
 
-/* In the order of vertices: by node, then by axis. A pinched edge has two vertices, one after the other. */
+/* Stores a vertex's key: by node, then axis. The two vertices of a pinched edge follow each
+ * other. */
 static uint64_t mcor_march_key(const mcor_context* context, const cl_int* nodes, int64_t v)
 {
   const cl_int* node = nodes + 4 * v;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The points, then in the order of mcor_output. */
+/* Lists the points, then the other arrays in the order of mcor_output. */
 void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS])
 {
   const mcor_surface_array all[MCOR_SURFACE_ARRAYS] = { { (void**)&s->points, 3 * sizeof(double) },

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The cell that each triangle is in, as a key, follows it through trimming. It says which triangles are
- * owned, see mcor_box.c: those of the ring, and points that only they use, leave the surface at the
- * very end. And keys ascend in the order of the whole surface's triangles, whatever part of it a call
- * makes. */
+/* Each triangle's cell, as a key, follows it through trimming. The key says which triangles this
+ * call owns, see mcor_box.c: triangles of the ring leave the surface at the very end, with the
+ * points that only they use. Keys ascend in the order of the whole surface's triangles, whatever
+ * part of it a call makes. */
 
 #include "mcor_box.h"
 #include "mcor_cap.h"
@@ -66,7 +66,7 @@ mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* 
     : MCOR_OK;
 }
 
-/* Takes the cells of the mesh's triangles along with the surface. */
+/* Copies the cells of the mesh's triangles along with the surface. */
 mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
 {
   mcor_box* box = &context->box;
@@ -100,8 +100,7 @@ mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface)
   return mcor_unmap(context, &box->cells, &view);
 }
 
-/* Moves elements of `width` bytes to where their numbers say, which is not behind where they are;
- * -1: dropped. */
+/* Moves elements of `width` bytes to their new numbers, which never increase; -1: dropped. */
 static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t count)
 {
   char* bytes = array;
@@ -114,7 +113,7 @@ static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t 
   }
 }
 
-/* Numbers the points that owned triangles use, in order; drops the other triangles. */
+/* Numbers the points that owned triangles use, in order, and drops the other triangles. */
 static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, int32_t* number)
 {
   int64_t triangles = 0, points = 0;
@@ -148,7 +147,7 @@ static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, i
   return points;
 }
 
-/* Leaves the owned triangles, and their points. */
+/* Keeps the owned triangles and their points alone. */
 mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
   const uint8_t* kept = context->box.kept;

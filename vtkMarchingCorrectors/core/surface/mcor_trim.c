@@ -25,7 +25,7 @@ bool mcor_trims_by_eigenvalue(const mcor_context* context)
     context->run.options->field != MCOR_WEIGHT_SUM;
 }
 
-/* The quantity of the vertex threshold, at the vertices on lattice edges. */
+/* Returns what the vertex threshold applies to, at the vertices on lattice edges. */
 static const mcor_buffer* mcor_threshold_quantity(const mcor_context* context)
 {
   return mcor_trims_by_eigenvalue(context) ? &context->trim.eigenvalue
@@ -39,14 +39,14 @@ double mcor_least_fluid(const mcor_context* context)
     : 0;
 }
 
-/* Whether a vertex may be within the threshold, and yet lack the fluid that a mean needs. */
+/* Whether a vertex may pass the threshold and still lack the fluid that a mean needs. */
 static bool mcor_may_lack_fluid(const mcor_context* context)
 {
   return mcor_least_fluid(context) > 0 &&
     (context->grid.has_solids || mcor_trims_by_eigenvalue(context));
 }
 
-/* The threshold of the weight or the boundary eigenvalue. */
+/* Returns the threshold of the weight or of the boundary eigenvalue. */
 double mcor_vertex_threshold(const mcor_context* context)
 {
   const double threshold = context->run.options->vertex_threshold;
@@ -72,7 +72,7 @@ bool mcor_is_trimmed(const mcor_context* context)
   return context->run.options->field != MCOR_WEIGHT_SUM || mcor_ends_at_solids(context);
 }
 
-/* Evaluates it where that is not done yet. */
+/* Evaluates the quantity where that has not been done yet. */
 static mcor_status mcor_evaluate_margins(mcor_context* context)
 {
   const mcor_mesh* mesh = &context->mesh;
@@ -94,7 +94,8 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
     MCOR_REAL(mcor_fluid_share(context)), MCOR_BUFFER(&trim->margin));
 }
 
-/* Counts what remains; ends with scanned counts in trim->remaining and trim->cuts. */
+/* Counts the triangles and cuts that remain; leaves the scanned counts in trim->remaining and
+ * trim->cuts. */
 static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* remaining, int* cuts)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -138,8 +139,8 @@ int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
   return cut ? (int)(cut - cuts) : -1;
 }
 
-/* Finds where the cut vertices of each level begin: a cut vertex has that of the lower one of its edge's
- * vertices, by which they are sorted. */
+/* Finds where the cut vertices of each level begin. A cut vertex belongs to the level of its
+ * edge's lower vertex, by which cuts are sorted. */
 static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -161,7 +162,7 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
   return MCOR_OK;
 }
 
-/* Places the cut vertices: linear cut, then both equations at once. */
+/* Places the cut vertices: first linearly, then by solving both equations at once. */
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -190,7 +191,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
-/* Takes a buffer over in place of another one. */
+/* Replaces one buffer by another. */
 static void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to)
 {
   mcor_release(context, to);

@@ -294,8 +294,18 @@ mcor_status mcor_grow_surface(
 /* Moves a triangle, and its keys, to another's place. */
 void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
 /* mcor_point_key.c */
-/* In the order of vertices: by block, brick and node, each by z, y, x. Fits 2^61, as the lattice has no more
- * than 2^15 + 2 blocks along an axis. Of a cell's lowest node it is the cell's key. */
+/* Of a brick of a level, of blocks that are numbered like that; of a node, whose level node[3] has. In the order of
+ * slots and vertices: by level, block, brick and node, each by z, y, x. The key of a cell's lowest node is the cell's. */
+static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
+{
+  uint64_t block = 0, number = 0;
+  for (int a = 2; a >= 0; --a)
+  {
+    block = block * (uint64_t)rung->n[a] + (uint64_t)(brick[a] >> 3);
+    number = number << 3 | (uint64_t)(brick[a] & 7);
+  }
+  return (rung->base + block) * MCOR_BLOCK_BRICKS + number;
+}
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
   int64_t v, uint64_t key[MCOR_POINT_KEY]);

@@ -28,6 +28,8 @@ typedef struct mcor_lattice
   int top; /* highest level of adaptive cubes; 0: uniform */
   int blocks[3];
   int period[3], period_first[3]; /* cells, 0: open; where one begins, from origin */
+  /* Blocks of each level, and the end; of uniform cubes those of higher levels are larger cubes. */
+  mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
 /* On the way to the search grid. */
@@ -120,11 +122,9 @@ typedef struct mcor_brick_set
 /* Leaves of adaptive cubes; see mcor_tree.h. */
 typedef struct mcor_tree
 {
-  int top;                                    /* highest level of leaves */
-  bool is_plane;                              /* all bricks are of the lowest layer */
-  int period[3], period_first[3];             /* as in mcor_lattice */
-  mcor_rung rungs[MCOR_TREE_LEVEL_LIMIT + 3]; /* up to one above, and the end */
-  uint64_t key_limit;
+  const mcor_lattice* lattice;
+  int top;       /* highest level of leaves; bricks have one more */
+  bool is_plane; /* all bricks are of the lowest layer */
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */
   cl_uint* finer; /* [leaf_count]: what is finer around each, see MCOR_DIRECTION */

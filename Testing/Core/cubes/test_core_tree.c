@@ -201,7 +201,7 @@ static uint64_t hash_leaves(const mcor_tree* tree)
   for (int i = 0; i < tree->leaf_count; ++i)
   {
     const cl_int* leaf = tree->leaves + 4 * (size_t)i;
-    uint64_t key = mcor_tree_key(&tree->rungs[leaf[3]], leaf);
+    uint64_t key = mcor_brick_key(&tree->lattice->rungs[leaf[3]], leaf);
     hash += random_bits(&key);
   }
   return hash;

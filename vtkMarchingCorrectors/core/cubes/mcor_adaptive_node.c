@@ -15,7 +15,7 @@ static mcor_status mcor_request_wanted(mcor_context* context)
   mcor_adaptive* adaptive = &context->adaptive;
   mcor_bricks* bricks = &context->bricks;
   const int count = adaptive->count, plane = mcor_is_plane(context);
-  const uint64_t limit = context->tree.key_limit / MCOR_BLOCK_BRICKS;
+  const uint64_t limit = mcor_tree_key_limit(&context->tree) / MCOR_BLOCK_BRICKS;
   int wanted;
   MCOR_TRY(mcor_reserve(context, &adaptive->wanted, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_count_blocks", MCOR_MEDIUM, count, MCOR_INT(count),
@@ -53,7 +53,7 @@ static mcor_status mcor_find_slot_levels(mcor_context* context)
   int first[MCOR_TREE_LEVEL_LIMIT + 2];
   for (int l = 0, block = 0; l <= tree->top + 1; ++l)
   {
-    while (block < blocks && keys[block] < tree->rungs[l].base)
+    while (block < blocks && keys[block] < tree->lattice->rungs[l].base)
     {
       ++block;
     }

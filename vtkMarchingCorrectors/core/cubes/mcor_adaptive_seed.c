@@ -117,13 +117,13 @@ mcor_status mcor_write_tree(mcor_context* context)
   MCOR_TRY(mcor_write(context, &adaptive->leaf_finer, tree->finer, leaves * sizeof(cl_uint)));
   MCOR_TRY(mcor_write(context, &adaptive->regions, tree->regions, (regions + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_write(
-    context, &context->bricks.rungs, tree->rungs, (size_t)(tree->top + 3) * sizeof tree->rungs[0]));
+    context, &context->bricks.rungs, tree->lattice->rungs, (size_t)(tree->top + 3) * sizeof tree->lattice->rungs[0]));
   MCOR_TRY(mcor_reserve(context, &adaptive->region_keys, regions * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_adaptive_region_keys", MCOR_LIGHT, regions,
     MCOR_INT((int)regions), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&adaptive->regions),
     MCOR_BUFFER(&adaptive->leaves), MCOR_BUFFER(&adaptive->region_keys)));
   MCOR_TRY(mcor_sort(
-    context, &adaptive->region_keys, &adaptive->region_order, tree->region_count, tree->key_limit));
+    context, &adaptive->region_keys, &adaptive->region_order, tree->region_count, mcor_tree_key_limit(tree)));
   mcor_release_sort(context);
   return MCOR_OK;
 }
@@ -289,7 +289,7 @@ static mcor_status mcor_list_examined(mcor_context* context)
       if (chosen[i] & MCOR_CHOSEN)
       {
         const cl_int* leaf = tree->leaves + 4 * i;
-        examined[to++] = (mcor_keyed_leaf){ mcor_tree_key(&tree->rungs[leaf[3]], leaf), i };
+        examined[to++] = (mcor_keyed_leaf){ mcor_brick_key(&tree->lattice->rungs[leaf[3]], leaf), i };
         adaptive->first_leaf[leaf[3] + 1] = (int)to;
       }
     }

@@ -13,8 +13,9 @@
 
 /* Larger cubes are the blocks of higher levels, 32 << level nodes long. Numbers those of all levels up to the first
  * size; returns that level. */
-static int mcor_make_rungs(const mcor_context* context, mcor_rung rungs[MCOR_LEVEL_LIMIT + 1])
+static int mcor_make_rungs(mcor_lattice* lattice)
 {
+  mcor_rung* rungs = lattice->rungs;
   uint64_t total = UINT64_MAX;
   int level = -1;
   for (rungs[0].base = 0; total > MCOR_FIRST_CUBES;
@@ -24,7 +25,7 @@ static int mcor_make_rungs(const mcor_context* context, mcor_rung rungs[MCOR_LEV
     ++level;
     for (int a = 0; a < 3; ++a)
     {
-      rungs[level].n[a] = ((context->lattice.blocks[a] - 1) >> level) + 1;
+      rungs[level].n[a] = ((lattice->blocks[a] - 1) >> level) + 1;
       total *= (uint64_t)rungs[level].n[a];
     }
   }
@@ -63,12 +64,11 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
 
 /* States of the cubes whose keys are the block keys now, and which of them are inactive. children:
  * see mcor_void_kept, 0 where no blocks are kept. */
-static mcor_status mcor_test_cubes(
-  mcor_context* context, const mcor_rung* rungs, int level, int children)
+static mcor_status mcor_test_cubes(mcor_context* context, int level, int children)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count;
-  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, rungs[level + 1].base,
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, context->lattice.rungs[level + 1].base,
     &bricks->block_buckets, &bricks->block_shift));
   MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
   MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
@@ -139,8 +139,8 @@ mcor_status mcor_request_known(mcor_context* context)
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  mcor_rung rungs[MCOR_LEVEL_LIMIT + 1] = { 0 };
-  int level = mcor_make_rungs(context, rungs);
+  const mcor_rung* rungs = context->lattice.rungs;
+  int level = mcor_make_rungs(&context->lattice);
   MCOR_TRY(
     mcor_write(context, &context->bricks.rungs, rungs, (size_t)(level + 2) * sizeof rungs[0]));
   mcor_buffer kept = { 0 };
@@ -161,14 +161,14 @@ mcor_status mcor_make_blocks(mcor_context* context)
     : status;
   for (; level > 0 && status == MCOR_OK; --level)
   {
-    status = mcor_test_cubes(context, rungs, level, 0);
+    status = mcor_test_cubes(context, level, 0);
     status = status == MCOR_OK
       ? mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &children)
       : status;
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_test_cubes(context, rungs, 0, kept_count > 0 ? children : 0));
+  MCOR_TRY(mcor_test_cubes(context, 0, kept_count > 0 ? children : 0));
   const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
   MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
   MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));

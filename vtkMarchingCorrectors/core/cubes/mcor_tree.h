@@ -22,17 +22,6 @@ bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other);
 /* Whether the sets of all levels together make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
 
-/* Where one level's bricks are among the keys. */
-static inline uint64_t mcor_tree_key(const mcor_rung* rung, const int brick[3])
-{
-  const uint64_t block = rung->base +
-    ((uint64_t)(brick[2] >> 3) * (uint64_t)rung->n[1] + (uint64_t)(brick[1] >> 3)) *
-      (uint64_t)rung->n[0] +
-    (uint64_t)(brick[0] >> 3);
-  return block * MCOR_BLOCK_BRICKS +
-    (uint64_t)((brick[0] & 7) | (brick[1] & 7) << 3 | (brick[2] & 7) << 6);
-}
-
 /* Bricks of a cluster along an axis. */
 #define MCOR_CLUSTER 4
 
@@ -66,8 +55,13 @@ int mcor_tree_top(const mcor_measure* measure, const mcor_options* options);
 /* Clusters, or pieces of work alike, of the host between two looks at whether to go on. */
 #define MCOR_TREE_STEP 4096
 
-/* Numbers the bricks of all levels up to the one above the highest leaves'. */
+/* Begins a tree of the lattice, and numbers the blocks of all levels up to the one above the highest leaves'. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree);
+/* Behind the keys of all bricks. */
+static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
+{
+  return tree->lattice->rungs[tree->top + 2].base * MCOR_BLOCK_BRICKS;
+}
 /* Where a brick is, or with a period its image there; false: it is off the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
 bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3]);

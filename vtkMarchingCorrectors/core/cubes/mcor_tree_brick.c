@@ -7,7 +7,6 @@
 #include "mcor_tree.h"
 
 #include <math.h>
-#include <string.h>
 
 int mcor_tree_level_of(double h, double h_min, int top)
 {
@@ -30,16 +29,15 @@ int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
 /* The lattice is a whole number of the largest ones. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
-  const mcor_lattice* lattice = &context->lattice;
+  mcor_lattice* lattice = &context->lattice;
   uint64_t base = 0;
   double most = MCOR_BLOCK_BRICKS; /* bricks of all levels, nearly */
+  tree->lattice = lattice;
   tree->top = lattice->top;
   tree->is_plane = mcor_is_plane(context);
-  memcpy(tree->period, lattice->period, sizeof tree->period);
-  memcpy(tree->period_first, lattice->period_first, sizeof tree->period_first);
   for (int l = 0; l <= tree->top + 1; ++l)
   {
-    mcor_rung* rung = &tree->rungs[l];
+    mcor_rung* rung = &lattice->rungs[l];
     uint64_t blocks = 1;
     for (int a = 0; a < 3; ++a)
     {
@@ -57,23 +55,22 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
     rung->unused = 0;
     base += blocks;
   }
-  tree->rungs[tree->top + 2].base = base;
-  tree->key_limit = base * MCOR_BLOCK_BRICKS;
+  lattice->rungs[tree->top + 2].base = base;
   return MCOR_OK;
 }
 
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3])
 {
-  const mcor_rung* rung = &tree->rungs[level];
+  const mcor_rung* rung = &tree->lattice->rungs[level];
   bool within = true;
   for (int a = 0; a < 3; ++a)
   {
     placed[a] = brick[a];
     const int edge = MCOR_BRICK << level;
-    if (tree->period[a] >= edge) /* divisions cost much here */
+    if (tree->lattice->period[a] >= edge) /* divisions cost much here */
     {
-      const int period = tree->period[a] / edge;
-      const int first = tree->period_first[a] / edge, from = brick[a] - first;
+      const int period = tree->lattice->period[a] / edge;
+      const int first = tree->lattice->period_first[a] / edge, from = brick[a] - first;
       placed[a] = (from % period + period) % period + first;
     }
     within = within && placed[a] >= 0 && placed[a] >> 3 < rung->n[a];
@@ -85,7 +82,7 @@ bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
 {
   int b[3];
   return level > 0 && mcor_place_brick(tree, level, brick, b) &&
-    mcor_table_find(&tree->split[level].clusters, mcor_cluster_key(&tree->rungs[level], b)) >>
+    mcor_table_find(&tree->split[level].clusters, mcor_cluster_key(&tree->lattice->rungs[level], b)) >>
       mcor_cluster_bit(b) &
     1;
 }

@@ -59,7 +59,7 @@ static mcor_status mcor_sort_keys(
 static size_t mcor_write_keys(const mcor_tree* tree, int level, uint64_t* keys)
 {
   const mcor_brick_set* set = &tree->split[level];
-  const mcor_rung* rung = &tree->rungs[level];
+  const mcor_rung* rung = &tree->lattice->rungs[level];
   size_t count = 0;
   for (size_t i = 0; i < set->clusters.capacity; ++i)
   {
@@ -70,7 +70,7 @@ static size_t mcor_write_keys(const mcor_tree* tree, int level, uint64_t* keys)
       const int b[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
       if (set->clusters.entries[i].value >> bit & 1)
       {
-        keys[count++] = mcor_tree_key(rung, b);
+        keys[count++] = mcor_brick_key(rung, b);
       }
     }
   }
@@ -117,14 +117,14 @@ mcor_status mcor_take_splits(
   for (int64_t i = 0; i < count; ++i)
   {
     level = i > 0 && keys[i] < keys[i - 1] ? 0 : level;
-    while (level <= tree->top && keys[i] / MCOR_BLOCK_BRICKS >= tree->rungs[level + 1].base)
+    while (level <= tree->top && keys[i] / MCOR_BLOCK_BRICKS >= tree->lattice->rungs[level + 1].base)
     {
       ++level;
     }
-    MCOR_RETURN_IF(keys[i] >= tree->key_limit || level == 0, context, MCOR_INVALID_ARGUMENT,
+    MCOR_RETURN_IF(keys[i] >= mcor_tree_key_limit(tree) || level == 0, context, MCOR_INVALID_ARGUMENT,
       "options.globals was measured with other options: a brick of adaptive cubes is not on the "
       "lattice.");
-    const mcor_rung* rung = &tree->rungs[level];
+    const mcor_rung* rung = &tree->lattice->rungs[level];
     int b[3];
     mcor_brick_of_key(rung, keys[i], b);
     const bool added = mcor_set_add(

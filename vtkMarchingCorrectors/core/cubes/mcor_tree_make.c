@@ -76,7 +76,7 @@ static mcor_status mcor_list_in_images(
     int parent[3];
     for (int a = 0; a < 3; ++a)
     {
-      const int period = tree->period[a] / (MCOR_BRICK << (level + 1));
+      const int period = tree->lattice->period[a] / (MCOR_BRICK << (level + 1));
       exists = exists && (by[a] == 0 || period > 0);
       parent[a] = brick[a] + by[a] * period;
     }
@@ -97,7 +97,7 @@ static mcor_status mcor_list_leaves(mcor_context* context, mcor_tree* tree, int 
   {
     const mcor_entry cluster = set->clusters.entries[i];
     int first[3];
-    mcor_first_of_cluster(&tree->rungs[level + 1], cluster.key, first);
+    mcor_first_of_cluster(&tree->lattice->rungs[level + 1], cluster.key, first);
     for (int bit = 0; bit < 64 && cluster.value >> bit; ++bit)
     {
       const int brick[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3),
@@ -127,7 +127,7 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
     MCOR_TRY(mcor_split_bricks(context, input, tree));
   }
   const bool keys = context->run.options->outputs & (MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
-  MCOR_RETURN_IF(keys && tree->key_limit >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
+  MCOR_RETURN_IF(keys && mcor_tree_key_limit(tree) >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
     "cubes. Use a larger cube size, or fewer levels.",
     context->lattice.cube, tree->top + 1);

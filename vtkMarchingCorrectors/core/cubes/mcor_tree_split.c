@@ -29,12 +29,12 @@
 static bool mcor_split_cluster(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {
-  const mcor_rung* rung = &tree->rungs[level];
+  const mcor_rung* rung = &tree->lattice->rungs[level];
   const int edge = MCOR_BRICK << level;
   bool within = true;
   for (int a = 0; a < 3; ++a)
   {
-    const int low = tree->period_first[a] / edge, period = tree->period[a] / edge;
+    const int low = tree->lattice->period_first[a] / edge, period = tree->lattice->period[a] / edge;
     const int begin = period > 0 ? low : 0, end = period > 0 ? low + period : 8 * rung->n[a];
     within = within && first[a] >= begin && first[a] + MCOR_CLUSTER <= end;
   }
@@ -211,7 +211,7 @@ static bool mcor_split_reached(
 {
   mcor_brick_set* set = &job->split[slice][level];
   const bool plane = job->tree->is_plane;
-  const mcor_rung* rung = &job->tree->rungs[level];
+  const mcor_rung* rung = &job->tree->lattice->rungs[level];
   int home[3];
   bool near = job->done && !job->is_cube && job->spared[slice] > -4 * MCOR_HEAVY_GRAIN;
   for (int a = 0; a < 3; ++a)
@@ -220,7 +220,7 @@ static bool mcor_split_reached(
     near = near && reach < 0.999 * job->edge[level][a];
   }
   const int corner[3] = { home[0] & ~1, home[1] & ~1, home[2] & ~1 };
-  const uint64_t corner_key = mcor_tree_key(rung, corner);
+  const uint64_t corner_key = mcor_brick_key(rung, corner);
   const uint64_t bit = 1u << ((home[0] & 1) | (home[1] & 1) << 1 | (home[2] & 1) << 2);
   _Atomic uint64_t* at = near ? job->done + mcor_place_of(corner_key, job->done_mask) : NULL;
   uint64_t done = near ? atomic_load_explicit(at, memory_order_relaxed) : 0;
@@ -233,7 +233,7 @@ static bool mcor_split_reached(
   if (near)
   {
     --job->spared[slice];
-    const uint64_t all = plane ? 0x3fe00 : 0x7ffffff, key = mcor_tree_key(rung, home);
+    const uint64_t all = plane ? 0x3fe00 : 0x7ffffff, key = mcor_brick_key(rung, home);
     _Atomic uint64_t* place = job->around + mcor_place_of(key, job->around_mask);
     const uint64_t last = atomic_load_explicit(place, memory_order_relaxed);
     const uint64_t known = last >> 27 == key ? last & all : 0;
@@ -390,7 +390,7 @@ static mcor_status mcor_split_by_particles(
   }
   /* A mere speed-up, so it may fail. */
   const uint64_t places = input->count < 1 << 20 ? 1 << 16 : 1 << 18;
-  const bool fits = tree->key_limit >> (64 - 27) == 0;
+  const bool fits = mcor_tree_key_limit(tree) >> (64 - 27) == 0;
   job->around = fits ? calloc(places, sizeof *job->around) : NULL;
   job->done = job->around ? calloc(places / 4, sizeof *job->done) : NULL;
   job->around_mask = places - 1;
@@ -435,7 +435,7 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int 
     {
       int first[3];
       uint64_t above = set->clusters.entries[i].value;
-      mcor_first_of_cluster(&tree->rungs[level], set->clusters.entries[i].key, first);
+      mcor_first_of_cluster(&tree->lattice->rungs[level], set->clusters.entries[i].key, first);
       for (int a = 0; a < (tree->is_plane ? 2 : 3); ++a)
       {
         first[a] = first[a] / 2 - 1;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The life of a context: what it begins with, what is given back when; and how any call on it runs. */
+/* The life of a context, and how every call on it runs. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -19,13 +19,15 @@ void mcor_set_default_options(mcor_options* options)
   {
     return;
   }
-  *options = (mcor_options){ .outputs = MCOR_OUT_NORMALS,
+  *options = (mcor_options){
+    .outputs = MCOR_OUT_NORMALS,
 #define OPTION(member, usual, legal, words, scope, property) .member = usual,
 #include "mcor_options.def"
   };
 }
 
-/* Between signs of life, so that cancelling is answered at once and reports cost nothing. */
+/* Seconds between progress reports: short enough that cancelling is answered at once, long
+ * enough that reports cost nothing. */
 #define MCOR_REPORT_SECONDS 0.03
 
 mcor_status mcor_create_context(const char* device, mcor_context** context)
@@ -85,8 +87,7 @@ void mcor_release_memory(mcor_context* context)
 void mcor_release_all_data(mcor_context* context)
 {
   mcor_release_memory(context);
-  MCOR_RELEASE(
-    context, &context->case_table, &context->topology.cases, &context->topology.rows);
+  MCOR_RELEASE(context, &context->case_table, &context->topology.cases, &context->topology.rows);
   mcor_drop_kept(context, 0);
   context->kept.grid = context->kept.value = context->kept.nodes = false;
 }
@@ -102,7 +103,8 @@ void mcor_free_context(mcor_context* context)
   free(context);
 }
 
-/* Search grid and scalar for these options, from the last call where they still hold. */
+/* Prepares search grid and scalar for these options; takes them from the last call where they
+ * still hold. */
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
@@ -126,7 +128,7 @@ mcor_status mcor_prepare(
   if (!context->kept.grid)
   {
     mcor_release_adaptive(context);
-    mcor_release_grid(context); /* that of the last call is memory for this one's particles */
+    mcor_release_grid(context); /* frees the last call's grid for this one's particles */
     MCOR_TRY(mcor_make_grid(context, input));
   }
   if (!context->kept.value)
@@ -143,7 +145,7 @@ mcor_status mcor_prepare(
   return MCOR_OK;
 }
 
-/* One attempt; on failure nothing is kept as valid. */
+/* Makes one attempt; after a failure nothing is kept as valid. */
 static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result)
@@ -200,7 +202,7 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
 {
   if (!context->created)
   {
-    return MCOR_DEVICE_ERROR; /* its sentence says why */
+    return MCOR_DEVICE_ERROR; /* the error sentence says why */
   }
   mcor_cl* cl = &context->cl;
   const uint64_t limit = options->memory_limit > 0 ? (uint64_t)options->memory_limit : UINT64_MAX;
@@ -212,14 +214,14 @@ mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   if (status == MCOR_OUT_OF_CAPACITY)
   {
     mcor_release_memory(context);
-    if (held > cl->bytes && !options->ranks) /* which all must call alike */
+    if (held > cl->bytes && !options->ranks) /* a second attempt would need all ranks */
     {
       status = mcor_try_call(context, input, options, uses_solids, statistics, body, result);
     }
   }
   if (status == MCOR_OUT_OF_CAPACITY)
   {
-    mcor_release_memory(context); /* not in the way of a smaller one */
+    mcor_release_memory(context); /* lets a smaller input find room */
   }
   return status;
 }

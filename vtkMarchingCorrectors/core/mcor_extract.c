@@ -12,7 +12,7 @@
 #include "mcor_plane.h"
 #include "mcor_widen.h"
 
-/* One iso value's surface, appended. */
+/* Appends the surface of one iso value. */
 static mcor_status mcor_extract_iso(
   mcor_context* context, const mcor_input* input, int i, mcor_surface* surface)
 {
@@ -60,7 +60,7 @@ static mcor_status mcor_extract_all(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result)
 {
   mcor_surface* surface = result;
-  mcor_free_surface(surface); /* of an attempt before */
+  mcor_free_surface(surface); /* left by a failed attempt */
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_RETURN_IF(options->ranks && !options->globals, context, MCOR_INVALID_ARGUMENT,
     "options.ranks is set, but options.globals is not. Call mcor_measure_globals on all ranks "
@@ -97,7 +97,7 @@ static mcor_status mcor_extract_all(
   return mcor_finish_statistics(context);
 }
 
-/* Progress of a run in a run that is nearly done. */
+/* Reports the progress of a further run inside a run that is nearly done. */
 static int mcor_report_end(void* user, double fraction, const char* phase)
 {
   const mcor_options* options = user;
@@ -105,7 +105,8 @@ static int mcor_report_end(void* user, double fraction, const char* phase)
   return options->progress(options->progress_user, 1, phase);
 }
 
-/* Tells whether the node threshold is why a surface is empty. A failure says nothing. */
+/* Finds whether the node threshold is why a surface is empty, by a run without it. A failure of
+ * that run is ignored. */
 static void mcor_count_below_threshold(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_statistics* statistics)
 {

@@ -3,7 +3,8 @@
 #ifndef mcor_internal_h
 #define mcor_internal_h
 
-/* Functions that phases call of each other. Each phase is one file of the same name as its kernels. */
+/* Functions by which phases call each other. Each phase has one file here, and one of the same
+ * name among the kernels. */
 
 #include "mcor_state.h"
 
@@ -29,27 +30,28 @@
     }                                                                                              \
   } while (0)
 
-/* The context keeps the sentence; it may be NULL where nobody asks for one. */
+/* Keeps the sentence in the context, which may be NULL if nobody will ask for it. */
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
 #if defined(__GNUC__)
   __attribute__((format(printf, 3, 4)))
 #endif
   ;
 double mcor_seconds(void);
-/* The norm of a kernel W = norm / h^3 w(q). */
+/* Returns the norm of an SPH kernel W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);
 double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane);
 
-/* mcor_memory.c. Whether memory of the host could be allocated. */
+/* mcor_memory.c. Fails where memory of the host could not be allocated. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);
-/* Room for an element behind the first `count` of an array that has `room` for so many, `width` bytes each. */
+/* Makes room for one more element behind the first `count` of an array, which has room for
+ * `room` elements of `width` bytes. */
 mcor_status mcor_make_room(
   mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
-/* Before an array of the host, or of a device that shares its memory, is touched. */
+/* Called before an array of the host, or of a device that shares its memory, is first touched. */
 #define MCOR_LARGE_ARRAY ((size_t)1 << 20)
 void mcor_use_large_pages(void* memory, size_t bytes);
 
-/* Element i of an array of the device's real type. */
+/* Reads element i of an array of the device's real type. */
 static inline double mcor_get_real(const mcor_context* context, const void* array, int64_t i)
 {
   return context->cl.real_size == sizeof(float) ? (double)((const float*)array)[i]
@@ -66,48 +68,50 @@ static inline void mcor_put_real(const mcor_context* context, void* array, int64
   ((double*)array)[i] = value;
 }
 
-/* As the device has it. */
+/* Rounds a number to the device's precision. */
 static inline double mcor_real_of(const mcor_context* context, double value)
 {
   return context->cl.real_size == sizeof(float) ? (double)(float)value : value;
 }
 
-/* Elements that kernels count: rounded up to any work-group or batch, it still is an int. */
+/* The most elements that kernels count: rounded up to any work-group or batch, their number is
+ * still an int. */
 #define MCOR_COUNT_LIMIT (INT32_MAX - 4095)
-/* Lattice nodes along one axis at most: then single precision fixed point keeps 2^-9 cubes. */
+/* The most lattice nodes along an axis, for which single-precision fixed point resolves 2^-9
+ * cubes. */
 #define MCOR_LATTICE_LIMIT (1 << 20)
-/* Cubes from one end of the particles to the other where it is around a box alone, for those of long supports: then
- * it keeps 2^-7. */
+/* For a lattice around a box alone: the most cubes from one end of the particles to the other,
+ * for those of long supports. Fixed point then resolves 2^-7 cubes. */
 #define MCOR_CUT_LIMIT (1 << 22)
-/* Keys have bits for so many nodes along an axis, and so many cells: see MCOR_RING_CELL. */
+/* The most nodes along an axis, and cells, for which keys have bits; see MCOR_RING_CELL. */
 #define MCOR_NODE_LIMIT (1 << 21)
 #define MCOR_KEY_LIMIT 4.6e18
 
-/* Whether vertex v is put out, being used by a triangle: as point scanned[v] of its mesh. */
+/* Whether a triangle uses vertex v, which then is point scanned[v] of its mesh. */
 static inline bool mcor_is_output(const cl_int* scanned, int64_t v)
 {
   return scanned[v] != scanned[v + 1];
 }
 
-/* Input index of particle i of the device. */
+/* Returns the input index of particle i of the device. */
 static inline int64_t mcor_source_of(const mcor_context* context, int64_t i)
 {
   return context->source ? context->source[i] : i;
 }
 
-/* Batches of so many particles or triangles, above 0. */
+/* Returns the number of batches, above 0, that so many particles or triangles need. */
 static inline int mcor_batches(const mcor_context* context, int count)
 {
   return (count - 1) / MCOR_BATCH_OF(context->cl.lanes) + 1;
 }
 
-/* Whether the surface is to carry this. */
+/* Whether the surface is to have this array. */
 static inline bool mcor_wants(const mcor_context* context, mcor_output output)
 {
   return context->run.options->outputs & output;
 }
 
-/* The wall share that is asked for. */
+/* Returns the wall share that the options ask for. */
 static inline double mcor_asked_share(const mcor_options* options)
 {
   return options->wall_share != MCOR_WALL_SHARE_AUTO ? options->wall_share
@@ -115,14 +119,14 @@ static inline double mcor_asked_share(const mcor_options* options)
                                                      : MCOR_WALL_SHARE_MEASURED;
 }
 
-/* The free surface needs solids only to end at them. */
+/* Whether solids are needed; a free surface needs them only to end at them. */
 static inline bool mcor_uses_solids(const mcor_input* input, const mcor_options* options)
 {
   return !input->ignore_solids &&
     (options->field != MCOR_WEIGHT_SUM || mcor_asked_share(options) != 0);
 }
 
-/* The wall share in use. */
+/* Returns the wall share in use. */
 static inline double mcor_wall_share(const mcor_context* context)
 {
   const double share = mcor_asked_share(context->run.options);
@@ -135,13 +139,13 @@ static inline bool mcor_ends_at_solids(const mcor_context* context)
   return context->grid.has_solids && mcor_wall_share(context) > 0;
 }
 
-/* The share of the weight that the fluid needs; 0: none. */
+/* Returns the share of the weight that must be fluid; 0: none. */
 static inline double mcor_fluid_share(const mcor_context* context)
 {
   return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
 }
 
-/* Whether seeds are the paper's pairs. The free surface has no values that pairs could straddle. */
+/* Whether seeds are the paper's pairs. A free surface has no values for pairs to straddle. */
 static inline bool mcor_wants_pairs(const mcor_options* options)
 {
   return options->seeds == MCOR_PAIRS && options->field != MCOR_WEIGHT_SUM;
@@ -152,40 +156,41 @@ static inline bool mcor_uses_pairs(const mcor_context* context)
   return mcor_wants_pairs(context->run.options);
 }
 
-/* The work of one call; what an attempt before left in the result is to be freed first. */
+/* Does the work of one call. First frees what a failed attempt may have left in the result. */
 typedef mcor_status (*mcor_body)(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* result);
 
-/* Runs the body, and once more where memory ran out but some could be given back. */
+/* Runs the body; once more if memory ran out and some could be freed. */
 mcor_status mcor_run_call(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool uses_solids, mcor_statistics* statistics, mcor_body body,
   void* result);
-/* Gives back everything on the device, the tables that stay between calls, too. */
+/* Frees everything on the device, including tables that outlive calls. */
 void mcor_release_all_data(mcor_context* context);
 mcor_status mcor_prepare(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 
-/* Gives back buffers; those that are empty stay so. */
+/* Frees buffers; empty ones stay so. */
 #define MCOR_RELEASE(context, ...)                                                                 \
   mcor_release_all(context, (mcor_buffer* const[]){ __VA_ARGS__ },                                 \
     sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count);
 
-/* mcor_statistics.c. Reports that something runs from one fraction of the call to another; may cancel. */
+/* mcor_statistics.c. Reports what runs from one fraction of the call to another; the report may
+ * cancel it. */
 mcor_status mcor_report(mcor_context* context, const char* doing, double fraction, double end);
-/* Reports between two launches, or steps of a loop of the host: where it is time for a sign of life, a bit
- * nearer to the end. */
+/* Called between two launches, or steps of a loop of the host: reports progress if it is time
+ * to, a bit nearer to the end. */
 mcor_status mcor_report_launch(mcor_context* context);
 /* The observer of calls that report progress. */
 mcor_status mcor_observe_call(mcor_context* context, bool compiles);
-/* Ends the phase under way, reports progress and may cancel. */
+/* Ends the phase under way and reports progress, which may cancel. */
 mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fraction, double end);
 mcor_status mcor_finish_statistics(mcor_context* context);
 double mcor_rounding(
   const mcor_context* context); /* of positions on the device, at most, along each axis */
 
-/* mcor_reuse.c. What of the last call still holds; whether the caller's version stands for the same
- * particles as then. */
+/* mcor_reuse.c. Finds what of the last call still holds; whether the caller's version stands for
+ * the same particles as then. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
@@ -197,7 +202,8 @@ mcor_status mcor_check_input(
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options);
 
-/* mcor_measure_wall.c. The wall share, where the options ask for it and it is not yet measured. */
+/* mcor_measure_wall.c. Measures the wall share if the options ask for it and it is not yet
+ * known. */
 mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input);
 
 /* mcor_scan.c */
@@ -240,7 +246,7 @@ mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
-/* The nodes that are needed of `count` bricks from `first` on. */
+/* Evaluates the needed nodes of `count` bricks from `first` on. */
 mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated);
@@ -248,15 +254,17 @@ mcor_status mcor_march(mcor_context* context);
 mcor_status mcor_find_side_flags(mcor_context* context);
 mcor_status mcor_resolve_topology(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context);
-/* The boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
+/* Evaluates the boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue);
 mcor_status mcor_trim(mcor_context* context);
-/* The quantity by which trimming decides, at the vertices on lattice edges, and its threshold. */
+/* Whether the mesh is trimmed; the quantity by which, at the vertices on lattice edges, and its
+ * threshold. */
 bool mcor_is_trimmed(const mcor_context* context);
 bool mcor_trims_by_eigenvalue(const mcor_context* context);
 const mcor_buffer* mcor_trim_quantity(const mcor_context* context);
 double mcor_trim_threshold(const mcor_context* context);
-/* Among the sorted edges of cut vertices, mesh.cut_edges, that between two vertices; -1: it is not cut. */
+/* Finds the edge between two vertices among those that are cut, mesh.cut_edges; -1: it is not
+ * cut. */
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q);
 double mcor_least_fluid(const mcor_context* context); /* of a vertex; 0: none is needed */
 double mcor_vertex_threshold(const mcor_context* context);
@@ -273,10 +281,11 @@ bool mcor_output_evaluates(const mcor_context* context);
 /* all: vertices that no triangle uses, too. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface);
-/* mcor_surface.c. Prepares the surface's attributes: those to leave out, and of the others the components that vary. */
+/* mcor_surface.c. Prepares the surface's attributes: finds those to leave out, and the
+ * components of the others that vary. */
 mcor_status mcor_begin_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
-/* The optional and other arrays of a surface's points but the attributes, and bytes per point. */
+/* The arrays of a surface's points except attributes, and their bytes per point. */
 #define MCOR_SURFACE_ARRAYS 11
 typedef struct mcor_surface_array
 {
@@ -285,17 +294,18 @@ typedef struct mcor_surface_array
 } mcor_surface_array;
 void mcor_list_surface_arrays(
   mcor_surface* surface, mcor_surface_array arrays[MCOR_SURFACE_ARRAYS]);
-/* Room for so many more elements of `width` bytes behind `old` ones; *array may be NULL. */
+/* Makes room for `count` elements of `width` bytes behind `old` ones; *array may be NULL. */
 mcor_status mcor_grow(
   mcor_context* context, void** array, int64_t old, int64_t count, size_t width);
-/* Room for more points in all arrays that are asked for. */
+/* Makes room for more points in all arrays that the caller wants. */
 mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
-/* Moves a triangle, and its keys, to another's place. */
+/* Moves a triangle and its keys to another place. */
 void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
 /* mcor_point_key.c */
-/* Of a brick of a level, of blocks that are numbered like that; of a node, whose level node[3] has. In the order of
- * slots and vertices: by level, block, brick and node, each by z, y, x. The key of a cell's lowest node is the cell's. */
+/* Returns the key of a brick, whose level's blocks the rung numbers; and of a node, whose level is
+ * node[3]. Keys are in the order of slots and vertices: by level, block, brick and node, each by
+ * z, y, x. The key of a cell is that of its lowest node. */
 static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
 {
   uint64_t block = 0, number = 0;
@@ -309,18 +319,19 @@ static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
 uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
   int64_t v, uint64_t key[MCOR_POINT_KEY]);
-/* mcor_normal.c. Whether the gradient gives no normal; gives such points one. */
+/* mcor_normal.c. Whether the gradient gives no normal; the other function gives such points one. */
 static inline bool mcor_lacks_normal(const float normal[3])
 {
   return normal[0] == 0 && normal[1] == 0 && normal[2] == 0;
 }
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
-/* mcor_area.c. Into its statistics. */
+/* mcor_area.c. Measures the surface into its statistics. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
-/* 256 rows of 16: up to 15 edges, 3 a triangle, see mcor_cell_row; then the number of triangles. */
+/* Fills 256 rows of 16: up to 15 edges, 3 for each triangle, see mcor_cell_row; then the number
+ * of triangles. */
 void mcor_make_case_table(uint8_t table[256][16]);
-/* Unless it is on the device. */
+/* Uploads the table unless it is on the device. */
 mcor_status mcor_upload_case_table(mcor_context* context);
 
 #define MCOR_TOPOLOGY_ROWS 1200
@@ -341,7 +352,7 @@ void mcor_make_topology_table(mcor_topology_table* table);
   MCOR_INT((c)->attributes.count), MCOR_INT((c)->grid.count),                                      \
     MCOR_BUFFER(&(c)->attributes.sorted), MCOR_BUFFER(means)
 
-/* An edge of the virtual grid in cubes: exactly, as a number of the device. */
+/* Returns an edge of the virtual grid in cubes, exactly as a number of the device. */
 static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 {
   return ldexp((double)lattice->step[axis], -lattice->fix_bits);

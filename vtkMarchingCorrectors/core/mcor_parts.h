@@ -3,8 +3,8 @@
 #ifndef mcor_parts_h
 #define mcor_parts_h
 
-/* A surface in parts: boxes of it, each made of the particles near it alone, by one process after the
- * other or by several that work together. See mcor_options.box, .globals and .ranks. */
+/* A surface in parts: boxes of it, each made from the particles near it alone, by one process
+ * after the other or by several that work together. See mcor_options.box, .globals and .ranks. */
 
 #include "mcor.h"
 
@@ -21,49 +21,53 @@ extern "C"
   {
     double largest;     /* absolute value */
     double low, high;   /* range; low > high without fluid particles */
-    int varies;         /* 0: all values are the same, including those of solids */
+    int varies;         /* 0: all values are the same, those of solids included */
     int64_t not_finite; /* of its attribute, as attribute_not_finite in mcor_surface */
   } mcor_global_component;
 
-  /* The plane that all particles share in two dimensions. */
+  /* The plane in which all particles lie, in two dimensions. */
   typedef struct mcor_plane
   {
-    int axis;  /* the constant coordinate, 1 for x to 3 for z; 0: three dimensions */
-    double at; /* its value */
+    int axis;  /* the axis of the constant coordinate, 1 for x to 3 for z; 0: three dimensions */
+    double at; /* the constant coordinate */
   } mcor_plane;
 
   /* Measures over all particles. Lengths in L; h: the unscaled smoothing length. */
   typedef struct mcor_measure
   {
     int64_t fluid_count, solid_count;
-    double low[3], high[3];                       /* of positions -+ scaled support radii */
-    double x_low[3], x_high[3];                   /* of the positions of fluid particles */
-    double h_min, h_max;                          /* of fluid particles */
-    double support_min, support_max;              /* scaled support radius of all that take part */
-    double h_estimate;                            /* 0: not asked for */
+    double low[3], high[3];          /* of positions minus and plus scaled support radii */
+    double x_low[3], x_high[3];      /* of the positions of fluid particles */
+    double h_min, h_max;             /* of fluid particles */
+    double support_min, support_max; /* scaled support radius of all particles that take part */
+    double h_estimate;               /* 0: not asked for */
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
     double scalar_min, scalar_max;                /* over fluid particles */
-    int64_t not_finite; /* first fluid particle of which the scalar is not; INT64_MAX: none */
-    double cube;        /* cube size, or the longest of its edges; not read where it is given */
+    int64_t not_finite; /* the first fluid particle whose scalar is not finite; INT64_MAX: none */
+    double cube;        /* cube size, or the longest of its edges; ignored where it is given */
     double edge[3];     /* along x, y, z; the same */
     double wall_share;  /* if the options ask for it; 0: not yet measured */
     mcor_plane plane;
     double plane_normal[3], plane_extent; /* as in mcor_statistics */
     int64_t far_count, far_first;         /* far_particles and far_first of mcor_statistics */
     double far_place[3];
-    int cut; /* the lattice is around a box or points alone, because it does not fit around all particles */
-    double cut_high[3]; /* where the box or points then end, which `high` is beyond */
+    int
+      cut; /* the lattice is around a box or points alone, since it does not fit around all particles */
+    double cut_high[3]; /* where the box or points end then; `high` lies beyond */
   } mcor_measure;
 
-  /* Facts about all particles that a call with only some of them needs for the surface of its box. */
+  /* Facts about all particles, which a call with only some of them needs for its box of the
+   * surface. */
   struct mcor_globals
   {
     mcor_measure measured;
-    double mass_max;     /* 0: there are no masses */
-    double scalar_shift; /* about the median; values on the device are relative to it */
+    double mass_max; /* 0: there are no masses */
+    double
+      scalar_shift; /* about the median of the scalar; values on the device are relative to it */
     int component_count;
     mcor_global_component* components; /* [component_count], of all attributes in their order */
-    /* Adaptive cubes: the numbers of the bricks that are divided, ascending; NULL: one level only. */
+    /* Adaptive cubes: the numbers of the bricks that are divided, ascending; NULL: one level
+     * only. */
     int64_t split_count;
     uint64_t* splits; /* [split_count] */
   };
@@ -72,71 +76,74 @@ extern "C"
   {
     MCOR_LEAST = 0,
     MCOR_GREATEST = 1,
-    MCOR_SUM_OF = 2 /* of counts alone: exact in any order */
+    MCOR_SUM_OF = 2 /* whole numbers alone: exact in any order */
   } mcor_reduction;
 
-  /* Ranks: processes, or threads with a context each, that share an input. All of them call the same
-   * function of this library, with the same options except for the box, and with input of the same form.
-   * Each gets the same sequence of callbacks. A callback that does not return 0, because another rank
-   * failed, ends the call with MCOR_CANCELLED. A rank whose own call fails makes no further callbacks; the
-   * callbacks of the other ranks must then return nonzero. */
+  /* Ranks: processes, or threads with a context each, that share an input. All of them call the
+   * same function of this library with the same options, except for the box, and with input of
+   * the same form. Each gets the same sequence of callbacks. A callback that does not return 0,
+   * because another rank failed, ends the call with MCOR_CANCELLED. A rank whose own call fails
+   * makes no further callbacks; the callbacks of the other ranks must then return nonzero. */
   struct mcor_ranks
   {
     /* values: [count]; each is replaced by its reduction over all ranks. */
     int (*reduce_doubles)(void* user, mcor_reduction reduction, double* values, int count);
     int (*reduce_counts)(void* user, mcor_reduction reduction, int64_t* values, int count);
-    /* Collects the records, of `width` bytes each, of all ranks, this one included, in any order; valid
-     * until the next callback. count: the number of this rank's records, 0 or more. */
+    /* Collects the records of all ranks, this one included, in any order; the result is valid
+     * until the next callback. count: this rank's records, 0 or more; width: bytes of a record. */
     int (*gather)(void* user, const void* records, int64_t count, size_t width, const void** all,
       int64_t* all_count);
     void* user;
-    /* The box that the boxes of all ranks are parts of, as mcor_options.box; all 0: it has no end but that
-     * of a period. Vertices that several ranks have are counted by one of them. */
+    /* The box that the boxes of all ranks are parts of, as mcor_options.box; all 0: without end,
+     * except that of a period. A vertex that several ranks have is counted by one of them. */
     double whole_box[6];
   };
 
-  /* mcor_create_context for one of `count` processes or threads that run side by side on a machine; place:
-   * its number, from 0. If no device is named, they take turns among the devices that have the platform
-   * and kind of the default one; those that share a CPU each take their share of its processors. The
-   * result does not depend on this. */
+  /* mcor_create_context for one of `count` processes or threads that run side by side on a
+   * machine; place: its number, from 0. If no device is named, they take turns among the devices
+   * of the default one's platform and kind, and those that share a CPU take a share of its
+   * processors each. The result does not depend on this. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 
-  /* Measures an input for options.globals of later calls, in this or another context, with otherwise the
-   * same options. *globals is overwritten; free with mcor_free_globals. MCOR_INVALID_DATA if no rank has
-   * any particles. */
+  /* Measures an input for options.globals of later calls, in this or another context, with
+   * otherwise the same options. Overwrites *globals; free it with mcor_free_globals.
+   * MCOR_INVALID_DATA if no rank has any particles. */
   mcor_status mcor_measure_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
   void mcor_free_globals(mcor_globals* globals);
-  /* The distance, L, up to which the support of a particle may miss a box while the box still needs the
+  /* Returns the distance, L, by which a particle's support may miss a box that still needs the
    * particle; see mcor_options.globals. */
   double mcor_reach_margin(
     const mcor_options* options, const mcor_globals* globals, double smoothing_length);
 
-  /* Area and volume of a surface in parts, as the statistics have those of one, to the last bit. */
+  /* Area and volume of a surface in parts: to the last bit those in the statistics of the whole
+   * surface. */
   typedef struct mcor_measures
   {
-    double origin[3];       /* any point; the first one of the whole surface, for the same bits */
+    double origin[3];       /* any point; for the same bits, the first one of the whole surface */
     int64_t triangle_count; /* 1: reduce by the sum, */
     double area_most, volume_most; /* by the greatest, */
     double area, volume;           /* 2: by the sum, which is exact in any order, */
-    int64_t open;                  /* by the sum, which may overflow and start over; 0: closed */
+    int64_t open;                  /* by the sum, which may wrap around; 0: closed */
   } mcor_measures;
 
-  /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call mcor_measure_sums, and
-   * reduce those marked 2. numbers: [point_count], of the points in the whole surface; NULL: as they are. */
+  /* Call mcor_measure_terms for each part, reduce the members marked 1 over all parts, call
+   * mcor_measure_sums for each part, and reduce those marked 2. numbers: [point_count], the
+   * points' numbers in the whole surface; NULL: their indices. */
   void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures);
   void mcor_measure_sums(
     const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures);
   void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics);
 
-  /* Joins the pieces of lines of several parts, each from one point to the next, as mcor_extract does, into the
-   * surface's lines, and measures them. The surface must have all points, each once, in the order of their keys;
-   * where band_value is set, its triangles are read, too. MCOR_OUT_OF_CAPACITY: memory ran out. */
+  /* Joins pieces of lines from several parts, each from one point to the next, into the
+   * surface's lines, as mcor_extract does, and measures them. The surface must have all points,
+   * each once, in the order of their keys; if band_value is set, its triangles are read, too.
+   * MCOR_OUT_OF_CAPACITY: memory ran out. */
   mcor_status mcor_join_lines(
     const mcor_plane* plane, const int32_t (*pieces)[2], int64_t count, mcor_surface* surface);
 
-  /* mcor_measure_globals for calls of mcor_probe and mcor_derive. */
+  /* Does for mcor_probe and mcor_derive what mcor_measure_globals does for mcor_extract. */
   mcor_status mcor_measure_probe_globals(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_globals* globals);
 

@@ -24,7 +24,7 @@ bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
     (input->solid == NULL) == (last->solid == NULL);
 }
 
-/* A number that other split bricks do not have. */
+/* Returns a number that identifies the split bricks. */
 static uint64_t mcor_hash_splits(const mcor_globals* globals)
 {
   uint64_t hash = (uint64_t)globals->split_count;
@@ -36,7 +36,8 @@ static uint64_t mcor_hash_splits(const mcor_globals* globals)
   return hash;
 }
 
-/* Whether they are as in the last call; components matter to nothing that is kept. */
+/* Whether the globals are those of the last call. Components are left out: nothing that is kept
+ * depends on them. */
 static bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
 {
   const mcor_globals none = { 0 };
@@ -71,21 +72,29 @@ static bool mcor_same_bounds(const double a[6], const double b[6])
 /* Whether all options are the same on which the search grid depends. */
 static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
 {
-  enum { SURFACE = 0, PROBE = 0, GAUGE = 0, ALL = 0, KEEPS = 1 };
+  enum
+  {
+    SURFACE = 0,
+    PROBE = 0,
+    GAUGE = 0,
+    ALL = 0,
+    KEEPS = 1
+  };
   const double none[6] = { 0 };
   bool same = !a->ranks == !b->ranks;
 #define OPTION(member, usual, legal, words, scope, property)                                       \
   same = same && ((scope) == KEEPS || a->member == b->member);
 #define BOUNDS(member, scope, property) same = same && mcor_same_bounds(a->member, b->member);
 #include "mcor_options.def"
-  /* As much is needed of the particles and images that reach a part. */
+  /* Whether as much is needed of the particles and images that reach a part. */
   const bool part = mcor_has_box(a) || !mcor_same_bounds(a->periodic, none);
   const unsigned changed = a->outputs ^ b->outputs;
   return same && (!part || (a->seeds == b->seeds && !(changed & MCOR_OUT_NEAREST_PARTICLE)));
 }
 
-/* Finds which results of the last call still hold. The caller's version numbers stand for the arrays' content;
- * all else that the search grid, the scalar and the node values depend on is compared. */
+/* Finds which results of the last call still hold. The caller's version numbers stand for the
+ * contents of arrays; everything else on which the search grid, the scalar and the node values
+ * depend is compared. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   const mcor_input* last = &context->kept.input;

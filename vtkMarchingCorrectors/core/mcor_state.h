@@ -3,7 +3,8 @@
 #ifndef mcor_state_h
 #define mcor_state_h
 
-/* The state of a context: a struct for each phase, the call under way, and what is kept. */
+/* The state of a context: a struct for each phase, the call under way, and what is kept between
+ * calls. */
 
 #include "mcor_cl.h"
 #include "mcor_parts.h"
@@ -15,31 +16,32 @@
 /* Highest level of adaptive cubes. */
 #define MCOR_TREE_LEVEL_LIMIT 24
 
-/* [III-B] The virtual grid: world position = (origin + fixed / step) * edge, along each axis. Lengths on the device
- * are in cubes, 2^fix_bits fixed-point units. An edge is a cube long, but where no cube divides all periods:
- * then a cube, as a length, is a little longer than any edge, see mcor_fit_steps. */
+/* [III-B] The virtual grid: world position = (origin + fixed / step) * edge, along each axis.
+ * Lengths on the device are in cubes of 2^fix_bits fixed-point units. An edge is a cube long,
+ * unless no cube divides all periods: a cube, as a length, is then a little longer than any
+ * edge, see mcor_fit_steps. */
 typedef struct mcor_lattice
 {
   double cube, edge[3];
   int64_t step[3];           /* an edge in fixed-point units, at most 2^fix_bits */
   int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
-  int64_t first[3], last[3]; /* nodes that a particle's support may reach, from origin */
+  int64_t first[3], last[3]; /* nodes that a particle's support may reach, counted from origin */
   int fix_bits;
   int top; /* highest level of adaptive cubes; 0: uniform */
   int blocks[3];
-  int period[3], period_first[3]; /* cells, 0: open; where one begins, from origin */
-  /* Blocks of each level, and the end; of uniform cubes those of higher levels are larger cubes. */
+  int period[3], period_first[3]; /* cells, 0: open; where a period begins, from origin */
+  /* The blocks of each level, and the end; with uniform cubes, higher levels are larger cubes. */
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
-/* On the way to the search grid. */
+/* Particles on their way to the search grid. */
 typedef struct mcor_stage_data
 {
-  mcor_buffer x, y, z, inv_h, size, level; /* of the particles in the order of the input */
-  mcor_buffer values;                      /* real, of one component, in that order */
+  mcor_buffer x, y, z, inv_h, size, level; /* of the particles, in input order */
+  mcor_buffer values;                      /* real: of one component, in input order */
   mcor_buffer density;                     /* where volumes are computed */
-  mcor_buffer flags, keys;                 /* of coincident particles */
-  mcor_buffer found;                       /* int: what a kernel found in any of them */
+  mcor_buffer flags, keys;                 /* while coincident particles are sought */
+  mcor_buffer found;                       /* int: what a kernel has found in any particle */
 } mcor_stage_data;
 
 /* [III-A] */
@@ -49,13 +51,13 @@ typedef struct mcor_grid
   int level_count, bucket_shift;
   mcor_level levels[MCOR_LEVEL_LIMIT];
   mcor_buffer level_buffer, buckets, cell_keys, order;
-  mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: with solids only */
+  mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: only with solids */
   mcor_buffer value;
-  /* As seen from a level of adaptive cubes, in its cells' edges; see mcor_view_level. */
+  /* The grid in units of the cells of one level of adaptive cubes; see mcor_view_level. */
   int view;
   mcor_buffer view_levels, view_inv_h;
-  int most_in_cell;       /* particles, at least MCOR_USUAL_IN_CELL */
-  mcor_buffer side_flags; /* uchar per chunk of particles, of this iso value; see mcor_seed.cl */
+  int most_in_cell;       /* most particles in a cell, at least MCOR_USUAL_IN_CELL */
+  mcor_buffer side_flags; /* uchar per chunk of particles, for this iso value; see mcor_seed.cl */
   bool has_solids;
 } mcor_grid;
 
@@ -91,7 +93,7 @@ typedef struct mcor_bricks
   mcor_buffer found; /* int: what a kernel found in any brick, or how many regions */
 } mcor_bricks;
 
-/* [III-D] One iso value's surface while it is made. */
+/* [III-D] The surface of one iso value while it is made. */
 typedef struct mcor_mesh
 {
   mcor_buffer used,
@@ -105,7 +107,7 @@ typedef struct mcor_mesh
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer means; /* real [vertex_count][attributes.count] */
   mcor_buffer
-    cut_edges; /* ulong, of each vertex of the trim boundary: that it is on, see mcor_trim.cl */
+    cut_edges; /* ulong: the edge that each vertex of the trim boundary is on, see mcor_trim.cl */
   mcor_buffer triangles;
   mcor_buffer scanned;                           /* of the output, see mcor_is_output */
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
@@ -170,30 +172,31 @@ typedef struct mcor_topology_data
   mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
 } mcor_topology_data;
 
-/* Points at which the field is evaluated, see mcor_make_groups. */
+/* Groups of points at which the field is evaluated, see mcor_make_groups. */
 typedef struct mcor_points
 {
   mcor_buffer flags, groups;
 } mcor_points;
 
-/* Points that are evaluated in sorted order, as nodes and offsets; in_: as they came. */
+/* Points that are evaluated in sorted order, as nodes and offsets; in_: in the order in which
+ * they came. */
 typedef struct mcor_point_batch
 {
   mcor_buffer keys, order, in_node, in_offset, node, offset;
-  cl_int first[3], bricks[3]; /* the bricks that its points are in: fewer make shorter keys */
+  cl_int first[3], bricks[3]; /* the bricks that hold the points: the fewer, the shorter the keys */
 } mcor_point_batch;
 
 /* [III-D.3] */
 typedef struct mcor_trim_data
 {
-  mcor_buffer eigenvalue;       /* real, at vertices; what the vertex threshold may apply to */
+  mcor_buffer eigenvalue;       /* real, at vertices; the vertex threshold may apply to it */
   mcor_buffer margin;           /* real, at vertices; see mcor_trim_margin */
   mcor_buffer remaining, cuts;  /* per batch of triangles */
   mcor_buffer keys, index;      /* of cut edges */
-  mcor_buffer triangles, cells; /* what remains, until it is the mesh's and the box's */
+  mcor_buffer triangles, cells; /* what trimming leaves, until the mesh and the box take it */
 } mcor_trim_data;
 
-/* mcor_scan.c. flags and order: of mcor_unique. */
+/* mcor_scan.c. flags, order: of mcor_unique. */
 typedef struct mcor_sort_data
 {
   mcor_buffer sums, keys, values, histogram, order, flags;
@@ -204,77 +207,79 @@ typedef struct mcor_component
 {
   int attribute, component;
   double shift, scale; /* on the device: (value - shift) * scale */
-  double low, high;    /* of a probe's, over fluid particles: no mean of theirs is beyond */
+  double low, high;    /* over fluid particles, for a probe: bounds of the means */
 } mcor_component;
 
-/* The components that vary, and those of them that are on the device. */
+/* The components that vary, and which of them are on the device. */
 typedef struct mcor_attributes
 {
   mcor_component* varying; /* [varying_count] */
   int varying_count;
   int first, count;
-  mcor_buffer sorted; /* real [count][grid.count] */
-  uint64_t kept; /* attributes_version of a probe, where all of it holds for the next one; or 0 */
+  mcor_buffer sorted;  /* real [count][grid.count] */
+  uint64_t kept;       /* a probe's attributes_version for which everything here holds; or 0 */
   mcor_buffer nearest; /* int, particle per vertex */
 } mcor_attributes;
 
-/* The box that counts a vertex; 0: none. */
+/* Which box counts a vertex; 0: none. */
 enum
 {
   MCOR_OWN = 1,
   MCOR_ANOTHERS = 2 /* another rank */
 };
 
-/* The cells that a call owns; see mcor_box.c. */
+/* The cells that a call owns, see mcor_box.c. */
 typedef struct mcor_box
 {
-  bool is_part, is_empty; /* not all cells of the lattice are owned; none is */
-  int first[3], last[3];  /* owned cells [first, last), from the lattice's origin */
-  int halves[6];          /* of adaptive cubes: x, y, z from, to, in halves of the smallest ones */
-  bool of_points;         /* of a probe's points, which lie in `points`: x from, to, y ... */
-  bool has_points;        /* these are known */
+  bool is_part, is_empty; /* is_part: not all cells of the lattice are owned; is_empty: none is */
+  int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
+  int
+    halves[6]; /* with adaptive cubes: from and to along x, y, z, in halves of the smallest cubes */
+  bool of_points;  /* the box of a probe's points, which is `points`: x from, to, y ... */
+  bool has_points; /* `points` is known */
   double points[6];
-  int whole_first[3], whole_last[3], whole_halves[6]; /* cells that any rank owns */
+  int whole_first[3], whole_last[3], whole_halves[6]; /* the cells that any rank owns */
   mcor_buffer cells;   /* ulong per triangle of the mesh, see mcor_triangle_cell.c */
   mcor_buffer clipped; /* ulong per brick, of mcor_count_cells */
-  uint8_t* kept;       /* per triangle of the surface: 1 of an owned cell; NULL: all are */
+  uint8_t* kept;       /* per triangle of the surface: 1: its cell is owned; NULL: all are */
 } mcor_box;
 
-/* The iso value under way. Filling has none: its points are evaluated with 0. */
+/* The iso value under way. Filling has none: its points are evaluated for 0. */
 typedef struct mcor_iso
 {
-  int number;             /* in options.iso_values; behind these where filling adds its points */
-  double value, relative; /* as the caller has it; relative to A0, as the device does */
+  int number; /* index in options.iso_values; behind the last one while filling adds points */
+  double value, relative; /* the caller's; relative to A0, as on the device */
 } mcor_iso;
 
 /* The call under way; options are NULL between calls. */
 typedef struct mcor_run
 {
   const mcor_options* options;
-  bool uses_solids;          /* solid particles are to be on the device */
-  bool is_too_long;          /* the lattice around all particles would be, see mcor_far.c */
-  struct mcor_far* far;      /* what is done about that; NULL: nothing */
-  struct mcor_filling* fill; /* of iso values that are done, see mcor_fill.h; NULL */
+  bool uses_solids;     /* solid particles must be on the device */
+  bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
+  struct mcor_far* far; /* particles to leave out for that reason; NULL: none */
+  struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; NULL */
   mcor_statistics* statistics;
   mcor_iso iso;
   mcor_phase phase;
-  double phase_begin, phase_built; /* cl.build_seconds then */
-  const char* doing;               /* what runs, as last reported */
-  double fraction, fraction_end; /* last reported, also by a first attempt; where what runs ends */
-  double report_time;            /* of the last report */
-  bool building_told;            /* in this phase */
+  double phase_begin, phase_built; /* phase_built: cl.build_seconds when the phase began */
+  const char* doing;               /* what runs, as reported last */
+  double fraction,
+    fraction_end;     /* reported last, also by a failed attempt; at the end of what runs */
+  double report_time; /* of the last report */
+  bool building_told; /* building was reported in this phase */
   double correction_count, correction_sum, correction_squares;
   int64_t evaluations_counted; /* of vertices_corrected */
-  int64_t normals_lacking;     /* points without, so far */
+  int64_t normals_lacking;     /* points without a normal so far */
 } mcor_run;
 
-/* The data set of the last call, and which of its results hold; see mcor_reuse.c. */
+/* The particles of the last call, and which of its results hold; see mcor_reuse.c. */
 typedef struct mcor_kept
 {
   mcor_input input;
   mcor_options options;
-  mcor_globals globals; /* given; 0 where none were; its arrays are not kept */
-  uint64_t splits;      /* of their split bricks, a hash */
+  mcor_globals globals; /* as given, without arrays; 0: none were given */
+  uint64_t splits;      /* hash of the globals' split bricks */
   bool uses_solids;     /* solid particles are on the device */
   bool grid, value;
   bool nodes; /* bricks hold node values of the current scalar */
@@ -286,14 +291,14 @@ struct mcor_context
   char error[4096];
   mcor_run run;
 
-  /* The device, and what is on it whatever the data. */
+  /* The device, and what it holds for any particles. */
   mcor_cl cl;
   mcor_buffer case_table;
   mcor_sort_data sort;
-  double report_interval; /* between launches, seconds; at least that */
+  double report_interval; /* seconds between progress reports, at least */
   int probe_batch;        /* points; 0 before the first probe */
 
-  /* The data set. */
+  /* The particles. */
   mcor_kept kept;
   mcor_measure measure;
   mcor_lattice lattice;

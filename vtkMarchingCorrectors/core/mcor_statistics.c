@@ -12,7 +12,8 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
 {
   const mcor_options* options = context->run.options;
   context->run.doing = doing;
-  context->run.fraction = fmax(fraction, context->run.fraction); /* also in a second attempt */
+  context->run.fraction =
+    fmax(fraction, context->run.fraction); /* a second attempt may have reported more */
   context->run.fraction_end = end;
   context->run.report_time = mcor_seconds();
   MCOR_RETURN_IF(options->progress &&
@@ -21,7 +22,8 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
   return MCOR_OK;
 }
 
-/* How many launches are to come is not known: each report goes a part of what is left. */
+/* The number of launches to come is not known, so each report advances by a share of what is
+ * left. */
 #define MCOR_REPORT_STEP 0.125
 
 mcor_status mcor_report_launch(mcor_context* context)
@@ -46,8 +48,9 @@ mcor_status mcor_observe_call(mcor_context* context, bool compiles)
   }
   const bool told = context->run.building_told;
   context->run.building_told = true;
-  MCOR_RETURN_IF(!told && options->progress(options->progress_user, context->run.fraction,
-                            "building the OpenCL program (first time only)") != 0,
+  MCOR_RETURN_IF(!told &&
+      options->progress(options->progress_user, context->run.fraction,
+        "building the OpenCL program (first time only)") != 0,
     context, MCOR_CANCELLED, "The extraction was cancelled while building the OpenCL program.");
   return MCOR_OK;
 }
@@ -56,7 +59,7 @@ mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fra
 {
   MCOR_TRY(mcor_finish(context));
   const double now = mcor_seconds();
-  const double built = context->cl.build_seconds; /* told apart from the phase */
+  const double built = context->cl.build_seconds; /* the phase's seconds leave it out */
   context->run.statistics->seconds[context->run.phase] +=
     now - context->run.phase_begin - (built - context->run.phase_built);
   context->run.phase = phase;
@@ -71,7 +74,7 @@ double mcor_rounding(const mcor_context* context)
   return 0.5 * ldexp(context->lattice.cube, -context->lattice.fix_bits);
 }
 
-/* Numbers that are known at the end. */
+/* Fills in the numbers that are known at the end. */
 mcor_status mcor_finish_statistics(mcor_context* context)
 {
   mcor_statistics* s = context->run.statistics;
@@ -123,7 +126,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   if (mcor_is_plane(context))
   {
     mcor_unflatten_statistics(&context->plane, s);
-    s->nodes_evaluated /= MCOR_BRICK; /* of bricks, whose lowest layer is in the plane */
+    s->nodes_evaluated /= MCOR_BRICK; /* only the lowest layer of a brick is in the plane */
   }
   s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->run.correction_sum / n : 0;

@@ -19,7 +19,7 @@ typedef struct mcor_buffer
   size_t size; /* bytes */
 } mcor_buffer;
 
-/* One variant of the programs: all that their compilation depends on. */
+/* One variant of the programs: everything that their compilation depends on. */
 typedef struct mcor_build
 {
   mcor_sph_kernel sph_kernel;
@@ -31,8 +31,8 @@ typedef struct mcor_build
 /* Programs are built, and kernels compiled, when they are first needed. */
 typedef enum mcor_program
 {
-  MCOR_PROGRAM_LATTICE,  /* the same for all kernels and fields, with solids and without */
-  MCOR_PROGRAM_FIELD,    /* what surfaces of the build need */
+  MCOR_PROGRAM_LATTICE,  /* one for all SPH kernels and fields, with and without solids */
+  MCOR_PROGRAM_FIELD,    /* surfaces of this build */
   MCOR_PROGRAM_PROBE,    /* mcor_probe and mcor_derive */
   MCOR_PROGRAM_ADAPTIVE, /* adaptive cubes */
   MCOR_PROGRAM_COUNT
@@ -43,46 +43,48 @@ typedef struct mcor_kernel
   char name[48];
   cl_kernel kernel;
   mcor_program program;
-  bool launched[2][2]; /* from 0 on, from elsewhere; with few, with many work-groups */
-  double part;         /* work-items launched at once, see mcor_enqueue_cut; 0: not known yet */
+  bool launched[2]
+               [2]; /* [first item is 0, is not][few work-groups, many]: drivers compile for each */
+  double part;      /* work-items launched at once, see mcor_enqueue_cut; 0: unknown so far */
 } mcor_kernel;
 
-/* Asked between launches, and before a driver compiles, which may take seconds. A call
- * ends with the status if it is not MCOR_OK. */
+/* Called between launches, and before a driver compiles, which may take seconds. A status other
+ * than MCOR_OK ends the call. */
 typedef mcor_status (*mcor_observer)(mcor_context* context, bool compiles);
 
 typedef struct mcor_cl
 {
   cl_platform_id platform;
   cl_device_id device;
-  cl_device_id share; /* the device, where it is a part of one; else NULL */
+  cl_device_id share; /* the device, if it is a part of another one; else NULL */
   cl_context context;
-  struct mcor_pool* pool;              /* the built-in device's threads; else NULL */
+  struct mcor_pool* pool;              /* threads of the built-in device; else NULL */
   cl_command_queue queue, timed_queue; /* timed: for first launches */
   cl_program programs[MCOR_PROGRAM_COUNT];
-  mcor_build build;     /* of the programs */
-  mcor_kernel* kernels; /* those made so far */
+  mcor_build build;     /* the variant that the programs are */
+  mcor_kernel* kernels; /* kernels made so far */
   int kernel_count;
   int64_t kernel_room;
-  int device_number, units;       /* in the list of devices; that compute side by side */
-  int place, count;               /* of the processes that share devices */
-  bool is_default, is_replaced;   /* none was named; the first choice could not do a build */
-  bool is_cpu;                    /* the kernels' form for CPUs is used */
-  bool has_fp64, rounds_division; /* divisions and roots can be asked to be exact to the last bit */
-  bool declares_builtins;         /* programs do so themselves, see mcor_builtin.cl */
-  int lanes;                      /* of the programs */
-  int segments;                   /* runs into which scans and sorts cut their arrays */
+  int device_number, units;       /* number in the list of devices; compute units */
+  int place, count;               /* this process' number, and how many share the devices */
+  bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
+  bool is_cpu;                    /* kernels have the form for CPUs */
+  bool has_fp64, rounds_division; /* divisions and roots can be exact to the last bit */
+  bool declares_builtins; /* programs declare built-in functions themselves, see mcor_builtin.cl */
+  int lanes;              /* evaluation points that a work-item treats at once */
+  int segments;           /* segments into which scans and sorts cut their arrays */
   size_t real_size, fix_size;
   uint64_t device_memory, largest_buffer;
-  uint64_t memory_limit;     /* what of device_memory may be used; of the call under way */
-  int64_t bytes, bytes_peak; /* of all buffers, the kept ones too */
+  uint64_t memory_limit;               /* bytes of device_memory that the call under way may use */
+  int64_t bytes, bytes_peak;           /* in all buffers, kept ones included */
   mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* see mcor_release */
   int kept_count;
-  int64_t kept_bytes, used_peak, used_before; /* used_peak: without those kept; of the last call */
-  double build_seconds;                       /* of the call under way */
-  mcor_observer observer;                      /* of the call under way; NULL: none */
-  double terms;                               /* of the sum at a point, about; for mcor_is_cut */
-  bool compiles; /* the driver does, at a kernel's first launch: the last one took long */
+  int64_t kept_bytes, used_peak,
+    used_before; /* used_peak: bytes without kept buffers; used_before: that of the last call */
+  double build_seconds;   /* in the call under way */
+  mcor_observer observer; /* of the call under way; NULL: none */
+  double terms;           /* terms in the sum at a point, about; for mcor_is_cut */
+  bool compiles; /* the driver compiles at a kernel's first launch: the last one took long */
   char device_name[128], platform_name[128];
 } mcor_cl;
 
@@ -113,9 +115,9 @@ typedef struct mcor_arg
     .kind = MCOR_ARG_REAL, .real = (r)                                                             \
   }
 
-/* How much one work-item does: a light one a few operations for one of many elements, a medium one a
- * brick or a batch, a heavy one a field evaluation. A CPU gets a work-group for each medium or heavy
- * one: its compiler is done sooner where there is no loop over the group. */
+/* How much one work-item does. Light: a few operations for one of many elements; medium: a brick
+ * or a batch; heavy: an evaluation of the field. On a CPU each medium or heavy item is a
+ * work-group of its own: its compiler is faster without a loop over the group. */
 typedef enum mcor_load
 {
   MCOR_LIGHT,
@@ -127,44 +129,46 @@ typedef enum mcor_load
   mcor_launch(context, name, load, (size_t)(items), (const mcor_arg[]){ __VA_ARGS__ },             \
     sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
 
-/* From so many work-items on, PoCL compiles a kernel once more. */
+/* From this number of work-items on, PoCL compiles a kernel once more. */
 #define MCOR_LARGE_LAUNCH 65535
 
-/* NULL or "": that of the environment's MCOR_DEVICE, or else the default. */
+/* Opens a device by name or number; NULL or "": that of the variable MCOR_DEVICE, or else the
+ * default. */
 mcor_status mcor_open_device(mcor_context* context, const char* device, int place, int count);
-/* Before a call: where no device was named and this one cannot do the build, the best one that can is opened.
- * release: gives back all that is on this one. */
+/* Called before a call. If no device was named and the open one lacks the build, opens the best
+ * one that has it. release: frees everything on the device before. */
 mcor_status mcor_settle_device(
   mcor_context* context, const mcor_build* build, void (*release)(mcor_context* context));
 void mcor_close_device(mcor_context* context);
-/* Sets the variant of the kernels from now on. Kernels at hand are kept where they fit. */
+/* Sets the variant of the kernels from now on. Kernels that fit it are kept. */
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build);
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes);
-/* A large buffer is kept, for the next that is about as large: the first touch of memory takes longer than
- * most of what is done to it, and phases, and calls, follow each other with arrays alike. */
+/* Releases a buffer. A large one is kept for the next request of about its size: the first touch
+ * of memory takes longer than most of what is done in it, and successive phases and calls have
+ * arrays of like sizes. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
-/* Gives back kept ones until no more than `most` bytes are held. */
+/* Frees kept buffers until at most `most` bytes are held. */
 void mcor_drop_kept(mcor_context* context, int64_t most);
-/* A call begins: no more is kept than the last one was in need of. */
+/* Called where a call begins: keeps no more than the last call needed. */
 void mcor_begin_buffers(mcor_context* context);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
-/* The host's view of a buffer, without a copy where device and host share memory: to be filled
- * (write), or to be read. NULL where it is not mapped. */
+/* Maps a buffer for the host, without a copy where both share memory: to write all of it, or to
+ * read. *data becomes NULL where that fails. */
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);
-/* Several to be read; *data is NULL before. */
+/* One of several buffers to read; *data is NULL before. */
 typedef struct mcor_mapping
 {
   const mcor_buffer* buffer;
   size_t bytes;
   void** data;
 } mcor_mapping;
-/* Where one fails, those behind it are not mapped. */
+/* Maps the buffers in order, up to the first failure. */
 mcor_status mcor_map_all(mcor_context* context, const mcor_mapping* mappings, int count);
-/* Unmaps all that are mapped. Returns `status`, or, where that is MCOR_OK, the first failure. */
+/* Unmaps all that are mapped. Returns `status`; if that is MCOR_OK, the first failure. */
 mcor_status mcor_unmap_all(
   mcor_context* context, const mcor_mapping* mappings, int count, mcor_status status);
 mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t bytes);

@@ -28,7 +28,7 @@ void mcor_release(mcor_context* context, mcor_buffer* buffer)
   *buffer = (mcor_buffer){ 0 };
 }
 
-/* Kept buffer number i is kept no longer. */
+/* Takes buffer i out of the kept ones. */
 static mcor_buffer mcor_take_out(mcor_cl* cl, int i)
 {
   const mcor_buffer buffer = cl->kept[i];
@@ -47,7 +47,8 @@ void mcor_drop_kept(mcor_context* context, int64_t most)
   }
 }
 
-/* Bytes with those kept, at most: an eighth more than this call, or the last, was in need of. */
+/* Returns the bytes that may be held with kept buffers: an eighth more than this call, or the
+ * last one, has needed. */
 static int64_t mcor_most_held(const mcor_cl* cl)
 {
   const int64_t used = cl->used_peak > cl->used_before ? cl->used_peak : cl->used_before;
@@ -64,7 +65,7 @@ void mcor_begin_buffers(mcor_context* context)
   cl->bytes_peak = cl->bytes;
 }
 
-/* The smallest kept buffer that has room, unless it is far too large. */
+/* Takes the smallest kept buffer with enough room, unless it is far too large. */
 static bool mcor_take_kept(mcor_cl* cl, mcor_buffer* buffer, size_t bytes)
 {
   int best = -1;
@@ -92,7 +93,7 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
   }
 }
 
-/* A CPU's buffers are the host's memory. */
+/* Asks for large pages on a CPU, where buffers are memory of the host. */
 static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* buffer)
 {
   void* memory;
@@ -222,7 +223,8 @@ mcor_status mcor_unmap_all(
   return status;
 }
 
-/* Bytes to fill or copy between two reports: about 10 ms of memory that was not touched before. */
+/* Returns the bytes to fill or copy between two progress reports: about 10 ms of untouched
+ * memory. */
 static size_t mcor_step_of(size_t bytes)
 {
   const size_t most = (size_t)1 << 25;

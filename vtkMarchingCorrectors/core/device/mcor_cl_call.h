@@ -3,7 +3,7 @@
 #ifndef mcor_cl_call_h
 #define mcor_cl_call_h
 
-/* Shared by the files mcor_cl_*.c, the only ones that call OpenCL; with what is known of some drivers. */
+/* For the files mcor_cl_*.c alone, which call OpenCL; also what is known of some drivers. */
 
 #include "mcor_internal.h"
 #include "mcor_native.h"
@@ -23,20 +23,22 @@
 
 /* mcor_cl_error.c */
 const char* mcor_cl_error_name(cl_int error);
-/* Drivers that allocate when memory is first needed say so in any later call. */
+/* Whether an error means that memory ran out. Drivers that allocate late report it in any later
+ * call. */
 bool mcor_is_no_memory(cl_int error);
-/* Sets the sentence about a call that failed. */
+/* Sets the error sentence about a call that failed. */
 mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what);
 #define MCOR_POCL_HINT                                                                             \
-  "PoCL needs a folder of its own to compile in, writable and with free space: set POCL_CACHE_DIR " \
+  "PoCL needs a folder of its own to compile in, writable and with free space: set "               \
+  "POCL_CACHE_DIR "                                                                                \
   "to one (else it is ~/.cache/pocl)."
-/* Adds to the sentence of a failure, where the device is PoCL, which of its files may be the cause. */
+/* If the device is PoCL, adds to the error sentence which of its files may be the cause. */
 void mcor_blame_files(mcor_context* context);
 
 /* The platform whose first device is the default. */
 #define MCOR_DEFAULT_PLATFORM "Portable Computing Language"
 
-/* A variable of the environment that only tests set: other builds do not read it. */
+/* Returns a variable of the environment that only tests set; other builds do not read it. */
 static inline const char* mcor_test_setting(const char* name)
 {
 #ifdef MCOR_TESTING
@@ -63,9 +65,9 @@ static inline bool mcor_is_pocl(const mcor_cl* cl)
 }
 
 /* mcor_cl_program.c */
-/* Builds a program, unless it is at hand. */
+/* Builds a program unless it is built. */
 mcor_status mcor_need_program(mcor_context* context, mcor_program number);
-/* Drops the programs, or those that depend on what is computed, and their kernels. */
+/* Drops all programs and their kernels, or those alone that depend on the variant. */
 void mcor_drop_programs(mcor_cl* cl, bool all);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which OpenCL device, and what it can do. */
+/* Chooses the OpenCL device, and finds what it can do. */
 
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
@@ -17,13 +17,13 @@
 typedef struct mcor_device_list
 {
   int count;
-  bool drivers_fail; /* so they were not listed */
+  bool drivers_fail; /* they were not listed: they would end the process */
   cl_platform_id platforms[MCOR_DEVICE_LIMIT];
   cl_device_id devices[MCOR_DEVICE_LIMIT];
 } mcor_device_list;
 
-/* The built-in device comes first. Drivers are not listed where they would end the process, as PoCL does
- * where it cannot start its threads. */
+/* Lists the devices, the built-in one first. Drivers are left out where listing them would end
+ * the process, as PoCL does if it cannot start its threads. */
 static void mcor_find_devices(mcor_device_list* list, bool drivers)
 {
   cl_platform_id platforms[MCOR_PLATFORM_LIMIT];
@@ -67,7 +67,7 @@ static void mcor_device_names(
   clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, platform_name, NULL);
 }
 
-/* The devices' numbers and names, as far as there is room. */
+/* Writes the devices' numbers and names, as far as there is room. */
 static void mcor_write_devices(
   const mcor_device_list* list, const char* separator, char* text, size_t room)
 {
@@ -77,7 +77,8 @@ static void mcor_write_devices(
   {
     char device[128], platform[128];
     mcor_device_names(list->platforms[i], list->devices[i], device, platform, sizeof device);
-    const bool same = strncmp(device, platform, strlen(platform)) == 0; /* the built-in one */
+    const bool same =
+      strncmp(device, platform, strlen(platform)) == 0; /* true of the built-in one */
     length += (size_t)snprintf(text + length, room - length, "%s%d: %s%s%s%s",
       i > 0 ? separator : "", i, device, same ? "" : " (", same ? "" : platform, same ? "" : ")");
   }
@@ -107,7 +108,7 @@ static char mcor_lower(char c)
   return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-/* Whether `part` occurs in `text`, in capitals or not. */
+/* Whether `part` occurs in `text`, ignoring case. */
 static bool mcor_contains(const char* text, const char* part)
 {
   for (; *text; ++text)
@@ -125,7 +126,7 @@ static bool mcor_contains(const char* text, const char* part)
   return false;
 }
 
-/* Index into the list of the device that the user named, or -1. */
+/* Finds the device that the user named; returns its index in the list, or -1. */
 static int mcor_find_device(const mcor_device_list* list, const char* wanted)
 {
   char* end = NULL;
@@ -154,8 +155,9 @@ static cl_device_type mcor_type_of(cl_device_id device)
   return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
 }
 
-/* Whether the kernels' form for CPUs suits the device. One that claims to be a CPU without vectors
- * works as a GPU does, with a work-item in each lane. MCOR_DEVICE_FORM, cpu or gpu, is for tests. */
+/* Whether the kernels' form for CPUs suits the device. A device that claims to be a CPU without
+ * vectors works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu
+ * or gpu, is for tests. */
 static bool mcor_has_cpu_form(const mcor_cl* cl)
 {
   const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
@@ -187,8 +189,9 @@ static void mcor_query_device(mcor_cl* cl)
   cl->units = (int)units;
 }
 
-/* Lets `count` processes take the devices like the chosen one in turn; this one is number `place`. Both become
- * those among the processes that take the same. */
+/* Lets `count` processes take in turn the devices that are like the chosen one. Returns the
+ * device of process *place; *place and *count then count the processes that take the same
+ * device. */
 static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, int* count)
 {
   int like[MCOR_DEVICE_LIMIT], n = 0;
@@ -206,8 +209,9 @@ static int mcor_take_turn(const mcor_device_list* list, int chosen, int* place, 
   return like[turn];
 }
 
-/* Divides a CPU among `count` processes; this one takes share number `place`. A driver that does not
- * divide it gives all of it to each; of the built-in device a share is a number of threads. */
+/* Divides a CPU among `count` processes, of which this one is number `place`. A driver that
+ * cannot be divided gives all of the CPU to each process. A share of the built-in device is a
+ * number of threads. */
 static void mcor_take_share(mcor_cl* cl, int place, int count)
 {
   cl_uint units = 1, parts = 0;
@@ -236,7 +240,8 @@ static void mcor_take_share(mcor_cl* cl, int place, int count)
   free(made);
 }
 
-/* How well a device suits where none is named: a GPU best, then the built-in one, then PoCL, then any. */
+/* Ranks devices where none is named: a GPU is best, then the built-in one, then PoCL, then any
+ * other. */
 static int mcor_rank_device(cl_platform_id platform, cl_device_id device)
 {
   char name[128], platform_name[128];
@@ -247,7 +252,8 @@ static int mcor_rank_device(cl_platform_id platform, cl_device_id device)
                                                           : 1;
 }
 
-/* Whether a device has what a build needs. The built-in one has the kernels that were compiled. */
+/* Whether a device has what a build needs. The built-in one has the kernels that were compiled
+ * with this library. */
 static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const mcor_build* build)
 {
   mcor_cl tried = { .platform = platform, .device = device };
@@ -256,7 +262,7 @@ static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const m
                                 : build->precision == MCOR_FLOAT32 || tried.has_fp64;
 }
 
-/* The best of the devices that can do a build; -1: none. */
+/* Returns the best of the devices that can do a build; -1: none. */
 static int mcor_choose_device(const mcor_device_list* list, const mcor_build* build)
 {
   int best = -1, rank = 0;
@@ -300,7 +306,7 @@ static mcor_status mcor_start_device(
   return MCOR_OK;
 }
 
-/* A sentence behind another. */
+/* Returns a sentence to append to another, or "". */
 static const char* mcor_driver_fault(const mcor_device_list* list)
 {
   return list->drivers_fail
@@ -330,7 +336,7 @@ static mcor_status mcor_fail_without_device(
     mcor_driver_fault(list));
 }
 
-/* A device where none was named. */
+/* Starts the best device for a build, where none was named. */
 static mcor_status mcor_start_default(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {
@@ -406,7 +412,7 @@ mcor_status mcor_settle_device(
 {
   mcor_cl* cl = &context->cl;
   const mcor_cl before = *cl;
-  const bool is_open = cl->timed_queue != NULL; /* not where the last change of devices failed */
+  const bool is_open = cl->timed_queue != NULL; /* false where the last change of devices failed */
   if (!cl->is_default ||
     (is_open && !cl->is_replaced && mcor_can_build(cl->platform, cl->device, build)))
   {
@@ -425,10 +431,9 @@ mcor_status mcor_settle_device(
   }
   release(context);
   mcor_close_device(context);
-  *cl = (mcor_cl){ .is_default = true,
-    .place = before.place,
-    .count = before.count,
-    .observer = before.observer };
+  *cl = (mcor_cl){
+    .is_default = true, .place = before.place, .count = before.count, .observer = before.observer
+  };
   const mcor_status status = mcor_start_default(context, &list, build);
   cl->memory_limit = status != MCOR_OK || before.memory_limit < cl->device_memory
     ? before.memory_limit

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* OpenCL's errors in words. */
+/* Turns OpenCL's errors into words. */
 
 #include "mcor_cl_call.h"
 
@@ -86,7 +86,7 @@ mcor_status mcor_cl_fail(mcor_context* context, cl_int error, const char* what)
         device, what, name, (int)error)
     : mcor_fail(context, MCOR_DEVICE_ERROR, "OpenCL device %s: %s failed with %s (%d).", device,
         what, name, (int)error);
-  if (error == CL_INVALID_KERNEL_NAME) /* all names are right */
+  if (error == CL_INVALID_KERNEL_NAME) /* all names are right, so it is the driver's fault */
   {
     mcor_blame_files(context);
   }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Kernels, and their launches. */
+/* Kernels and their launches. */
 
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whether a program has a kernel. Asking for one that it has not is an error, on which PoCL crashes
- * while POCL_DEBUG is set. */
+/* Whether a program has a kernel. Asking OpenCL for a missing one is an error, at which PoCL
+ * crashes while POCL_DEBUG is set. */
 static bool mcor_has_kernel(cl_program program, const char* name)
 {
   size_t size = 0;
@@ -93,11 +93,11 @@ static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const
   }
 }
 
-/* A kernel that was at hand takes less. */
+/* A kernel that was compiled before takes less at its first launch. */
 #define MCOR_COMPILE_SECONDS 0.01
 
-/* Launches a kernel for the first time, alone: drivers may compile it only now. What the kernel
- * itself does not take is building. */
+/* Launches a kernel for the first time, alone, since drivers may compile it only now. What the
+ * kernel itself does not take counts as building. */
 static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const size_t* offset,
   const size_t* global, const size_t* group)
 {
@@ -130,18 +130,19 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
   return error;
 }
 
-/* Drivers of GPUs end a launch that takes seconds, and whoever watches a run waits for it to answer: a
- * heavy launch is cut into parts, each to take about so long, as far as single work-items allow. */
+/* The time that a part of a heavy launch should take. Drivers of GPUs abort a launch that takes
+ * seconds, and someone may wait for a run to answer. A single work-item is never cut. */
 #define MCOR_PART_SECONDS 0.04
-#define MCOR_FIRST_PART 65536 /* work-items of a GPU */
-/* Terms of sums of each compute unit of a CPU, in single precision; in double it has fewer lanes, and more
- * to do. Usual launches are in one part. More are not tried, as work-items beyond the next may have far
- * more to do. */
+#define MCOR_FIRST_PART 65536 /* work-items, on a GPU */
+/* Terms of sums in a part, for each compute unit of a CPU in single precision; in double
+ * precision there are fewer lanes, and more to do. Usual launches fit into one part. Parts are
+ * not made larger, since the next work-items may have far more to do. */
 #define MCOR_PART_TERMS (1 << 21)
-#define MCOR_FIRST_SHARE 32 /* of these, until it is known how long a kernel takes */
+#define MCOR_FIRST_SHARE                                                                           \
+  32 /* the first part, as long as a kernel's time is unknown: the limit over this */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
-/* Work-items of the first part, and of one at most. */
+/* Work-items of the first part, and of any part at most. */
 typedef struct mcor_parts
 {
   double first, limit;
@@ -154,16 +155,19 @@ static bool mcor_is_cut(const mcor_context* context, mcor_load load)
                             : watched && mcor_is_native(&context->cl);
 }
 
-/* Work-items of a part at most. What one does goes with the particles that reach a point. */
+/* Returns the work-items that a part may have. An item's work goes with the particles that reach
+ * a point. */
 static double mcor_part_limit(const mcor_context* context)
 {
   const int limit =
     context->cl.real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
-  return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(context->cl.terms, 1) : INFINITY;
+  return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(context->cl.terms, 1)
+                            : INFINITY;
 }
 
-/* On the built-in device parts cost nothing, where a driver may compile a kernel once more for what does not begin
- * at 0: so each launch begins with small ones, and they do not become large. */
+/* Chooses the sizes of parts. On the built-in device parts cost nothing, so each launch begins
+ * with small ones, and none becomes large. A driver may compile a kernel once more for
+ * work-items that do not begin at 0. */
 static mcor_parts mcor_parts_of(
   const mcor_context* context, const mcor_kernel* kernel, mcor_load load)
 {
@@ -179,8 +183,8 @@ static mcor_parts mcor_parts_of(
   return (mcor_parts){ kernel->part > 0 ? kernel->part : first, limit };
 }
 
-/* Launches `count` work-items from `offset` on. Drivers compile a kernel for few and for many, from 0 on
- * and from elsewhere, when it is first launched so; the built-in device has nothing to compile. */
+/* Launches `count` work-items from `offset` on. Drivers compile a kernel anew at its first
+ * launch with few or many items, from 0 or from elsewhere; the built-in device compiles nothing. */
 static mcor_status mcor_enqueue_part(
   mcor_context* context, mcor_kernel* kernel, size_t offset, size_t count, size_t group)
 {
@@ -241,7 +245,7 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
   }
   if (load == MCOR_HEAVY && cl->observer)
   {
-    MCOR_TRY(mcor_finish(context)); /* so that what was launched before is not reported with it */
+    MCOR_TRY(mcor_finish(context)); /* so that its time does not include earlier launches */
   }
   MCOR_TRY(mcor_ask(context, false));
   mcor_kernel* kernel = NULL;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Programs are built when they are first needed. Drivers keep what they have built; see devices.md. */
+/* Builds programs when they are first needed. Drivers keep what they have built, see devices.md. */
 
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
@@ -88,7 +88,7 @@ static mcor_status mcor_build_program(mcor_context* context, mcor_program number
   mcor_status status = mcor_build_with_options(context, number, options);
   if (status != MCOR_OK && cl->declares_builtins)
   {
-    cl->declares_builtins = false; /* as this compiler does not like that */
+    cl->declares_builtins = false; /* which this compiler does not like */
     context->error[0] = '\0';
     mcor_program_options(cl, number, options, sizeof options);
     status = mcor_build_with_options(context, number, options);
@@ -109,8 +109,8 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   return status;
 }
 
-/* Evaluation points that a work-item treats at once, MCOR_LANES of the programs, and of the environment for
- * tests. */
+/* Returns the evaluation points that a work-item treats at once: MCOR_LANES of the programs, and
+ * in tests of the environment. */
 static int mcor_choose_lanes(const mcor_cl* cl, mcor_type precision)
 {
   const char* forced = mcor_test_setting("MCOR_LANES");

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device's objects, memory, programs and kernels, as far as mcor_cl_*.c ask for them. A buffer is
- * memory of the host, and a command queue has nothing in it. */
+/* The built-in device's objects, memory, programs and kernels, as far as mcor_cl_*.c ask for
+ * them. A buffer is memory of the host, and a command queue is always empty. */
 
 #include "mcor_native.h"
 #include "mcor_parallel.h"
@@ -15,11 +15,12 @@
 
 #define MCOR_ARGUMENT_LIMIT 64
 #define MCOR_BUFFER_ALIGNMENT 128
-/* Work-groups of one work-item, in which the host launches what takes long, make a launch worth waking
- * threads; of 64, in which it launches what takes some nanoseconds, many do. */
+/* Below this number of light work-items (groups of 64, some nanoseconds each) a launch is not
+ * worth waking threads. Any medium or heavy launch (groups of one) is. */
 #define MCOR_FEW_LIGHT_ITEMS 8192
-/* Parts of a launch for each thread, as work-items differ: those that take long, by far, and the threads
- * that have none left wait for the last part. And work-items of a part, at most. */
+/* Parts of a launch for each thread. There are many, because work-items differ, the heavy ones
+ * by far, and threads without work wait for the last part. The last number limits the work-items
+ * of a part. */
 #define MCOR_LIGHT_PARTS 16
 #define MCOR_HEAVY_PARTS 64
 #define MCOR_PART_ITEMS 4096
@@ -51,7 +52,7 @@ struct _cl_command_queue
 struct _cl_mem
 {
   const cl_icd_dispatch* table;
-  char* data; /* behind this */
+  char* data; /* behind this struct */
 };
 
 struct _cl_program
@@ -81,13 +82,13 @@ cl_platform_id mcor_native_platform(void)
   return mcor_best_instructions() >= 0 ? &mcor_platform : NULL;
 }
 
-/* Threads that compute, the calling one included. */
+/* Returns the number of threads that compute, the calling one included. */
 static int mcor_units(void)
 {
   return mcor_limit_threads(mcor_processors(1));
 }
 
-/* Answers a question: `size` bytes at `from`. */
+/* Answers a query with `size` bytes at `from`. */
 static cl_int mcor_answer(const void* from, size_t size, size_t room, void* to, size_t* needed)
 {
   if (needed)
@@ -138,7 +139,7 @@ static cl_int mcor_device_info(
   const cl_uint units = (cl_uint)mcor_units(), width = best == MCOR_INSTRUCTIONS_V4 ? 16 : 8;
   const cl_device_fp_config rounding = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST |
     CL_FP_FMA | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-  /* All of the machine's memory: how much of it other programs use is not known. */
+  /* The machine's memory; what other programs use of it is not known. */
   const cl_ulong bytes = mcor_system_memory(), memory = bytes > 0 ? bytes : (cl_ulong)1 << 32;
   switch (what)
   {
@@ -174,7 +175,7 @@ MCOR_RELEASE_ALONE(mcor_release_queue, cl_command_queue)
 MCOR_RELEASE_ALONE(mcor_release_program, cl_program)
 MCOR_RELEASE_ALONE(mcor_release_kernel, cl_kernel)
 
-/* A new object, all zero but its table; NULL and the error where there is no memory. */
+/* Makes an object, all zero but for its table; NULL and the error if memory ran out. */
 static void* mcor_make_object(size_t size, cl_int* error)
 {
   struct _cl_platform_id* object = calloc(1, size);
@@ -298,7 +299,7 @@ static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* map
 
 /* ---- Programs and kernels ---- */
 
-/* The sources are those that were compiled. */
+/* Ignores the sources: they were compiled with the library. */
 static cl_program mcor_make_program(
   cl_context context, cl_uint count, const char** texts, const size_t* lengths, cl_int* error)
 {

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which of the programs compiled ahead are for this processor. It is asked itself: the compiler's own
- * question, __builtin_cpu_supports, has an answer in some of its libraries alone. */
+/* Which of the compiled programs suit this processor. It asks the processor itself:
+ * __builtin_cpu_supports gives an answer with some of the compiler's libraries only. */
 
 #include "mcor_native.h"
 
@@ -24,7 +24,7 @@ static mcor_instructions mcor_ask_processor(void)
   {
     return MCOR_INSTRUCTIONS_BASE;
   }
-  /* The registers that the system keeps for each thread. */
+  /* The registers that the system saves for each thread. */
   __asm__ volatile("xgetbv" : "=a"(state), "=d"(rest) : "c"(0));
   if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || !MCOR_HAS(state, 0x06u) ||
     !MCOR_HAS(b, bmi_avx2_bmi2))
@@ -35,10 +35,10 @@ static mcor_instructions mcor_ask_processor(void)
                                                                      : MCOR_INSTRUCTIONS_V3;
 }
 
-/* Asked once, as each launch wants to know: in virtual machines the question takes long. */
+/* Asks once: every launch wants to know, and in virtual machines the question takes long. */
 static mcor_instructions mcor_own_instructions(void)
 {
-  static atomic_int known; /* and 1 */
+  static atomic_int known; /* the answer + 1; 0: not asked yet */
   int found = atomic_load_explicit(&known, memory_order_relaxed);
   if (found == 0)
   {

@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* OpenCL found at run time: its platforms are the built-in one, and those that the system's loader
- * lists; where there is no loader, there are no drivers, and that is no error. Every object of an OpenCL
- * driver begins with a table of its functions (extension cl_khr_icd), and so do those of the built-in
- * device, which is all that calling them takes. */
+/* Finds OpenCL at run time. The platforms are the built-in one, and those that the system's
+ * loader lists; without a loader there are no drivers, which is no error. Every object of an
+ * OpenCL driver begins with a table of its functions (extension cl_khr_icd), and so does every
+ * object of the built-in device. To call a function therefore takes the object alone. */
 
-/* Without mcor_opencl.h, which gives OpenCL's functions the names that they have here. */
+/* Included without mcor_opencl.h, which renames OpenCL's functions. */
 #include "mcor_native.h"
 #include "mcor_system.h"
 
@@ -38,7 +38,7 @@ static const cl_icd_dispatch* mcor_table(const void* object)
   return *(const cl_icd_dispatch* const*)object;
 }
 
-/* The rest is handed on. FORWARD: of a function whose first argument is an object. */
+/* Defines a function that calls the one in the table of `object`, its first argument. */
 #define FORWARD(result, name, declared, passed, object)                                            \
   result CL_API_CALL mcor_##name declared;                                                         \
   result CL_API_CALL mcor_##name declared                                                          \
@@ -46,7 +46,7 @@ static const cl_icd_dispatch* mcor_table(const void* object)
     return mcor_table(object)->name passed;                                                        \
   }
 
-/* A function a line reads best here. */
+/* One function per line reads best here. */
 /* clang-format off */
 FORWARD(cl_int, clGetPlatformInfo, (cl_platform_id o, cl_platform_info w, size_t n, void* v, size_t* r), (o, w, n, v, r), o)
 FORWARD(cl_int, clGetDeviceIDs, (cl_platform_id o, cl_device_type t, cl_uint n, cl_device_id* d, cl_uint* r), (o, t, n, d, r), o)

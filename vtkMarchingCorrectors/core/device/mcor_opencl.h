@@ -3,8 +3,8 @@
 #ifndef mcor_opencl_h
 #define mcor_opencl_h
 
-/* OpenCL's functions, found at run time (mcor_opencl.c). They have names of their own, so that a program
- * that links this library statically may link OpenCL, too. */
+/* OpenCL's functions, found at run time (mcor_opencl.c), under names of their own, so that a
+ * program with this library linked in may link OpenCL, too. */
 
 #define CL_TARGET_OPENCL_VERSION 120
 

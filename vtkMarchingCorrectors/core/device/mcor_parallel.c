@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in device's threads wait from one loop to the next, and serve the loops of the host, too. Where
- * there is another device, or none, threads live for one loop. */
+/* Threads. Those of the built-in device wait from one loop to the next, and serve the loops of
+ * the host, too. With any other device, or none, threads live for one loop. */
 
 #include "mcor_cl_call.h"
 #include "mcor_system.h"
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define MCOR_LOOP_THREADS 16 /* of the host's alone, at most */
+#define MCOR_LOOP_THREADS 16 /* of a loop of the host without the built-in device, at most */
 
 int mcor_limit_threads(int usable)
 {
@@ -30,7 +30,8 @@ int mcor_processors(int count)
 
 /* ---- Threads ---- */
 
-/* Progress is told by the calling thread alone: the context of the others is NULL. */
+/* Runs parts of the loop until none is left. Only the calling thread reports progress; the other
+ * threads pass NULL as context. */
 static mcor_status mcor_pool_work(mcor_pool* pool, mcor_context* context)
 {
   const size_t last = pool->last, step = pool->step;
@@ -75,7 +76,7 @@ static void* mcor_pool_thread(void* data)
   return NULL;
 }
 
-/* Without memory for them there are no threads. */
+/* Prepares a pool; if memory ran out, it has the calling thread alone. */
 static void mcor_begin_pool(mcor_pool* pool)
 {
   free(pool->all);
@@ -108,7 +109,8 @@ void mcor_end_pool(mcor_pool* pool)
   free(pool->all);
 }
 
-/* Further threads are made while those there have not done everything, and as far as the system gives some. */
+/* Opens the loop to waiting threads, and makes further ones while work is left and the system
+ * allows it. */
 static void mcor_open_loop(mcor_pool* pool)
 {
   pthread_mutex_lock(&pool->lock);
@@ -127,8 +129,8 @@ static void mcor_open_loop(mcor_pool* pool)
   }
 }
 
-/* The loop is done when the caller's thread finds no more to do and those that joined it are back: one
- * that wakes later finds it closed. */
+/* Closes the loop. It is done when the calling thread finds no more work and all threads that
+ * joined are back; a thread that wakes later finds it closed. */
 static void mcor_close_loop(mcor_pool* pool)
 {
   pthread_mutex_lock(&pool->lock);
@@ -188,7 +190,7 @@ static void mcor_run_slices(void* data, size_t first, size_t last)
   }
 }
 
-/* asked: whom to ask whether to go on; NULL: nobody. */
+/* asked: the context whose progress callback may cancel; NULL: none. */
 static mcor_status mcor_run_loop(mcor_pool* of_device, mcor_context* asked, int64_t count,
   int64_t grain, mcor_slice_body body, void* data, int* slices)
 {

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compilers take their time, so a program holds little that a run does not need, and what does not
- * depend on the SPH kernel, the field or solids is compiled once for all of them. */
+/* Compilers take long. So a program holds little that a run does not need, and what depends
+ * neither on the SPH kernel nor on the field or solids is compiled once for all of them. */
 
 #include "mcor_program.h"
 #include "mcor_internal.h"
@@ -45,7 +45,8 @@ void mcor_name_build(const mcor_build* build, char* text, size_t size)
 
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size)
 {
-#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane) { #name, #norm, #support, tensor },
+#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane)                               \
+  { #name, #norm, #support, tensor },
   static const struct
   {
     const char *name, *norm, *support;
@@ -55,7 +56,8 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
   const mcor_build* build = &cl->build;
   const int k = (int)build->sph_kernel;
   const bool is_double = build->precision == MCOR_FLOAT64;
-  /* Probes sum any arrays, not the one to contour: that is compiled for no field in particular. */
+  /* Probes sum any arrays, not the scalar to contour, so their program is compiled for one
+   * field. */
   const mcor_field field = program == MCOR_PROGRAM_PROBE ? MCOR_WEIGHT_SUM : build->field;
   const char* f = is_double ? "" : "f";
   int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s%s -DMCOR_PROGRAM=%d",

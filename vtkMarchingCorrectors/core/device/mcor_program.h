@@ -3,16 +3,17 @@
 #ifndef mcor_program_h
 #define mcor_program_h
 
-/* Which kernel sources make which program, and what they are compiled for. No OpenCL calls. */
+/* Which kernel sources make up which program, and the options that they are compiled with. No
+ * OpenCL calls. */
 
 #include "mcor_cl.h"
 
 #define MCOR_SOURCE_LIMIT 64
 
-/* An OpenCL source; made by the build (kernels/programs.cmake). */
+/* An OpenCL source; the build makes the list (kernels/programs.cmake). */
 typedef struct mcor_kernel_source
 {
-  const char* text; /* NULL: the last */
+  const char* text; /* NULL ends the list */
   int programs;     /* bits of mcor_program */
   enum
   {
@@ -23,12 +24,13 @@ typedef struct mcor_kernel_source
 } mcor_kernel_source;
 extern const mcor_kernel_source mcor_kernel_sources[];
 
-/* The sources of a program, in order; returns how many. */
+/* Lists the sources of a program, in order; returns their number. */
 int mcor_program_sources(
   const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT]);
-/* False where a look into the program for this kernel, which builds it, is in vain. */
+/* Returns false where the program certainly lacks the kernel, so that it need not be built to
+ * look. */
 bool mcor_program_may_have(mcor_program program, const char* kernel);
-/* Names, for a sentence, why a device cannot do a build: "the SPH kernel sinc6". */
+/* Names a build for an error sentence: "the SPH kernel sinc6". */
 #define MCOR_BUILD_NAME 80
 void mcor_name_build(const mcor_build* build, char* text, size_t size);
 

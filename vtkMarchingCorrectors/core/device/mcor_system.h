@@ -4,28 +4,29 @@
 #define mcor_system_h
 
 /* Operating systems: everything that differs is in mcor_system_posix.c or mcor_system_windows.c.
- * Threads are pthreads everywhere: on Windows of MinGW's runtime. */
+ * Threads are pthreads everywhere; on Windows they come with MinGW's runtime. */
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* The machine's processors; `usable`: those of them that the calling thread may use. At least 1. */
+/* Returns the number of the machine's processors. *usable: how many of these the calling thread
+ * may use. Both are at least 1. */
 int mcor_system_processors(int* usable);
-/* Bytes of the machine's memory; 0: not known. */
+/* Returns the bytes of the machine's memory; 0: not known. */
 uint64_t mcor_system_memory(void);
 
-/* `alignment`: a power of 2. NULL where there is no memory. */
+/* alignment: a power of 2. Returns NULL if memory ran out. */
 void* mcor_system_allocate(size_t alignment, size_t bytes);
 void mcor_system_release(void* memory);
-/* Asks for large pages, where the system has such a question. */
+/* Asks for large pages, where the system has them. */
 void mcor_system_want_large_pages(void* memory, size_t bytes);
 
-/* clGetPlatformIDs of the system's OpenCL loader, which stays open: drivers do not bear being closed.
- * NULL where there is none. */
+/* Returns clGetPlatformIDs of the system's OpenCL loader; NULL: there is none. The loader stays
+ * open, as drivers do not survive being closed. */
 typedef void (*mcor_function)(void);
-/* Whether drivers can start: as many threads as the machine has processors, and map what they load. PoCL ends
- * the process where it cannot. */
+/* Whether drivers can start: they start a thread for each of the machine's processors, and map
+ * their libraries. PoCL ends the process where it cannot. */
 bool mcor_system_bears_drivers(void);
 mcor_function mcor_system_opencl(void);
 

@@ -49,7 +49,7 @@ void mcor_system_want_large_pages(void* memory, size_t bytes)
   const size_t skipped = (page - (uintptr_t)memory % page) % page;
   if (bytes > skipped)
   {
-    /* Only a request: where it is refused, pages stay small. */
+    /* A mere request: where it is refused, pages stay small. */
     (void)madvise((char*)memory + skipped, (bytes - skipped) / page * page, MADV_HUGEPAGE);
   }
 #else
@@ -60,8 +60,8 @@ void mcor_system_want_large_pages(void* memory, size_t bytes)
 mcor_function mcor_system_opencl(void)
 {
   mcor_function found = NULL;
-#ifndef __APPLE__ /* whose platform is of another kind: its objects do not begin with tables */
-  /* The program may have one already, or a tool that is put in its place. */
+#ifndef __APPLE__ /* its platform is of another kind: objects do not begin with tables */
+  /* The program may have a loader already, or a tool in place of one. */
   *(void**)&found = dlsym(RTLD_DEFAULT, "clGetPlatformIDs");
   void* loader = found ? NULL : dlopen("libOpenCL.so.1", RTLD_NOW | RTLD_LOCAL);
   if (loader)
@@ -72,7 +72,7 @@ mcor_function mcor_system_opencl(void)
   return found;
 }
 
-/* Address space that a driver's libraries, a compiler among them, take. */
+/* The address space that a driver's libraries take, a compiler among them. */
 #define MCOR_DRIVER_BYTES ((size_t)256 << 20)
 
 static void* mcor_wait_at_gate(void* gate)

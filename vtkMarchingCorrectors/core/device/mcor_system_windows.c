@@ -42,14 +42,15 @@ void mcor_system_release(void* memory)
   _aligned_free(memory);
 }
 
-/* They take a right that users do not have by default. */
+/* Large pages take a right that users lack by default. */
 void mcor_system_want_large_pages(void* memory, size_t bytes)
 {
   (void)memory, (void)bytes;
 }
 
-/* Objects of Wine's own OpenCL.dll do not begin with tables of functions, by which all others are called.
- * Libraries of Wine's say what they are behind their first 64 bytes, where others have a program of DOS. */
+/* Rejects Wine's own OpenCL.dll: its objects do not begin with tables of functions, through
+ * which all others are called. Wine's libraries name themselves behind their first 64 bytes,
+ * where others have a DOS program. */
 static bool mcor_is_wines_own(HMODULE library)
 {
   static const char mark[] = "Wine builtin DLL";

@@ -3,7 +3,7 @@
 #ifndef mcor_table_h
 #define mcor_table_h
 
-/* Values, which are not 0, by keys: a hash table. All zero: it is empty. */
+/* A hash table from keys to values other than 0. All zero: empty. */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -11,7 +11,7 @@
 
 typedef struct mcor_entry
 {
-  uint64_t key, value; /* value 0: free */
+  uint64_t key, value; /* value 0: the entry is free */
 } mcor_entry;
 
 typedef struct mcor_table
@@ -20,16 +20,17 @@ typedef struct mcor_table
   size_t capacity, count;
 } mcor_table;
 
-/* 0: there is none. */
+/* Returns 0 where the key is missing. */
 uint64_t mcor_table_find(const mcor_table* map, uint64_t key);
-/* The value of a key, 0 where it is new, which is to be set before the map is used again. NULL: memory ran
- * out. */
+/* Returns the place of the key's value; it is 0 if the key is new, and must be set before the
+ * table is used again. NULL: memory ran out. */
 uint64_t* mcor_table_add(mcor_table* map, uint64_t key);
 void mcor_table_free(mcor_table* map);
 
-/* Numbers from 0 on by keys. That of a key; `number` where it has none yet. -1: memory ran out. */
+/* For tables of numbers from 0 on. Returns the key's number, which becomes `number` if the key
+ * is new. -1: memory ran out. */
 int32_t mcor_table_number(mcor_table* map, uint64_t key, int32_t number);
-/* -1: it has none. */
+/* Returns the key's number; -1: it has none. */
 int32_t mcor_find_number(const mcor_table* map, uint64_t key);
 
 #endif

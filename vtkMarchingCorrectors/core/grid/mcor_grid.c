@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Search grid [III-A]: levels, counting sort, volumes; and the scalar in sorted order. */
+/* The search grid [III-A]: levels, a counting sort, volumes; and the scalar in sorted order. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
@@ -11,16 +11,16 @@
 #include <float.h>
 #include <math.h>
 
-/* The paper's cells are as large as the support. Smaller ones fit the round reach of a query better
- * and need more rows: 2 took as long, 3 longer. */
+/* Search cells per support radius. The paper's cells are as large as the support. Smaller ones
+ * fit the round reach of a query better, but need more rows: 2 took as long, 3 longer. */
 #define MCOR_CELLS_PER_SUPPORT 1
 
-/* Along an axis, so that the keys of all levels' cells are below 2^62. Far fewer are as good where
- * particles are that far apart. */
+/* Cells of a level along an axis, at most, so that keys of all levels stay below 2^62. Where
+ * particles are that far apart, far fewer are as good. */
 #define MCOR_CELL_LIMIT (1 << 19)
 
-/* Cells of a level along an axis, `cell` cubes long, or a little more where whole ones must fill a
- * period. */
+/* Returns the cells of a level along an axis, `cell` cubes long, or a little more where whole
+ * cells must fill a period. */
 static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell, mcor_level* level)
 {
   const int period = lattice->period[axis];
@@ -42,8 +42,8 @@ static void mcor_divide_axis(const mcor_lattice* lattice, int axis, double cell,
   level->cells[axis] = ((int)((last - side) / period) + 2) * cells + 1;
 }
 
-/* One level for each factor of 2 of support radius that occurs; renumbers staging->level. Returns
- * the number of search cells of all levels. */
+/* Makes one level for each factor of 2 of support radius that occurs, and renumbers
+ * staging->level. Returns the number of search cells of all levels. */
 static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
@@ -71,8 +71,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
     }
     number[l] = (uint8_t)grid->level_count;
     mcor_level* level = &grid->levels[grid->level_count++];
-    /* A little more than the support: rounding, here and on the device, must not lose a
-     * particle. */
+    /* Enlarges the support a little: rounding, here and on the device, must not lose a particle. */
     const double support = context->measure.support_max / lattice->cube * ldexp(1.0001, -l);
     level->base = base;
     level->support = (cl_float)support;
@@ -92,7 +91,7 @@ static uint64_t mcor_make_levels(mcor_context* context, mcor_staging* staging)
   return base;
 }
 
-/* Element for each particle, and zeros that vector loads find beyond the end. */
+/* Reserves an element for each particle, and zeros behind, which vector loads find. */
 static mcor_status mcor_reserve_padded(
   mcor_context* context, mcor_buffer* buffer, int count, size_t size)
 {
@@ -104,7 +103,7 @@ static mcor_status mcor_reserve_padded(
 typedef struct mcor_key_sort
 {
   const mcor_buffer *keys, *x, *y, *z, *inv_h, *size, *value;
-  int by_value, most; /* particles of a group */
+  int by_value, most; /* particles in a group */
 } mcor_key_sort;
 
 #define MCOR_SORT_ARGS(c, s)                                                                       \
@@ -112,7 +111,7 @@ typedef struct mcor_key_sort
     MCOR_BUFFER((s)->z), MCOR_BUFFER((s)->inv_h), MCOR_BUFFER((s)->size), MCOR_INT((s)->by_value), \
     MCOR_BUFFER((s)->value)
 
-/* Sorts groups that are too large for one work-item. */
+/* Sorts the groups that are too large for one work-item. */
 static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sort* sort)
 {
   mcor_grid* grid = &context->grid;
@@ -157,8 +156,8 @@ static mcor_status mcor_order_large_cells(mcor_context* context)
                                                              : MCOR_OK;
 }
 
-/* Moves particles to where `order` says, one array after the other, so that each may take the place of
- * the one before; then orders those of each cell. */
+/* Moves particles to where `order` says, one array after the other, so that each may take the
+ * place of the one before; then orders those of each cell. */
 static mcor_status mcor_move_particles(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
@@ -184,7 +183,7 @@ static mcor_status mcor_move_particles(mcor_context* context)
     MCOR_BUFFER(&grid->order));
 }
 
-/* Sorts by search cell, then within a cell, and moves the particles into that order. */
+/* Sorts particles by search cell, then within each cell, and moves them into that order. */
 static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* staging)
 {
   mcor_grid* grid = &context->grid;
@@ -200,7 +199,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x),
     MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
-  /* Memory that has been touched goes on to the first array that is moved. */
+  /* The sort's memory, already touched, goes to the first array that is moved. */
   grid->px = context->sort.keys;
   context->sort.keys = (mcor_buffer){ 0 };
   mcor_release_sort(context);
@@ -210,7 +209,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
   if (grid->bucket_shift == 0)
   {
-    /* Each cell has a bucket: nobody looks for keys. The scalar is next to need memory. */
+    /* Each cell has a bucket, so keys are not needed. The scalar needs memory next. */
     mcor_release(context, &context->stage.values);
     context->stage.values = grid->cell_keys;
     grid->cell_keys = (mcor_buffer){ 0 };
@@ -219,7 +218,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   return MCOR_OK;
 }
 
-/* Where weights of fluid particles go. */
+/* Returns the buffer for the weights of fluid particles. */
 static const mcor_buffer* mcor_fluid_weight(const mcor_grid* grid)
 {
   return grid->has_solids ? &grid->fluid_weight : &grid->trim_weight;
@@ -234,7 +233,7 @@ static mcor_status mcor_weigh_volumes(mcor_context* context)
     MCOR_BUFFER(&grid->trim_weight));
 }
 
-/* Why a particle's volume cannot be computed. */
+/* Says why a particle's volume cannot be computed. */
 static mcor_status mcor_refuse_density(
   mcor_context* context, const mcor_input* input, int64_t particle)
 {
@@ -252,11 +251,13 @@ static mcor_status mcor_refuse_density(
     (long long)particle, mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 
-/* How much a side without neighbours adds to a density: 5/3 D^2, see mcor_density_factor. The uppermost layer of a
- * lattice at rest then has its true volume, within 0.7 %, for all kernels and smoothing lengths. */
+/* The factor of D^2 by which a side without neighbours adds to a density, see
+ * mcor_density_factor. With 5/3, the uppermost layer of a lattice at rest has its true volume
+ * within 0.7 %, for all kernels and smoothing lengths. */
 #define MCOR_ONE_SIDED (5.0 / 3)
 
-/* V = m / (sum_k m_k W(x_j - x_k, h_j) (1 + 5/3 D^2)), own and unscaled h; m = 1 where no mass is known. */
+/* Computes V = m / (sum_k m_k W(x_j - x_k, h_j) (1 + 5/3 D^2)), with each particle's own,
+ * unscaled h; m = 1 where no mass is known. */
 static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;
@@ -274,7 +275,7 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   cl_int first = INT32_MAX;
   mcor_find_evaluated(context, low, high);
   MCOR_TRY(mcor_write(context, without, &first, sizeof first));
-  /* Volumes grow with its cube, in two dimensions with its square. */
+  /* A volume grows with the cube of the scale, in two dimensions with its square. */
   const double scale = context->run.options->h_scale;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_REAL(mcor_is_plane(context) ? mcor_cube_root(scale * scale) : scale),
@@ -312,12 +313,12 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
     MCOR_BUFFER(mcor_fluid_weight(g)), MCOR_BUFFER(&(g)->trim_weight)
 
-/* Orders particles that differ in the scalar only, which mcor_sort_values has just put in place. */
+/* Orders particles that differ in the scalar only, which mcor_sort_values has just written. */
 static mcor_status mcor_order_coincident(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
   const int count = grid->count;
-  const mcor_buffer* raw = &context->stage.values; /* the scalar in the order of the input */
+  const mcor_buffer* raw = &context->stage.values; /* the scalar in input order */
   mcor_buffer *many = &context->stage.found, *flags = &context->stage.flags,
               *keys = &context->stage.keys;
   cl_int some = 0;
@@ -352,8 +353,9 @@ static mcor_status mcor_order_coincident(mcor_context* context)
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(&grid->value), MCOR_INT(0));
 }
 
-/* A Shepard mean shifts with its values. A - A0 with A0 where most values are keeps the digits of a
- * scalar with a large offset, and of one with a few huge peaks. */
+/* Chooses A0, the shift of the scalar. A Shepard mean shifts with its values, so A - A0, with A0
+ * near most values, keeps the digits of a scalar with a large offset, and of one with a few huge
+ * peaks. */
 mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 {
   mcor_grid* grid = &context->grid;

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Points where the field is evaluated, in groups that share a gather. */
+/* Groups the points where the field is evaluated; the points of a group share a gather. */
 
 #include "mcor_internal.h"
 
-/* Cuts points [first, first + count) into groups that are evaluated together. */
+/* Cuts points [first, first + count) into groups. */
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count)
 {
@@ -20,8 +20,8 @@ mcor_status mcor_make_groups(
     MCOR_INT(count), MCOR_BUFFER(&points->flags), MCOR_BUFFER(&points->groups));
 }
 
-/* Sorts the batch's points by place, those in no brick last, and cuts the `inside` other ones into
- * groups. */
+/* Sorts the points of a batch by place, those in no brick last, and cuts the `inside` other ones
+ * into groups. */
 mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count)
 {

@@ -3,8 +3,9 @@
 
 #include "mcor_internal.h"
 
-/* Elements that take so long that a run is to be cancelled before them, for which a launch waits for those before
- * it: of fewer, the waits take longer than the work. */
+/* The number of elements whose launches take long enough that a run may be cancelled before
+ * each. Each such launch waits for the one before; for fewer elements, waiting would take longer
+ * than the work. */
 #define MCOR_LONG_WALK (1 << 20)
 
 static mcor_load mcor_walk(int count)
@@ -12,16 +13,16 @@ static mcor_load mcor_walk(int count)
   return count > MCOR_LONG_WALK ? MCOR_HEAVY : MCOR_MEDIUM;
 }
 
-/* Segments into which `count` elements are cut: none is so short that walking it takes less time than
- * the launches that several need. */
+/* Returns into how many segments `count` elements are cut. No segment is so short that walking
+ * it takes less time than the launches that several segments need. */
 static int mcor_segments(const mcor_context* context, int count)
 {
   const int most = count / (context->cl.lanes == 1 ? 64 : 16384);
   return most < 1 ? 1 : most < context->cl.segments ? most : context->cl.segments;
 }
 
-/* Launches what replaces counts[0..count) by their exclusive prefix sums; element `count`, and that of
- * the sums behind the segments', become the total. The buffer holds count + 1 ints. */
+/* Launches the exclusive prefix sum of counts[0..count). Element `count`, and that of the
+ * segments' sums, become the total. The buffer holds count + 1 ints. */
 static mcor_status mcor_launch_scan(
   mcor_context* context, const mcor_buffer* counts, int count, int segments)
 {
@@ -53,7 +54,7 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
   return MCOR_OK;
 }
 
-/* Number of bits set in both of two arrays of masks. */
+/* Counts the bits that are set in both of two arrays of masks. */
 mcor_status mcor_count_bits(
   mcor_context* context, const mcor_buffer* masks, const mcor_buffer* within, int count, int* total)
 {
@@ -71,7 +72,7 @@ static void mcor_swap(mcor_buffer* a, mcor_buffer* b)
   *b = c;
 }
 
-/* Bits of numbers below a limit. */
+/* Returns the number of bits of numbers below a limit. */
 static int mcor_bits_below(uint64_t limit)
 {
   int bits = 1;
@@ -82,8 +83,8 @@ static int mcor_bits_below(uint64_t limit)
   return bits;
 }
 
-/* Bits that one round of sorting treats: as few rounds as can be, of about the same size, with a
- * histogram no larger than what is sorted. */
+/* Returns the bits that one round of sorting treats: the fewest rounds possible, of about equal
+ * size, with a histogram no larger than the sorted array. */
 static int mcor_digit_bits(const mcor_context* context, int segments, int count, int bits)
 {
   int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
@@ -95,7 +96,7 @@ static int mcor_digit_bits(const mcor_context* context, int segments, int count,
   return (bits + rounds - 1) / rounds;
 }
 
-/* Sorts keys, all below key_limit; values[i] becomes the former position of key i. Stable. */
+/* Sorts keys below key_limit; values[i] becomes the former position of key i. Stable. */
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
@@ -103,7 +104,7 @@ mcor_status mcor_sort(
   const int key_bits = mcor_bits_below(key_limit), value_bits = mcor_bits_below((uint64_t)count);
   const int bits = mcor_digit_bits(context, segments, count, key_bits);
   const size_t n = (size_t)count;
-  /* Between rounds, a key and its value are one number, where that has room for both. */
+  /* Between rounds a key and its value are one number, if both have room in it. */
   const bool packs = key_bits + value_bits <= 64;
   mcor_buffer* sorted = packs ? values : &context->sort.values;
   MCOR_TRY(mcor_reserve(context, values, n * sizeof(cl_int)));
@@ -130,14 +131,15 @@ mcor_status mcor_sort(
   return MCOR_OK;
 }
 
-/* Gives back the memory that sorting needs, which is as large as the particles. */
+/* Frees the memory of a sort, which is as large as the particles. */
 void mcor_release_sort(mcor_context* context)
 {
   mcor_sort_data* s = &context->sort;
   MCOR_RELEASE(context, &s->keys, &s->values, &s->histogram, &s->order, &s->flags);
 }
 
-/* Distinct keys in order; index_of[i] is the index of key i among them. Sorts `keys`. */
+/* Lists the distinct keys in order; index_of[i] becomes the index of key i among them. Sorts
+ * `keys`. */
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)
 {
@@ -160,8 +162,8 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Index into sorted keys: bucket b begins at the first key >= b << shift. 4 buckets per key and a
- * million more at most, so that memory stays linear however sparse the keys are. */
+/* Indexes sorted keys: bucket b begins at the first key >= b << shift. At most 4 buckets per key
+ * and a million more, so that memory stays linear, however sparse the keys are. */
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift)
 {

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Checking everything a caller hands in. */
+/* Checks everything that a caller hands in. */
 
 #include "mcor_input.h"
 #include "mcor_plane.h"
@@ -38,7 +38,7 @@ static mcor_status mcor_check_box(mcor_context* context, const mcor_options* opt
   return MCOR_OK;
 }
 
-/* Refuses values that no measurement gives. Without particles, ranges are empty. */
+/* Refuses values that no measurement yields. Without particles, ranges are empty. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
   bool good = g->measured.fluid_count >= 0 && g->measured.solid_count >= 0 &&
@@ -59,7 +59,7 @@ static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals*
   return MCOR_OK;
 }
 
-/* The numbers that an option may be: from low to high, or those of its words. */
+/* The numbers that an option may have: from low to high, or the numbers of its words. */
 typedef struct mcor_legal
 {
   bool is_word, excludes_low, excludes_high;
@@ -75,7 +75,7 @@ typedef struct mcor_legal
 #define FROM(least, greatest) { .low = least, .high = greatest }
 // clang-format on
 
-/* Whether "table|field" has a word of this number, from 0. */
+/* Whether "table|field" has a word of this number, from 0 on. */
 static bool mcor_has_word(const char* words, double number)
 {
   for (double i = 0; words && i < number; ++i)
@@ -112,21 +112,23 @@ static mcor_status mcor_check_number(
   }
   if (isfinite(legal.high))
   {
-    snprintf(most, sizeof most, " and %s %g", legal.excludes_high ? "below" : "at most", legal.high);
+    snprintf(
+      most, sizeof most, " and %s %g", legal.excludes_high ? "below" : "at most", legal.high);
   }
   return mcor_fail(context, MCOR_INVALID_ARGUMENT, "The %s is %.15g; it must be %s %g%s%s%s.", name,
     value, legal.excludes_low ? "above" : "at least", legal.low, most,
     *words ? ", or the number, from -1 down, of one of these: " : "", words);
 }
 
-/* Enumerations are unsigned where no value is negative. */
-#define MCOR_NUMBER(value) _Generic((value), unsigned: (double)(int)(value), default: (double)(value))
+/* Enumerations are unsigned if no value is negative. */
+#define MCOR_NUMBER(value)                                                                         \
+  _Generic((value), unsigned : (double)(int)(value), default : (double)(value))
 
 static mcor_status mcor_check_options(mcor_context* context, const mcor_options* options)
 {
 #define OPTION(member, usual, legal, words, scope, property)                                       \
-  MCOR_TRY(mcor_check_number(                                                                      \
-    context, #member, MCOR_NUMBER(options->member), (mcor_legal)legal, words));
+  MCOR_TRY(                                                                                        \
+    mcor_check_number(context, #member, MCOR_NUMBER(options->member), (mcor_legal)legal, words));
 #include "mcor_options.def"
 #define MCOR_NEED(condition, ...)                                                                  \
   MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
@@ -139,7 +141,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
       "The iso value of the free surface is %g; it must be above 0 (usually 0.5).",
       options->iso_values[i]);
   }
-  /* The cells of pairs may miss what a cap would need; in a box, the pairs may be elsewhere. */
+  /* Pair seeds may miss what a cap needs, and in a box the pairs may lie elsewhere. */
   const char* other = options->capping ? "Capping"
     : mcor_has_box(options)            ? "A box"
     : options->ranks                   ? "Several processes"
@@ -151,7 +153,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
   return mcor_check_box(context, options);
 }
 
-/* The array has a known type and as many components as it must. */
+/* Checks an array's type and number of components. */
 static mcor_status mcor_check_form(
   mcor_context* context, const mcor_array* array, const char* role, int components)
 {
@@ -164,8 +166,7 @@ static mcor_status mcor_check_form(
   return MCOR_OK;
 }
 
-/* The array has the right form, and every element that is used is finite, and above 0
- * where it must be. */
+/* Checks an array's form, and that each element in use is finite, and above 0 where it must be. */
 static mcor_status mcor_check_array(mcor_context* context, const mcor_input* input,
   const mcor_array* array, mcor_skip skip, const char* role, int components, bool positive)
 {
@@ -173,7 +174,8 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_input* inp
   const bool same = strcmp(name, role) == 0;
   MCOR_TRY(mcor_check_form(context, array, role, components));
   int c = 0;
-  const int64_t i = mcor_find_illegal(context, array, input->solid, skip, input->count, positive, &c);
+  const int64_t i =
+    mcor_find_illegal(context, array, input->solid, skip, input->count, positive, &c);
   if (i < 0)
   {
     return MCOR_OK;
@@ -273,7 +275,7 @@ mcor_status mcor_check_input(
   }
   MCOR_RETURN_IF(
     !input->positions.data, context, MCOR_INVALID_ARGUMENT, "There are no particle positions.");
-  /* Particles of a search grid that still holds were checked before. */
+  /* The particles of a search grid that still holds were checked when it was made. */
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input))
   {
     MCOR_TRY(mcor_check_particles(context, input));

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Measures over all particles, handed out, and taken back by calls that have only some of them. */
+/* Measures over all particles: handed out, and taken back by calls that have only some of the
+ * particles. */
 
 #include "mcor_input.h"
 #include "mcor_plane.h"
@@ -11,7 +12,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* A component varies where it does on a rank, or ranks have unlike values. */
+/* Merges ranks: a component varies if it does on any rank, or if ranks have different values. */
 static mcor_status mcor_merge_component(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, mcor_global_component* found)
 {
@@ -40,7 +41,7 @@ static mcor_status mcor_measure_components(
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
-    /* The first particle that is not, of the rank where it has the least number. */
+    /* Finds the first particle that is not finite: of the rank where its number is least. */
     int64_t not_finite = mcor_find_not_finite(context, array, input->solid, input->count);
     not_finite = not_finite < 0 ? INT64_MAX : not_finite;
     MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &not_finite));
@@ -64,7 +65,7 @@ static mcor_status mcor_measure_all(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_globals* globals = data;
-  mcor_free_globals(globals); /* of an attempt before */
+  mcor_free_globals(globals); /* left by a failed attempt */
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->kept.uses_solids = context->run.uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
@@ -74,7 +75,8 @@ static mcor_status mcor_measure_all(
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
-  globals->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 0;
+  globals->mass_max =
+    mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 0;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
   if (options->field == MCOR_SHEPARD)
   {
@@ -89,7 +91,7 @@ static mcor_status mcor_measure_all(
   return MCOR_OK;
 }
 
-/* For a surface, or for what is evaluated without a scalar. */
+/* Measures for a surface, or for calls without a scalar to contour. */
 static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* input,
   const mcor_options* options, bool surface, mcor_globals* globals)
 {
@@ -104,7 +106,7 @@ static mcor_status mcor_measure_for(mcor_context* context, const mcor_input* inp
   own.globals = NULL;
   const bool uses_solids =
     surface ? mcor_uses_solids(input, options) : mcor_evaluate_without_scalar(input, &own);
-  own.ranks = options->ranks; /* which mcor_evaluate_without_scalar leaves out */
+  own.ranks = options->ranks; /* mcor_evaluate_without_scalar leaves it out */
   mcor_statistics statistics = { 0 };
   const mcor_status status =
     mcor_run_call(context, input, &own, uses_solids, &statistics, mcor_measure_all, globals);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Reading the arrays that a caller hands in, and what is asked of all their elements. */
+/* Reads the arrays that a caller hands in, and answers questions about all their elements. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -15,7 +15,7 @@ int mcor_is_given(const mcor_array* array)
   return array->data || array->constant != 0;
 }
 
-/* Compilers vectorise these where they know the stride. */
+/* Compilers vectorise these loops because the stride is known. */
 static inline void mcor_read_floats(const float* data, int64_t stride, int count, double* out)
 {
   for (int i = 0; i < count; ++i)
@@ -72,10 +72,9 @@ void mcor_read_positions(const mcor_input* input, int64_t first, int count, doub
   }
 }
 
-/* Moves to the front what is not skipped, of a chunk that begins with particle `first`; returns how many. All
- * where `solid` is NULL. */
-static int mcor_keep(
-  const uint8_t* solid, mcor_skip skip, int64_t first, int count, double* x)
+/* Moves the elements that are not skipped to the front of a chunk that begins with particle
+ * `first`, and returns their number. `solid` NULL: skips none. */
+static int mcor_keep(const uint8_t* solid, mcor_skip skip, int64_t first, int count, double* x)
 {
   int kept = 0;
   for (int i = 0; i < count && solid; ++i)
@@ -101,7 +100,7 @@ int mcor_keep_present(const mcor_input* input, int64_t first, int count, double 
   return input->solid ? kept : count;
 }
 
-/* Elements that are looked at together: each alone would wait for the one before. */
+/* Elements that are tested together; one by one, each test would wait for the one before. */
 #define MCOR_ELEMENTS 4
 
 void mcor_widen_range(const double* x, int count, double* low, double* high)
@@ -156,8 +155,8 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   job->high[slice] = high;
 }
 
-void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip, int64_t count,
-  int component, double range[2])
+void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  mcor_skip skip, int64_t count, int component, double range[2])
 {
   mcor_range_job job = { .array = array, .solid = solid, .skip = skip, .component = component };
   const int slices = mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
@@ -170,7 +169,8 @@ void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8
   }
 }
 
-double mcor_largest(mcor_context* context, const mcor_input* input, const mcor_array* array, int component)
+double mcor_largest(
+  mcor_context* context, const mcor_input* input, const mcor_array* array, int component)
 {
   double range[2];
   mcor_find_range(context, array, input->solid, MCOR_SKIP_ABSENT, input->count, component, range);
@@ -229,7 +229,8 @@ static bool mcor_is_legal(
   mcor_context* context, const mcor_array* array, int64_t elements, bool positive)
 {
   mcor_legal_job job = { .array = array, .positive = positive };
-  const int slices = mcor_parallel_for(context, elements, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
+  const int slices =
+    mcor_parallel_for(context, elements, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
   bool illegal = false;
   for (int s = 0; s < slices; ++s)
   {
@@ -238,8 +239,8 @@ static bool mcor_is_legal(
   return !illegal;
 }
 
-int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip,
-  int64_t count, bool positive, int* component)
+int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  mcor_skip skip, int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
   if (array->data && mcor_is_legal(context, array, count * components, positive))
@@ -268,7 +269,7 @@ int64_t mcor_find_not_finite(
   return mcor_find_illegal(context, array, solid, MCOR_SKIP_SOLIDS, count, false, &component);
 }
 
-/* The power of 2 just above all components of particle i; 0 if they are 0 or not finite. */
+/* Returns the power of 2 just above all components of particle i; 0 if they are 0 or not finite. */
 static int mcor_exponent_of(const mcor_array* array, int64_t i)
 {
   double largest = 0;
@@ -294,8 +295,8 @@ static bool mcor_is_zero(const mcor_array* array, int64_t i)
   return zero;
 }
 
-/* a^T b of particle i, or its root; scaled by powers of 2 so that no product overflows, or
- * vanishing, on the way. */
+/* Computes a^T b of particle i, or its root. Scales by powers of 2, so that no product overflows
+ * or vanishes on the way. */
 static double mcor_scaled_product(
   const mcor_array* a, const mcor_array* b, int64_t i, bool magnitude)
 {
@@ -308,11 +309,11 @@ static double mcor_scaled_product(
   return magnitude ? ldexp(sqrt(sum), ea) : ldexp(sum, ea + eb);
 }
 
-/* Sums of squares between these lost nothing. */
+/* Sums of squares between these have lost nothing. */
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 
-/* Compilers vectorise these where they know the stride. */
+/* Compilers vectorise these loops because the stride is known. */
 static inline void mcor_square_floats(const float* x, int components, int count, double* out)
 {
   for (int i = 0; i < count; ++i)

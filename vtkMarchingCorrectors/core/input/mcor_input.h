@@ -3,8 +3,8 @@
 #ifndef mcor_input_h
 #define mcor_input_h
 
-/* Reading the caller's arrays as double: element by element, or a chunk of one component, which
- * compilers vectorise. */
+/* Reads the caller's arrays as double: one element, or a chunk of one component, which compilers
+ * vectorise. */
 
 #include "mcor_internal.h"
 
@@ -21,21 +21,24 @@ static inline double mcor_array_at(const mcor_array* array, int64_t i, int compo
                                   : (double)((const float*)array->data)[at];
 }
 
-/* Solid particles take no part where they are ignored, nor in the free surface. */
+/* Whether a particle is used. Solids are not where they are ignored, nor for a free surface that
+ * does not end at them. */
 static inline bool mcor_is_used(const mcor_context* context, const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||
     (context->kept.uses_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* Whether a particle counts as a neighbour, and where dimensions are found: solids that are not used, too. */
+/* Whether a particle counts as a neighbour, and where dimensions are found: unused solids count,
+ * too. */
 static inline bool mcor_is_present(const mcor_input* input, int64_t i)
 {
   return !input->solid || !input->solid[i] ||
     (!input->ignore_solids && input->solid[i] != MCOR_ABSENT);
 }
 
-/* Which particles a look at values leaves out, by their number in mcor_input.solid, and those above. */
+/* Which particles a look at values skips, by their mark in mcor_input.solid: those of this mark
+ * and above. */
 typedef enum mcor_skip
 {
   MCOR_SKIP_SOLIDS = 1,
@@ -49,13 +52,13 @@ static inline bool mcor_is_skipped(const uint8_t* solid, mcor_skip skip, int64_t
 
 #define MCOR_CHUNK 1024
 
-/* Particles of the next chunk where so many are left. */
+/* Returns the number of particles of the next chunk, if so many are left. */
 static inline int mcor_chunk_of(int64_t rest)
 {
   return rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
 }
 
-/* b where it is less, or more; not where it is no number. */
+/* Returns b if it is less (or more), and a where b is no number. */
 static inline double mcor_least(double a, double b)
 {
   return b < a ? b : a;
@@ -75,27 +78,29 @@ static inline const char* mcor_array_name(const mcor_array* array, const char* r
 }
 
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out);
-/* All three coordinates of at most MCOR_CHUNK particles. */
+/* Reads all three coordinates of at most MCOR_CHUNK particles. */
 void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
-/* Moves to the front the positions of particles that are present, and finite; returns how many. */
+/* Moves the positions of present, finite particles to the front; returns their number. */
 int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
-/* At most MCOR_CHUNK of them. Not finite where a derived scalar does not exist as a number. */
+/* Reads at most MCOR_CHUNK values. A derived scalar that is too large for a number is not
+ * finite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
-/* Least and greatest value of one component, without particles that are skipped where `solid` is not NULL; of none
- * DBL_MAX, -DBL_MAX. */
-void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip, int64_t count,
-  int component, double range[2]);
-/* The largest absolute value in a range, and of one component; of none 0. */
+/* Finds the least and greatest value of one component, skipping marked particles unless `solid`
+ * is NULL; without any: DBL_MAX, -DBL_MAX. */
+void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  mcor_skip skip, int64_t count, int component, double range[2]);
+/* Finds the largest absolute value in a range, or of one component; 0 without any. */
 static inline double mcor_largest_of(double low, double high)
 {
   return low > high ? 0 : fmax(-low, high);
 }
 /* Of the particles that are not absent, and of ignored solids what is finite. */
-double mcor_largest(mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
+double mcor_largest(
+  mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
 /* mcor_far.c. Of a lattice that does not fit: marks particles as absent, in `far`, so that it does. Ends with the
  * status and sentence of before where too many are in the way. */
@@ -116,30 +121,32 @@ void mcor_cut_bounds(mcor_context* context, const double low[3], const double hi
  * which one to the sentence. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
-/* The first particle, without those skipped where `solid` is not NULL, of which any component is not finite, or
- * not above 0 where it must be; -1 if there is none. */
-int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid, mcor_skip skip,
-  int64_t count, bool positive, int* component);
-/* For fluid particles alone. */
-int64_t mcor_find_not_finite(mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
+/* Finds the first particle, skipping marked ones unless `solid` is NULL, with a component that
+ * is not finite, or not above 0 where it must be; -1: none. */
+int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
+  mcor_skip skip, int64_t count, bool positive, int* component);
+/* Reads fluid particles alone. */
+int64_t mcor_find_not_finite(
+  mcor_context* context, const mcor_array* array, const uint8_t* solid, int64_t count);
 
-/* mcor_attribute.c. Components of all attributes together. */
+/* mcor_attribute.c. Returns the number of components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
 /* Measures one component; whether its attribute is finite is known before. */
 void mcor_measure_component(mcor_context* context, const mcor_input* input, int attribute,
   int component, mcor_global_component* found);
 
-/* About the median of the scalar of fluid particles; measured before. */
+/* About the median of the scalar of fluid particles, which is measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
-/* One of a few particles that stand for all. h, volume: of fluid alone; 0 where volumes are computed. */
+/* One of a few particles that stand for all. h, volume: of fluid particles alone; volume is 0
+ * where volumes are computed. */
 typedef struct mcor_sample
 {
   uint64_t hash;
   double x[3], h, volume;
 } mcor_sample;
 
-/* mcor_neighbour_sums.c. w(q), without the norm; of a tensor kernel that of an axis. */
+/* mcor_neighbour_sums.c. Returns w(q), without the norm; of a tensor kernel, for one axis. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
 #define MCOR_SAMPLES 256
@@ -157,29 +164,31 @@ typedef enum mcor_sampled
   MCOR_SOLID_PARTICLES
 } mcor_sampled;
 
-/* mcor_measure_sample.c. Of all ranks' particles; chosen->most is given. */
+/* mcor_measure_sample.c. Samples the particles of all ranks; chosen->most is given. */
 mcor_status mcor_choose_samples(
   mcor_context* context, const mcor_input* input, mcor_sampled which, mcor_samples_found* chosen);
 
-/* One for all particles, from their spacing. */
+/* Estimates one smoothing length for all particles from their spacing. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
-/* Cube root of a number above 0, with the same bits everywhere, unlike cbrt and pow of C libraries. */
+/* Computes the cube root of a number above 0, with the same bits on every machine, unlike cbrt
+ * and pow of C libraries. */
 double mcor_cube_root(double value);
-/* Median of `count` numbers, which it sorts; 0 if there are none. */
+/* Sorts `count` numbers and returns their median; 0 without any. */
 double mcor_median_of(double* values, int count);
 
-/* mcor_measure_neighbours.c. Told of all positions, it ends by filling in the measure's neighbours,
- * spacing, filled and h_median. An estimated smoothing length is to be known before. Free with free(). */
+/* mcor_measure_neighbours.c. A watch is shown all positions, and at its end fills in the
+ * measure's neighbours, spacing, filled and h_median. An estimated smoothing length must be
+ * known before. Free it with free(). */
 typedef struct mcor_watch mcor_watch;
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun);
 void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK]);
 mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices);
-/* Smoothing lengths, unscaled, unit L. */
+/* Reads smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
 
-/* Whether volumes are computed from the particles' density on the device. */
+/* Whether the device computes volumes from the particles' density. */
 static inline bool mcor_needs_density(const mcor_input* input)
 {
   return !mcor_is_given(&input->volume) &&

@@ -16,10 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Support radius in cubes at least: below, no node is likely to see a particle. */
+/* The least support radius, in cubes. Below it, hardly any node would see a particle. */
 #define MCOR_LEAST_SUPPORT 1e-3
 
-/* Cube sizes whose cubes, areas and gradients are numbers. */
+/* Cube sizes for which volumes, areas and gradients are finite numbers above 0. */
 #define MCOR_LEAST_CUBE 1e-100
 #define MCOR_MOST_CUBE 1e100
 
@@ -41,22 +41,22 @@ static void mcor_read_chunk(
   }
 }
 
-/* Places of the measures over all particles; slices and ranks merge them alike. */
+/* Indices of the ranges over all particles; slices and ranks merge them alike. */
 enum
 {
-  MCOR_REACHES = 0, /* positions -+ support radii; x, y, z */
-  MCOR_PLACES = 3,  /* positions of fluid particles; x, y, z */
+  MCOR_REACHES = 0, /* positions minus and plus support radii: x, y, z */
+  MCOR_PLACES = 3,  /* positions of fluid particles: x, y, z */
   MCOR_LENGTHS = 6, /* smoothing lengths of fluid particles */
   MCOR_SUPPORTS = 7,
   MCOR_SCALARS = 8,
-  MCOR_SPOTS = 9, /* positions of all particles that are used; x, y, z */
+  MCOR_SPOTS = 9, /* positions of all particles in use: x, y, z */
   MCOR_RANGES = 12
 };
 
 typedef struct mcor_ranges
 {
   double least[MCOR_RANGES], most[MCOR_RANGES];
-  int64_t counts[2]; /* of fluid particles, of solids */
+  int64_t counts[2]; /* fluid particles, solids */
   int64_t not_finite;
 } mcor_ranges;
 
@@ -88,8 +88,8 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
   r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
 }
 
-/* Measures a chunk's fluid, or its solids, but for the scalar. Rounding keeps the order of numbers: what is least
- * before a product or a difference with the same number is so after it. */
+/* Measures all but the scalar of a chunk's fluid, or of its solids. If all smoothing lengths are
+ * one, the extremes may be taken first: rounding keeps the order of numbers. */
 static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reach, mcor_ranges* r)
 {
   double h_min = DBL_MAX, h_max = -DBL_MAX;
@@ -122,7 +122,8 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
   }
 }
 
-/* Takes the solids out of a chunk, and what is absent; `solid` is of its particles, or NULL. */
+/* Moves the solids out of a chunk, and drops absent particles. `solid`: the marks of the chunk's
+ * particles, or NULL. */
 static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk* solids)
 {
   const int count = chunk->count;
@@ -140,7 +141,7 @@ static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk*
   }
 }
 
-/* The scalar of a chunk's fluid particles. */
+/* Measures the scalar of a chunk's fluid particles. */
 static void mcor_measure_scalar(
   const mcor_input* input, int64_t first, const mcor_chunk* chunk, mcor_ranges* r)
 {
@@ -220,7 +221,8 @@ static mcor_status mcor_measure_particles(
   return status;
 }
 
-/* Keeps the measures of all ranks. A particle that is not finite is reported by its own rank. */
+/* Merges the ranges of all ranks. A particle that is not finite is reported by its own rank
+ * alone. */
 static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
 {
   mcor_measure* m = &context->measure;
@@ -246,7 +248,7 @@ static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
   return MCOR_OK;
 }
 
-/* The components are finite, but the magnitude or the dot product may not be. */
+/* Refuses a magnitude, or a dot product, that overflows although its components are finite. */
 static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* input)
 {
   const char* name = mcor_array_name(&input->scalar, "scalar");
@@ -263,11 +265,12 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
   return MCOR_OK;
 }
 
-/* Whether keys have the bits for all nodes of a lattice, and its cells, up to where surfaces are. */
+/* Whether keys have enough bits for all nodes and cells of a lattice, as far as there are
+ * surfaces. */
 static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice)
 {
   const double unit = lattice->top > 0 ? ldexp(MCOR_BRICK, lattice->top + 1) : MCOR_BLOCK_CUBES;
-  double cells = lattice->top > 0 ? 8.0 / 7 : 1; /* bricks of all levels are counted */
+  double cells = lattice->top > 0 ? 8.0 / 7 : 1; /* counts the bricks of all levels */
   bool good = true;
   for (int a = 0; a < 3; ++a)
   {
@@ -279,7 +282,7 @@ static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice)
   return good && cells < MCOR_KEY_LIMIT;
 }
 
-/* The virtual grid that covers what the particles' supports reach. */
+/* Lays the virtual grid over everything that the particles' supports reach. */
 static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
 {
   mcor_measure* m = &context->measure;
@@ -300,7 +303,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   {
     --lattice->top;
   }
-  /* Whole bricks of all levels; with space around, so that finer bricks beside it have a place. */
+  /* Whole bricks of all levels, and space around them for finer bricks beside. */
   const int64_t unit = lattice->top > 0 ? (int64_t)MCOR_BRICK << (lattice->top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)
@@ -336,11 +339,12 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   }
   context->run.is_too_long = !mcor_has_keys(m, lattice);
   MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
-    "With cube size %g the virtual grid would be %.3g cells long, which is too long together with its other sides. "
+    "With cube size %g the virtual grid would be %.3g cells long, which is too long together with "
+    "its other sides. "
     "Use a larger cube size, or remove particles that are far away from the rest.",
     cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  /* Where smoothing lengths differ much, lattices are long, and the last bit is needed. */
+  /* Needs the last bit: where smoothing lengths differ much, lattices are long. */
   const int bits = options->precision == MCOR_FLOAT64 ? 62 : lattice->top > 0 ? 31 : 30;
   while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
   {
@@ -350,7 +354,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   return MCOR_OK;
 }
 
-/* Bounds and ranges; then the lattice. */
+/* Measures bounds and ranges, then the lattice. */
 mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
@@ -384,7 +388,7 @@ mcor_status mcor_measure_input(
   return mcor_measure_lattice(context, options);
 }
 
-/* Smoothing lengths that differ from the median by this factor are named. */
+/* A smoothing length that differs from the median by this factor is named in the error. */
 #define MCOR_OUTLIER 100
 
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input)

@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Values in the middle: about the median of the scalar, to which values are relative on the device; an iso value
- * for those who have named none; and the median of a few numbers. Of the scalar, values are counted in bins,
- * and those in the bin that is looked for again. What is found depends neither on the order of the particles
- * nor on who of several ranks has which. */
+/* Values in the middle. The median of the scalar is what values are relative to on the device; a
+ * default iso value serves those who name none; and there is the median of a few numbers.
+ * Medians of particles are found by counting values in bins, then counting again within the bin
+ * that holds the median. The result depends neither on the order of the particles nor on how
+ * ranks share them. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -19,7 +20,7 @@
 
 #define MCOR_THREE_DECADES 1000.0
 
-/* As a share of the span of most values. */
+/* A share of the span of most values. */
 #define MCOR_NEAR_END 0.01
 
 /* A range of more decades begins with values that rounding has left of 0. */
@@ -28,13 +29,13 @@
 typedef struct mcor_bin_job
 {
   const mcor_input* input;
-  double low, high; /* of the bins */
+  double low, high; /* the bins' range */
   int64_t count[MCOR_SLICES][MCOR_BINS];
-  double least[MCOR_SLICES][MCOR_BINS]; /* of the values in it, and minus the greatest */
+  double least[MCOR_SLICES][MCOR_BINS]; /* least value in each bin, and minus the greatest */
   double minus[MCOR_SLICES][MCOR_BINS];
 } mcor_bin_job;
 
-/* Halved, as the difference may be too large for a number. */
+/* Halved, because the difference may be too large for a number. */
 static int mcor_bin_of(const mcor_bin_job* job, double width, double value)
 {
   const double part = (0.5 * value - 0.5 * job->low) / width * 2;
@@ -71,11 +72,12 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Counts values by bin; the sums over all slices and ranks end in the first slice. A context may be NULL. */
+/* Counts values by bin; the sums over all slices and ranks end in slice 0. The context may be
+ * NULL. */
 static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks, mcor_bin_job* job)
 {
   int slices;
-  mcor_fill_bins(job, 0, 0, 0); /* where there are no particles, nobody does */
+  mcor_fill_bins(job, 0, 0, 0); /* without particles no slice does */
   MCOR_TRY(
     mcor_parallel_run(context, job->input->count, MCOR_LIGHT_GRAIN, mcor_fill_bins, job, &slices));
   for (int n = MCOR_BINS; n < slices * MCOR_BINS; ++n)
@@ -92,8 +94,9 @@ static mcor_status mcor_make_bins(mcor_context* context, const mcor_ranks* ranks
   return context ? mcor_heard(context, failed) : failed ? MCOR_CANCELLED : MCOR_OK;
 }
 
-/* Narrows the bins to the one that has the value of this number in their order, while many are in that. A bin
- * ends where its values do, so that a huge outlier does not move the median away from them. */
+/* Narrows the bins to the one that holds the value of this number in ascending order, until few
+ * values are in it. A bin ends where its values do, so that a huge outlier does not move the
+ * median away from them. */
 static mcor_status mcor_narrow_bins(mcor_context* context, const mcor_ranks* ranks,
   mcor_bin_job* job, int passes, int64_t number, int64_t many)
 {
@@ -136,9 +139,10 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
   return status;
 }
 
-/* ---- an iso value ---- */
+/* ---- An iso value ---- */
 
-/* Finds the value of this number in ascending order: narrows bins until one holds a single value. */
+/* Finds the value of this number in ascending order: narrows bins until one holds a single
+ * value. */
 static bool mcor_select_iso(
   mcor_bin_job* job, const mcor_ranks* ranks, const double range[2], int64_t number, double* value)
 {
@@ -154,7 +158,7 @@ static bool mcor_choose_iso(
 {
   double found[2] = { INFINITY, -INFINITY }, ends[2], most[2], median;
   int64_t count = 0;
-  job->low = -INFINITY; /* all are in the last bin */
+  job->low = -INFINITY; /* the last bin holds all */
   job->high = INFINITY;
   if (mcor_make_bins(NULL, ranks, job) != MCOR_OK)
   {
@@ -174,8 +178,9 @@ static bool mcor_choose_iso(
   {
     return false;
   }
-  /* If most values are alike (walls at rest, gas before a shock), what surrounds their median is noise, or nothing.
-   * That of values over some decades is far below the greatest ones, too. */
+  /* Avoids a median that shows nothing: where most values are alike (walls at rest, gas before a
+   * shock) its surface is noise or empty, and where values span decades it is far below the
+   * greatest ones. */
   const double* span = most[0] < most[1] ? most : found;
   const double near = MCOR_NEAR_END * (span[1] - span[0]), ratio = ends[1] / ends[0];
   const bool at_end = median - span[0] <= near || span[1] - median <= near;
@@ -205,7 +210,7 @@ int mcor_find_iso_value(
   return found;
 }
 
-/* ---- of a few numbers ---- */
+/* ---- Of a few numbers ---- */
 
 static int mcor_compare_doubles(const void* a, const void* b)
 {

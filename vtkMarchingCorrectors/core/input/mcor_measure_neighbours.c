@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How many neighbours a fluid particle has, and how near the nearest is: from a few of them, as this is
- * to notice smoothing lengths that cannot be meant. They are told of all positions while these are
- * measured. Where the few lie in a plane that is tilted in space, it is seen whether all do. */
+/* How many neighbours a fluid particle has, and how near the nearest one is. A few watched
+ * particles suffice to notice smoothing lengths that cannot be meant. They see all positions
+ * while these are measured. If the watched particles lie in a plane that is tilted in space, it
+ * is also seen whether all others do. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -16,15 +17,17 @@
 #include <string.h>
 
 #define MCOR_PI 3.14159265358979323846
-#define MCOR_WATCHED 32     /* fluid particles, bits of a mask */
-#define MCOR_WATCH_CELLS 64 /* at most, along each axis of a coarse grid; bits of a row */
+#define MCOR_WATCHED 32 /* fluid particles, bits of a mask */
+#define MCOR_WATCH_CELLS                                                                           \
+  64 /* at most, along each axis of a coarse grid, which has a bit of a row for each */
 
-/* Fluid particles, and whether any cell is in reach of each. */
+/* The watched fluid particles, and a coarse grid that tells which of them each cell may reach. */
 struct mcor_watch
 {
-  int cells; /* along each axis; the outermost are in no reach */
+  int cells; /* along each axis; the outermost cells reach none */
   double low[3], cells_per_length[3];
-  /* Bit s: of watched particle s; and bit x: of any of them, small, for a fast look. */
+  /* reached: of each cell, bit s for watched particle s. any: of each row of cells, bit x for a
+   * cell that reaches any; small, for a fast first look. */
   uint32_t reached[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
   uint64_t any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
   int count;
@@ -33,7 +36,8 @@ struct mcor_watch
   int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
   double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
   double normal[3];                          /* 0: they do not lie in a plane */
-  /* Along it, from the first of them: the most, and the most of minus that. */
+  /* Distances along the normal from the first one: the greatest, and the greatest of their
+   * negatives. */
   double beyond[MCOR_SLICES][2];
 };
 
@@ -45,7 +49,8 @@ static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
   return (int)(above < watch->cells - 1 ? above : watch->cells - 1);
 }
 
-/* Lays the grid over what is in reach of the watched: no more cells than particles look them up. */
+/* Lays the grid over what the watched particles reach, with no more cells than there are
+ * particles to look them up. */
 static void mcor_place_watch(mcor_watch* watch, int64_t particles)
 {
   watch->cells = 4;
@@ -110,9 +115,9 @@ static void mcor_watch_particle(mcor_watch* watch, int slice, uint32_t reached, 
   }
 }
 
-/* ---- a plane that is tilted in space ---- */
+/* ---- A plane that is tilted in space ---- */
 
-/* Smoothing lengths along the normal at most, and in the plane at least. */
+/* In smoothing lengths: the greatest extent along the normal, the least one in the plane. */
 #define MCOR_THIN 0.1
 #define MCOR_BROAD 8
 
@@ -129,8 +134,8 @@ static double mcor_dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The plane through the first of the watched, the one farthest from it, and the one farthest from the line
- * between these. */
+/* Finds the normal of the plane through the first watched particle, the one farthest from it,
+ * and the one farthest from the line between these. */
 static void mcor_find_normal(mcor_watch* watch)
 {
   double from[MCOR_WATCHED][3], along[3] = { 0 }, normal[3] = { 0 }, h = DBL_MAX;
@@ -226,7 +231,7 @@ void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double 
   }
 }
 
-/* The medians over watched particles. */
+/* Takes the medians over the watched particles. */
 static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[MCOR_WATCHED],
   const double nearest[MCOR_WATCHED], mcor_measure* m)
 {

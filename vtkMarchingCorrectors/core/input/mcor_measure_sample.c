@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A few particles that stand for all: those whose positions have the least hashes, so that neither the
- * order of the input matters, nor which rank has what. */
+/* Chooses a few particles that stand for all: those whose positions have the least hashes. So
+ * neither the order of the input matters, nor how ranks share the particles. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -25,7 +25,7 @@ static uint64_t mcor_hash_position(const double x[3])
   return hash;
 }
 
-/* In one place, by what else they are used for. */
+/* Orders particles at one place by their other values. */
 static bool mcor_comes_before(const mcor_sample* a, const mcor_sample* b)
 {
   return a->hash != b->hash ? a->hash < b->hash

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The smoothing length of particles that have none. */
+/* Estimates one smoothing length for particles that have none. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -15,8 +15,8 @@
 
 #define MCOR_SAMPLE_NEIGHBOURS 32
 
-/* Squared distances, times the squared scale, from a sample to the particle itself and its 32 nearest
- * others, or all there are; the least first. */
+/* Squared, scaled distances from a sample to itself and its 32 nearest others (or all there
+ * are), ascending. */
 typedef struct mcor_neighbours
 {
   int count;
@@ -48,7 +48,7 @@ typedef struct mcor_spacing
   mcor_neighbours nearest[MCOR_SAMPLES];
 } mcor_spacing;
 
-/* The nearest of this rank's particles to each sample of a slice. */
+/* Finds, for each sample of a slice, the nearest of this rank's particles. */
 static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spacing* job = data;
@@ -74,8 +74,8 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* How many of a list are not greater than the number of these bits: those of numbers not below 0 are
- * in the numbers' order. */
+/* Counts the distances that are at most the number with these bits. Bits of numbers above 0 have
+ * the order of the numbers. */
 static int64_t mcor_count_up_to(const mcor_neighbours* nearest, int64_t bits)
 {
   double limit;
@@ -88,8 +88,8 @@ static int64_t mcor_count_up_to(const mcor_neighbours* nearest, int64_t bits)
   return count;
 }
 
-/* Finds, over all ranks, each sample's farthest neighbour and the number of neighbours: bit by bit, from
- * counts. */
+/* Finds each sample's farthest neighbour over all ranks, and the number of neighbours: bit by
+ * bit, since ranks exchange counts only. */
 static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing* job,
   double farthest[MCOR_SAMPLES], int64_t neighbours[MCOR_SAMPLES])
 {
@@ -121,7 +121,7 @@ static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing*
   return MCOR_OK;
 }
 
-/* The power of 2 that brings all coordinates, of all ranks, below 1. */
+/* Finds the power of 2 that scales the coordinates of all ranks to less than 1. */
 static mcor_status mcor_scale_positions(
   mcor_context* context, const mcor_input* input, mcor_spacing* job)
 {
@@ -152,15 +152,15 @@ double mcor_cube_root(double value)
   {
     rest /= 2;
   }
-  for (int i = 0; i < 9; ++i) /* Newton's, from above; rest is from 1/8 to 1 */
+  for (int i = 0; i < 9; ++i) /* Newton's method, from above; rest is from 1/8 to 1 */
   {
     root = (2 * root + rest / (root * root)) / 3;
   }
   return ldexp(root, exponent / 3);
 }
 
-/* 1.3 times the median, over the samples, of the spacing of a lattice that has as many particles
- * within the distance of the 32nd neighbour. */
+/* Returns 1.3 times the median spacing: that of a lattice with as many particles within the
+ * distance of the 32nd neighbour. */
 static mcor_status mcor_find_spacing(
   mcor_context* context, const mcor_input* input, mcor_spacing* job, double* estimate)
 {

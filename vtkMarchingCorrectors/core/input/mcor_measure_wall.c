@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* At which share of the weight a surface ends on the layer of solids that faces the fluid: the solids'
- * share at some solids themselves, in the median, each one counting as much as the fluid weighs there, so
- * that those that no fluid reaches do not count. Weights are added as whole numbers: so the result
- * depends neither on the order of the particles, nor on who of several ranks has which. */
+/* Measures the wall share: the share of the weight at which a surface ends on the layer of
+ * solids that faces the fluid. It is the median, over sampled solids, of the solids' share of
+ * the weight there. Each sample counts as much as the fluid weighs there, so solids that no
+ * fluid reaches do not count. Weights are added as whole numbers, so the result depends neither
+ * on the order of the particles nor on how ranks share them. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -15,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A weight of 1, as a whole number; and what one particle adds at most, so that no sum overflows. */
+/* The whole number that stands for a weight of 1; and the most that one particle adds, so that
+ * no sum overflows. */
 #define MCOR_WHOLE_WEIGHT 1073741824.0
 #define MCOR_MOST_WEIGHT 4.0
 
@@ -31,7 +33,7 @@ typedef struct mcor_wall
 {
   const mcor_context* context;
   const mcor_input* input;
-  int count, axis;  /* of the samples; they are sorted along it, -1: not */
+  int count, axis;  /* axis: along which the samples are sorted; -1: none */
   double period[3]; /* 0: open */
   double reach;     /* the largest support radius */
   double mass_max;
@@ -39,7 +41,7 @@ typedef struct mcor_wall
   int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
 } mcor_wall;
 
-/* W / norm h^3 at an offset. */
+/* Returns W h^3 / norm at an offset. */
 static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double inv_h)
 {
   return kernel == MCOR_M_PRIME_4
@@ -48,7 +50,7 @@ static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double
     : mcor_w_of(kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
 }
 
-/* Volumes of particles. Of those that are yet to be computed the masses stand for them: shares do not
+/* Returns a particle's volume, or its mass where volumes are yet to be computed: shares do not
  * depend on the unit. */
 static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
 {
@@ -59,7 +61,7 @@ static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
     : size;
 }
 
-/* The first sample that is not before x along the axis. */
+/* Finds the first sample that is not before x along the axis. */
 static int mcor_wall_first(const mcor_wall* wall, double x)
 {
   int low = 0, high = wall->axis >= 0 ? wall->count : 0;
@@ -133,7 +135,8 @@ static int mcor_compare_shares(const void* a, const void* b)
                               : (s->fluid > t->fluid) - (s->fluid < t->fluid);
 }
 
-/* Sorted, the share at which half of the fluid's weight is counted. */
+/* Sorts the samples by share, and returns the share at which half of the fluid's weight is
+ * counted. */
 static double mcor_median_share(mcor_wall* wall)
 {
   int count = 0;
@@ -161,7 +164,7 @@ static double mcor_median_share(mcor_wall* wall)
   return MCOR_FREE_WALL_SHARE; /* no fluid is near */
 }
 
-/* Takes the samples in their order along an axis without a period; -1 where there is none. */
+/* Chooses the samples, and sorts them along an axis without a period, if there is one. */
 static mcor_status mcor_place_samples(mcor_context* context, mcor_wall* wall)
 {
   mcor_samples_found found = { .most = MCOR_SAMPLES };

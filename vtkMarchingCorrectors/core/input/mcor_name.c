@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The names under which particle files hold what a run needs, and the period that they tell of. */
+/* The names under which particle files hold what a run needs, and the period that they tell. */
 
 #include "mcor.h"
 
@@ -11,7 +11,7 @@
 
 #define MCOR_NAMES 14
 
-/* The most usual name first; in small letters and digits alone. */
+/* Usual names, the most usual first, as small letters and digits alone. */
 static const char* const mcor_usual_names[MCOR_QUANTITY_COUNT][MCOR_NAMES] = {
   [MCOR_SMOOTHING_LENGTH] = { "smoothinglength", "smoothinglengths", "hsml", "h" },
   [MCOR_VOLUME] = { "volume", "volumes", "particlevolume", "vol", "volumetricmeasure" },
@@ -33,7 +33,7 @@ static bool mcor_is_same_name(const char* name, const char* usual)
     {
       continue;
     }
-    /* Small by ASCII, whatever the locale: in a Turkish one, tolower('I') is no i. */
+    /* Turns ASCII letters to small ones in any locale: in a Turkish one, tolower('I') is no i. */
     if ((*name >= 'A' && *name <= 'Z' ? *name - 'A' + 'a' : *name) != *usual)
     {
       return false;
@@ -94,8 +94,8 @@ int mcor_view_priority(const char* name, int components, int is_real, int varies
                                                                 : 4;
 }
 
-/* By which names a solver's output is told, as above; sources: Documentation/Guide/your-data.md. Those
- * that more files have come later. */
+/* The array names by which a solver's output is recognised; sources:
+ * Documentation/Guide/your-data.md. Names that several solvers use come later. */
 typedef struct mcor_layout
 {
   const char *solver, *names[4];
@@ -110,7 +110,7 @@ static const mcor_layout mcor_layouts[] = { { "DualSPHysics", { "rhop", "idp" } 
   { "SPH-EXA", { "h", "mass", "vx", "vz" } }, { "SPH-EXA", { "h", "m", "vx", "vz" } },
   { "Phantom", { "h", "vx", "vy", "vz" } } };
 
-/* Whether one of the names, each on a line, is the usual one. */
+/* Whether one of the names, each on a line of its own, is the usual one. */
 static bool mcor_lists_name(const char* names, const char* usual)
 {
   for (const char* name = names; *name;)
@@ -148,7 +148,7 @@ const char* mcor_find_layout(const char* names)
   return "";
 }
 
-/* The first array of this name and so many values. */
+/* Finds the first array with this name and number of values. */
 static const double* mcor_find_values(
   const mcor_field_data* arrays, int count, const char* usual, int64_t values, int* which)
 {
@@ -164,7 +164,7 @@ static const double* mcor_find_values(
   return NULL;
 }
 
-/* Whether there are periods, of which some may be 0. */
+/* Whether there are periods; some of the lengths may be 0. */
 static bool mcor_are_periods(const double bounds[6])
 {
   bool some = false;
@@ -180,7 +180,7 @@ static bool mcor_are_periods(const double bounds[6])
   return some;
 }
 
-/* One edge for all axes, or one each. */
+/* Reads one edge for all axes, or one each. */
 static bool mcor_find_box_size(
   const mcor_field_data* arrays, int count, int edges, double period[6], int* which)
 {

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles from the caller's arrays to the device, in input order: those that are needed, and in a periodic
- * box their images. */
+/* Copies the particles that a call needs from the caller's arrays to the device, in input order;
+ * in a periodic box their images, too. */
 
 #include "mcor_stage.h"
 #include "mcor_parallel.h"
@@ -14,7 +14,7 @@
 
 #define MCOR_VIEWS 6
 
-/* The host's views of the stage's buffers. */
+/* Views of the stage's buffers on the host. */
 static void mcor_list_views(
   mcor_context* context, mcor_staging* staging, mcor_mapping views[MCOR_VIEWS])
 {
@@ -50,15 +50,16 @@ mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging)
   return mcor_unmap_all(context, views, MCOR_VIEWS, MCOR_OK);
 }
 
-/* Which of the volume formulas of mcor_input holds, and each particle's share in it: the volume (in two
- * dimensions over the smoothing length) in cubes, the mass over the largest one, or 1. */
+/* Returns the factor from what a particle gives for its volume to what the device gets: the
+ * volume in cubes (in two dimensions the area over the smoothing length), the mass over the
+ * largest one, or 1; see the volume formulas of mcor_input. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input)
 {
   const double cube = context->lattice.cube;
   const mcor_options* options = context->run.options;
   if (!mcor_needs_density(input))
   {
-    /* An area becomes a volume by a factor times the smoothing length: see mcor_plane.h. */
+    /* An area becomes a volume by this factor times the smoothing length, see mcor_plane.h. */
     const double plane =
       mcor_is_plane(context) ? mcor_plane_factor(options->sph_kernel) * options->h_scale : 1;
     return plane / (cube * cube * cube);
@@ -77,16 +78,17 @@ typedef struct mcor_stage_job
   const mcor_input* input;
   const mcor_staging* staging;
   const mcor_reach_box* reach; /* NULL: all particles are needed */
-  double h_max;                /* the largest measured one, and rounding */
-  uint8_t* images;             /* of each particle, whether any is staged; NULL without reach */
-  int64_t used[MCOR_SLICES];   /* particles in each slice */
-  int64_t to[MCOR_SLICES];     /* where the first of them goes */
+  double h_max;                /* the largest support that was measured, with rounding */
+  uint8_t* images;             /* by particle: whether an image is staged; NULL without reach */
+  int64_t used[MCOR_SLICES];   /* images in each slice */
+  int64_t to[MCOR_SLICES];     /* where each slice's images begin */
   int64_t heavy[MCOR_SLICES];  /* see mcor_find_heavy */
-  bool changed[MCOR_SLICES]; /* not what was measured and counted: somebody writes to the arrays */
+  bool changed
+    [MCOR_SLICES]; /* particles differ from what was measured: another thread writes to the arrays */
   double largest_weight[MCOR_SLICES];
 } mcor_stage_job;
 
-/* The images of particle i of a chunk that are staged. */
+/* Lists the images of particle i of a chunk that are staged. */
 static int mcor_images_of(
   const mcor_stage_job* job, const mcor_stage_chunk* chunk, int i, mcor_images* images)
 {
@@ -108,8 +110,8 @@ static int mcor_images_of(
   return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, h), images);
 }
 
-/* Marks the particles that may reach something, by one look at each coordinate that the box limits: all
- * that the exact look at images would find, and few more. */
+/* Marks the particles that may reach the box, by one test of each coordinate that the box
+ * limits. The exact test of the images finds all of these, but for a few. */
 static void mcor_mark_near(const mcor_stage_job* job, int64_t first, int count)
 {
   const mcor_reach_box* reach = job->reach;
@@ -144,10 +146,11 @@ static void mcor_mark_near(const mcor_stage_job* job, int64_t first, int count)
   }
 }
 
-/* Particles that are read along with those that are looked at rather than jumped over. */
+/* Gaps between marked particles up to this length are read, too, rather than jumped over. */
 #define MCOR_STAGE_GAP 8
 
-/* The next run of particles to be read at once, from *begin on; returns its length, at the end 0. */
+/* Finds the next run of particles to read at once, from *begin on; returns its length, 0 at the
+ * end. */
 static int mcor_next_run(const mcor_stage_job* job, int64_t* begin, int64_t last)
 {
   const uint8_t* images = job->images;
@@ -165,7 +168,7 @@ static int mcor_next_run(const mcor_stage_job* job, int64_t* begin, int64_t last
   return count;
 }
 
-/* Finds which particles of those marked have images that are staged; returns how many images. */
+/* Keeps the marks of particles with images that are staged; returns the number of these images. */
 static int64_t mcor_count_images(mcor_stage_job* job, int64_t first, int64_t last)
 {
   int64_t used = 0;
@@ -200,7 +203,8 @@ static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
   job->used[slice] = used;
 }
 
-/* Whether a chunk's particles are within the measured bounds: what comes after counts on it. */
+/* Whether a chunk's particles are within the measured bounds, on which everything that follows
+ * relies. */
 static bool mcor_is_as_measured(const mcor_stage_job* job, const mcor_stage_chunk* chunk)
 {
   const mcor_lattice* lattice = &job->context->lattice;
@@ -220,8 +224,8 @@ static bool mcor_is_as_measured(const mcor_stage_job* job, const mcor_stage_chun
   return !outside;
 }
 
-/* Stages a chunk from element *to on, which moves to where the next one goes; not after a particle
- * that is too heavy, or after one that changed. */
+/* Stages a chunk from element *to on, and advances *to. Stops at a particle that is too heavy,
+ * or that has changed. */
 static void mcor_stage_chunk_at(
   mcor_stage_job* job, int slice, mcor_stage_chunk* chunk, int64_t* to)
 {
@@ -243,13 +247,13 @@ static void mcor_stage_chunk_at(
   }
 }
 
-/* Adds the images that are staged of a chunk's particles to `out`, and stages that where it is full. */
+/* Adds the staged images of a chunk's particles to `out`, which is staged whenever it is full. */
 static void mcor_stage_images(
   mcor_stage_job* job, int slice, const mcor_stage_chunk* chunk, mcor_stage_chunk* out, int64_t* to)
 {
   mcor_images images = { 0 };
   double period[3] = { 0 };
-  bool one = job->images != NULL; /* image of each particle that is staged */
+  bool one = job->images != NULL; /* image number of each particle in `out` */
   for (int a = 0; a < 3 && job->reach; ++a)
   {
     period[a] = ldexp(job->reach->period[a], job->reach->fix_bits);
@@ -323,7 +327,7 @@ static mcor_status mcor_refuse_heavy(
     context->cl.real_size == sizeof(float) ? "single" : "double");
 }
 
-/* Room for the particles that the job stages. */
+/* Reserves room for the particles that the job stages. */
 static mcor_status mcor_make_stage_room(
   mcor_context* context, mcor_stage_job* job, mcor_staging* staging)
 {

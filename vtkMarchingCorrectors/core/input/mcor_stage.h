@@ -6,29 +6,29 @@
 #include "mcor_box.h"
 #include "mcor_input.h"
 
-/* The input in the device's form, in input order; solids that are not used left out. Arrays are
- * views of the buffers named like them. */
+/* The input in the device's form, in input order, without unused solids. The arrays are views of
+ * the buffers of the same names. */
 typedef struct mcor_staging
 {
   int count;
   void* x[3];         /* fix */
-  void *inv_h, *size; /* real; size: volume, mass, or 1, below 0 of solids */
+  void *inv_h, *size; /* real; size: volume, mass or 1, negative for solids */
   double size_scale;  /* see mcor_size_scale */
   void* level;        /* uint8_t */
 } mcor_staging;
 
-/* The factor of the input's volume or mass on the way to the device. */
+/* Returns the factor from the input's volume or mass to the device's. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input);
 mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
 mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);
 
-/* How many digits shorter than fixed-point numbers the positions of particles with a support are, see
- * MCOR_POINT_EXTENT; cube: as long as one is, or shorter. */
+/* Returns how many digits shorter than fixed-point numbers the positions of particles with this
+ * support are, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level);
 
 /* ---- mcor_stage_chunk.c ---- */
 
-/* Particles of a chunk in the staging arrays' units. */
+/* A chunk of particles, in the units of the staging arrays. */
 typedef struct mcor_stage_chunk
 {
   int count;
@@ -36,27 +36,28 @@ typedef struct mcor_stage_chunk
   int32_t source[MCOR_CHUNK];
 } mcor_stage_chunk;
 
-/* Where they are, and how large; count is set. reach: NULL, or what tells of a period. */
+/* Reads positions and smoothing lengths of a chunk whose count is set. reach: NULL, or the box
+ * and period. */
 void mcor_read_stage_places(const mcor_context* context, const mcor_input* input, int64_t first,
   const mcor_reach_box* reach, mcor_stage_chunk* chunk);
-/* And their volumes or masses. */
+/* Reads their volumes or masses, too. */
 void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input, int64_t first,
   const mcor_staging* staging, const mcor_reach_box* reach, mcor_stage_chunk* chunk);
 
-/* A weight beyond would be infinite on the device. */
+/* Returns the weight above which the device's numbers would be infinite. */
 double mcor_weight_limit(const mcor_context* context);
-/* Weight of particle i of a chunk on the device: large where the volume is huge against the smoothing
- * length. */
+/* Returns the weight of particle i of a chunk on the device: large where the volume is huge
+ * against the smoothing length. */
 double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i);
-/* Input index of the first particle of a chunk whose weight is too large; -1 if there is none. The
- * largest one is kept. */
+/* Returns the input index of the first particle of a chunk whose weight is too large, else -1.
+ * Keeps the largest weight. */
 int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
   const mcor_stage_chunk* chunk, double* largest_weight);
 
-/* To element `to` of the staging arrays; changes the chunk. */
+/* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
 void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input,
   mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to);
-/* To `array` from element `first` on, in the device's precision. */
+/* Writes numbers to `array` from element `first` on, in the device's precision. */
 void mcor_store_reals(
   const mcor_context* context, void* array, int64_t first, const double* values, int count);
 

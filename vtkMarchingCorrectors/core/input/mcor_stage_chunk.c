@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A chunk of the caller's particles, in the staging arrays' units. */
+/* One chunk of the caller's particles, in the units of the staging arrays. */
 
 #include "mcor_plane.h"
 #include "mcor_stage.h"
@@ -92,8 +92,8 @@ int mcor_spared_bits(const mcor_context* context, double support, double cube, i
   return bits > 0 ? bits : 0;
 }
 
-/* Rounds positions to what evaluations make of them. reach: of a support radius in smoothing
- * lengths. */
+/* Rounds positions to the digits that evaluations use. reach: support radius per smoothing
+ * length. */
 static void mcor_round_positions(const mcor_context* context, double reach, mcor_stage_chunk* chunk)
 {
   const double cube = context->lattice.cube;
@@ -131,8 +131,8 @@ void mcor_store_reals(
   }
 }
 
-/* Coordinates. Positions are never below the lattice's origin, so adding 1/2 and
- * truncating rounds them. */
+/* Converts coordinates. No position is below the lattice's origin, so adding 1/2 and truncating
+ * rounds. */
 static void mcor_store_fixed(
   const mcor_context* context, void* array, int64_t first, const double* values, int count)
 {

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Values of particles, from the caller's arrays to the device: by the order of the search grid. */
+/* Copies values of particles from the caller's arrays to the device, in the order of the search
+ * grid. */
 
 #include "mcor_parallel.h"
 #include "mcor_stage.h"
@@ -19,7 +20,7 @@ typedef struct mcor_value_job
   void* values;
 } mcor_value_job;
 
-/* Fixed-point numbers, rounded. */
+/* Rounds values to fixed-point numbers. */
 static void mcor_store_rounded(
   const mcor_context* context, void* array, int64_t first, const double* values, int count)
 {
@@ -50,7 +51,7 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
     double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
     job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
                : mcor_read_scalar(input, from, count, chunk);
-    /* Images of a particle stand side by side. */
+    /* The images of a particle stand side by side. */
     for (n = 0; n < MCOR_CHUNK && begin + n < last &&
          mcor_source_of(job->context, begin + n) < from + count;
          ++n)
@@ -68,8 +69,8 @@ static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t
   (void)slice;
 }
 
-/* One component of an array, or the scalar where `array` is NULL, less `shift`, times `scale`, as real or
- * fixed-point numbers: from the caller's order to the sorted one, to row `to_row`, one value per particle long. */
+/* Copies one component of an array (or the scalar, if `array` is NULL), less `shift`, times
+ * `scale`, as real or fixed-point numbers, into row `to_row`; a row has one value per particle. */
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, bool fixed, mcor_buffer* to,
   int to_row)

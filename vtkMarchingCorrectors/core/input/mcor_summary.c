@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Words for panels: how long a run may take, and which values it found and used. */
+/* Sentences for panels: how long a run may take, and which values it found and used. */
 
 #include "mcor_input.h"
 
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* From this number of cells in the fluid on, a run is said to be a huge one. */
+/* From this number of cells in the fluid on, a run is called huge. */
 #define MCOR_HUGE_CELLS 1e9
 
 static bool mcor_has_one_length(const mcor_input* input)
@@ -32,7 +32,7 @@ static bool mcor_is_in_box(const mcor_input* input, int64_t i, const double box[
   {
     const double x = mcor_array_at(&positions, i, a);
     const double low = box[2 * a], high = box[2 * a + 1];
-    is_in = is_in && x >= low && (x < high || x == low); /* a flat box is around flat particles */
+    is_in = is_in && x >= low && (x < high || x == low); /* a flat box holds flat particles */
   }
   return is_in;
 }
@@ -52,7 +52,7 @@ double mcor_least_smoothing_length(const mcor_input* input)
   return least;
 }
 
-/* Sums h^3 (in a plane h^2) over the fluid in the box, with h in cubes where these are larger. */
+/* Sums h^3 (in a plane h^2) over the fluid in the box, with h in cubes where cubes are larger. */
 static double mcor_sum_cubes(
   const mcor_input* input, const mcor_options* options, double least, bool is_plane)
 {
@@ -82,7 +82,7 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   {
     return 0.0;
   }
-  /* Lengths are in units of the smoothing length or, as a factor of it, the support radius. */
+  /* Lengths are in units of the smoothing length, or of the support radius as a multiple of it. */
   const bool is_plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
   const double cubes = mcor_sum_cubes(input, options, least, is_plane);
   const bool is_radius =

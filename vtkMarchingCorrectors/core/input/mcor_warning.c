@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Warnings of inputs that are legal: one sentence each, with figures. Only what hardly any
- * simulation means. */
+/* Warnings of inputs that are legal, but hardly ever meant: one sentence each, with figures. */
 
 #include "mcor.h"
 
@@ -39,20 +38,20 @@ mcor_say(mcor_suspicion* s, const char* format, ...)
   return true;
 }
 
-/* Smoothing length over distance of the nearest particle: it hardly depends on free surfaces and walls.
- * From 1 (a lattice of that spacing) to 1.7 for most solvers, up to 2.2 for DualSPHysics; kernels
- * of Wendland's bear more. */
+/* Bounds of smoothing length over distance of the nearest particle, which hardly depends on free
+ * surfaces and walls. It is 1 for a lattice of that spacing, up to 1.7 for most solvers, and up
+ * to 2.2 for DualSPHysics; Wendland kernels bear more. */
 #define MCOR_LEAST_RATIO 0.9
 #define MCOR_MOST_RATIO 2.2
 #define MCOR_MOST_RATIO_WENDLAND 2.6
 #define MCOR_LEAST_RATIO_QUINTIC 0.7
 
-/* Particles strewn at random lie as near as with the former, but have not so many neighbours (per cube
- * of the kernel's support in smoothing lengths); sheets and drops have few. */
+/* Particles strewn at random lie as near to each other, but have fewer neighbours. These are
+ * counted per cube of the kernel's support in smoothing lengths; sheets and drops have few. */
 #define MCOR_MANY_NEIGHBOURS 10.0
 #define MCOR_SHEET_RATIO 2.6
 #define MCOR_SHEET_NEIGHBOURS 5.0
-/* In two dimensions, per square; the lattices of these numbers are the same. */
+/* In two dimensions they are counted per square; the lattices are the same. */
 #define MCOR_MANY_IN_PLANE 5.6
 #define MCOR_ROW_NEIGHBOURS 3.5
 
@@ -61,11 +60,11 @@ static bool mcor_is_wendland(mcor_sph_kernel kernel)
   return kernel == MCOR_WENDLAND_C2 || kernel == MCOR_WENDLAND_C4 || kernel == MCOR_WENDLAND_C6;
 }
 
-/* Where the volumes of particles fill this multiple of the supports, they are not in the unit of the positions. */
+/* Volumes that fill the supports this many times over are not in the unit of the positions. */
 #define MCOR_MOST_FILLED 10.0
 
-/* The kernel with which such particles, `ratio` smoothing lengths to the nearest one, would be usual: that
- * of many neighbours, or the one that reaches farther. */
+/* Suggests the kernel for which such particles, with `ratio` smoothing lengths to the nearest
+ * one, would be usual: the one of many neighbours, or the one that reaches farther. */
 static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool few)
 {
   return few && kernel != MCOR_QUINTIC_SPLINE && ratio >= MCOR_LEAST_RATIO_QUINTIC ? "quintic"
@@ -135,17 +134,17 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
     wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
-/* Steps of single precision that are less than so many to the nearest particle. */
+/* Warns where less than so many steps of single precision lie between nearest particles. */
 #define MCOR_COARSE_STEPS 8
 
-/* The distance of the numbers that single precision has there. */
+/* Returns the step between neighbouring numbers of single precision at x. */
 static double mcor_single_step(double largest)
 {
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
 }
 
-/* The longest step between the coordinates that single precision can hold, where all of the fluid's were rounded to
- * such; else 0. */
+/* Returns the longest such step among the coordinates, if all of the fluid's are numbers of
+ * single precision; else 0. */
 static double mcor_step_of(const mcor_input* input, int* axis)
 {
   double largest = 0;
@@ -186,7 +185,7 @@ static bool mcor_warn_coarse(mcor_suspicion* s)
       "xyz"[axis], step, n -> spacing_median);
 }
 
-/* Particles may be a little beyond a period; not by more than this many smoothing lengths. */
+/* Particles may lie up to this many smoothing lengths beyond a period. */
 #define MCOR_BEYOND_PERIOD 1
 
 static bool mcor_warn_period(mcor_suspicion* s)
@@ -247,8 +246,8 @@ static bool mcor_warn_plane(mcor_suspicion* s)
       normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
 }
 
-/* Checks the iso value against bounds of the field: a Shepard mean with positive kernels is between the values of
- * the particles, a sum between 0 and somewhat above these. */
+/* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies
+ * between the particles' values; a sum lies between 0 and somewhat above these. */
 static bool mcor_warn_iso_value(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -260,7 +259,7 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
   int outside = 0, first = 0;
   for (int i = 0; i < o->iso_count; ++i)
   {
-    /* A region may be filled from below all values on. */
+    /* a region may be filled from below all values on */
     const bool is_outside = (o->iso_values[i] < low && !o->filled) || o->iso_values[i] > high;
     first = is_outside && outside == 0 ? i : first;
     outside += is_outside;
@@ -279,7 +278,7 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
     o->iso_values[first], others, name, low, high);
 }
 
-/* Where particles fill a small share of space, no cell's nodes have a weight above the threshold. */
+/* Where particles fill a small share of space, no cell has all weights above the threshold. */
 static bool mcor_warn_discarded(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -304,7 +303,7 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
       n->dimension == 2 ? "lines" : "triangles");
 }
 
-/* All that trimming did, or could do, to a surface that is not there. */
+/* Says which threshold may have removed all of an empty surface. */
 static bool mcor_warn_trimmed(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -345,10 +344,11 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
                  "vacuum, as gas and planets do, use the sum as the field, and thresholds of 0.");
 }
 
-/* As a share of the smallest smoothing length: residuals then are off by about as much of the range. */
+/* A share of the smallest smoothing length: residuals are then off by about as much of the
+ * range. */
 #define MCOR_MOST_POSITION_ERROR 5e-6
 
-/* As a share of the cube size; less where the grid is short. */
+/* A share of the cube size; less where the grid is short. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
 static bool mcor_warn_precision(mcor_suspicion* s)
@@ -367,11 +367,11 @@ static bool mcor_warn_precision(mcor_suspicion* s)
     n->cube_size, n->position_error, share);
 }
 
-/* Rounding error of the field in single precision, at most, as a share of the scalar's range. */
+/* Bounds the rounding error of the field in single precision, as a share of the scalar's range. */
 #define MCOR_ROUNDED 1e-5
 
-/* Vertices that the correction could not bring to the iso value. A preview does not try. What rounding explains is told
- * only where a tolerance asks for more. */
+/* Counts the vertices that the correction could not bring to the iso value (a preview does not
+ * try). Rounding alone is worth a warning only if a tolerance asks for more. */
 static bool mcor_warn_tolerance(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
@@ -421,7 +421,7 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
     mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_precision,
     mcor_warn_tolerance, mcor_warn_far, mcor_warn_period, mcor_warn_coarse };
-  /* With globals the input is a part of the particles. */
+  /* With globals, the input is only a part of the particles. */
   if ((unsigned)warning >= MCOR_WARNING_COUNT || !input || !options || !surface ||
     input->count == 0 || options->globals)
   {
@@ -481,7 +481,7 @@ char* mcor_describe_unused_type(
   return mcor_copy_text(text);
 }
 
-/* Steps of coordinates, as a share of the cube size: some triangles are far smaller than cubes. */
+/* Steps of coordinates as a share of the cube size: some triangles are far smaller than cubes. */
 #define MCOR_MOST_STEP 0.01
 
 char* mcor_describe_single_points(double largest, double cube_size)

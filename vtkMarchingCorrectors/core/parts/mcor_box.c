@@ -1,20 +1,20 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A run over a box owns the cells there, and makes their part of the surface to
- * the last bit.
+/* Boxes. A run over a box owns the cells in it, and makes their part of the surface to the last
+ * bit.
  *
- * What is global is measured over all particles: lattice, ranges, shifts, levels. On the device are
- * those alone that reach what is evaluated. One ring of cells around the owned ones is examined as
- * well, with its triangles: pinched edges, the border that the node threshold leaves, and normals
- * from triangles depend on it. Triangles of the ring leave the surface at the very end, see
- * mcor_triangle_cell.c.
+ * Everything global is measured over all particles: lattice, ranges, shifts, levels. Only those
+ * particles are on the device that reach a place where the field is evaluated. A ring of cells
+ * around the owned ones is examined, too, since pinched edges, the border that the node threshold
+ * leaves, and normals from triangles depend on it. The ring's triangles leave the surface at the
+ * very end, see mcor_triangle_cell.c.
  *
- * Beyond the ring's nodes sums lack particles and mean nothing; bounds there are lower than they
- * were, but what they say of nodes within holds. Nothing is examined there: cubes and bricks are
- * made void.
+ * Beyond the ring's nodes, sums lack particles and mean nothing. Bounds there are too low, but what
+ * they say of nodes within the ring holds. Nothing is examined there: cubes and bricks are made
+ * void.
  *
- * A probe whose search grid nobody keeps owns the cells around its points. */
+ * A probe whose search grid is not kept owns the cells around its points. */
 
 #include "mcor_box.h"
 #include "mcor_adaptive.h"
@@ -25,7 +25,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* All zeros are no box. */
+/* All zeros mean no box. */
 static bool mcor_is_box(const double sides[6])
 {
   bool is_box = false;
@@ -41,21 +41,23 @@ int mcor_has_box(const mcor_options* options)
   return mcor_is_box(options->box);
 }
 
-/* How far from a ring's nodes the field is evaluated, in cubes: trimming may move a vertex by 3/4. */
+/* How far from the ring's nodes the field is evaluated, in cubes: trimming may move a vertex by
+ * 3/4. */
 #define MCOR_BOX_MARGIN 1.25
 
-/* A particle that misses a box by more, in cubes, is not needed there. */
+/* A particle whose support misses a box by more than this, in cubes, is not needed there. */
 #define MCOR_GLOBALS_MARGIN 3
 
-/* The margin with adaptive cubes, in cubes of the particle's level, is larger: a particle reaches no cells larger than
- * these. A cell of the ring, or one whose centre is in the box, has nodes at most two cells away from the box;
- * trimming may move a vertex by 3/4 of a cell, to where cells are half as large. */
+/* The margin with adaptive cubes, in cubes of the particle's level; a particle reaches no larger
+ * cells. A cell of the ring, or one whose centre is in the box, has nodes at most two cells away
+ * from the box; trimming may move a vertex by another 3/4 of a cell, to where cells are half as
+ * large. */
 #define MCOR_LEVEL_MARGIN 6
 
 /* The margin of a probe's points: rounding moves particles by less. */
 #define MCOR_POINTS_MARGIN 0.25
 
-/* How far apart particles of a pair may be, in smoothing lengths, and a little more. */
+/* How far apart the particles of a pair may be, in smoothing lengths, rounded up. */
 #define MCOR_PAIR_REACH 1.001
 
 #define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, MCOR_BOX_RING, MCOR_BOX_RING)
@@ -65,9 +67,9 @@ int mcor_has_box(const mcor_options* options)
 /* Further than any cell, in halves of a cube. */
 #define MCOR_NO_SIDE (1 << 30)
 
-/* The sides of a box between `low` and `high` for cells of all levels, whose centres are at whole numbers of
- * halves. If there are several levels, NULL, and where cells end at the lattice's sides: without end, as large
- * cells stick out of it. */
+/* Writes the sides of the box between `low` and `high` for cells of all levels, whose centres
+ * are at whole numbers of halves. A side that is NULL, or that of the lattice with several
+ * levels, is without end, since large cells stick out of the lattice. */
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
@@ -101,7 +103,7 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
   }
 }
 
-/* The cells that any rank owns; `first` to `last` where there is no end. */
+/* Returns the cells that any rank owns; `first` to `last` where there is no end. */
 static void mcor_place_whole(
   mcor_context* context, const mcor_options* options, int axis, double first, double last)
 {
@@ -119,8 +121,8 @@ static void mcor_place_whole(
     box->whole_halves);
 }
 
-/* The cells that a probe's points are in; all of the period where some are beyond it, and taken into
- * it. */
+/* Finds the cells of a probe's points; all of a period where points lie beyond it, as these are
+ * moved into it. */
 static void mcor_place_points(
   mcor_context* context, int axis, double first, double last, double side[2])
 {
@@ -136,7 +138,7 @@ static void mcor_place_points(
   }
 }
 
-/* A cell is owned where its centre is in the box: so the side of a box may lie on the lattice's
+/* A cell is owned if its centre is in the box. So the side of a box may lie on the lattice's
  * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
 void mcor_place_box(mcor_context* context, const mcor_options* options)
 {
@@ -203,8 +205,8 @@ mcor_status mcor_void_bricks(mcor_context* context)
         MCOR_BUFFER(&bricks->seed_bits));
 }
 
-/* Keeps, of the marched bricks' cells, those in a box that is made larger by so many cells below and above;
- * of leaves all cells of a ring around it, whatever these are. */
+/* Keeps, of the marched bricks' cells, those in the box enlarged by so many cells below and
+ * above. Of leaves it keeps all cells of the ring around it. */
 static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lower, int upper,
   const mcor_buffer* cells, mcor_buffer* clipped)
 {
@@ -256,9 +258,9 @@ mcor_status mcor_count_cells(
 
 /* ---- Particles ---- */
 
-/* Numbers of the images of a particle at `at`, cubes from the lattice's origin, that are within
- * `reach` of where the field is evaluated; false: there is none. Without a period the only one is
- * number 0. */
+/* Finds the numbers of the images of a particle that come within `reach` of the places where the
+ * field is evaluated. at: in cubes from the lattice's origin. Returns false if there is none.
+ * Without a period the only number is 0. */
 static bool mcor_find_images(
   const mcor_reach_box* box, int axis, double at, double reach, int* first, int* last)
 {
@@ -317,7 +319,8 @@ typedef struct mcor_reach_job
   const mcor_context* context;
   const mcor_input* input;
   const mcor_reach_box* box;
-  double farthest[MCOR_SLICES]; /* the largest support radius of those that reach it, cubes */
+  double farthest
+    [MCOR_SLICES]; /* the largest support radius, in cubes, of the particles that reach the box */
 } mcor_reach_job;
 
 static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
@@ -350,9 +353,9 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
   job->farthest[slice] = farthest;
 }
 
-/* A volume is the sum over all within the support of the particle, not scaled; the nearest particle
- * may be any that is nearer than one that reaches; the other particle of a pair is within the smoothing
- * length. */
+/* Widens the reach for what is not a sum over supports: a volume sums all particles within the
+ * particle's unscaled support; the nearest particle may be nearer than one that reaches; and the
+ * other particle of a pair is within the smoothing length. */
 static double mcor_reach_beyond(
   const mcor_options* options, const mcor_input* input, double farthest)
 {
@@ -363,8 +366,8 @@ static double mcor_reach_beyond(
   return farthest > 0 ? fmax(volumes, nearest) : 0;
 }
 
-/* Where the field is evaluated, in cubes from the lattice's origin; numbers that single precision
- * has where that is anywhere. */
+/* Returns where the field is evaluated, in cubes from the lattice's origin; numbers that single
+ * precision has, where it is evaluated anywhere. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
   const mcor_box* box = &context->box;
@@ -405,7 +408,8 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   if (mcor_needs_density(input) || mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) || pairs)
   {
     mcor_reach_job job = { .context = context, .input = input, .box = reach };
-    const int slices = mcor_parallel_for(context, input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
+    const int slices =
+      mcor_parallel_for(context, input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
     double farthest = 0;
     for (int s = 0; s < slices; ++s)
     {
@@ -416,7 +420,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   return true;
 }
 
-/* Frees what a call leaves behind on the host. */
+/* Frees what a call leaves on the host. */
 void mcor_end_box(mcor_context* context)
 {
   free(context->box.kept);

@@ -3,55 +3,57 @@
 #ifndef mcor_box_h
 #define mcor_box_h
 
-/* The box of a call, for its phases; where all of the lattice is owned, nothing is done. See
- * mcor_box.c. */
+/* The box of a call, for its phases, see mcor_box.c. Where all of the lattice is owned, these
+ * functions do nothing. */
 
 #include "mcor_internal.h"
 
-/* mcor_period.c. Whether numbers have the digits for cubes so far from the origin. */
+/* mcor_period.c. Fails where numbers lack the digits for cubes so far from the origin. */
 mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
-/* Periods in cubes, or cells with an edge for each axis, which are made smaller so that these
- * are whole numbers, and the bounds of all images that may be needed. */
+/* Makes cubes, or unequal edges, a little smaller so that periods are whole numbers of them, and
+ * finds the bounds of all images that may be needed. */
 mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double cube);
-/* The edges in fixed-point units, and a cube as a length. */
+/* Finds the edges in fixed-point units, and a cube as a length. */
 void mcor_fit_steps(mcor_context* context, int64_t extent);
 
 /* Limits the cells along an axis, [side[0], side[1]), to those of the box. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);
 
-/* The cells that the call owns; the lattice is known. */
+/* Finds the cells that the call owns; the lattice is known. */
 void mcor_place_box(mcor_context* context, const mcor_options* options);
 
-/* Stage: where particles, or their images at whole periods, matter; in cubes from the lattice's
- * origin. */
+/* For staging: where particles, or their images at whole periods, matter; in cubes from the
+ * lattice's origin. */
 typedef struct mcor_reach_box
 {
   double low[3], high[3]; /* where the field is evaluated */
   double support;         /* support radius / smoothing length */
-  double radius;          /* as if no support radius were less */
+  double radius;          /* added as if no support radius were less */
   double unit;            /* 2^-fix_bits */
-  double h_min;           /* of adaptive cubes, with their highest level: see mcor_reach_of */
+  double h_min;           /* with adaptive cubes, see mcor_reach_of; highest: their highest level */
   int top;
-  double period[3], first[3]; /* 0: open; where one begins */
+  double period[3], first[3]; /* period: 0: open; the others: where one begins */
   int fix_bits;
-  bool is_empty; /* none matters */
+  bool is_empty; /* no particle matters */
 } mcor_reach_box;
 
-/* Images of a particle: numbers by axis, whole periods to its place within the first period. */
+/* Images of a particle: by axis, how many whole periods each is from the particle's place in the
+ * first period. */
 typedef struct mcor_images
 {
   int first[3], last[3];
 } mcor_images;
 
-/* How near to the box a particle matters. */
+/* Returns how near to the box a particle must be to matter. */
 double mcor_reach_of(const mcor_reach_box* box, double h);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
-/* False where all particles are needed. */
+/* Returns false where all particles are needed. */
 bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach);
-/* A position in the device's units; with a period rounded as there, and in the first period. */
+/* Converts a position to the device's units; with a period it is rounded as on the device, and
+ * moved into the first period. */
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
-/* Returns how many. */
+/* Lists the images that matter; returns their number. */
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images);
 
@@ -60,45 +62,47 @@ int mcor_list_images(
   MCOR_INT((sides)[0]), MCOR_INT((sides)[1]), MCOR_INT((sides)[2]), MCOR_INT((sides)[3]),          \
     MCOR_INT((sides)[4]), MCOR_INT((sides)[5])
 
-/* Kernel arguments of MCOR_BOX_PARAMS: owned cells, those whose particles are at hand; some more on
- * the lower and the upper sides. */
+/* Kernel arguments of MCOR_BOX_PARAMS: the owned cells, then those with their particles at hand,
+ * or so many more on the lower and upper sides. */
 #define MCOR_CELL_ARGS(first, last, lower, upper)                                                  \
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 
-/* Cells around the owned ones that are examined, too. */
+/* The cells around the owned ones that are examined, too. */
 #define MCOR_BOX_RING 1
 
-/* Whether the device lacks particles that are far from the box, or has images of some. */
+/* Whether the device lacks particles far from the box, or has images of some. */
 bool mcor_is_limited(const mcor_context* context);
 
-/* Seeds: of cubes of a size, and of bricks, those off the box become void. */
+/* Seeds: makes cubes of one size, or bricks, void where they are off the box. */
 mcor_status mcor_void_cubes(mcor_context* context);
 mcor_status mcor_void_bricks(mcor_context* context);
 
-/* Extraction. Of the cells of bricks that are marched, leaves those of a box and its ring: of mesh.used, the owned
- * ones; of any, those whose particles are at hand. */
+/* Extraction. Keeps the cells of a box and its ring, of the marched bricks' cells: of mesh.used
+ * the owned ones; of other masks those with their particles at hand. */
 mcor_status mcor_clip_used(mcor_context* context);
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells);
-/* Owned ones of any cells: their masks, and how many of them are within others. */
+/* Finds the owned ones among any cells, and counts those of them that are in other masks. */
 mcor_status mcor_find_owned(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer** owned);
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
-/* mcor_seam.c. Beside MCOR_RING_CELL: another rank owns the cell. */
+/* mcor_seam.c. Set beside MCOR_RING_CELL: another rank owns the cell. */
 #define MCOR_OTHERS_CELL ((cl_ulong)1 << 62)
 mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared);
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 
-/* mcor_triangle_cell.c. Whether triangles carry their cells; those of [first, last) that are owned. */
+/* mcor_triangle_cell.c. Whether triangles carry their cells; counts the owned triangles of
+ * [first, last). */
 bool mcor_follows_cells(const mcor_context* context);
-/* Emits triangles by `emit`, which writes their cells if they carry any; those between the sides are owned. */
+/* Launches `emit`, which writes triangles, and their cells if they carry them; those between the
+ * sides are owned. */
 typedef mcor_status (*mcor_emit)(mcor_context* context, const int sides[6], mcor_buffer* cells);
 mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 
-/* Output. Room for the keys and flags of so many triangles behind those of the surface. */
+/* Output: makes room for the keys and flags of so many more triangles of the surface. */
 mcor_status mcor_extend_kept(mcor_context* context, int64_t more, mcor_surface* surface);
 mcor_status mcor_keep_cells(mcor_context* context, mcor_surface* surface);
 mcor_status mcor_crop_surface(

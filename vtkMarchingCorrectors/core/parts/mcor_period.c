@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Periodic boxes: a region of one period, which images of the particles reach. See mcor_box.c. */
+/* Periodic boxes: one period, which images of the particles reach. See mcor_box.c. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"
@@ -10,21 +10,22 @@
 #include <float.h>
 #include <math.h>
 
-/* How far a period may be from a whole number of cubes, as a factor of it. */
+/* By which share a period may miss a whole number of cubes. */
 #define MCOR_PERIOD_ERROR 1e-9
 
-/* Numbers of units of an edge that are tried. */
+/* How many numbers of units of an edge are tried. */
 #define MCOR_STEP_TRIES (1 << 17)
 
-/* Adaptive cubes may become smaller by this factor to have all their levels. */
+/* Adaptive cubes may shrink by this factor to keep all their levels. */
 #define MCOR_FINER_CUBES 1.3
 
-#define MCOR_FARTHEST 1e15 /* from the origin, in cubes: nodes are whole numbers of them */
+#define MCOR_FARTHEST 1e15 /* in cubes from the origin: nodes are whole numbers */
 
-/* Supports beyond so many periods would take too many images. */
+/* The longest support, in periods; longer ones would take too many images. */
 #define MCOR_MOST_PERIODS 2
 
-/* Whether all periods are whole numbers of `unit` cubes where that along `axis` is `count` cubes. */
+/* Whether all periods are whole numbers of `unit` cubes if the one along `axis` is `count`
+ * cubes. */
 static bool mcor_periods_fit(const double length[3], int axis, int64_t count, int64_t unit)
 {
   bool fit = true;
@@ -36,7 +37,7 @@ static bool mcor_periods_fit(const double length[3], int axis, int64_t count, in
   return fit;
 }
 
-/* The fewest cubes along `axis`, from `least` up to `most`, that let all periods fit; 0: there are
+/* Finds the fewest cubes along `axis`, from `least` to `most`, for which all periods fit; 0:
  * none. */
 static int64_t mcor_count_cubes(
   const double length[3], int axis, int64_t least, int64_t most, int64_t unit)
@@ -51,8 +52,8 @@ static int64_t mcor_count_cubes(
   return 0;
 }
 
-/* Adaptive cubes: a period is a whole number of bricks of the level above the highest one, so that levels
- * repeat with it. Where cubes would become too small for that, there are fewer levels. */
+/* Fits adaptive cubes: a period is a whole number of bricks of the level above the highest one,
+ * so that levels repeat with it. Drops levels where cubes would have to shrink too much. */
 static int64_t mcor_count_adaptive_cubes(const double length[3], int axis, int64_t least, int* top)
 {
   int64_t count = 0;
@@ -67,8 +68,8 @@ static int64_t mcor_count_adaptive_cubes(const double length[3], int axis, int64
   return count;
 }
 
-/* Where no cube divides all periods, each has cells of its own: as few as are no longer than the cube along
- * any axis, and whole bricks as above. */
+/* Fits cells of their own to each period where no cube divides all: as few as are no longer than
+ * the cube along any axis, and whole bricks as above. */
 static void mcor_divide_periods(
   const double length[3], const int64_t fewest[3], int* top, double edge[3])
 {
@@ -91,7 +92,7 @@ static void mcor_divide_periods(
   }
 }
 
-/* Edges that divide the periods, no longer than a cube: all the same where that is possible. */
+/* Finds edges that divide the periods and are no longer than a cube, all equal if possible. */
 static mcor_status mcor_fit_edges(
   mcor_context* context, const double length[3], int axis, double cube, double edge[3])
 {
@@ -130,7 +131,7 @@ mcor_status mcor_check_digits(mcor_context* context, double low, double high, do
   return MCOR_OK;
 }
 
-/* Images that lie farther away than this from the period are not needed, L. */
+/* Returns how far from the period an image may be and still be needed, L. */
 static double mcor_image_reach(
   const mcor_context* context, const mcor_options* options, double cube)
 {
@@ -151,8 +152,8 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
     lattice->period[a] = 0;
     axis = length[a] > 0 ? a : axis;
   }
-  /* Large cubes stick out of periods and boxes: no flat side would be left to close. Caps at walls are made of
-   * equal ones. */
+  /* Forces one size: large cubes would stick out of periods and boxes and leave no flat side to
+   * close. Caps at walls consist of equal cubes. */
   const bool walls =
     options->field == MCOR_WEIGHT_SUM && mcor_asked_share(options) != 0 && m->solid_count > 0;
   lattice->top =
@@ -188,11 +189,11 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
 
 /* ---- Unequal edges ---- */
 
-/* Edges are at least 15/16 of a cube, or a bit less. */
+/* The least edge, in cubes: 15/16, rounded down a bit. */
 #define MCOR_STEP_RANGE 16
 
-/* Trailing zeros that an edge needs as a fixed-point number: nodes must be as round as particles with long
- * supports are, and whole numbers of units in a double. */
+/* Returns the trailing zeros that an edge needs as a fixed-point number. Nodes must be as round
+ * as the particles with long supports, and whole numbers of units in a double. */
 static int mcor_rounded_bits(const mcor_context* context, double longest, int64_t extent)
 {
   const mcor_lattice* lattice = &context->lattice;
@@ -203,10 +204,10 @@ static int mcor_rounded_bits(const mcor_context* context, double longest, int64_
   return exact > spared ? exact : spared;
 }
 
-/* Particles keep their positions in units of the device, along each axis those of its edge. Distances are to
- * be right, so that the edges must be to each other as their whole numbers of units are: of the last
- * 1 / MCOR_STEP_RANGE of numbers of the longest one, that is taken for which they are so best, to 1e-8 or
- * so. */
+/* Chooses the edges in fixed-point units. Particles keep their positions in units of the edge
+ * along each axis, so for right distances the edges must be to each other as their numbers of
+ * units are. Among the last 1 / MCOR_STEP_RANGE of numbers for the longest edge, takes the one
+ * for which they are so best, to about 1e-8. */
 void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;

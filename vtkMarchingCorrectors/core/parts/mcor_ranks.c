@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Ranks: what of a call's work takes all of them. Only numbers go around whose result does not depend
- * on who has what: least and greatest ones, sums of whole numbers, and records that are sorted, or
- * taken as a set, afterwards. */
+/* What all ranks do together in a call. They exchange only what does not depend on how particles
+ * are spread over them: least and greatest values, sums of whole numbers, and records that are
+ * then sorted or used as a set. */
 
 #include "mcor_ranks.h"
 
@@ -14,7 +14,7 @@ mcor_status mcor_heard(mcor_context* context, int failed)
   return MCOR_OK;
 }
 
-/* If count is 0 (no fluid, so no samples), the call is skipped; all ranks agree on count. */
+/* Skips the call if count is 0 (no fluid, so no samples); all ranks agree on count. */
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count)
 {

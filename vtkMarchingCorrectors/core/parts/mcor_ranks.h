@@ -3,22 +3,24 @@
 #ifndef mcor_ranks_h
 #define mcor_ranks_h
 
-/* Exchange between ranks, by the functions of options.ranks. A process alone has all values already. */
+/* Exchange between ranks, by the functions of options.ranks. A process alone has all values
+ * already. */
 
 #include "mcor_internal.h"
 
-/* The status of a call of options.ranks, which has failed or not. */
+/* Turns the result of a function of options.ranks into a status. */
 mcor_status mcor_heard(mcor_context* context, int failed);
 
 mcor_status mcor_reduce_doubles(
   mcor_context* context, mcor_reduction reduction, double* values, int count);
 mcor_status mcor_reduce_counts(
   mcor_context* context, mcor_reduction reduction, int64_t* values, int count);
-/* All ranks' records, valid until the next call of one of these; alone, the caller's. */
+/* Gathers the records of all ranks, valid until the next gathering; alone, they are the
+ * caller's. */
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count);
 
-/* The least and the greatest over ranks, one number. */
+/* Reduces one number. */
 mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value);
 mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value);
 

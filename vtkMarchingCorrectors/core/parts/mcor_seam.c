@@ -1,17 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which vertices a call counts. Those of a seam, which several ranks have, are counted once: the triangles
- * of a box and of the ring around it are in one order on all ranks, and a vertex is counted by the rank
- * whose triangle is the first that uses it. Cells beyond all ranks' boxes, in the ring where the whole
- * ends, are nobody's. A ring square of a cap is another's: MCOR_CAP_SQUARE is that bit. */
+/* Which vertices a call counts. Vertices on a seam belong to several ranks, and one of them
+ * counts each. The triangles of a box and its ring have one order on all ranks, and the rank
+ * whose triangle is the first to use a vertex counts it. Cells in the ring beyond all ranks'
+ * boxes, where the whole surface ends, are nobody's. A square of a cap in the ring is another
+ * rank's: MCOR_CAP_SQUARE is that bit. */
 
 #include "mcor_box.h"
 
 #include <stdlib.h>
 
-/* `shared`: the triangles' cells as if all ranks' boxes were owned. Marks those in box.cells that other
- * ranks own. */
+/* Marks in box.cells the cells that other ranks own. shared: the triangles' cells as if the
+ * boxes of all ranks were owned. */
 mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
 {
   mcor_buffer* buffer = &context->box.cells;
@@ -52,8 +53,8 @@ static void mcor_list_owners(
   }
 }
 
-/* *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the lattice is
- * owned. The caller frees it, after failures, too. */
+/* *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the
+ * lattice is owned. The caller frees it, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
 {
   const mcor_mesh* mesh = &context->mesh;

@@ -14,15 +14,16 @@
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Picture.h"
+#include "PieceFile.h"
 #include "ProbeRun.h"
 #include "RankLaunch.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
+#include "Sharing.h"
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
-#include "Walls.h"
 #if MCOR_HAS_RANKS
-#include "RankRun.h"
+#include "RankSession.h"
 #endif
 
 #include "vtkFieldData.h"
@@ -61,79 +62,156 @@ void ListDevices()
   }
 }
 
-/// The last of the runs, and what is known of all.
-Run RunAndTell(const Job& job, vtkPointSet* particles, MessageCapture* messages,
-  std::vector<vtkSmartPointer<vtkFieldData>>& runs, std::vector<double>& wallSeconds,
-  std::vector<std::string>& warnings, ComponentTable& pieces)
+/// Those that a process writes, or, of all, the first one.
+std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
 {
+  std::vector<std::string> outputs;
+  for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
+  {
+    if (sharing.IsFirst() || rank == sharing.GetRank())
+    {
+      outputs.push_back(PieceName(job.Output, rank));
+    }
+  }
+  if (sharing.IsFirst())
+  {
+    outputs.insert(
+      outputs.end(), { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File });
+  }
+  return outputs;
+}
+
+/// Extracts the surface, and writes it with its tables: all files, or none.
+void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
+{
+  sharing.OnAll(
+    [&] { CheckOutputs(ListFiles(job.InputFiles(), messages), ListOutputs(job, sharing)); });
+  const vtkSmartPointer<vtkPointSet> particles =
+    sharing.Read(job.Inputs.front(), job.Walls, messages);
+  sharing.OnAll([&] { SetUpSurface(job, particles); });
+  std::vector<vtkSmartPointer<vtkFieldData>> runs;
+  std::vector<double> wallSeconds;
+  std::vector<std::string> warnings;
+  ComponentTable pieces(job);
   Run run;
   for (int i = 0; i < job.Repeat; ++i)
   {
     run.Surface = nullptr; // not two at once
-    run = Extract(job, messages);
+    sharing.OnAll([&] { run = Extract(job, messages); });
     warnings = Warnings(run, messages);
     pieces = ComponentTable(job);
-    pieces.Add(run, particles, messages);
+    sharing.OnAll([&] { pieces.Add(run, particles, messages); });
     runs.emplace_back(run.Statistics);
     wallSeconds.push_back(run.WallSeconds);
-    if (!job.Quiet)
+    if (!job.Quiet && sharing.IsFirst())
     {
       std::cout << (i == 0 ? DescribeRun(runs.back()) : "") << DescribeSeconds(runs.back())
                 << std::flush;
     }
   }
-  return run;
+  const double peakResidentBytes = PeakResidentBytes();
+  const vtkSmartPointer<vtkPolyData> whole =
+    IsInPieces(job.Output) ? nullptr : sharing.Merge(run.Surface);
+  ColorScale colors(job.Picture);
+  OutputFiles files;
+  sharing.OnAll(
+    [&]
+    {
+      if (IsInPieces(job.Output))
+      {
+        const std::string piece = PieceName(job.Output, sharing.GetRank());
+        files.Write(piece, SurfaceBytes(piece, run.Surface, colors, messages));
+      }
+      if (!sharing.IsFirst())
+      {
+        return;
+      }
+      if (whole)
+      {
+        if (sharing.GetCount() == 1)
+        {
+          AddHintOfPeriod(job, particles, warnings);
+        }
+        colors.Include(whole);
+        const std::string lost =
+          LostArrays(job.Output, whole, colors, ArraysWithoutPlace(job, particles));
+        warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
+      }
+      for (const std::string& warning : warnings)
+      {
+        Say("warning: " + warning);
+      }
+      files.Write(job.Output,
+        whole ? SurfaceBytes(job.Output, whole, colors, messages)
+              : ListPieces(job.Output, sharing.GetCount(), run.Surface));
+      if (!job.ComponentFile.empty())
+      {
+        files.Write(job.ComponentFile, pieces.Text());
+      }
+    });
+  sharing.OnAll([&] { files.Commit(); }); // only where all have written all
+  sharing.OnFirst(
+    [&]
+    {
+      if (!job.StatisticsFile.empty())
+      {
+        std::cout.flush(); // the file may be /dev/stdout
+        WriteOutput(job.StatisticsFile,
+          StatisticsAsJson(job, runs, wallSeconds, warnings, peakResidentBytes));
+      }
+      if (!job.Picture.File.empty())
+      {
+        colors.Suggest(whole, job.Surface->GetIsoValueArrayName());
+        colors.Include(whole);
+        Picture picture(job.Picture);
+        WriteOutput(
+          job.Picture.File, picture.Draw(job.Picture.File, whole, particles, colors, messages));
+      }
+    });
 }
 
-void MakeSurface(const Job& job, MessageCapture* messages)
+/// False if a step failed, of which all was said.
+bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
-  CheckOutputs(ListFiles(job.InputFiles(), messages),
-    { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File });
-  vtkSmartPointer<vtkPointSet> particles =
-    AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));
-  SetUpSurface(job, particles);
-  std::vector<vtkSmartPointer<vtkFieldData>> runs;
-  std::vector<double> wallSeconds;
-  std::vector<std::string> warnings;
-  ComponentTable pieces(job);
-  const Run run = RunAndTell(job, particles, messages, runs, wallSeconds, warnings, pieces);
-  vtkPolyData* surface = run.Surface;
-  const double peakResidentBytes = PeakResidentBytes();
-  AddHintOfPeriod(job, particles, warnings);
-  ColorScale colors(job.Picture);
-  colors.Include(surface);
-  const std::string lost =
-    LostArrays(job.Output, surface, colors, ArraysWithoutPlace(job, particles));
-  if (!lost.empty())
+  if (job.IsGauge())
   {
-    warnings.push_back(lost);
+    return MakeGaugeTable(job, messages, sharing);
   }
-  for (const std::string& warning : warnings)
+  if (job.IsFilm())
   {
-    Say("warning: " + warning);
+    return MakeFilm(job, messages, sharing);
   }
-  OutputFiles files; // both, or none
-  files.Write(job.Output, SurfaceBytes(job.Output, surface, colors, messages));
-  if (!job.ComponentFile.empty())
+  job.IsProbe() ? ProbePoints(job, messages, sharing) : MakeSurface(job, messages, sharing);
+  return true;
+}
+
+#if MCOR_HAS_RANKS
+bool MakeOnRanks(Job& job, MessageCapture* messages)
+{
+  RankSession session(job, messages);
+  try
   {
-    files.Write(job.ComponentFile, pieces.Text());
+    session.OnAll(
+      [&job]
+      {
+        if (!job.Picture.File.empty() || job.Repeat > 1)
+        {
+          throw std::runtime_error("several processes share a surface, a film, a probe or gauges, "
+                                   "but no --screenshot or --repeat; run these without mpirun");
+        }
+      });
+    return Make(job, messages, session);
   }
-  files.Commit();
-  if (!job.StatisticsFile.empty())
+  catch (const std::exception& error)
   {
-    std::cout.flush(); // the file may be /dev/stdout
-    WriteOutput(
-      job.StatisticsFile, StatisticsAsJson(job, runs, wallSeconds, warnings, peakResidentBytes));
-  }
-  if (!job.Picture.File.empty())
-  {
-    colors.Suggest(surface, job.Surface->GetIsoValueArrayName());
-    colors.Include(surface);
-    Picture picture(job.Picture);
-    WriteOutput(
-      job.Picture.File, picture.Draw(job.Picture.File, surface, particles, colors, messages));
+    if (session.IsFirst())
+    {
+      Say(error.what());
+    }
+    return false;
   }
 }
+#endif
 
 /// False if something failed, of which all was said.
 bool Execute(Job& job)
@@ -143,57 +221,40 @@ bool Execute(Job& job)
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   if (job.ListArrays)
   {
-    if (LaunchedRank() == 0)
-    {
-      std::cout << DescribeArrays(*ReadParticles(job.Inputs.front(), messages));
-    }
+    std::cout << DescribeArrays(*ReadParticles(job.Inputs.front(), messages));
+    return true;
+  }
+  if (job.Has("--list-devices"))
+  {
+    ListDevices();
     return true;
   }
 #if MCOR_HAS_RANKS
   if (LaunchedCount() > 1)
   {
-    return RunDistributed(job, messages);
+    return MakeOnRanks(job, messages);
   }
 #endif
-  if (job.ListDevices)
-  {
-    ListDevices();
-    return true;
-  }
   LoadDriversAhead(job.Surface->GetDevice());
-  if (job.IsGauge())
-  {
-    return MakeGaugeTable(job, messages);
-  }
-  else if (job.IsProbe())
-  {
-    ProbePoints(job, messages);
-  }
-  else if (job.IsFilm())
-  {
-    return MakeFilm(job, messages);
-  }
-  else
-  {
-    MakeSurface(job, messages);
-  }
-  return true;
+  Sharing alone;
+  return Make(job, messages, alone);
 }
 
 bool ParseAndExecute(int argc, char* argv[])
 {
   Job job;
   ParseCommandLine(argc, argv, job);
-  if ((job.Help || job.Version) && LaunchedRank() > 0)
+  if (LaunchedRank() > 0 &&
+    (job.Has("--help") || job.Has("--version") || job.Has("--list-devices") || job.ListArrays))
   {
     return true;
   }
-  if (job.Help)
+  if (job.Has("--help"))
   {
     std::cout << CommandLineHelp();
     return true;
   }
-  if (job.Version)
+  if (job.Has("--version"))
   {
     std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
               << ")\n";

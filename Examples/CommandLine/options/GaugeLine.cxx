@@ -36,12 +36,10 @@ GaugeLine ToGauge(const std::string& option, const std::string& text)
 {
   const std::size_t equals = text.rfind('='), colon = text.rfind(':');
   GaugeLine gauge;
-  if (equals == std::string::npos || equals == 0 || colon == std::string::npos || colon < equals ||
-    !Numbers(option, text.substr(equals + 1, colon - equals - 1), 3, gauge.Ends.data()) ||
-    !Numbers(option, text.substr(colon + 1), 3, gauge.Ends.data() + 3))
-  {
-    throw UsageError(option + " needs a name and two places, NAME=X,Y,Z:X,Y,Z, not '" + text + "'");
-  }
+  Need(equals != std::string::npos && equals > 0 && colon != std::string::npos && colon > equals &&
+      Numbers(option, text.substr(equals + 1, colon - equals - 1), 3, gauge.Ends.data()) &&
+      Numbers(option, text.substr(colon + 1), 3, gauge.Ends.data() + 3),
+    option, "a name and two places, NAME=X,Y,Z:X,Y,Z", text);
   gauge.Name = Printable(text.substr(0, equals));
   if (std::string("=+-@").find(gauge.Name[0]) != std::string::npos)
   {
@@ -98,20 +96,14 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
   GaugeGrid grid;
   double counts[2];
   double* b = grid.Bounds.data();
-  if (colon == std::string::npos || !Numbers(option, text.substr(0, colon), 2, counts) ||
-    !Numbers(option, text.substr(colon + 1), 6, b) ||
-    !(b[0] <= b[1] && b[2] <= b[3] && b[4] < b[5]))
-  {
-    throw UsageError(option +
-      " needs two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1, not '" + text + "'");
-  }
+  Need(colon != std::string::npos && Numbers(option, text.substr(0, colon), 2, counts) &&
+      Numbers(option, text.substr(colon + 1), 6, b) && b[0] <= b[1] && b[2] <= b[3] && b[4] < b[5],
+    option, "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
   for (int a = 0; a < 2; ++a)
   {
     grid.Counts[a] = static_cast<int>(std::clamp(counts[a], 0.0, 1e6));
-    if (!(counts[a] >= 1.0) || counts[a] != grid.Counts[a])
-    {
-      throw UsageError(option + " needs whole numbers of gauges, 1 or more, not '" + text + "'");
-    }
+    Need(counts[a] >= 1.0 && counts[a] == grid.Counts[a], option,
+      "whole numbers of gauges, 1 or more", text);
   }
   if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e6)
   {

@@ -12,178 +12,160 @@
 #include "SurfaceFile.h"
 
 #include <algorithm>
-#include <initializer_list>
-#include <set>
+#include <cstddef>
+#include <map>
 #include <sstream>
-#include <utility>
 
 namespace
 {
 
-/// Names the first option that was given of those that do not go here.
-void Exclude(
-  const std::string& sentence, std::initializer_list<std::pair<bool, const char*>> others)
+/// What is refused before the input is looked at.
+struct Rule
 {
-  for (const auto& other : others)
+  bool (*Holds)(const Job& j);
+  const char* Sentence; ///< with {mode}, {output}, {endings} and {--option}, see Filled()
+  std::vector<const char*> Excluded = {}; ///< only where one of these is given, which is named
+};
+#define IF(...) [](const Job& j) -> bool { return __VA_ARGS__; }
+
+bool IsAny(const Job&)
+{
+  return true;
+}
+
+/// Output endings, for sentences of a mode.
+bool IsTo(const Job& j, const char* ending)
+{
+  return EndsWith(j.Output, ending);
+}
+
+const std::vector<Rule> OfAll = {
+  { IF(j.Times.empty()), "particles are matched between steps, which only --times asks for",
+    { "--ids" } },
+  { IF(!j.Walls.empty()), "--walls tells which particles are fluid", { "--fluid" } },
+};
+
+const std::vector<Rule> OfGauges = {
+  { IsAny, "{mode} makes no surface",
+    { "--scalar", "--stats", "--repeat", "--components", "--screenshot", "--probe", "--slice",
+      "--line", "--box" } },
+  { IF(j.Surface->GetNumberOfContours() > 1),
+    "{mode} makes no surface; leave out all but one --iso value" },
+  { IF(j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL),
+    "gauges do not end at walls; leave out --solids wall" },
+  { IF(j.Has("--gauge-grid")), "--gauge-grid makes its own gauges", { "--gauge", "--gauges" } },
+  { IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),
+    "the output of {mode} is a .vti file, not '{output}'" },
+  { IF(!j.Has("--gauge-grid") && !IsTo(j, ".csv")),
+    "the output of {mode} is a .csv file, not '{output}'" },
+  { IF(!(j.Gauge->GetLevel() > 0.0)),
+    "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
+};
+
+/// What is not the gauges'.
+const std::vector<Rule> OfOthers = {
+  { IF(!j.Has("--screenshot")), "without --screenshot there is no picture", { "--view", "--up" } },
+  { IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
+    "without --screenshot or a .ply file there are no colours", { "--color-by", "--color-range" } },
+  { IF(!j.IsProbe() && !j.Has("--color-by") && j.Has("--color-range")),
+    "--color-range needs --color-by NAME" },
+  { IF(j.Has("--screenshot") && !EndsWith(j.Picture.File, ".png")),
+    "--screenshot writes a .png file, not '{--screenshot}'" },
+  { IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
+    "a film has a picture of each step: --screenshot frame_%04d.png, not '{--screenshot}'" },
+  { IF(!j.Has("--slice") && !j.Has("--line")), "--resolution is for --slice and --line",
+    { "--resolution" } },
+  { IF(!j.Has("--components")), "without --components there are no pieces to remove",
+    { "--least-volume", "--least-particles" } },
+  { IF(j.Has("--components")), "--components needs a surface", { "--probe", "--slice", "--line" } },
+  { IF(j.Has("--components") && !EndsWith(j.ComponentFile, ".csv")),
+    "--components writes a .csv file, not '{--components}'" },
+  { IF(j.Has("--numbers") && !EndsWith(j.NumbersFile, ".csv")),
+    "--numbers writes a .csv file, not '{--numbers}'" },
+  { IF(j.Has("--numbers") && !j.IsFilm()),
+    "--numbers writes the table of a film, which is a .pvd file or has %04d in its name; for one "
+    "surface use --stats" },
+  { IF(j.Has("--numbers")), "a film cannot have an image of levels", { "--gauge-grid" } },
+};
+
+const std::vector<Rule> OfProbes = {
+  { IF(j.Inputs.size() > 1 || IsCollectionFile(j.Inputs.front()) || !j.Times.empty() ||
+      j.TimeStep != 1.0),
+    "{mode} takes one INPUT of one time" },
+  { IsAny, "{mode} makes no surface",
+    { "--scalar", "--iso", "--free-surface", "--stats", "--repeat" } },
+  { IF(j.Has("--probe")), "{mode} has points already", { "--slice", "--line" } },
+  { IF(j.Has("--slice")), "{mode} has points already", { "--line" } },
+  { IF(!j.Has("--probe") && j.Has("--line")), "--line makes data for a plot", { "--screenshot" } },
+  { IF(!j.Has("--probe") && j.Has("--slice") && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+    "the output of {mode} is a .vti or .vtk file, not '{output}'" },
+  { IF(!j.Has("--probe") && j.Has("--line") && !IsTo(j, ".vtp") && !IsTo(j, ".vtk")),
+    "the output of {mode} is a .vtp or .vtk file, not '{output}'" },
+};
+
+const std::vector<Rule> OfSurfaces = {
+  { IF(!j.IsFilm()), "the output is not a film, which is a .pvd file or has %04d in its name",
+    { "--times", "--time-step" } },
+  { IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
+      !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),
+    "the output of several steps is a .pvd file, or a {endings} file with %04d in its name, not "
+    "'{output}'" },
+  { IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsCollectionFile)),
+    "a .pvd file must be the only INPUT, because it lists the steps" },
+  { IF(IsCollectionFile(j.Inputs.front()) && j.TimeStep != 1.0),
+    "--time-step is for a list of particle files; a .pvd file has times of its own" },
+  { IF(j.IsFilm() && j.Repeat > 1), "--repeat is for one surface, not for a film" },
+  { IF(!j.IsFilm() && !IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
+    "the output is a {endings} file, or .pvd for a film, not '{output}'" },
+  { IF(j.Surface->GetCapping() && !j.Has("--periodic") && !j.Has("--box") &&
+      !(j.Surface->GetFreeSurface() &&
+        j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL)),
+    "--capping closes the surface at the sides of a period or a box, and the free surface at "
+    "walls; add --periodic, --box or --solids wall" },
+  { IF(j.Has("--free-surface") && j.Has("--scalar")),
+    "--free-surface contours the weight sum; leave out --scalar" },
+  { IF(!j.Has("--free-surface") && !j.Has("--scalar")), "needs --scalar NAME, or --free-surface" },
+};
+#undef IF
+
+/// Whether an option asks for something, and does not say what holds without it.
+bool IsAsked(const Job& job, const char* option)
+{
+  static const std::map<std::string, std::string> usual = { { "--time-step", "1" },
+    { "--repeat", "1" }, { "--up", "y" } };
+  const auto given = job.Given.find(option), plain = usual.find(option);
+  return given != job.Given.end() && (plain == usual.end() || plain->second != given->second);
+}
+
+/// The sentence with what stands for the names in braces.
+std::string Filled(std::string sentence, const Job& job)
+{
+  for (std::size_t at = 0; (at = sentence.find('{', at)) != std::string::npos;)
   {
-    if (other.first)
+    const std::size_t end = sentence.find('}', at);
+    const std::string name = sentence.substr(at + 1, end - at - 1);
+    const std::string text = name == "output" ? job.Output
+      : name == "endings"                     ? SurfaceFileEndings()
+      : name == "mode"                        ? job.Mode()
+                                              : job.Given.at(name);
+    sentence.replace(at, end + 1 - at, text);
+    at += text.size();
+  }
+  return sentence;
+}
+
+void Enforce(const std::vector<Rule>& rules, const Job& job)
+{
+  for (const Rule& rule : rules)
+  {
+    const auto found = std::find_if(rule.Excluded.begin(), rule.Excluded.end(),
+      [&job](const char* option) { return IsAsked(job, option); });
+    const bool isNamed = found != rule.Excluded.end();
+    if (rule.Holds(job) && (rule.Excluded.empty() || isNamed))
     {
-      throw UsageError(sentence + other.second);
+      throw UsageError(
+        Filled(rule.Sentence, job) + (isNamed ? std::string("; leave out ") + *found : ""));
     }
-  }
-}
-
-/// What gauges have no use for.
-void CheckGauge(const Job& job)
-{
-  const bool isGrid = job.Grid.Counts[0] > 0;
-  const std::string name = isGrid ? "--gauge-grid" : !job.Gauges.empty() ? "--gauge" : "--gauges";
-  Exclude(name + " makes no surface; leave out ",
-    { { !job.Scalar.empty(), "--scalar" },
-      { job.Surface->GetNumberOfContours() > 1, "all but one --iso value" },
-      { !job.StatisticsFile.empty(), "--stats" }, { job.Repeat > 1, "--repeat" },
-      { !job.ComponentFile.empty(), "--components" }, { !job.Picture.File.empty(), "--screenshot" },
-      { job.IsProbe(), "--probe, --slice and --line" },
-      { job.Surface->GetUseBox() != 0, "--box" } });
-  Exclude("gauges do not end at walls; leave out ",
-    { { job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL, "--solids wall" } });
-  Exclude("--gauge-grid makes its own gauges; leave out ",
-    { { isGrid && !job.Gauges.empty(), "--gauge" },
-      { isGrid && !job.GaugeFile.empty(), "--gauges" } });
-  if (!EndsWith(job.Output, isGrid ? ".vti" : ".csv"))
-  {
-    throw UsageError("the output of " + name + " is a " + (isGrid ? ".vti" : ".csv") +
-      " file, not '" + job.Output + "'");
-  }
-  if (!(job.Gauge->GetLevel() > 0.0))
-  {
-    throw UsageError(
-      "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual");
-  }
-}
-
-void CheckNumbers(const Job& job)
-{
-  if (job.NumbersFile.empty())
-  {
-    return;
-  }
-  if (!EndsWith(job.NumbersFile, ".csv"))
-  {
-    throw UsageError("--numbers writes a .csv file, not '" + job.NumbersFile + "'");
-  }
-  if (!job.IsFilm())
-  {
-    throw UsageError("--numbers writes the table of a film, which is a .pvd file or has %04d in "
-                     "its name; for one surface use --stats");
-  }
-  Exclude("a film cannot have an image of levels; leave out ",
-    { { job.Grid.Counts[0] > 0, "--gauge-grid" } });
-}
-
-void CheckComponents(const Job& job)
-{
-  if (job.ComponentFile.empty())
-  {
-    Exclude("without --components there are no pieces to remove; leave out ",
-      { { job.LeastVolume > 0.0, "--least-volume" },
-        { job.LeastParticles > 0, "--least-particles" } });
-    return;
-  }
-  Exclude("--components needs a surface; leave out ",
-    { { job.IsProbe(), "--probe, --slice and --line" } });
-  if (!EndsWith(job.ComponentFile, ".csv"))
-  {
-    throw UsageError("--components writes a .csv file, not '" + job.ComponentFile + "'");
-  }
-}
-
-/// What a probe has no use for.
-void CheckProbe(const Job& job)
-{
-  const std::string name = !job.ProbeFile.empty() ? "--probe"
-    : job.Slice.Axis >= 0                         ? "--slice"
-                                                  : "--line";
-  if (job.Inputs.size() > 1 || IsCollectionFile(job.Inputs.front()) || !job.Times.empty() ||
-    job.TimeStep != 1.0)
-  {
-    throw UsageError(name + " takes one INPUT of one time");
-  }
-  Exclude(name + " makes no surface; leave out ",
-    { { !job.Scalar.empty(), "--scalar" }, { job.HasIsoValues, "--iso" },
-      { job.Surface->GetFreeSurface() != 0, "--free-surface" },
-      { !job.StatisticsFile.empty(), "--stats" }, { job.Repeat > 1, "--repeat" } });
-  Exclude(name + " has points already; leave out ",
-    { { name != "--slice" && job.Slice.Axis >= 0, "--slice" },
-      { name != "--line" && !job.Slice.Line.empty(), "--line" } });
-  Exclude("--line makes data for a plot; leave out ",
-    { { name == "--line" && !job.Picture.File.empty(), "--screenshot" } });
-  if (name != "--probe" && !EndsWith(job.Output, name == "--slice" ? ".vti" : ".vtp") &&
-    !EndsWith(job.Output, ".vtk"))
-  {
-    throw UsageError("the output of " + name + " is a " + (name == "--slice" ? ".vti" : ".vtp") +
-      " or .vtk file, not '" + job.Output + "'");
-  }
-}
-
-/// What the film's options are for, and what it has no use for.
-void CheckFilm(const Job& job)
-{
-  const bool isListed = IsCollectionFile(job.Inputs.front());
-  if (!job.IsFilm())
-  {
-    Exclude("the output is not a film, which is a .pvd file or has %04d in its name; leave out ",
-      { { !job.Times.empty(), "--times" }, { job.TimeStep != 1.0, "--time-step" } });
-    return;
-  }
-  if (!IsCollectionFile(job.Output) && !(HasStepNumber(job.Output) && IsSurfaceFile(job.Output)))
-  {
-    throw UsageError("the output of several steps is a .pvd file, or a " + SurfaceFileEndings() +
-      " file with %04d in its name, not '" + job.Output + "'");
-  }
-  if (job.Inputs.size() > 1 && std::any_of(job.Inputs.begin(), job.Inputs.end(), IsCollectionFile))
-  {
-    throw UsageError("a .pvd file must be the only INPUT, because it lists the steps");
-  }
-  if (isListed && job.TimeStep != 1.0)
-  {
-    throw UsageError(
-      "--time-step is for a list of particle files; a .pvd file has times of its own");
-  }
-  if (job.Repeat > 1)
-  {
-    throw UsageError("--repeat is for one surface, not for a film");
-  }
-}
-
-void CheckPicture(const Job& job)
-{
-  const PictureOptions& picture = job.Picture;
-  if (picture.File.empty())
-  {
-    Exclude("without --screenshot there is no picture; leave out ",
-      { { !picture.View.empty(), "--view" }, { picture.Up != "y", "--up" } });
-    const bool hasColors = EndsWith(job.Output, ".ply");
-    Exclude("without --screenshot or a .ply file there are no colours; leave out ",
-      { { !hasColors && !picture.ColorBy.empty(), "--color-by" },
-        { !hasColors && !picture.ColorRange.empty(), "--color-range" } });
-  }
-  if (!job.IsProbe() && picture.ColorBy.empty() && !picture.ColorRange.empty())
-  {
-    throw UsageError("--color-range needs --color-by NAME");
-  }
-  if (picture.File.empty())
-  {
-    return;
-  }
-  if (!EndsWith(picture.File, ".png"))
-  {
-    throw UsageError("--screenshot writes a .png file, not '" + picture.File + "'");
-  }
-  if (job.IsFilm() && !HasStepNumber(picture.File))
-  {
-    throw UsageError(
-      "a film has a picture of each step: --screenshot frame_%04d.png, not '" + picture.File + "'");
   }
 }
 
@@ -209,13 +191,10 @@ void Check(const Job& job)
   {
     return;
   }
-  Exclude("particles are matched between steps, which only --times asks for; leave out ",
-    { { !job.IdArray.empty() && job.Times.empty(), "--ids" } });
-  Exclude("--walls tells which particles are fluid; leave out ",
-    { { !job.Walls.empty() && *job.Surface->GetFluidArrayName(), "--fluid" } });
+  Enforce(OfAll, job);
   if (job.IsGauge())
   {
-    CheckGauge(job);
+    Enforce(OfGauges, job);
     return;
   }
   for (const std::string& walls : job.Walls)
@@ -226,41 +205,8 @@ void Check(const Job& job)
         " has walls for each step, which only films and gauges can use; give one file");
     }
   }
-  CheckPicture(job);
-  Exclude("--resolution is for --slice and --line; leave out ",
-    { { job.Slice.Resolution > 0 && job.Slice.Axis < 0 && job.Slice.Line.empty(),
-      "--resolution" } });
-  CheckComponents(job);
-  CheckNumbers(job);
-  if (job.IsProbe())
-  {
-    CheckProbe(job);
-    return;
-  }
-  CheckFilm(job);
-  if (!job.IsFilm() && !IsSurfaceFile(job.Output) &&
-    !(LaunchedCount() > 1 && EndsWith(job.Output, ".pvtp")))
-  {
-    throw UsageError("the output is a " + SurfaceFileEndings() +
-      " file, or .pvd for a film, not '" + job.Output + "'");
-  }
-  if (job.Surface->GetCapping() && job.Periodic.empty() && !job.DetectPeriod &&
-    !job.Surface->GetUseBox() &&
-    !(job.Surface->GetFreeSurface() &&
-      job.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL))
-  {
-    throw UsageError("--capping closes the surface at the sides of a period or a box, and the free "
-                     "surface at walls; add --periodic, --box or --solids wall");
-  }
-  const bool isFree = job.Surface->GetFreeSurface() != 0;
-  if (isFree && !job.Scalar.empty())
-  {
-    throw UsageError("--free-surface contours the weight sum; leave out --scalar");
-  }
-  if (!isFree && job.Scalar.empty())
-  {
-    throw UsageError("needs --scalar NAME, or --free-surface");
-  }
+  Enforce(OfOthers, job);
+  Enforce(job.IsProbe() ? OfProbes : OfSurfaces, job);
 }
 
 const Option& FindOption(const std::string& name)
@@ -288,95 +234,75 @@ bool LooksLikeOption(const std::string& word)
       std::string("0123456789.").find(word[1]) == std::string::npos);
 }
 
-/// The words of a command line, taken from left to right.
-class Parser
+/// Takes an option whose name, with a value behind "=" if there is one, was `next[-1]`, and its value.
+void TakeOption(const char* const*& next, const char* const* end, Job& job)
 {
-public:
-  Parser(const std::vector<std::string>& words, Job& job)
-    : Words(words)
-    , Target(job)
+  std::string name = next[-1], value;
+  const std::size_t equals = name.find('=');
+  const bool isJoined = equals != std::string::npos;
+  if (isJoined)
   {
+    value = name.substr(equals + 1);
+    name.resize(equals);
   }
-
-  void Parse()
+  const Option& option = FindOption(name);
+  const bool takesValue = option.Argument[0] != '\0';
+  if (isJoined && !takesValue)
   {
-    while (this->Next < this->Words.size())
-    {
-      const std::string word = this->Words[this->Next++];
-      if (!this->OptionsEnded && word == "--")
-      {
-        this->OptionsEnded = true;
-      }
-      else if (!this->OptionsEnded && word.size() > 1 && word[0] == '-')
-      {
-        this->TakeOption(word);
-      }
-      else
-      {
-        this->TakeFile(word);
-      }
-    }
-    if (this->Target.ListArrays && (this->Words.size() > 2 || !this->Files.empty()))
-    {
-      throw UsageError("--list-arrays FILE stands alone; leave out the rest");
-    }
-    if (this->Files.size() > 1)
-    {
-      this->Target.Output = this->Files.back();
-      this->Files.pop_back();
-      this->Target.Inputs = this->Files;
-    }
+    throw UsageError(name + " takes no value");
   }
-
-private:
-  void TakeOption(std::string name)
+  if (takesValue && job.Has(option.Name) && !option.Repeats)
   {
-    std::string value;
-    const std::size_t equals = name.find('=');
-    const bool joined = equals != std::string::npos;
-    if (joined)
-    {
-      value = name.substr(equals + 1);
-      name.resize(equals);
-    }
-    const Option& option = FindOption(name);
-    const bool takesValue = option.Argument[0] != '\0';
-    if (joined && !takesValue)
-    {
-      throw UsageError(name + " takes no value");
-    }
-    if (takesValue && !this->Given.insert(name).second && !option.Repeats)
-    {
-      throw UsageError(name + " is given twice");
-    }
-    if (takesValue && !joined && this->Next < this->Words.size() &&
-      !LooksLikeOption(this->Words[this->Next]))
-    {
-      value = this->Words[this->Next++];
-    }
-    if (takesValue && value.empty())
-    {
-      throw UsageError(name + " needs " + option.Argument);
-    }
-    option.Set(this->Target, name, value);
+    throw UsageError(name + " is given twice");
   }
-
-  void TakeFile(const std::string& word)
+  if (takesValue && !isJoined && next < end && !LooksLikeOption(*next))
   {
-    if (word.empty() || word == "-")
+    value = *next++;
+  }
+  if (takesValue && value.empty())
+  {
+    throw UsageError(name + " needs " + option.Argument);
+  }
+  job.Given[option.Name] = value;
+  option.Set(job, name, value);
+}
+
+/// The words of a command line, from left to right.
+void Parse(const char* const* next, const char* const* end, Job& job)
+{
+  std::vector<std::string> files;
+  const std::ptrdiff_t count = end - next;
+  for (bool isEnded = false; next < end;)
+  {
+    const std::string word = *next++;
+    if (!isEnded && word == "--")
+    {
+      isEnded = true;
+    }
+    else if (!isEnded && word.size() > 1 && word[0] == '-')
+    {
+      TakeOption(next, end, job);
+    }
+    else if (word.empty() || word == "-")
     {
       throw UsageError("'" + word + "' is not the name of a file");
     }
-    this->Files.push_back(word);
+    else
+    {
+      files.push_back(word);
+    }
   }
-
-  const std::vector<std::string> Words;
-  std::size_t Next = 0;
-  std::vector<std::string> Files;
-  bool OptionsEnded = false;
-  std::set<std::string> Given; ///< options with a value
-  Job& Target;
-};
+  if (job.ListArrays && (count > 2 || !files.empty()))
+  {
+    throw UsageError("--list-arrays FILE stands alone; leave out the rest");
+  }
+  if (files.size() > 1)
+  {
+    job.Output = files.back();
+    files.pop_back();
+    job.Inputs = files;
+  }
+}
 
 } // namespace
 
@@ -386,6 +312,19 @@ std::vector<std::string> Job::InputFiles() const
   files.insert(files.end(), this->Walls.begin(), this->Walls.end());
   files.insert(files.end(), { this->ProbeFile, this->GaugeFile });
   return files;
+}
+
+const char* Job::Mode() const
+{
+  for (const char* option :
+    { "--gauge-grid", "--gauge", "--gauges", "--probe", "--slice", "--line" })
+  {
+    if (this->Has(option))
+    {
+      return option;
+    }
+  }
+  return "";
 }
 
 bool Job::IsFilm() const
@@ -436,8 +375,8 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   {
     filter->KeepDeviceDataOff(); // for one run
   }
-  Parser(std::vector<std::string>(argv + std::min(argc, 1), argv + argc), job).Parse();
-  if (!job.Help && !job.Version && !job.ListDevices)
+  Parse(argv + std::min(argc, 1), argv + argc, job);
+  if (!job.Has("--help") && !job.Has("--version") && !job.Has("--list-devices"))
   {
     Check(job);
   }

@@ -12,6 +12,7 @@
 #include "vtkSPHProbe.h"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,8 +60,14 @@ struct Job
   }
   /// All files that are read, but for those that they list.
   std::vector<std::string> InputFiles() const;
+  /// The first option that asks for gauges, or for a probe.
+  const char* Mode() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
+
+  /// The options that were given, but for those that say what holds without them, and the text behind each.
+  std::map<std::string, std::string> Given;
+  bool Has(const char* option) const { return this->Given.count(option) > 0; }
 
   std::vector<std::string> Inputs;
   std::vector<std::string>
@@ -68,7 +75,6 @@ struct Job
   std::string Output;
   std::vector<double> Times; ///< of a film or gauges, ascending; empty: all that are stored
   double TimeStep = 1.0;     ///< between the steps of a film of particle files
-  bool HasTimeStep = false;  ///< else the files may tell of times
   std::string IdArray;       ///< that particles are matched by between steps; empty: found
   std::string ProbeFile;
   SliceOptions Slice;
@@ -78,7 +84,6 @@ struct Job
   std::string Derive;    ///< array whose gradient, and what is made of it, the particles get
 
   std::string Scalar;
-  bool HasIsoValues = false;
   /// A quantity is an array name or one value for all particles; the input decides which of the two
   /// a text such as "2" is.
   std::string SmoothingLength;
@@ -86,10 +91,9 @@ struct Job
   std::string Density;
   double ParticleDistance = 0.0; ///< of DualSPHysics; 0: not given
   double CoefH = 1.0;
-  double NeighborRatio = 0.0; ///< of --smoothing-length neighbours; 0: another one
+  double NeighborRatio = 0.0;              ///< of --smoothing-length neighbours; 0: another one
   bool DetectPeriod = false;               ///< --periodic auto
   std::vector<double> Periodic;            ///< three lengths, or six bounds; empty: open
-  bool HasVertexThreshold = false;         ///< else it is what suits the boundary detection
   std::vector<std::string> AttributeNames; ///< of those to carry; empty: all
 
   std::string NumbersFile;   ///< table of a film's numbers; empty: none
@@ -101,10 +105,7 @@ struct Job
   PictureOptions Picture;
   int Repeat = 1;
   bool Quiet = false;
-  bool ListDevices = false;
   bool ListArrays = false; ///< of the only input
-  bool Help = false;
-  bool Version = false;
 };
 
 /// Throws UsageError, see OptionValue.h.

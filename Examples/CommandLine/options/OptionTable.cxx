@@ -30,32 +30,29 @@ void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T), T value)
   }
 }
 
-void SetFluid(Job& job, Text option, Text text)
+/// Where NAME=... is divided.
+std::size_t NameEnd(Text option, Text text, const char* form)
 {
   const std::size_t equals = text.rfind('=');
-  if (equals == std::string::npos || equals == 0)
-  {
-    throw UsageError(option + " needs NAME=VALUE, not '" + text + "'");
-  }
+  Need(equals != std::string::npos && equals > 0, option, form, text);
+  return equals;
+}
+
+void SetFluid(Job& job, Text option, Text text)
+{
+  const std::size_t equals = NameEnd(option, text, "NAME=VALUE");
   SetAll(job, &vtkSPHAlgorithm::SetFluidArrayName, Printable(text.substr(0, equals)).c_str());
   SetAll(job, &vtkSPHAlgorithm::SetFluidValue, ToNumber(option, text.substr(equals + 1)));
 }
 
 void AddOnly(Job& job, Text option, Text text)
 {
-  const std::size_t equals = text.rfind('=');
-  const std::size_t colon = text.find(':', equals == std::string::npos ? 0 : equals);
-  if (equals == std::string::npos || equals == 0)
-  {
-    throw UsageError(option + " needs NAME=VALUE or NAME=LOW:HIGH, not '" + text + "'");
-  }
+  const std::size_t equals = NameEnd(option, text, "NAME=VALUE or NAME=LOW:HIGH");
+  const std::size_t colon = text.find(':', equals);
   const std::string name = Printable(text.substr(0, equals));
   const double low = ToNumber(option, text.substr(equals + 1, colon - equals - 1));
   const double high = colon == std::string::npos ? low : ToNumber(option, text.substr(colon + 1));
-  if (low > high)
-  {
-    throw UsageError(option + " needs the lower value first, not '" + text + "'");
-  }
+  Need(low <= high, option, "the lower value first", text);
   for (vtkSPHAlgorithm* filter : job.All())
   {
     filter->AddOnly(name.c_str(), low, high);
@@ -107,7 +104,6 @@ void SetComponent(Job& job, Text option, Text text)
 void SetIsoValues(Job& job, Text option, Text text)
 {
   const std::vector<double> values = ToNumbers(option, text);
-  job.HasIsoValues = true;
   job.Surface->SetNumberOfContours(static_cast<int>(values.size()));
   job.Surface->SetNumberOfFreeSurfaceValues(static_cast<int>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -118,9 +114,9 @@ void SetIsoValues(Job& job, Text option, Text text)
   job.Gauge->SetLevel(values.front());
 }
 
-std::vector<std::pair<const char*, int>> ListKernels()
+Choices ListKernels()
 {
-  std::vector<std::pair<const char*, int>> kernels;
+  Choices kernels;
   for (int k = 0; Filter::GetKernelName(k); ++k)
   {
     kernels.emplace_back(Filter::GetKernelName(k), k);
@@ -134,14 +130,9 @@ std::string DescribeKernels()
   for (const auto& kernel : ListKernels())
   {
     text +=
-      text.empty() ? std::string(kernel.first) + " (default)" : std::string(", ") + kernel.first;
+      (text.empty() ? "" : ", ") + std::string(kernel.first) + (text.empty() ? " (default)" : "");
   }
   return text;
-}
-
-void SetKernel(Job& job, Text option, Text text)
-{
-  SetAll(job, &vtkSPHAlgorithm::SetKernel, ToChoice(option, text, ListKernels()));
 }
 
 void SetField(Job& job, Text option, Text text)
@@ -156,7 +147,7 @@ void SetBoundary(Job& job, Text option, Text text)
   const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text, // its word of old
     { { "weight_sum", Filter::WEIGHT_SUM }, { "eigenvalue", Filter::EIGENVALUE } });
   job.Surface->SetBoundaryDetection(boundary);
-  if (!job.HasVertexThreshold)
+  if (!job.Has("--vertex-threshold"))
   {
     job.Surface->SetVertexThreshold(boundary == Filter::EIGENVALUE ? 0.3 : 0.5);
   }
@@ -175,17 +166,15 @@ void SetTimes(Job& job, Text option, Text text)
   job.Times.erase(std::unique(job.Times.begin(), job.Times.end()), job.Times.end());
 }
 
-using Options = std::vector<Option>;
+/// What an option does to the job `j`; `n` is its name as given, and `v` the value behind it.
+#define DO(...)                                                                                    \
+  []([[maybe_unused]] Job& j, [[maybe_unused]] Text n, [[maybe_unused]] Text v) { __VA_ARGS__; }
 
-const Options WhatToContour = {
+const std::vector<Option> Table = {
   { "", "", "What to contour", {} },
   { "--scalar", "NAME", "point array to contour",
-    [](Job& j, Text, Text v)
-    {
-      j.Scalar = Printable(v);
-      j.Surface->SetInputArrayToProcess(
-        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str());
-    } },
+    DO(j.Scalar = Printable(v); j.Surface->SetInputArrayToProcess(
+      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str())) },
   { "--component", "N|magnitude",
     "component of a vector, counted from 0, or its magnitude (default)", SetComponent },
   { "--iso", "V[,V...]",
@@ -193,45 +182,36 @@ const Options WhatToContour = {
     "with --free-surface (default 0.5)",
     SetIsoValues },
   { "--free-surface", "", "contour the weight sum, which needs no scalar",
-    [](Job& j, Text, Text) { j.Surface->FreeSurfaceOn(); } },
+    DO(j.Surface->FreeSurfaceOn()) },
   { "--derive", "NAME",
     "compute Gradients of this array first; of a vector also Vorticity, Lambda2, ...",
-    [](Job& j, Text, Text v)
-    {
-      j.Derive = Printable(v);
-      j.Derivatives->SetInputArrayToProcess(
-        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Derive.c_str());
-    } },
+    DO(j.Derive = Printable(v); j.Derivatives->SetInputArrayToProcess(
+      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Derive.c_str())) },
   { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum", SetField },
 
   { "", "", "The field at points, in place of a surface; OUTPUT is a data set of these points",
     {} },
-  { "--probe", "POINTS_FILE", "at the points in this file",
-    [](Job& j, Text, Text v) { j.ProbeFile = v; } },
+  { "--probe", "POINTS_FILE", "at the points in this file", DO(j.ProbeFile = v) },
   { "--slice", "AXIS=PLACE",
     "on a plane through the particles, e.g. z=0.1; OUTPUT is an image (.vti)",
-    [](Job& j, Text n, Text v) { ToSlice(n, v, j.Slice.Axis, j.Slice.Place); } },
+    DO(ToSlice(n, v, j.Slice.Axis, j.Slice.Place)) },
   { "--line", "X,Y,Z,X,Y,Z", "on a line between two points; OUTPUT is a .vtp file",
-    [](Job& j, Text n, Text v) { j.Slice.Line = ToLine(n, v); } },
+    DO(j.Slice.Line = ToLine(n, v)) },
   { "--resolution", "N",
     "number of points on the line, or on the longest side of the slice (default 512)",
-    [](Job& j, Text n, Text v) { j.Slice.Resolution = ToCount(n, v, 2, 1 << 15); } },
-};
+    DO(j.Slice.Resolution = ToCount(n, v, 2, 1 << 15)) },
 
-const Options Gauges = {
   { "", "",
     "Gauges: where lines cross the free surface, in place of a surface; OUTPUT is a .csv table",
     {} },
   { "--gauge", "NAME=X,Y,Z:X,Y,Z", "a line from one point to another; may be given more than once",
-    [](Job& j, Text n, Text v) { j.Gauges.push_back(ToGauge(n, v)); }, true },
+    DO(j.Gauges.push_back(ToGauge(n, v))), true },
   { "--gauges", "FILE", "all lines of this file, one NAME=X,Y,Z:X,Y,Z in each row",
-    [](Job& j, Text, Text v) { j.GaugeFile = v; } },
+    DO(j.GaugeFile = v) },
   { "--gauge-grid", "NX,NY:BOUNDS",
     "NX by NY vertical lines in x0,x1,y0,y1,z0,z1; OUTPUT is an image of levels (.vti)",
-    [](Job& j, Text n, Text v) { j.Grid = ToGaugeGrid(n, v); } },
-};
+    DO(j.Grid = ToGaugeGrid(n, v)) },
 
-const Options TheParticles = {
   { "", "", "The particles (arrays are found by their usual names unless they are given)", {} },
   { "--smoothing-length", "NAME|VALUE|estimate|neighbours[=ETA]",
     "an array, one value, an estimate from the particle spacing, or for each particle from its "
@@ -240,19 +220,17 @@ const Options TheParticles = {
   { "--dp", "D",
     "DualSPHysics: the initial particle distance; h = coefh x sqrt(3) x D (sqrt(2) in 2-D), and "
     "volumes are D^3 (D^2) unless mass and density tell them",
-    [](Job& j, Text n, Text v) { j.ParticleDistance = ToPositive(n, v); } },
+    DO(j.ParticleDistance = ToPositive(n, v)) },
   { "--coefh", "C", "DualSPHysics: the coefficient in --dp (default 1)",
-    [](Job& j, Text n, Text v) { j.CoefH = ToPositive(n, v); } },
+    DO(j.CoefH = ToPositive(n, v)) },
   { "--support-radius", "", "--smoothing-length is the support radius of the kernel",
-    [](Job& j, Text, Text)
-    { SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true); } },
+    DO(SetAll<vtkTypeBool>(j, &vtkSPHAlgorithm::SetSmoothingLengthIsSupportRadius, true)) },
   { "--volume", "NAME", "array of particle volumes",
-    [](Job& j, Text, Text v)
-    { SetAll(j, &vtkSPHAlgorithm::SetVolumeArrayName, Printable(v).c_str()); } },
+    DO(SetAll(j, &vtkSPHAlgorithm::SetVolumeArrayName, Printable(v).c_str())) },
   { "--mass", "NAME|VALUE", "array of particle masses, or one value",
-    [](Job& j, Text n, Text v) { j.Mass = ToQuantity(n, v); } },
+    DO(j.Mass = ToQuantity(n, v)) },
   { "--density", "NAME|VALUE", "array of densities, or one value",
-    [](Job& j, Text n, Text v) { j.Density = ToQuantity(n, v); } },
+    DO(j.Density = ToQuantity(n, v)) },
   { "--fluid", "NAME=VALUE",
     "particles with this value of this array are fluid, all others are solid", SetFluid },
   { "--within", "X0,X1,Y0,Y1,Z0,Z1",
@@ -265,61 +243,46 @@ const Options TheParticles = {
     "the particles of this file are walls, in addition to INPUT; may be given more than once; a "
     ".pvd "
     "file, or %04d in its name, gives each step its own",
-    [](Job& j, Text, Text v) { j.Walls.push_back(v); }, true },
+    DO(j.Walls.push_back(v)), true },
   { "--solids", "auto|weight|ignore|wall",
     "solids only add to the weight used for trimming, are ignored, or end the surface; auto "
     "(default): wall for a scalar, weight for the free surface",
     SetSolids },
   { "--wall-share", "S|measured",
     "solids' share of the weight at which walls end the surface (default: measured)",
-    [](Job& j, Text n, Text v) { j.Surface->SetWallShare(ToShare(n, v)); } },
-};
+    DO(j.Surface->SetWallShare(ToShare(n, v))) },
 
-const Options TheMethod = {
   { "", "", "The method", {} },
-  { "--kernel", "NAME", DescribeKernels(), SetKernel },
+  { "--kernel", "NAME", DescribeKernels(),
+    DO(SetAll(j, &vtkSPHAlgorithm::SetKernel, ToChoice(n, v, ListKernels()))) },
   { "--dimension", "auto|2|3",
     "2: particles lie in a plane of constant x, y or z, and lines are extracted; auto "
     "(default): 2 if they do, else 3",
-    [](Job& j, Text n, Text v)
-    {
-      SetAll(j, &vtkSPHAlgorithm::SetDimension,
-        ToChoice(n, v,
-          { { "auto", Filter::DIMENSION_AUTO }, { "2", Filter::DIMENSION_2 },
-            { "3", Filter::DIMENSION_3 } }));
-    } },
+    DO(SetAll(j, &vtkSPHAlgorithm::SetDimension,
+      ToChoice(n, v,
+        { { "auto", Filter::DIMENSION_AUTO }, { "2", Filter::DIMENSION_2 },
+          { "3", Filter::DIMENSION_3 } }))) },
   { "--h-scale", "S", "the kernel uses S times the smoothing length (default 1)",
-    [](Job& j, Text n, Text v)
-    { SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v)); } },
+    DO(SetAll(j, &vtkSPHAlgorithm::SetHScaleFactor, ToPositive(n, v))) },
   { "--cube-factor", "C", "cube size / smallest smoothing length (default 0.5)",
-    [](Job& j, Text n, Text v) { j.Surface->SetCubeSizeFactor(ToPositive(n, v)); } },
+    DO(j.Surface->SetCubeSizeFactor(ToPositive(n, v))) },
   { "--cube-size", "D", "cube size in the unit of the positions, in place of --cube-factor",
-    [](Job& j, Text n, Text v) { j.Surface->SetCubeSize(ToPositive(n, v)); } },
+    DO(j.Surface->SetCubeSize(ToPositive(n, v))) },
   { "--cubes", "uniform|adaptive",
     "cubes of one size, or larger ones where smoothing lengths are larger (default)",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetCubeSizeMode(
-        ToChoice(n, v, { { "uniform", Filter::UNIFORM }, { "adaptive", Filter::ADAPTIVE } }));
-    } },
+    DO(j.Surface->SetCubeSizeMode(
+      ToChoice(n, v, { { "uniform", Filter::UNIFORM }, { "adaptive", Filter::ADAPTIVE } }))) },
   { "--partition", "HOW",
     "with mpirun, give processes equal numbers of particles, or equal work (default)",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetPartition(
-        ToChoice(n, v, { { "particles", Filter::BY_PARTICLES }, { "work", Filter::BY_WORK } }));
-    } },
+    DO(j.Surface->SetPartition(
+      ToChoice(n, v, { { "particles", Filter::BY_PARTICLES }, { "work", Filter::BY_WORK } }))) },
   { "--max-level", "N",
     "adaptive cubes are at most 2^N times the cube size, N from 0 to 24 (default 24)",
-    [](Job& j, Text n, Text v) { j.Surface->SetCubeLevelLimit(ToCount(n, v, 0, 24)); } },
+    DO(j.Surface->SetCubeLevelLimit(ToCount(n, v, 0, 24))) },
   { "--box", "X0,X1,Y0,Y1,Z0,Z1",
     "extract only the cells in this box, whose sides may be inf or -inf; around particles in a "
     "plane it may be flat",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetBox(ToBox(n, v).data());
-      j.Surface->UseBoxOn();
-    } },
+    DO(j.Surface->SetBox(ToBox(n, v).data()); j.Surface->UseBoxOn()) },
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
     "periodic particles: lengths (0: not periodic), bounds X0,X1,Y0,Y1,Z0,Z1, or those in the "
     "field data",
@@ -327,176 +290,119 @@ const Options TheMethod = {
   { "--capping", "",
     "close the surface at the sides of the period and the box, where values exceed the iso value; "
     "with --solids wall also the free surface at walls",
-    [](Job& j, Text, Text) { j.Surface->CappingOn(); } },
+    DO(j.Surface->CappingOn()) },
   { "--filled", "",
     "in two dimensions, triangles fill the region above the lowest iso value, in bands from each "
     "value to the next",
-    [](Job& j, Text, Text) { j.Surface->FilledOn(); } },
+    DO(j.Surface->FilledOn()) },
   { "--seeds", "pairs|complete",
     "seeds as in the paper, or complete seeds, which miss nothing (default)",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetSeedMode(
-        ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }));
-    } },
+    DO(j.Surface->SetSeedMode(
+      ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }))) },
   { "--widen", "S",
     "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
-    [](Job& j, Text n, Text v) { j.Surface->SetWidening(ToPositive(n, v)); } },
+    DO(j.Surface->SetWidening(ToPositive(n, v))) },
   { "--topology", "table|field", "resolve ambiguous cells by the table (default), or by the field",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetTopology(ToChoice(
-        n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }));
-    } },
+    DO(j.Surface->SetTopology(ToChoice(
+      n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }))) },
   { "--tolerance", "T",
     "correct vertices until the field is within T times the scalar's range of the iso value "
     "(default 1e-6)",
-    [](Job& j, Text n, Text v) { j.Surface->SetTolerance(ToPositive(n, v)); } },
+    DO(j.Surface->SetTolerance(ToPositive(n, v))) },
   { "--iteration-limit", "N", "correct a vertex in at most N steps, from 1 to 255 (default 30)",
-    [](Job& j, Text n, Text v) { j.Surface->SetIterationLimit(ToCount(n, v, 1, 255)); } },
+    DO(j.Surface->SetIterationLimit(ToCount(n, v, 1, 255))) },
   { "--preview", "", "faster: no correction, and normals from the triangles",
-    [](Job& j, Text, Text) { j.Surface->PreviewOn(); } },
+    DO(j.Surface->PreviewOn()) },
   { "--node-threshold", "T", "discard cells with a node whose weight is lower than T (default 0.1)",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetNodeThreshold(ToThreshold(n, v));
-      j.Probe->SetWeightThreshold(ToThreshold(n, v));
-    } },
+    DO(j.Surface->SetNodeThreshold(ToThreshold(n, v));
+       j.Probe->SetWeightThreshold(ToThreshold(n, v))) },
   { "--boundary", "weight_sum|eigenvalue",
     "trim by the weight sum (default), or by the boundary eigenvalue of Marrone et al.",
     SetBoundary },
   { "--vertex-threshold", "T",
     "trim triangles where the weight (or eigenvalue) is lower than T (default 0.5, or 0.3)",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetVertexThreshold(ToThreshold(n, v));
-      j.HasVertexThreshold = true;
-    } },
+    DO(j.Surface->SetVertexThreshold(ToThreshold(n, v))) },
   { "--precision", "single|double",
     "precision of the field evaluation on the device (default single)",
-    [](Job& j, Text n, Text v)
-    {
-      SetAll(j, &vtkSPHAlgorithm::SetPrecision,
-        ToChoice(n, v,
-          { { "single", vtkAlgorithm::SINGLE_PRECISION },
-            { "double", vtkAlgorithm::DOUBLE_PRECISION } }));
-    } },
-};
+    DO(SetAll(j, &vtkSPHAlgorithm::SetPrecision,
+      ToChoice(n, v,
+        { { "single", vtkAlgorithm::SINGLE_PRECISION },
+          { "double", vtkAlgorithm::DOUBLE_PRECISION } }))) },
 
-const Options Output = {
   { "", "", "Output", {} },
-  { "--weight-sum", "", "add the array WeightSum",
-    [](Job& j, Text, Text) { j.Surface->ComputeWeightSumOn(); } },
+  { "--weight-sum", "", "add the array WeightSum", DO(j.Surface->ComputeWeightSumOn()) },
   { "--boundary-eigenvalue", "", "add the array BoundaryEigenvalue",
-    [](Job& j, Text, Text) { j.Surface->ComputeBoundaryEigenvalueOn(); } },
+    DO(j.Surface->ComputeBoundaryEigenvalueOn()) },
   { "--gradients", "", "add the array Gradients",
-    [](Job& j, Text, Text)
-    {
-      j.Surface->ComputeGradientsOn();
-      j.Probe->ComputeGradientsOn();
-    } },
+    DO(j.Surface->ComputeGradientsOn(); j.Probe->ComputeGradientsOn()) },
   { "--attributes", "NAME[,NAME...]", "interpolate only these arrays to the surface (default all)",
-    [](Job& j, Text n, Text v) { j.AttributeNames = ToNames(n, v); } },
+    DO(j.AttributeNames = ToNames(n, v)) },
   { "--no-attributes", "", "interpolate no arrays to the surface",
-    [](Job& j, Text, Text)
-    {
-      j.Surface->InterpolateAttributesOff();
-      j.Probe->InterpolateAttributesOff();
-    } },
+    DO(j.Surface->InterpolateAttributesOff(); j.Probe->InterpolateAttributesOff()) },
   { "--output-precision", "single|double|input",
     "precision of the coordinates of the surface (default: that of the input)",
-    [](Job& j, Text n, Text v)
-    {
-      j.Surface->SetOutputPointsPrecision(ToChoice(n, v,
-        { { "single", vtkAlgorithm::SINGLE_PRECISION },
-          { "double", vtkAlgorithm::DOUBLE_PRECISION },
-          { "input", vtkAlgorithm::DEFAULT_PRECISION } }));
-    } },
+    DO(j.Surface->SetOutputPointsPrecision(ToChoice(n, v,
+      { { "single", vtkAlgorithm::SINGLE_PRECISION }, { "double", vtkAlgorithm::DOUBLE_PRECISION },
+        { "input", vtkAlgorithm::DEFAULT_PRECISION } }))) },
   { "--components", "TABLE.csv",
     "add the array ComponentId, and write a table of the pieces of the surface: volume, particles, "
     "...",
-    [](Job& j, Text, Text v) { j.ComponentFile = v; } },
+    DO(j.ComponentFile = v) },
   { "--least-volume", "V", "with --components, remove closed pieces with less volume",
-    [](Job& j, Text n, Text v) { j.LeastVolume = ToPositive(n, v); } },
+    DO(j.LeastVolume = ToPositive(n, v)) },
   { "--least-particles", "N", "with --components, remove closed pieces around fewer particles",
-    [](Job& j, Text n, Text v) { j.LeastParticles = ToCount(n, v, 1); } },
+    DO(j.LeastParticles = ToCount(n, v, 1)) },
   { "--numbers", "TABLE.csv",
     "for a film: write a row for each step: area, volume, pieces, and readings of --gauge",
-    [](Job& j, Text, Text v) { j.NumbersFile = v; } },
+    DO(j.NumbersFile = v) },
   { "--times", "T[,T...]", "for a film or gauges: at these times, which may lie between two steps",
     SetTimes },
   { "--ids", "NAME",
     "with --times, array of ids that tell which particle of a step is which of the next",
-    [](Job& j, Text, Text v) { j.IdArray = Printable(v); } },
+    DO(j.IdArray = Printable(v)) },
   { "--time-step", "DT",
     "for a film: time between one INPUT and the next (default: the times in their field data, "
     "else 1)",
-    [](Job& j, Text n, Text v)
-    {
-      j.TimeStep = ToPositive(n, v);
-      j.HasTimeStep = true;
-    } },
-  { "--stats", "FILE.json", "write the statistics of the run",
-    [](Job& j, Text, Text v) { j.StatisticsFile = v; } },
+    DO(j.TimeStep = ToPositive(n, v)) },
+  { "--stats", "FILE.json", "write the statistics of the run", DO(j.StatisticsFile = v) },
   { "--repeat", "N", "run N times, and write the statistics of each run (default 1)",
-    [](Job& j, Text n, Text v) { j.Repeat = ToCount(n, v, 1); } },
-  { "--quiet", "", "print errors and warnings only", [](Job& j, Text, Text) { j.Quiet = true; } },
+    DO(j.Repeat = ToCount(n, v, 1)) },
+  { "--quiet", "", "print errors and warnings only", DO(j.Quiet = true) },
 
   { "", "", "Pictures and colours", {} },
   { "--screenshot", "FILE.png",
     "write a picture (may need a display); for a film, frame_%04d.png writes one for each step",
-    [](Job& j, Text, Text v) { j.Picture.File = v; } },
+    DO(j.Picture.File = v) },
   { "--color-by", "NAME", "array that colours the picture and .ply files",
-    [](Job& j, Text, Text v) { j.Picture.ColorBy = Printable(v); } },
+    DO(j.Picture.ColorBy = Printable(v)) },
   { "--color-range", "LOW,HIGH",
     "values of the first and last colour (default: the range of the array)",
-    [](Job& j, Text n, Text v) { j.Picture.ColorRange = ToRange(n, v); } },
+    DO(j.Picture.ColorRange = ToRange(n, v)) },
   { "--up", "x|y|z|-x|-y|-z", "axis that points upwards in the picture (default y)",
-    [](Job& j, Text n, Text v)
-    {
+    DO(
       ToChoice(n, v, { { "x", 0 }, { "y", 0 }, { "z", 0 }, { "-x", 0 }, { "-y", 0 }, { "-z", 0 } });
-      j.Picture.Up = v;
-    } },
+      j.Picture.Up = v) },
   { "--view", "X,Y,Z", "direction from the surface to the eye (default: from the front, above)",
-    [](Job& j, Text n, Text v) { j.Picture.View = ToDirection(n, v); } },
-};
+    DO(j.Picture.View = ToDirection(n, v)) },
 
-const Options DeviceAndHelp = {
   { "", "", "Device and help", {} },
   { "--device", "N|SUBSTRING", "OpenCL device, by number or part of its name (see --list-devices)",
-    [](Job& j, Text, Text v) { SetAll(j, &vtkSPHAlgorithm::SetDevice, v.c_str()); } },
+    DO(SetAll(j, &vtkSPHAlgorithm::SetDevice, v.c_str())) },
   { "--threads", "N",
     "maximum number of threads of the built-in device (default: one per processor)",
-    [](Job&, Text n, Text v)
-    { vtksys::SystemTools::PutEnv("MCOR_THREADS=" + std::to_string(ToCount(n, v, 1))); } },
+    DO(vtksys::SystemTools::PutEnv("MCOR_THREADS=" + std::to_string(ToCount(n, v, 1)))) },
   { "--memory-limit", "MIB", "use at most this much device memory (default: no limit)",
-    [](Job& j, Text n, Text v)
-    { SetAll(j, &vtkSPHAlgorithm::SetDeviceMemoryLimit, ToCount(n, v, 1)); } },
-  { "--list-devices", "", "list the OpenCL devices",
-    [](Job& j, Text, Text) { j.ListDevices = true; } },
+    DO(SetAll(j, &vtkSPHAlgorithm::SetDeviceMemoryLimit, ToCount(n, v, 1))) },
+  { "--list-devices", "", "list the OpenCL devices", DO() },
   { "--list-arrays", "FILE", "list the arrays of these particles, and what is found among them",
-    [](Job& j, Text, Text v)
-    {
-      j.Inputs = { v };
-      j.ListArrays = true;
-    } },
-  { "--help", "", "print this text (also -h)", [](Job& j, Text, Text) { j.Help = true; } },
-  { "--version", "", "print the version", [](Job& j, Text, Text) { j.Version = true; } },
+    DO(j.Inputs = { v }; j.ListArrays = true) },
+  { "--help", "", "print this text (also -h)", DO() },
+  { "--version", "", "print the version", DO() },
 };
 
 }
 
 const std::vector<Option>& AllOptions()
 {
-  static const Options all = []
-  {
-    Options joined;
-    for (const Options* group :
-      { &WhatToContour, &Gauges, &TheParticles, &TheMethod, &Output, &DeviceAndHelp })
-    {
-      joined.insert(joined.end(), group->begin(), group->end());
-    }
-    return joined;
-  }();
-  return all;
+  return Table;
 }

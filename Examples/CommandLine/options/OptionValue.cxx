@@ -7,10 +7,36 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
-bool ParseNumber(const std::string& text, double& value)
+namespace
+{
+
+using Text = const std::string&;
+
+/// What stands between commas.
+std::vector<std::string> ItemsOf(Text text)
+{
+  std::vector<std::string> items;
+  std::istringstream stream(text + ",");
+  for (std::string item; std::getline(stream, item, ',');)
+  {
+    items.push_back(item);
+  }
+  return items;
+}
+
+}
+
+void Need(bool isGood, Text option, Text words, Text text)
+{
+  if (!isGood)
+  {
+    throw UsageError(option + " needs " + words + ", not '" + text + "'");
+  }
+}
+
+bool ParseNumber(Text text, double& value)
 {
   // from_chars reads 1.5 as 1.5 in every locale, but knows no leading plus.
   const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
@@ -19,17 +45,14 @@ bool ParseNumber(const std::string& text, double& value)
   return result.ec == std::errc() && result.ptr == end && std::isfinite(value);
 }
 
-double ToNumber(const std::string& option, const std::string& text)
+double ToNumber(Text option, Text text)
 {
   double value = 0.0;
-  if (!ParseNumber(text, value))
-  {
-    throw UsageError(option + " needs a finite number, not '" + text + "'");
-  }
+  Need(ParseNumber(text, value), option, "a finite number", text);
   return value;
 }
 
-double ToPositive(const std::string& option, const std::string& text)
+double ToPositive(Text option, Text text)
 {
   const double value = ToNumber(option, text);
   if (value <= 0.0)
@@ -39,7 +62,7 @@ double ToPositive(const std::string& option, const std::string& text)
   return value;
 }
 
-double ToThreshold(const std::string& option, const std::string& text)
+double ToThreshold(Text option, Text text)
 {
   const double value = ToNumber(option, text);
   if (value < 0.0)
@@ -49,24 +72,22 @@ double ToThreshold(const std::string& option, const std::string& text)
   return value;
 }
 
-int ToCount(const std::string& option, const std::string& text, int smallest, int largest)
+int ToCount(Text option, Text text, int smallest, int largest)
 {
   int value = 0;
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || value < smallest || value > largest)
-  {
-    const bool tooLarge =
-      value > largest || (result.ec == std::errc::result_out_of_range && text[0] != '-');
-    throw UsageError(option + " needs a whole number " +
-      (tooLarge ? "up to " + std::to_string(largest) : "from " + std::to_string(smallest)) +
-      ", not '" + text + "'");
-  }
+  const bool isWhole = result.ec == std::errc() && result.ptr == end;
+  const bool isTooLarge =
+    value > largest || (result.ec == std::errc::result_out_of_range && text[0] != '-');
+  Need(isWhole && value >= smallest && value <= largest, option,
+    "a whole number " +
+      (isTooLarge ? "up to " + std::to_string(largest) : "from " + std::to_string(smallest)),
+    text);
   return value;
 }
 
-int ToChoice(const std::string& option, const std::string& text,
-  const std::vector<std::pair<const char*, int>>& choices)
+int ToChoice(Text option, Text text, const Choices& choices)
 {
   std::string list;
   for (const auto& choice : choices)
@@ -80,7 +101,7 @@ int ToChoice(const std::string& option, const std::string& text,
   throw UsageError(option + " must be one of " + list + ", not '" + text + "'");
 }
 
-std::string ToQuantity(const std::string& option, const std::string& text)
+std::string ToQuantity(Text option, Text text)
 {
   double value = 0.0;
   if (ParseNumber(text, value))
@@ -90,129 +111,99 @@ std::string ToQuantity(const std::string& option, const std::string& text)
   return Printable(text);
 }
 
-std::vector<double> ToNumbers(const std::string& option, const std::string& text)
+std::vector<double> ToNumbers(Text option, Text text)
 {
   std::vector<double> values;
-  std::istringstream stream(text + ",");
-  for (std::string item; std::getline(stream, item, ',');)
+  for (Text item : ItemsOf(text))
   {
     values.push_back(ToNumber(option, item));
   }
   return values;
 }
 
-double ToShare(const std::string& option, const std::string& text)
+double ToShare(Text option, Text text)
 {
   if (text == "measured")
   {
     return -1.0; // see vtkMarchingCorrectors::SetWallShare
   }
   const double number = ToNumber(option, text);
-  if (!(number > 0.0 && number < 1.0))
-  {
-    throw UsageError(
-      option + " needs a number above 0 and below 1, or 'measured', not '" + text + "'");
-  }
+  Need(number > 0.0 && number < 1.0, option, "a number above 0 and below 1, or 'measured'", text);
   return number;
 }
 
-std::vector<double> ToBox(const std::string& option, const std::string& text)
+std::vector<double> ToBox(Text option, Text text)
 {
   std::vector<double> box;
-  std::istringstream stream(text + ",");
-  for (std::string item; std::getline(stream, item, ',');)
+  for (Text item : ItemsOf(text))
   {
-    const bool open = item == "inf" || item == "-inf";
+    const bool isOpen = item == "inf" || item == "-inf";
     const double infinity = std::numeric_limits<double>::infinity();
-    box.push_back(!open ? ToNumber(option, item) : item[0] == '-' ? -infinity : infinity);
+    box.push_back(!isOpen ? ToNumber(option, item) : item[0] == '-' ? -infinity : infinity);
   }
-  if (box.size() != 6)
-  {
-    throw UsageError(option + " needs six numbers, x0,x1,y0,y1,z0,z1, not '" + text + "'");
-  }
+  Need(box.size() == 6, option, "six numbers, x0,x1,y0,y1,z0,z1", text);
   for (std::size_t a = 0; a < 3; ++a)
   {
     const double low = box[2 * a], high = box[2 * a + 1];
-    if (!(low < high || (low == high && std::isfinite(low)))) // flat: particles in that plane
-    {
-      throw UsageError(
-        option + " needs the lower number first along " + "xyz"[a] + ", not '" + text + "'");
-    }
+    const bool isFlat = low == high && std::isfinite(low); // for particles in that plane
+    Need(
+      low < high || isFlat, option, std::string("the lower number first along ") + "xyz"[a], text);
   }
   return box;
 }
 
-std::vector<double> ToPeriod(const std::string& option, const std::string& text)
+std::vector<double> ToPeriod(Text option, Text text)
 {
   const std::vector<double> period = ToNumbers(option, text);
-  if (period.size() != 3 && period.size() != 6)
-  {
-    throw UsageError(option +
-      " needs three lengths, or six bounds x0,x1,y0,y1,z0,z1, or auto, not '" + text + "'");
-  }
+  Need(period.size() == 3 || period.size() == 6, option,
+    "three lengths, or six bounds x0,x1,y0,y1,z0,z1, or auto", text);
   const std::size_t step = period.size() / 3;
   for (std::size_t a = 0; a < 3; ++a)
   {
-    if (period[step * a + step - 1] < (step == 1 ? 0.0 : period[2 * a]))
-    {
-      throw UsageError(
-        option + " needs a period of 0 or more along " + "xyz"[a] + ", not '" + text + "'");
-    }
+    Need(period[step * a + step - 1] >= (step == 1 ? 0.0 : period[2 * a]), option,
+      std::string("a period of 0 or more along ") + "xyz"[a], text);
   }
   return period;
 }
 
-void ToSlice(const std::string& option, const std::string& text, int& axis, double& place)
+void ToSlice(Text option, Text text, int& axis, double& place)
 {
   const std::size_t found = std::string("xyz").find(text.substr(0, 1));
-  if (text.size() < 3 || text[1] != '=' || found == std::string::npos)
-  {
-    throw UsageError(option + " needs an axis and a position, such as z=0.1, not '" + text + "'");
-  }
+  Need(text.size() >= 3 && text[1] == '=' && found != std::string::npos, option,
+    "an axis and a position, such as z=0.1", text);
   axis = static_cast<int>(found);
   place = ToNumber(option, text.substr(2));
 }
 
-std::vector<double> ToLine(const std::string& option, const std::string& text)
+std::vector<double> ToLine(Text option, Text text)
 {
   const std::vector<double> line = ToNumbers(option, text);
-  if (line.size() != 6 || std::equal(line.begin(), line.begin() + 3, line.begin() + 3))
-  {
-    throw UsageError(option + " needs two different points, X,Y,Z,X,Y,Z, not '" + text + "'");
-  }
+  Need(line.size() == 6 && !std::equal(line.begin(), line.begin() + 3, line.begin() + 3), option,
+    "two different points, X,Y,Z,X,Y,Z", text);
   return line;
 }
 
-std::vector<double> ToRange(const std::string& option, const std::string& text)
+std::vector<double> ToRange(Text option, Text text)
 {
   const std::vector<double> range = ToNumbers(option, text);
-  if (range.size() != 2 || !(range[0] < range[1]))
-  {
-    throw UsageError(option + " needs two numbers, the lower one first, not '" + text + "'");
-  }
+  Need(range.size() == 2 && range[0] < range[1], option, "two numbers, the lower one first", text);
   return range;
 }
 
-std::vector<double> ToDirection(const std::string& option, const std::string& text)
+std::vector<double> ToDirection(Text option, Text text)
 {
   const std::vector<double> direction = ToNumbers(option, text);
-  if (direction.size() != 3 || std::count(direction.begin(), direction.end(), 0.0) == 3)
-  {
-    throw UsageError(option + " needs three numbers, not all 0, not '" + text + "'");
-  }
+  Need(direction.size() == 3 && std::count(direction.begin(), direction.end(), 0.0) < 3, option,
+    "three numbers, not all 0", text);
   return direction;
 }
 
-std::vector<std::string> ToNames(const std::string& option, const std::string& text)
+std::vector<std::string> ToNames(Text option, Text text)
 {
   std::vector<std::string> names;
-  std::istringstream stream(text + ",");
-  for (std::string name; std::getline(stream, name, ',');)
+  for (Text name : ItemsOf(text))
   {
-    if (name.empty())
-    {
-      throw UsageError(option + " needs names separated by commas, not '" + text + "'");
-    }
+    Need(!name.empty(), option, "names separated by commas", text);
     names.push_back(Printable(name));
   }
   return names;

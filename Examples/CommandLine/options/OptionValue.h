@@ -16,6 +16,10 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// Throws a UsageError, "OPTION needs WORDS, not 'TEXT'", unless it is good.
+void Need(
+  bool isGood, const std::string& option, const std::string& words, const std::string& text);
+
 /// True, and the value, if the whole text is one finite number.
 bool ParseNumber(const std::string& text, double& value);
 
@@ -27,12 +31,12 @@ double ToThreshold(const std::string& option, const std::string& text); ///< 0 o
 int ToCount(const std::string& option, const std::string& text, int smallest,
   int largest = std::numeric_limits<int>::max());
 /// The number of this word.
-int ToChoice(const std::string& option, const std::string& text,
-  const std::vector<std::pair<const char*, int>>& choices);
+using Choices = std::vector<std::pair<const char*, int>>;
+int ToChoice(const std::string& option, const std::string& text, const Choices& choices);
 /// An array name, or a constant, which must then be greater than 0.
 std::string ToQuantity(const std::string& option, const std::string& text);
 std::vector<double> ToNumbers(const std::string& option, const std::string& text);
-double ToShare(const std::string& option, const std::string& text); ///< of walls; measured: 0
+double ToShare(const std::string& option, const std::string& text); ///< of walls; measured: -1
 /// x0, x1, y0, y1, z0, z1. A side may be open: inf, or -inf.
 std::vector<double> ToBox(const std::string& option, const std::string& text);
 /// Three lengths, or six bounds.

@@ -5,19 +5,8 @@
 
 #include "vtkSmartPointer.h"
 
-#include <string>
-
 class vtkMultiProcessController;
 class vtkPolyData;
-
-/// Whether this is a .pvtp file, which lists one piece per process.
-bool IsInPieces(const std::string& file);
-
-/// OUT_3.vtp beside OUT.pvtp.
-std::string PieceName(const std::string& file, int rank);
-
-/// The text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
-std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
 
 /// On rank 0 the surface of all ranks, its points and triangles in the order of "GlobalPointIds" and
 /// "GlobalCellIds", without these arrays; null elsewhere.

@@ -2,23 +2,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankSession.h"
 
+#include "Job.h"
+#include "ParticleFile.h"
+#include "ParticleTimes.h"
+#include "PeriodOfData.h"
+#include "RankOutput.h"
 #include "Sentences.h"
+#include "Walls.h"
 
 #include "vtkMPIController.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkSPHPeriod.h"
 #include "vtkSPHRanksWait.h"
 
 #include <stdexcept>
 
-RankSession::RankSession()
+RankSession::RankSession(Job& job, MessageCapture* messages)
+  : Options(job)
+  , Messages(messages)
+  , Periodic(job.Periodic)
+  , DetectPeriod(job.DetectPeriod)
 {
   int count = 0;
   char** none = nullptr;
   this->Controller->Initialize(&count, &none, 0);
   vtkMultiProcessController::SetGlobalController(this->Controller);
+  for (vtkSPHAlgorithm* filter : job.All())
+  {
+    filter->SetController(this->Controller); // they were made before MPI began
+  }
 }
 
 RankSession::~RankSession()
 {
+  for (vtkSPHAlgorithm* filter : this->Options.All())
+  {
+    filter->SetController(nullptr);
+  }
   vtkMultiProcessController::SetGlobalController(nullptr);
   this->Controller->Finalize();
 }
@@ -33,7 +54,7 @@ int RankSession::GetCount() const
   return this->Controller->GetNumberOfProcesses();
 }
 
-void RankSession::RunOnAll(const std::function<void()>& work)
+void RankSession::OnAll(const std::function<void()>& work)
 {
   std::string sentence = FailureOf(work);
   const int self = sentence.empty() ? this->GetCount() : this->GetRank();
@@ -49,4 +70,110 @@ void RankSession::RunOnAll(const std::function<void()>& work)
   sentence.resize(static_cast<std::size_t>(size));
   this->Controller->Broadcast(&sentence[0], size, failed);
   throw std::runtime_error(sentence);
+}
+
+vtkSmartPointer<vtkPointSet> RankSession::Read(
+  const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages)
+{
+  return walls.empty() ? this->Part(file, false)
+                       : this->Share([&] { return Sharing::Read(file, walls, messages); }, false);
+}
+
+// One that is stored as that of a single surface is; between two, it is the first process's.
+vtkSmartPointer<vtkPointSet> RankSession::Read(
+  ParticleTimes& times, double time, std::vector<std::string>& warnings)
+{
+  this->Options.Periodic = this->Periodic; // of each time anew
+  this->Options.DetectPeriod = this->DetectPeriod;
+  const bool isStored = times.IsStored(time);
+  const std::vector<std::string> files = times.ListFiles(time);
+  if (isStored && files.size() == 1 && times.ListWalls(time).empty())
+  {
+    return this->Part(files.front(), true);
+  }
+  return this->Share(
+    [&]
+    {
+      return isStored ? AddWalls(ReadParticles(files, this->Messages, true),
+                          ReadWalls(times.ListWalls(time), this->Messages))
+                      : times.At(time, warnings);
+    },
+    true);
+}
+
+vtkSmartPointer<vtkPolyData> RankSession::Merge(vtkPolyData* part)
+{
+  return MergeOnFirst(this->Controller, part);
+}
+
+vtkSmartPointer<vtkPointSet> RankSession::Part(const std::string& file, bool mayBeEmpty)
+{
+  Particles particles;
+  this->OnAll([&]
+    { particles = ReadParticlesPart(file, this->GetRank(), this->GetCount(), this->Messages); });
+  return this->Complete(particles, mayBeEmpty);
+}
+
+vtkSmartPointer<vtkPointSet> RankSession::Share(
+  const std::function<Particles()>& make, bool mayBeEmpty)
+{
+  Particles particles = vtkSmartPointer<vtkPolyData>::New();
+  this->OnFirst([&] { particles = make(); });
+  return this->Complete(particles, mayBeEmpty);
+}
+
+vtkSmartPointer<vtkPointSet> RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty)
+{
+  const bool hasSome = particles->GetNumberOfPoints() > 0;
+  const int own = hasSome ? this->GetRank() : this->GetCount();
+  int from = own;
+  this->Controller->AllReduce(&own, &from, 1, vtkCommunicator::MIN_OP);
+  if (from == this->GetCount() && !mayBeEmpty)
+  {
+    throw std::runtime_error("the input holds no points");
+  }
+  Particles complete = particles;
+  if (from < this->GetCount())
+  {
+    vtkNew<vtkPolyData> form;
+    if (from == this->GetRank())
+    {
+      // With one particle: of none, VTK does not send the arrays.
+      vtkNew<vtkPoints> points;
+      vtkPointData* arrays = form->GetPointData();
+      points->InsertNextPoint(particles->GetPoint(0));
+      form->SetPoints(points);
+      arrays->CopyAllOn();
+      arrays->CopyAllocate(particles->GetPointData(), 1);
+      arrays->CopyData(particles->GetPointData(), vtkIdType(0), vtkIdType(0));
+    }
+    this->Controller->Broadcast(form, from);
+    if (!hasSome)
+    {
+      vtkNew<vtkPoints> none;
+      form->SetPoints(none);
+      form->GetPointData()->SetNumberOfTuples(0);
+      complete = form.Get();
+    }
+  }
+  this->ResolvePeriod(complete);
+  return complete;
+}
+
+// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
+void RankSession::ResolvePeriod(vtkPointSet* particles)
+{
+  Job& job = this->Options;
+  if (job.DetectPeriod)
+  {
+    std::string problem;
+    const vtkSPHPeriod found =
+      vtkSPHFindPeriodDistributed(this->Controller, particles->GetFieldData(), problem);
+    this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
+    job.DetectPeriod = false;
+  }
+  if (job.Periodic.size() == 3)
+  {
+    job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, particles);
+  }
 }

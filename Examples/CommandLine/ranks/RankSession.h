@@ -3,34 +3,51 @@
 #ifndef RankSession_h
 #define RankSession_h
 
+#include "Sharing.h"
+
 #include "vtkNew.h"
 
-#include <functional>
-#include <string>
-
 class vtkMPIController;
+struct Job;
 
-/// MPI, from begin to end. One per process.
-class RankSession
+/// MPI, from begin to end, and the processes of mpirun that share a job. One per process. Pieces of a file are read
+/// by all of them, a single one by the first. A surface is written as one piece each for a .pvtp file, else the first
+/// one writes the whole.
+class RankSession : public Sharing
 {
 public:
-  RankSession();
-  ~RankSession();
-
-  int GetRank() const;
-  int GetCount() const;
-  bool IsFirst() const { return this->GetRank() == 0; }
-  vtkMPIController* GetController() const { return this->Controller; }
-
-  /// All ranks do this work, which may differ. Where it throws on some of them, all throw
-  /// std::runtime_error with the sentence of the first one.
-  void RunOnAll(const std::function<void()>& work);
-
-private:
+  RankSession(Job& job, MessageCapture* messages);
+  ~RankSession() override;
   RankSession(const RankSession&) = delete;
   void operator=(const RankSession&) = delete;
 
+  int GetRank() const override;
+  int GetCount() const override;
+  void OnAll(const std::function<void()>& work) override;
+  vtkSmartPointer<vtkPointSet> Read(const std::string& file, const std::vector<std::string>& walls,
+    MessageCapture* messages) override;
+  vtkSmartPointer<vtkPointSet> Read(
+    ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
+  vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override;
+
+private:
+  using Particles = vtkSmartPointer<vtkPointSet>;
+
+  /// The part of particles that each process reads of one file, or that the first one makes; `mayBeEmpty`: all
+  /// together.
+  Particles Part(const std::string& file, bool mayBeEmpty);
+  Particles Share(const std::function<Particles()>& make, bool mayBeEmpty);
+
+  /// Processes without particles get the arrays, without values, that the first one with some has: what a
+  /// name in the options is must not depend on who asks. The period is that of all.
+  Particles Complete(vtkPointSet* particles, bool mayBeEmpty);
+  void ResolvePeriod(vtkPointSet* particles);
+
   vtkNew<vtkMPIController> Controller;
+  Job& Options;
+  MessageCapture* const Messages;
+  const std::vector<double> Periodic; ///< as the job had it
+  const bool DetectPeriod;
 };
 
 #endif

@@ -120,7 +120,7 @@ Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::stri
       times.push_back(steps.empty() ? time : steps.front());
     }
   }
-  if (job.HasTimeStep)
+  if (job.Has("--time-step"))
   {
     times.clear();
   }

@@ -18,6 +18,7 @@
 #include "RunStatistics.h"
 #include "SafeText.h"
 #include "Sentences.h"
+#include "Sharing.h"
 #include "StepName.h"
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
@@ -89,10 +90,10 @@ void CheckFiles(const Job& job, const std::vector<std::string>& stored,
 class Film
 {
 public:
-  Film(const Job& job, MessageCapture* messages, const StepSharing& sharing)
+  Film(const Job& job, MessageCapture* messages, Sharing& sharing)
     : Options(job)
     , Messages(messages)
-    , Sharing(sharing)
+    , Shared(sharing)
     , Times(job, messages)
     , Surfaces(ListSurfaces(job.Output, this->Times.Get().size()))
     , Colors(job.Picture)
@@ -119,7 +120,7 @@ public:
         this->Label(i) + ": the run failed", FaultsOfDrivers(this->Options.Surface->GetDevice()));
       isGood = this->TryStep(i) && isGood;
     }
-    this->Sharing.OnFirst(
+    this->Shared.OnFirst(
       [this]
       {
         this->List(true);
@@ -156,7 +157,7 @@ private:
 
   void Tell(const std::string& kind, std::size_t i, const std::string& sentence)
   {
-    if (this->Sharing.IsFirst)
+    if (this->Shared.IsFirst())
     {
       this->Said.Tell(kind, this->Label(i), sentence);
     }
@@ -188,9 +189,9 @@ private:
       std::to_string(this->Times.Get().size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
     std::vector<std::string> warnings;
     const double time = this->Times.Get()[i];
-    const vtkSmartPointer<vtkPointSet> particles = this->Sharing.Read(this->Times, time, warnings);
+    const vtkSmartPointer<vtkPointSet> particles = this->Shared.Read(this->Times, time, warnings);
     Run run;
-    this->Sharing.OnAll(
+    this->Shared.OnAll(
       [&]
       {
         SetUpSurface(this->Options, particles);
@@ -200,13 +201,13 @@ private:
     {
       warnings.push_back(warning);
     }
-    this->Sharing.OnAll([&] { this->Pieces.Add(run, particles, this->Messages, time); });
-    if (const vtkSmartPointer<vtkPolyData> whole = this->Sharing.Merge(run.Surface))
+    this->Shared.OnAll([&] { this->Pieces.Add(run, particles, this->Messages, time); });
+    if (const vtkSmartPointer<vtkPolyData> whole = this->Shared.Merge(run.Surface))
     {
       run.Surface = whole;
     }
-    this->Sharing.OnAll([&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
-    this->Sharing.OnFirst([&] { this->Keep(i, run, particles, warnings); });
+    this->Shared.OnAll([&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
+    this->Shared.OnFirst([&] { this->Keep(i, run, particles, warnings); });
     for (const std::string& warning : warnings)
     {
       this->Tell("warning: ", i, warning);
@@ -311,7 +312,7 @@ private:
 
   const Job& Options;
   MessageCapture* const Messages;
-  const StepSharing& Sharing;
+  Sharing& Shared;
   ParticleTimes Times;
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
@@ -326,7 +327,7 @@ private:
 
 }
 
-bool MakeFilm(const Job& job, MessageCapture* messages, const StepSharing& sharing)
+bool MakeFilm(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
   job.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one
   return Film(job, messages, sharing).Make();

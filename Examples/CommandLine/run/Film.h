@@ -3,13 +3,12 @@
 #ifndef Film_h
 #define Film_h
 
-#include "StepSharing.h"
-
 class MessageCapture;
+class Sharing;
 struct Job;
 
 /// One surface for each time of a film, and the .pvd file that lists them. A step that fails is named and
 /// the others done: then this is false. Throws where there can be no film at all.
-bool MakeFilm(const Job& job, MessageCapture* messages, const StepSharing& sharing = StepSharing());
+bool MakeFilm(const Job& job, MessageCapture* messages, Sharing& sharing);
 
 #endif

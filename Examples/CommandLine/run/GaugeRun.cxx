@@ -11,6 +11,7 @@
 #include "ParticleTimes.h"
 #include "SafeText.h"
 #include "Sentences.h"
+#include "Sharing.h"
 #include "SurfaceRun.h"
 #include "TableText.h"
 
@@ -63,10 +64,10 @@ void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
 class GaugeTable
 {
 public:
-  GaugeTable(const Job& job, MessageCapture* messages, const StepSharing& sharing)
+  GaugeTable(const Job& job, MessageCapture* messages, Sharing& sharing)
     : Options(job)
     , Messages(messages)
-    , Sharing(sharing)
+    , Shared(sharing)
     , Times(job, messages)
     , IsGrid(job.Grid.Counts[0] > 0)
     , File(job.Output)
@@ -123,7 +124,7 @@ private:
     {
       throw std::runtime_error(error);
     }
-    if (this->Sharing.IsFirst)
+    if (this->Shared.IsFirst())
     {
       this->Said.Tell("", this->Label(time), error);
     }
@@ -135,9 +136,9 @@ private:
   {
     std::vector<std::string> warnings;
     const std::string label = this->Label(time);
-    const vtkSmartPointer<vtkPointSet> particles = this->Sharing.Read(this->Times, time, warnings);
+    const vtkSmartPointer<vtkPointSet> particles = this->Shared.Read(this->Times, time, warnings);
     vtkTable* table = nullptr;
-    this->Sharing.OnAll(
+    this->Shared.OnAll(
       [&]
       {
         table = MeasureGauges(this->Options, particles, time, this->Messages,
@@ -147,7 +148,7 @@ private:
     warnings.insert(warnings.end(), more.begin(), more.end());
     for (const std::string& warning : warnings)
     {
-      if (this->Sharing.IsFirst &&
+      if (this->Shared.IsFirst() &&
         (!this->IsGrid || warning.find("is outside of all fluid") == std::string::npos))
       {
         this->Said.Tell("warning: ", label, warning);
@@ -159,7 +160,7 @@ private:
 
   void Write(bool isLast)
   {
-    this->Sharing.OnFirst(
+    this->Shared.OnFirst(
       [&]
       {
         if (!this->IsGrid)
@@ -175,7 +176,7 @@ private:
 
   const Job& Options;
   MessageCapture* const Messages;
-  const StepSharing& Sharing;
+  Sharing& Shared;
   ParticleTimes Times;
   const bool IsGrid;
   GrowingFile File;
@@ -220,14 +221,14 @@ vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
   return job.Gauge->GetOutput();
 }
 
-bool MakeGaugeTable(const Job& job, MessageCapture* messages, const StepSharing& sharing)
+bool MakeGaugeTable(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
   const std::vector<GaugeLine> gauges = ListGauges(job);
   AddGauges(job, gauges);
   GaugeTable table(job, messages, sharing);
   const bool isGood = table.Make();
   const std::size_t steps = table.CountSteps();
-  if (!job.Quiet && sharing.IsFirst)
+  if (!job.Quiet && sharing.IsFirst())
   {
     std::cout << gauges.size() << (gauges.size() == 1 ? " gauge, " : " gauges, ") << steps
               << (steps == 1 ? " step" : " steps") << "; volumes: " << job.Gauge->GetUsedVolume()

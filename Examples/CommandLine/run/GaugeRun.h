@@ -4,12 +4,11 @@
 #define GaugeRun_h
 
 #include "GaugeLine.h"
-#include "StepSharing.h"
-
 #include <string>
 #include <vector>
 
 class MessageCapture;
+class Sharing;
 class vtkPointSet;
 class vtkTable;
 struct Job;
@@ -27,7 +26,6 @@ vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
 /// Measures the free surface along lines at each time of the input, and writes the table, or, of a grid
 /// of lines, an image. False if a step failed, of which all was said; the table has the others. Throws
 /// UsageError or std::runtime_error with one sentence.
-bool MakeGaugeTable(
-  const Job& job, MessageCapture* messages, const StepSharing& sharing = StepSharing());
+bool MakeGaugeTable(const Job& job, MessageCapture* messages, Sharing& sharing);
 
 #endif

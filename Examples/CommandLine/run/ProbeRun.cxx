@@ -10,8 +10,8 @@
 #include "ParticleFile.h"
 #include "Picture.h"
 #include "SafeText.h"
+#include "Sharing.h"
 #include "SurfaceRun.h"
-#include "Walls.h"
 
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
@@ -134,6 +134,20 @@ std::string ArrayToShow(vtkDataSet* data)
   return found.empty() ? "WeightSum" : found;
 }
 
+/// Those of a slice or a line, which needs the bounds of all particles.
+vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
+{
+  double bounds[6];
+  vtkNew<vtkSPHProbe> all; // walls, too
+  const bool hasBounds = all->FindFluidBounds(job.Probe->TakePresent(particles), bounds);
+  if (job.Slice.Axis >= 0 && !hasBounds)
+  {
+    throw std::runtime_error(
+      "--slice has no plane to show, as --within and --only leave no particles");
+  }
+  return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
+}
+
 /// A .png file of the result.
 void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
 {
@@ -148,73 +162,51 @@ void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
 
 }
 
-void CheckProbeFiles(const Job& job, MessageCapture* messages)
+void ProbePoints(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
-  CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
-}
-
-vtkSmartPointer<vtkDataSet> ReadPoints(const Job& job, MessageCapture* messages)
-{
-  vtkSmartPointer<vtkDataSet> points;
-  if (!job.ProbeFile.empty())
-  {
-    points = ReadDataSet(job.ProbeFile, messages);
-    CheckDataSetFile(job.Output, points);
-  }
-  return points;
-}
-
-vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
-{
-  double bounds[6];
-  vtkNew<vtkSPHProbe> all; // walls, too
-  const bool hasBounds = all->FindFluidBounds(job.Probe->TakePresent(particles), bounds);
-  if (job.Slice.Axis >= 0 && !hasBounds)
-  {
-    throw std::runtime_error(
-      "--slice has no plane to show, as --within and --only leave no particles");
-  }
-  return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
-}
-
-void SetUpProbe(const Job& job, vtkDataSet* points, vtkPointSet* particles)
-{
-  job.Probe->SetInputData(points);
-  job.Probe->SetSourceData(SetUpParticles(job.Probe, job, particles));
-}
-
-double RunProbe(const Job& job, MessageCapture* messages)
-{
-  return Update(job.Probe, job, messages);
-}
-
-void ReportProbe(const Job& job, double seconds, MessageCapture* messages)
-{
-  for (const std::string& warning : messages->GetWarnings())
-  {
-    Say("warning: " + warning);
-  }
-  auto* output = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
-  if (!job.Quiet)
-  {
-    std::cout << "points      " << output->GetNumberOfPoints() << ", " << CountValid(output)
-              << " of them valid\nseconds     " << seconds << "\n";
-  }
-}
-
-void ProbePoints(const Job& job, MessageCapture* messages)
-{
-  CheckProbeFiles(job, messages);
-  vtkSmartPointer<vtkDataSet> points = ReadPoints(job, messages);
-  vtkSmartPointer<vtkPointSet> particles =
-    AddWalls(ReadParticles(job.Inputs.front(), messages), ReadWalls(job.Walls, messages));
-  points = points ? points : MakePoints(job, particles);
-  SetUpProbe(job, points, particles);
-  ReportProbe(job, RunProbe(job, messages), messages);
-  auto* result = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
-  WriteDataSet(job.Output, result, messages);
-  if (!job.Picture.File.empty())
-  {
-    WritePicture(job, result, messages);
-  }
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
+  sharing.OnFirst(
+    [&]
+    {
+      CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
+      if (!job.ProbeFile.empty())
+      {
+        points = ReadDataSet(job.ProbeFile, messages);
+        CheckDataSetFile(job.Output, points);
+      }
+    });
+  const vtkSmartPointer<vtkPointSet> particles =
+    sharing.Read(job.Inputs.front(), job.Walls, messages);
+  double seconds = 0.0;
+  sharing.OnAll(
+    [&]
+    {
+      if (job.ProbeFile.empty())
+      {
+        const vtkSmartPointer<vtkDataSet> made = MakePoints(job, particles);
+        points = sharing.IsFirst() ? made : points;
+      }
+      job.Probe->SetInputData(points);
+      job.Probe->SetSourceData(SetUpParticles(job.Probe, job, particles));
+    });
+  sharing.OnAll([&] { seconds = Update(job.Probe, job, messages); });
+  sharing.OnFirst(
+    [&]
+    {
+      for (const std::string& warning : messages->GetWarnings())
+      {
+        Say("warning: " + warning);
+      }
+      auto* result = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
+      if (!job.Quiet)
+      {
+        std::cout << "points      " << result->GetNumberOfPoints() << ", " << CountValid(result)
+                  << " of them valid\nseconds     " << seconds << "\n";
+      }
+      WriteDataSet(job.Output, result, messages);
+      if (!job.Picture.File.empty())
+      {
+        WritePicture(job, result, messages);
+      }
+    });
 }

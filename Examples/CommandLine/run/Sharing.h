@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Sharing_h
+#define Sharing_h
+
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+class MessageCapture;
+class ParticleTimes;
+
+/// What is different where processes share the work; as it is, there is one. What one process throws, all throw.
+class Sharing
+{
+public:
+  virtual ~Sharing() = default;
+
+  virtual int GetRank() const { return 0; }
+  virtual int GetCount() const { return 1; }
+
+  /// The one that writes, and tells.
+  bool IsFirst() const { return this->GetRank() == 0; }
+
+  /// All do this, which may differ.
+  virtual void OnAll(const std::function<void()>& work) { work(); }
+
+  void OnFirst(const std::function<void()>& work)
+  {
+    this->OnAll(this->IsFirst() ? work : [] {});
+  }
+
+  /// This process's part of the particles of a file, and of walls.
+  virtual vtkSmartPointer<vtkPointSet> Read(
+    const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages);
+
+  /// The same of a time.
+  virtual vtkSmartPointer<vtkPointSet> Read(
+    ParticleTimes& times, double time, std::vector<std::string>& warnings);
+
+  /// The whole surface on the first process, null on others.
+  virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
+};
+
+#endif

@@ -16,7 +16,6 @@
 #include "Picture.h"
 #include "PieceFile.h"
 #include "ProbeRun.h"
-#include "RankLaunch.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
 #include "Sharing.h"

@@ -7,7 +7,7 @@
 #include "OptionTable.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
-#include "RankLaunch.h"
+#include "Sharing.h"
 #include "StepName.h"
 #include "SurfaceFile.h"
 

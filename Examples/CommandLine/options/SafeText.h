@@ -3,6 +3,8 @@
 #ifndef SafeText_h
 #define SafeText_h
 
+#include <functional>
+#include <map>
 #include <string>
 
 /// Text from a file or the command line, made fit for a terminal and for XML: one line of UTF-8.
@@ -16,6 +18,20 @@ std::string QuotedForJson(const std::string& text);
 /// Errors and warnings: one line on standard error after the program's name, whatever names and
 /// files have put into the sentence.
 void Say(const std::string& sentence);
+
+/// Why the work failed, in one sentence; empty if it did not.
+std::string FailureOf(const std::function<void()>& work);
+
+/// Says each sentence of many steps once, with the first step's name, and at the end how often it came.
+class Sentences
+{
+public:
+  void Tell(const std::string& kind, const std::string& step, const std::string& sentence);
+  void TellCounts() const;
+
+private:
+  std::map<std::string, int> Counts;
+};
 
 /// As it stands in the attribute of an XML element.
 std::string EscapedForXml(const std::string& text);

@@ -28,6 +28,7 @@ public:
     MessageCapture* messages) override;
   vtkSmartPointer<vtkPointSet> Read(
     ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
+  /// In the order of GlobalPointIds and GlobalCellIds, without these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override;
 
 private:

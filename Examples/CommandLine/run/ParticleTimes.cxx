@@ -8,8 +8,8 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
-#include "RankLaunch.h"
 #include "SafeText.h"
+#include "Sharing.h"
 #include "Walls.h"
 
 #include "vtkPolyData.h"

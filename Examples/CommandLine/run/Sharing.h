@@ -46,4 +46,12 @@ public:
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
 };
 
+/// What the environment tells of mpirun, before MPI is asked. Built without MPI, there is none.
+
+/// How many processes mpirun started; 1 where it did not.
+int LaunchedCount();
+
+/// The number of this process, 0 where it was started alone.
+int LaunchedRank();
+
 #endif

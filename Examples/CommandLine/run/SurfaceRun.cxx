@@ -8,8 +8,8 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "PeriodOfData.h"
-#include "RankLaunch.h"
 #include "SafeText.h"
+#include "Sharing.h"
 #include "SurfaceFile.h"
 #include "Walls.h"
 

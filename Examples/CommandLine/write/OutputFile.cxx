@@ -349,3 +349,22 @@ void WriteOutput(const std::string& file, const std::string& bytes)
   one.Write(file, bytes);
   one.Commit();
 }
+
+GrowingFile::GrowingFile(const std::string& name)
+  : Name(name)
+{
+  std::error_code error;
+  const fs::file_status status = fs::status(name, error);
+  this->IsRegular = !fs::exists(status) || fs::is_regular_file(status);
+}
+
+void GrowingFile::Write(const std::function<std::string()>& text, bool isLast)
+{
+  const auto begin = Clock::now();
+  if (!isLast && (!this->IsRegular || begin < this->Next))
+  {
+    return;
+  }
+  WriteOutput(this->Name, text());
+  this->Next = Clock::now() + 19 * (Clock::now() - begin);
+}

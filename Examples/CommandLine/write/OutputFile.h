@@ -3,6 +3,8 @@
 #ifndef OutputFile_h
 #define OutputFile_h
 
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,5 +37,23 @@ private:
 
 /// One file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
+
+/// A file of all steps so far, that can be looked at while there are more and more of them, and where the program is ended.
+/// That of a long series is not written after each step, but as often as it takes a twentieth of the time. A device
+/// or a pipe gets it once, at the end.
+class GrowingFile
+{
+public:
+  explicit GrowingFile(const std::string& name);
+
+  /// There may be more in it: `text` gives the whole. Throws std::runtime_error with one sentence.
+  void Write(const std::function<std::string()>& text, bool isLast);
+
+private:
+  using Clock = std::chrono::steady_clock;
+  const std::string Name;
+  bool IsRegular = true;
+  Clock::time_point Next;
+};
 
 #endif

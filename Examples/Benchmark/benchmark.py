@@ -3,85 +3,93 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The benchmark of marching-correctors; see README.md beside it.
 
-  benchmark.py PROGRAM [--tables a,b] [--sizes 60k,670k] [--runs 5] [--markdown FILE] [--json FILE]
+  benchmark.py PROGRAM [--tables a,b] [--sizes 60k,670k] [--runs 5] [--particles FILE...] [-- OPTIONS OF THE PROGRAM]
 
-  a   isosurface of a scalar, against vtkSPHInterpolator + vtkFlyingEdges3D
-  b   free surface with one attribute and normals, against splashsurf
-  c   Tables I to V of the paper, each figure beside the paper's
-  d   phases against the device's measured bandwidth and peak
-  e   reuse for other iso values and scalars, growth with the number of particles, first start
-
-Times are medians over --runs, in seconds. Every measurement is a process of its own; reading the
-particles and writing the surface are not timed. Memory is the largest resident set of the process.
+Times are medians over --runs, in seconds. Every measurement of the program and of other software is a process of its own;
+reading the particles and writing the surface are not timed, unless it says so. Memory is the largest resident set of the
+process. A case prints what it does in the words of its docstring.
 """
 import argparse
+import collections
 import json
 import math
 import pathlib
-import os
 import platform
 import sys
 import tempfile
 
-import comparison
-import limits
+import cases
+import device_limits
 import paper_tables
-import report
-import reuse
-import sets
-from program import Program
+import tables
+from measure import Program, Report, Sets, count_of, machine
 
-TABLES = {"a": comparison.isosurface, "b": comparison.free_surface, "c": paper_tables.paper_tables,
-          "d": limits.limits, "e": reuse.reuse}
+# Sizes: particles, with --quick those behind.
+Case = collections.namedtuple("Case", "make title sizes quick runs", defaults=["670k", "6k", 3])
+LARGE = "60k,670k,3M,10M"
+CASES = {
+    "a": Case(tables.isosurface, "isosurface of a scalar, against vtkSPHInterpolator + vtkFlyingEdges3D", LARGE, "4k,8k", 5),
+    "b": Case(tables.free_surface, "free surface with one attribute and normals, against splashsurf", LARGE, "4k,8k", 5),
+    "c": Case(paper_tables.paper_tables, "Tables I to V of the paper, each figure beside the paper's", LARGE, "4k,8k", 5),
+    "d": Case(tables.limits, "phases against the device's measured bandwidth and peak", LARGE, "4k,8k", 5),
+    "e": Case(tables.reuse, "reuse for other iso values and scalars, growth with the particles, first start", LARGE, "4k,8k", 5),
+    "adaptive": Case(cases.adaptive, "adaptive cubes against uniform ones; smoothing lengths 1:10 to 1:1000", "100k"),
+    "cancel": Case(cases.cancel, "how long a run goes on after it is cancelled"),
+    "distance": Case(cases.distance, "how far surfaces on adaptive and on uniform cubes are apart", "100k"),
+    "first": Case(cases.first, "the first surface, with empty caches, of PROGRAM or of a wheel"),
+    "gauges": Case(cases.gauges, "1,000 gauges against the free surface of the same particles"),
+    "plane": Case(cases.plane, "two dimensions, against vtkSPHInterpolator + vtkFlyingEdges2D; a cold start", "1M"),
+    "probe": Case(cases.probe, "a slice against vtkSPHInterpolator, and a volume", runs=5),
+    "ranks": Case(cases.ranks, "what processes under mpirun exchange, and a model of it", "50k,200k"),
+    "walls": Case(cases.walls, "where surfaces end at walls"),
+    "wheel": Case(cases.wheel, "what calling from Python costs; needs the wheel", runs=9),
+}
 MIDDLE = 670000
-QUICK_SIZES = (4000, 8000)
 QUICK_PAPER = {"rings": 20000, "tsunami": 6000, "dam": 6000}
 
 
 class Benchmark:
-    """What the tables need: particle sets, the program, how often, how large, where to write."""
+    """What the cases need: particle sets, the program, how often, how large, where to write."""
 
     def __init__(self, arguments, folder):
-        self.report = report.Report()
-        self.sets = sets.Folder(arguments.sets or folder / "sets")
-        self.quick = arguments.quick
-        self.runs = arguments.runs or (1 if self.quick else 5)
-        self.sizes = sorted(arguments.sizes or (QUICK_SIZES if self.quick else
-                                                (60000, 670000, 3000000, 10000000)))
+        self.report, self.folder = Report(), folder
+        self.sets = Sets(arguments.sets or folder / "sets")
+        self.arguments, self.quick, self.limit = arguments, arguments.quick, arguments.limit
+        self.files, self.more = arguments.particles, arguments.more
+        self.paper_counts = dict(QUICK_PAPER if self.quick else {}, **arguments.paper_sizes)
+        self.program = Program(arguments.program, arguments.device, 1, folder)
+        self.choose("a")
+
+    def choose(self, name):
+        case, given = CASES[name], self.arguments
+        self.runs = self.program.runs = given.runs or (1 if self.quick else case.runs)
+        self.sizes = sorted(given.sizes or map(count_of, (case.quick if self.quick else case.sizes).split(",")))
         # Tables d and e look at one size more closely.
         self.middle = MIDDLE if MIDDLE in self.sizes else self.sizes[-1]
-        self.paper_counts = dict(QUICK_PAPER if self.quick else {}, **arguments.paper_sizes)
-        self.limit = arguments.limit
-        self.program = Program(arguments.program, arguments.device, self.runs, folder)
+        return case
 
     def describe(self):
         """Machine, device, versions."""
-        out = self.report
-        found = self.program.run(self.sets.get(sets.tank(self.sizes[0])), comparison.ISOSURFACE)
-        device = self.program.helper("benchmark-limits", found["device"], found["platform"], 1)
-        facts = {"machine": report.machine(),
-                 "device": f"{found['device']}, {device['compute_units']} compute units",
+        found = self.program.run(self.sets.get("tank", self.sizes[0]), tables.ISOSURFACE)
+        device = device_limits.measure(found["device"], found["platform"], 1)
+        facts = {"machine": machine(), "device": f"{found['device']}, {device['compute_units']} compute units",
                  "platform": found["platform"],
                  "limits": f"measured through {device['platform_version']}, {device['driver_version']}",
-                 "program": f"{found['name']}, on VTK {found['vtk']}",
-                 "python": platform.python_version(), **versions(), "runs": self.runs}
-        out.text("# Benchmark")
-        out.text()
-        for name, fact in facts.items():
-            out.text(f"- {name}: {fact}")
+                 "program": f"{found['name']}, on VTK {found['vtk']}", "python": platform.python_version(), **versions(),
+                 "runs": self.runs}
+        self.report.text("# Benchmark", "", *(f"- {name}: {fact}" for name, fact in facts.items()))
         return facts
 
 
 def versions():
     """Of what is compared, as far as this Python has it."""
     import vtk
-    found = {"VTK compared": vtk.vtkVersion.GetVTKVersion(), "splashsurf": "not installed"}
+    from importlib.metadata import PackageNotFoundError, version
     try:
-        from importlib.metadata import PackageNotFoundError, version
-        found["splashsurf"] = version("pysplashsurf")
+        splashsurf = version("pysplashsurf")
     except PackageNotFoundError:
-        pass
-    return found
+        splashsurf = "not installed"
+    return {"VTK compared": vtk.vtkVersion.GetVTKVersion(), "splashsurf": splashsurf}
 
 
 def find_nonsense(value, path="results"):
@@ -96,30 +104,33 @@ def find_nonsense(value, path="results"):
 
 
 def parse(argv):
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-
     def names(text):
         chosen = text.split(",")
-        if not set(chosen) <= set(TABLES):
-            raise argparse.ArgumentTypeError(f"tables are {', '.join(TABLES)}")
-        return sorted(chosen)
+        if not set(chosen) <= set(CASES):
+            raise argparse.ArgumentTypeError(f"tables are {', '.join(CASES)}")
+        return chosen
 
     def counts(text):
-        return tuple(sets.count_of(word) for word in text.split(","))
+        return tuple(count_of(word) for word in text.split(","))
 
     def paper_counts(text):
         chosen = dict(word.split("=") for word in text.split(","))
         if not set(chosen) <= set(paper_tables.PAPER):
             raise argparse.ArgumentTypeError(f"sets are {', '.join(paper_tables.PAPER)}")
-        return {name: sets.count_of(count) for name, count in chosen.items()}
+        return {name: count_of(count) for name, count in chosen.items()}
 
-    parser.add_argument("program", help="the program marching-correctors, in its build tree")
-    parser.add_argument("--tables", type=names, default=sorted(TABLES), help="default: all")
-    parser.add_argument("--sizes", type=counts, help="particles; default 60k,670k,3M,10M")
+    own = argv[:argv.index("--")] if "--" in argv else argv
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="\n".join(f"  {name:9} {case.title}; {case.sizes} particles" for name, case in CASES.items()))
+    parser.add_argument("program", help="the program marching-correctors; for --tables first also a .whl")
+    parser.add_argument("--tables", type=names, default=list("abcde"), help="see below; default: a,b,c,d,e")
+    parser.add_argument("--sizes", type=counts, help="particles")
     parser.add_argument("--paper-sizes", type=paper_counts, default={}, metavar="SET=COUNT,...",
                         help="table c: rings=10M,tsunami=1.2M,dam=670k; 0 leaves a set out")
-    parser.add_argument("--runs", type=int, help="timed runs of each (default 5)")
+    parser.add_argument("--particles", type=pathlib.Path, nargs="+", default=[], metavar="FILE",
+                        help="for adaptive, cancel, distance, first, probe, walls")
+    parser.add_argument("--runs", type=int, help="timed runs of each (default 5, or 3)")
     parser.add_argument("--limit", type=float, default=900, metavar="SECONDS",
                         help="a competitor that would take longer is left out (default 900)")
     parser.add_argument("--quick", action="store_true", help="tiny sets, one run: a test")
@@ -128,16 +139,19 @@ def parse(argv):
                         help="keep particle sets here, and use those that are there already")
     parser.add_argument("--markdown", type=pathlib.Path, help="write what is printed to this file")
     parser.add_argument("--json", type=pathlib.Path, help="write all results to this file")
-    return parser.parse_args(argv)
+    arguments = parser.parse_args(own)
+    arguments.more = argv[len(own) + 1:]
+    return arguments
 
 
 def main():
-    arguments = parse(sys.argv[1:])
+    arguments, results = parse(sys.argv[1:]), {}
     with tempfile.TemporaryDirectory(prefix="mcor-benchmark-") as folder:
         benchmark = Benchmark(arguments, pathlib.Path(folder))
-        results = {"facts": benchmark.describe()}
+        if set(arguments.tables) & set("abcde"):
+            results["facts"] = benchmark.describe()
         for name in arguments.tables:
-            results[name] = TABLES[name](benchmark)
+            results[name] = benchmark.choose(name).make(benchmark)
             # Also after an interruption, what has been measured is there.
             if arguments.markdown:
                 arguments.markdown.write_text("\n".join(benchmark.report.lines) + "\n")

@@ -19,9 +19,7 @@ What the rows are, in phases of marching-correctors:
 """
 import dataclasses
 
-import report
-import sets
-from program import need_surface, sum_of
+from measure import mebibytes, need_surface, options_of, ratio, seconds_of, sum_of
 
 H_SCALES = (1.0, 0.75, 0.5)
 CUBE_FACTORS = (0.5, 1.0)
@@ -33,7 +31,7 @@ class Data:
     tables, h scale 1, 0.75 and 0.5 by cubes of 0.5 h and h. None: not in the paper."""
     table: str
     title: str
-    make: object
+    kind: str
     count: int
     scalar: str
     iso: float
@@ -53,13 +51,13 @@ class Data:
 # The totals are those printed in the paper, also where they are not the sum of the rows above them.
 PAPER = {
     "rings": Data(
-        "I", "vortex rings", sets.vortex_rings, 10000000, "VorticityMagnitude", 50, 20,
+        "I", "vortex rings", "vortex-rings", 10000000, "VorticityMagnitude", 50, 20,
         grid=(1.13, 1.13, 1.4, 1.4, 2.15, 2.15),
         seeds=(0.72, 0.72, 0.55, 0.55, 0.35, 0.35),
         preview=(3.48, 0.73, 2.90, 0.59, 1.94, 0.39),
         total=(4.20, 1.45, 3.45, 1.14, 2.29, 0.74)),
     "tsunami": Data(
-        "II", "tsunami: a tank with 200 neighbours", sets.dense_tank, 1200000, "Pressure", 5500,
+        "II", "tsunami: a tank with 200 neighbours", "dense-tank", 1200000, "Pressure", 5500,
         2500,
         grid=(0.08, 0.08, 0.1, 0.1, 0.16, 0.16),
         seeds=(0.7, 0.7, 0.36, 0.36, 0.17, 0.17),
@@ -71,7 +69,7 @@ PAPER = {
         cells=((2401980, 303408), (73602, 14917), (47007, 8012), (29388, 7183), (56543, 14535)),
         lengths=((0.000218, 0.000807), (0.009890, 0.018360), (0.000402, 0.001253))),
     "dam": Data(
-        "III", "dam break: variable smoothing length", sets.dam_break, 670000, "Lambda2", -140,
+        "III", "dam break: variable smoothing length", "dam-break", 670000, "Lambda2", -140,
         -100,
         grid=(0.07, 0.07, 0.1, 0.1, 0.17, 0.17),
         seeds=(0.08, 0.08, 0.05, 0.05, 0.04, 0.04),
@@ -94,14 +92,14 @@ def beside(ours, paper, text):
     """Ours (the paper's; ours / the paper's)."""
     if paper is None:
         return f"{text(ours)} (-)"
-    return f"{text(ours)} ({text(paper)}; {report.ratio(ours / paper)})"
+    return f"{text(ours)} ({text(paper)}; {ratio(ours / paper)})"
 
 
 def percent(value):
     return f"{100 * value:.0f} %"
 
 
-def time_row(name, ours, paper, text=report.seconds):
+def time_row(name, ours, paper, text=seconds_of):
     return [name, *(beside(a, b, text) for a, b in zip(ours, paper))]
 
 
@@ -111,25 +109,20 @@ def cost(corrected, total):
 
 
 def run_columns(benchmark, data, count, iso):
-    which = data.make(count)
-    path = benchmark.sets.get(which)
+    path = benchmark.sets.get(data.kind, count)
 
     def run(column, field, *more):
         return benchmark.program.run(path, (
-            "--scalar", data.scalar, "--iso", iso, *which.options, "--no-attributes",
-            "--field", field, "--seeds", "pairs", "--cubes", "uniform", "--h-scale", column["h_scale"],
-            "--cube-factor", column["cube_factor"], *more))
+            "--scalar", data.scalar, "--iso", iso, *options_of(data.kind), "--no-attributes", "--field", field, "--seeds",
+            "pairs", "--cubes", "uniform", "--h-scale", column["h_scale"], "--cube-factor", column["cube_factor"], *more))
 
-    columns = []
-    for scale in H_SCALES:
-        for factor in CUBE_FACTORS:
-            column = {"h_scale": scale, "cube_factor": factor}
-            column["corrected"] = run(column, "sum")
-            column["preview"] = run(column, "sum", "--preview")
-            if scale == 1:  # a kernel shorter than the particles' distance may leave nothing
-                need_surface(column["corrected"], which.name)
-                column["shepard"] = run(column, "shepard")
-            columns.append(column)
+    columns = [{"h_scale": scale, "cube_factor": factor} for scale in H_SCALES for factor in CUBE_FACTORS]
+    for column in columns:
+        column["corrected"] = run(column, "sum")
+        column["preview"] = run(column, "sum", "--preview")
+        if column["h_scale"] == 1:  # a kernel shorter than the particles' distance may leave nothing
+            need_surface(column["corrected"], data.title)
+            column["shepard"] = run(column, "shepard")
     return columns
 
 
@@ -141,14 +134,11 @@ def print_times(out, data, columns):
     """Table I, II or III."""
     first = columns[0]["corrected"]["statistics"]
     iso = columns[0]["corrected"]["parameters"]["iso_values"][0]
-    out.text(f"### Table {data.table}: {data.title}")
-    out.text()
     h = first["smoothing_length_range"]
-    out.text(f"{first['fluid_particles']:,} particles, {data.scalar} = {iso:g}, h {h[0]:.4g} .. "
-             f"{h[1]:.4g}. Seconds; in brackets the paper's and ours / the paper's.")
-    out.text()
-    preview = [column["preview"] for column in columns]
-    corrected = [column["corrected"] for column in columns]
+    out.heading(f"Table {data.table}: {data.title}",
+                f"{first['fluid_particles']:,} particles, {data.scalar} = {iso:g}, h {h[0]:.4g} .. {h[1]:.4g}. Seconds; in "
+                "brackets the paper's and ours / the paper's.", mark="###")
+    preview, corrected = ([column[kind] for column in columns] for kind in ("preview", "corrected"))
     seeds = [sum_of(r, "seeds") for r in preview]
     total = [sum_of(r, "seeds") + extraction(r) for r in preview]
     total_corrected = [sum_of(r, "seeds") + extraction(r) for r in corrected]
@@ -164,53 +154,30 @@ def print_times(out, data, columns):
                  cost(data.total_corrected, data.total), percent),
         ["Triangles", *(f"{r['triangles']:,}" for r in corrected)],
         ["Vertices", *(f"{r['statistics']['points']:,}" for r in corrected)],
-        ["Peak memory", *(report.mebibytes(r["bytes"]) for r in corrected)]]
+        ["Peak memory", *(mebibytes(r["bytes"]) for r in corrected)]]
     out.table(["h scaling factor; grid size",
                *(f"{c['h_scale']:g}; {c['cube_factor']:g}h" for c in columns)], rows)
 
 
-def with_table_iv(results):
-    """The two data sets that Tables IV and V have."""
-    return [(PAPER[name], columns) for name, columns in results.items() if PAPER[name].cube]
-
-
-def header_iv(results):
-    return ["", *(f"{data.title.split(':')[0]}, {factor:g}h" for data, _ in with_table_iv(results)
-                  for factor in CUBE_FACTORS)]
-
-
-def print_cells(out, results):
-    out.text("### Table IV: cells")
-    out.text()
-    out.text("h scaling factor 1; in brackets the paper's and ours / the paper's.")
-    out.text()
-    rows = [["Grid size", *(beside(columns[i]["corrected"]["parameters"]["cube_size"], data.cube[i],
-                                   "{:.4g}".format)
-                            for data, columns in with_table_iv(results) for i in range(2))]]
-    for row, (name, key) in enumerate(CELL_ROWS):
-        rows.append([name, *(beside(columns[i]["corrected"]["statistics"][key], data.cells[row][i],
-                                    "{:,.0f}".format)
-                             for data, columns in with_table_iv(results) for i in range(2))])
-    out.table(header_iv(results), rows)
-
-
-def print_lengths(out, results):
-    out.text("### Table V: correction")
-    out.text()
-    out.text("Per grid size, h scaling factor 1; in brackets the paper's and ours / the paper's. "
-             "The last rows are those of the Shepard field instead of the sum.")
-    out.text()
-    rows = []
-    for field, note in (("corrected", ""), ("shepard", ", Shepard")):
-        for row, (name, key) in enumerate(LENGTH_ROWS):
-            cells = []
-            for data, columns in with_table_iv(results):
-                for i in range(2):
-                    ours = columns[i][field]
-                    cells.append(beside(ours["statistics"][key] / ours["parameters"]["cube_size"],
-                                        data.lengths[row][i] / data.cube[i], "{:.4f}".format))
-            rows.append([f"{name}{note}", *cells])
-    out.table(header_iv(results), rows)
+def print_last(out, results):
+    """Tables IV and V, of the data sets that these have."""
+    shown = [(PAPER[name], columns[i], i) for name, columns in results.items() if PAPER[name].cube for i in range(2)]
+    if not shown:
+        return
+    header = ["", *(f"{data.title.split(':')[0]}, {CUBE_FACTORS[i]:g}h" for data, _, i in shown)]
+    out.heading("Table IV: cells", "h scaling factor 1; in brackets the paper's and ours / the paper's.", mark="###")
+    out.table(header, [
+        ["Grid size", *(beside(column["corrected"]["parameters"]["cube_size"], data.cube[i], "{:.4g}".format)
+                        for data, column, i in shown)],
+        *([name, *(beside(column["corrected"]["statistics"][key], data.cells[row][i], "{:,.0f}".format)
+                   for data, column, i in shown)] for row, (name, key) in enumerate(CELL_ROWS))])
+    out.heading("Table V: correction",
+                "Per grid size, h scaling factor 1; in brackets the paper's and ours / the paper's. The last rows are "
+                "those of the Shepard field instead of the sum.", mark="###")
+    out.table(header, [
+        [name + note, *(beside(column[field]["statistics"][key] / column[field]["parameters"]["cube_size"],
+                               data.lengths[row][i] / data.cube[i], "{:.4f}".format) for data, column, i in shown)]
+        for field, note in (("corrected", ""), ("shepard", ", Shepard")) for row, (name, key) in enumerate(LENGTH_ROWS)])
 
 
 def paper_tables(benchmark):
@@ -223,7 +190,5 @@ def paper_tables(benchmark):
             iso = data.coarse_iso if benchmark.quick else data.iso
             results[name] = run_columns(benchmark, data, count, iso)
             print_times(out, data, results[name])
-    if with_table_iv(results):
-        print_cells(out, results)
-        print_lengths(out, results)
+    print_last(out, results)
     return results

@@ -1,0 +1,588 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The cases of the benchmark beside the tables, each by itself; see README.md."""
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import venv
+
+from measure import (GENERATORS, array_of, compete, exclude_others, interpolator, names_of, peak_bytes,
+                     points_of, read, text_of, write)
+
+
+def medians(rows):
+    """Of each column."""
+    return [statistics.median(column) for column in zip(*rows)]
+
+
+def best_of(benchmark, start):
+    """Medians by the clock and of processors of whole processes, after one that builds the OpenCL programs; the last
+    one's report."""
+    found = [start() for _ in range(benchmark.runs + 1)]
+    return (*medians(run[1:] for run in found[1:]), found[-1][0])
+
+
+def adaptive(benchmark):
+    """With particles: triangles, and seconds of both kinds of cubes, in turn; each process extracts twice, its second
+    surface is timed, and the processors' time is a difference. Without: of whole processes, for smoothing lengths 1:10,
+    1:100, 1:1000."""
+    out, program = benchmark.report, benchmark.program
+    if not benchmark.files:
+        options = ["--cubes", "adaptive", *(benchmark.more or ["--free-surface"])]
+        for kind in ("graded-10", "graded-100", "graded-1000"):
+            path = benchmark.sets.get(kind, benchmark.sizes[-1])
+            wall, processors, report = best_of(benchmark, lambda: program.start(path, options))
+            found = report["statistics"]
+            out.text(f"{kind:12}{found['fluid_particles']:>8} particles {found['triangles']:>9} triangles {wall:8.3f} s, "
+                     f"processors {processors:.3f} s")
+        return
+    took, triangles = {"uniform": [], "adaptive": []}, {}
+    for _ in range(benchmark.runs + 1):
+        for mode, times in took.items():
+            options = ["--cubes", mode, *benchmark.more]
+            once = program.start(benchmark.files[0], options)
+            twice = program.start(benchmark.files[0], options, 2)
+            triangles[mode] = twice[0]["statistics"]["triangles"]
+            times.append((twice[0]["runs"][1]["wall_seconds"], twice[2] - once[2]))
+    for mode, times in took.items():
+        wall, processors = medians(times[1:])
+        out.text(f"{mode:9}{triangles[mode]:>10} triangles {wall:8.3f} s, processors {processors:.3f} s")
+    ratio = medians([u[i] / a[i] for i in (0, 1)] for u, a in zip(took["uniform"][1:], took["adaptive"][1:]))
+    out.text(f"triangles {triangles['uniform'] / triangles['adaptive']:.1f} times fewer, {ratio[0]:.1f} times faster, "
+             f"processors {ratio[1]:.1f}")
+
+
+SUPPORT = 2  # of the cubic spline, in smoothing lengths
+MASK = (1 << 21) - 1
+
+
+def split_bricks(positions, lengths, cube):
+    """For each level from 1 on the keys of bricks that smaller ones take the place of, one number for each."""
+    import numpy as np
+    sides = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    level = np.floor(np.log2(lengths / lengths.min() * (1 + 1e-12))).astype(int)
+    split = [np.empty(0, np.int64)]
+    for finer in range(level.max()):
+        size = 4 * cube * 2 ** (finer + 1)
+        parents = np.stack([split[-1] >> 42, split[-1] >> 21 & MASK, split[-1] & MASK], axis=1) - (1 << 20)
+        touched = ((parents[:, None] + sides) >> 1).reshape(-1, 3)
+        x, support = positions[level == finer], SUPPORT * lengths[level == finer]
+        near = np.floor(x / size).astype(np.int64)[:, None] + sides
+        away = np.maximum(np.maximum(near * size - x[:, None], x[:, None] - (near + 1) * size), 0)
+        reached = near[(away ** 2).sum(axis=2) <= support[:, None] ** 2]
+        split.append(np.unique(keys_of(np.concatenate([touched, reached]))))
+    return split
+
+
+def keys_of(bricks):
+    shifted = bricks.astype("int64") + (1 << 20)
+    return shifted[:, 0] << 42 | shifted[:, 1] << 21 | shifted[:, 2]
+
+
+def distance(benchmark):
+    """How far the surface on adaptive cubes is from that on uniform ones, and back. There: from vertices on adaptive cubes
+    to the nearest vertex on uniform ones, in the smallest cube: it is the same crossing of the same line of the lattice,
+    unless the finer cubes have none there. Back: from vertices on uniform cubes to the adaptive surface, in the cube of
+    the place. Levels are worked out here from the particles' SmoothingLength, all of which take part; cubic spline, no
+    scale."""
+    import numpy as np
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    out, surface = benchmark.report, {}
+    path = benchmark.files[0] if benchmark.files else benchmark.sets.get("graded-10", benchmark.sizes[-1])
+    for mode in ("uniform", "adaptive"):
+        report, *_ = benchmark.program.start(path, ["--cubes", mode, *(benchmark.more or ["--free-surface"])])
+        surface[mode] = read(benchmark.program.surface)
+        out.text(f"{mode:9}{surface[mode].GetNumberOfCells():>10} triangles")
+    cube, particles = report["parameters"]["cube_size"], read(path)
+    split = split_bricks(points_of(particles), array_of(particles, "SmoothingLength"), cube)
+    locator, uniform = vtk.vtkStaticPointLocator(), points_of(surface["uniform"])
+    locator.SetDataSet(surface["uniform"])
+    locator.BuildLocator()
+    off = np.array([np.linalg.norm(uniform[locator.FindClosestPoint(x)] - x) for x in points_of(surface["adaptive"])]) / cube
+    out.text(f"there: {np.mean(off <= 0.05):.4%} within 0.05 of the smallest cube; 99.9 % within {np.quantile(off, 0.999):.3g}")
+    bare, implicit, result = vtk.vtkPolyData(), vtk.vtkImplicitPolyDataDistance(), vtk.vtkDoubleArray()
+    bare.SetPoints(surface["adaptive"].GetPoints())
+    bare.SetPolys(surface["adaptive"].GetPolys())
+    implicit.SetInput(bare)
+    implicit.FunctionValue(numpy_to_vtk(np.ascontiguousarray(uniform), deep=True), result)
+    level = np.full(len(uniform), len(split) - 1)
+    for at in range(len(split) - 1, 0, -1):
+        brick = np.floor(uniform / (4 * cube * 2 ** at)).astype(np.int64)
+        level[(level == at) & np.isin(keys_of(brick), split[at])] = at - 1
+    off = np.abs(vtk_to_numpy(result)) / (cube * 2.0 ** level)
+    out.text(f"back: {np.mean(off <= 0.15):.4%} within 0.15, {np.mean(off <= 0.35):.4%} within 0.35 of the local cube; 99 % "
+             f"within {np.quantile(off, 0.99):.3g}, 99.9 % within {np.quantile(off, 0.999):.3g}")
+
+
+IN_PYTHON = """
+import time
+begin = time.perf_counter()
+import numpy, marchingcorrectors
+spacing = 1 / 60
+places = numpy.stack(numpy.meshgrid(*map(numpy.arange, (60, 30, 25)), indexing="ij"), -1).reshape(-1, 3)
+surface = marchingcorrectors.free_surface(places * spacing, smoothing_length=1.3 * spacing, volume=spacing ** 3)
+assert len(surface.triangles) > 1000
+print(time.perf_counter() - begin)
+"""
+
+
+def first(benchmark):
+    """How long the first surface takes: whole processes, with empty caches. first: the free surface. next: the same with
+    another kernel. warm: the first once more. Of a wheel (PROGRAM.whl), from import to the free surface of 45,000
+    generated particles, in a new environment that has the wheel and NumPy alone; installing them is not timed."""
+    out, program, taken = benchmark.report, benchmark.program, {}
+    with tempfile.TemporaryDirectory() as folder:
+        if program.path.suffix == ".whl":
+            venv.create(folder, with_pip=True)
+            python = os.path.join(folder, "bin", "python")
+            subprocess.run([python, "-m", "pip", "install", "-q", program.path], check=True, stdout=sys.stderr)
+            taken["import to first surface"] = [
+                float(subprocess.run([python, "-c", IN_PYTHON], check=True, capture_output=True, text=True).stdout)
+                for _ in range(benchmark.runs)]
+    program.device = program.device or "built in"
+    for _ in range(0 if taken else benchmark.runs):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "pocl"))
+            environment = {"POCL_CACHE_DIR": os.path.join(folder, "pocl"), "XDG_CACHE_HOME": os.path.join(folder, "cache")}
+            for name, options in (("first", []), ("next", ["--kernel", "wendland"]), ("warm", [])):
+                path = (benchmark.files or [GENERATORS / "dam_break_45k.vtp"])[0]
+                taken.setdefault(name, []).append(program.start(
+                    path, ["--free-surface", "--fluid", "ParticleType=0", *options], 0, environment)[1])
+    for name, seconds in taken.items():
+        out.text(f"{name:6} {statistics.median(seconds):.2f} s  ({', '.join(f'{t:.2f}' for t in seconds)})")
+
+
+def gauges(benchmark):
+    """1,000 gauges, and the free surface of the same particles, whole processes that read them both. Ends with an error
+    where the gauges take longer."""
+    program, count = benchmark.program, 1000
+    path = benchmark.sets.get("tank", benchmark.sizes[-1])
+    lines, levels = benchmark.folder / "gauges.txt", benchmark.folder / "levels.csv"
+    bounds, columns = read(path).GetBounds(), round(count ** 0.5)
+    rows = -(-count // columns)
+    with lines.open("w", encoding="utf-8") as file:  # upright ones, evenly over the particles; z is up
+        for i in range(count):
+            x, y = (bounds[2 * a] + (n + 0.5) / of * (bounds[2 * a + 1] - bounds[2 * a])
+                    for a, n, of in ((0, i % columns, columns), (1, i // columns, rows)))
+            low, high = bounds[4], bounds[5] + 0.1 * (bounds[5] - bounds[4])
+            file.write(f"g{i}={x!r},{y!r},{low!r}:{x!r},{y!r},{high!r}\n")
+    taken = best_of(benchmark, lambda: program.start(path, ["--gauges", lines], 0, output=levels))[0]
+    surface = best_of(benchmark, lambda: program.start(path, ["--free-surface"], 0))[0]
+    wet = levels.read_text().count(",wet,")
+    benchmark.report.text(f"{count} gauges ({wet} wet) on {text_of(benchmark.sizes[-1])} particles: {taken:.2f} s; the free "
+                          f"surface: {surface:.2f} s")
+    if wet <= count / 2 or (taken >= surface and not benchmark.quick):
+        raise SystemExit("benchmark.py: gauges take longer than the surface, or are dry")
+
+
+PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # the spacing is 1
+
+
+def make_plane(path, count):
+    """A jittered lattice with a scalar that winds."""
+    import numpy
+    sys.path.insert(0, str(GENERATORS))
+    import particle_file
+    side = round(count ** 0.5)
+    j, i = numpy.mgrid[0:side, 0:side]
+    random = numpy.random.default_rng(1)
+    x = numpy.zeros((side * side, 3), dtype=numpy.float32)
+    for a, places in enumerate((i, j)):
+        x[:, a] = places.ravel() + 0.3 * (random.random(side * side) - 0.5)
+    u, v = x[:, 0] / side, x[:, 1] / side
+    swirl = numpy.sin(6 * numpy.pi * u) * numpy.sin(4 * numpy.pi * v) + 0.2 * numpy.sin(20 * u + 13 * v)
+    ones = numpy.ones(side * side, numpy.float32)
+    arrays = {"Swirl": swirl.astype(numpy.float32), "Mass": ones, "Density": ones}
+    particle_file.write(str(path), particle_file.poly_data(x, arrays))
+    return path
+
+
+def plane(benchmark):
+    """Two dimensions: an isoline of particles in a plane, against vtkSPHInterpolator with a kernel of two dimensions on the
+    same lattice, and vtkFlyingEdges2D. And the first line ever, of 100,000 particles, everything: process, file in and
+    out, kernels, from an empty cache. Seconds of processors, of all threads, and in brackets of the clock; reading is
+    not among them, but for the cold start: of six surfaces in a process less one."""
+    program, more, own = benchmark.program, 5, []
+    path = make_plane(benchmark.folder / "plane.vtp", benchmark.sizes[-1])
+    options = ["--scalar", "Swirl", "--iso", PLANE_ISO, "--smoothing-length", PLANE_LENGTH, "--no-attributes"]
+    for _ in range(benchmark.runs):
+        once, many = program.start(path, options), program.start(path, options, 1 + more)
+        own.append([(many[i] - once[i]) / more for i in (2, 1)])
+    theirs = compete("vtk", path, benchmark.sizes[-1], benchmark.runs, benchmark.limit, None, (PLANE_ISO, 2, PLANE_LENGTH))
+    lines = many[0]["statistics"]["triangles_before_trimming"]
+    if not lines or not theirs.get("triangles"):
+        raise SystemExit(f"benchmark.py: no line was found {theirs.get('left_out', '')}")
+    processors, clock = medians(own)
+    benchmark.report.text(
+        f"{'marching-correctors':38} {processors:8.2f} s ({clock:.2f} s), {lines} lines",
+        f"{'vtkSPHInterpolator + vtkFlyingEdges2D':38} {theirs['processors']:8.2f} s ({theirs['seconds']:.2f} s), "
+        f"{theirs['triangles']} lines", f"ratio {theirs['processors'] / processors:.1f}")
+    empty = str(benchmark.folder / "empty")
+    _, clock, processors = program.start(make_plane(benchmark.folder / "cold.vtp", 100000), options, 1,
+                                         {"XDG_CACHE_HOME": empty, "POCL_CACHE_DIR": empty})
+    benchmark.report.text(f"first line of 100,000 particles {processors:.2f} s ({clock:.2f} s)")
+
+
+def make_image(bounds, *dimensions):
+    """An image over the particles' bounds; its last axis in the middle where it is one point thick."""
+    import vtk
+    image = vtk.vtkImageData()
+    image.SetDimensions(*dimensions)
+    pairs = list(zip(bounds[::2], bounds[1::2], dimensions))
+    image.SetOrigin(*((low + high) / 2 if n == 1 else low for low, high, n in pairs))
+    image.SetSpacing(*((high - low) / max(n - 1, 1) for low, high, n in pairs))
+    return image
+
+
+def make_probe(particles, image, *arrays, keep=True):
+    """Of these arrays alone, or of all."""
+    from marchingcorrectors import vtkSPHProbe
+    probe = vtkSPHProbe()
+    probe.SetInputData(image)
+    probe.SetSourceData(particles)
+    probe.SetKeepDeviceData(keep)
+    exclude_others(probe, particles, *(arrays or names_of(particles.GetPointData())))
+    return probe
+
+
+def seconds_of_update(filter_):
+    """Of the clock, and of the processors."""
+    filter_.Modified()
+    begin = time.perf_counter(), time.process_time()
+    filter_.Update()
+    return time.perf_counter() - begin[0], time.process_time() - begin[1]
+
+
+def tank_or_file(benchmark):
+    return read(benchmark.files[0] if benchmark.files else benchmark.sets.get("tank", benchmark.sizes[-1]))
+
+
+def probe(benchmark):
+    """A slice and a volume: vtkSPHProbe beside vtkSPHInterpolator. Both evaluate Swirl (Shepard mean, cubic spline, one
+    smoothing length) at the same points, in one process, in turn; reading the particles is not timed. The volume is
+    vtkSPHProbe's alone; memory is the largest resident set."""
+    import numpy
+    out, particles, runs, array = benchmark.report, tank_or_file(benchmark), benchmark.runs, "Swirl"
+    size, side = (64, 32) if benchmark.quick else (512, 256)
+    image = make_image(particles.GetBounds(), size, size, 1)
+    ours = make_probe(particles, image, array)
+    theirs = interpolator(particles, image, particles.GetPointData().GetArray("SmoothingLength").GetRange()[1], 3, array)
+    cases = {"vtkSPHProbe, search grid kept": ours, "vtkSPHInterpolator, locator kept": theirs,
+             "vtkSPHProbe, search grid made": make_probe(particles, image, array, keep=False),
+             "vtkSPHInterpolator, locator made": theirs}
+    times = {name: [] for name in cases}
+    for run in range(runs + 1):
+        for name, filter_ in cases.items():
+            if name == "vtkSPHInterpolator, locator made":
+                theirs.GetLocator().FreeSearchStructure()
+            used = seconds_of_update(filter_)
+            if run > 0:  # the first one builds programs and search structures
+                times[name].append(used)
+    out.text(f"{particles.GetNumberOfPoints()} particles, array {array}",
+             f"slice of {size}^2 points, medians of {runs}: seconds (spread), processor seconds; times as fast as VTK")
+    for name, used in times.items():
+        clock = [seconds for seconds, _ in used]
+        own, beside = medians(used), medians(times["vtkSPHInterpolator, locator " + name.split()[-1]])
+        out.text(f"  {name:34}{own[0]:8.3f} ({min(clock):.3f} .. {max(clock):.3f}){own[1]:9.3f};"
+                 f"{beside[0] / own[0]:7.1f}{beside[1] / own[1]:7.1f}")
+    inside = array_of(ours.GetOutput(), "WeightSum") > 0.9
+    a, b = (array_of(f.GetOutputDataObject(0), array)[inside] for f in (ours, theirs))
+    out.text(f"  largest difference at the {inside.sum()} points inside: {numpy.abs(a - b).max() / numpy.ptp(a):.2e} of the range")
+    before, volume = peak_bytes(), make_probe(particles, make_image(particles.GetBounds(), side, side, side), array)
+    used, processors = seconds_of_update(volume)
+    data = volume.GetOutput().GetPointData()
+    size = 1024 * sum(data.GetArray(i).GetActualMemorySize() for i in range(data.GetNumberOfArrays()))
+    out.text(f"volume of {side}^3 points: {used:.2f} s, {processors:.2f} processor seconds; resident {before / 2**20:.0f} MiB "
+             f"before, at most {peak_bytes() / 2**20:.0f} MiB, of which {size / 2**20:.0f} MiB output")
+
+
+class Watch:
+    """Times a filter's reports of progress."""
+
+    def __init__(self, filter_):
+        self.filter, self.reports, self.stop_at = filter_, [], None
+        filter_.AddObserver("ProgressEvent", self.on_progress)
+
+    def on_progress(self, *_):
+        self.reports.append((time.perf_counter(), time.process_time(), self.filter.GetProgressText()))
+        if len(self.reports) == self.stop_at:
+            self.filter.AbortExecuteOn()
+
+    def run(self, stop_at=None):
+        """Seconds of the whole run; the longest gaps by clock and processors, each with what it begins with;
+        seconds after the stop."""
+        self.reports, self.stop_at = [], stop_at
+        self.filter.AbortExecuteOff()
+        self.filter.Modified()
+        begin = time.perf_counter(), time.process_time(), "start"
+        self.filter.Update()
+        end = time.perf_counter(), time.process_time(), "end"
+        times = [begin] + self.reports + [end]
+        gap = [max((b[i] - a[i], a[2]) for a, b in zip(times, times[1:])) for i in range(2)]
+        after = end[0] - self.reports[stop_at - 1][0] if stop_at and len(self.reports) >= stop_at else 0
+        return end[0] - begin[0], gap, after
+
+
+def cancel(benchmark):
+    """How long a run goes on after it is cancelled. It asks when it reports progress, so one waits for the next report at
+    most, and then for the end. For each kind of run, all kernels being compiled: the longest time without a report, the
+    least over the runs, by the clock and in processor seconds of all threads, with what ran then; and the longest time
+    from a report that cancels to the return, over 8 places in a run."""
+    from marchingcorrectors import vtkMarchingCorrectors
+    out, particles, stops = benchmark.report, tank_or_file(benchmark), 8
+    size, side = (64, 32) if benchmark.quick else (512, 256)
+    scalar, free = vtkMarchingCorrectors(), vtkMarchingCorrectors()
+    for filter_ in (scalar, free):
+        filter_.SetInputData(particles)
+        filter_.KeepDeviceDataOff()
+    scalar.SetInputArrayToProcess(0, 0, 0, 0, "Swirl")
+    scalar.SetValue(0, 1.2)
+    free.FreeSurfaceOn()
+    bounds = particles.GetBounds()
+    kinds = {"Swirl 1.2": scalar, "free surface": free,
+             f"slice of {size}^2": make_probe(particles, make_image(bounds, size, size, 1), keep=False),
+             f"volume of {side}^3": make_probe(particles, make_image(bounds, side, side, side), "Swirl", keep=False)}
+    out.text(f"{particles.GetNumberOfPoints()} particles")
+    for name, filter_ in kinds.items():
+        watch = Watch(filter_)
+        watch.run()
+        timed = [watch.run() for _ in range(benchmark.runs)]
+        reports = len(watch.reports)
+        clock, processors = (min(run[1][i] for run in timed) for i in range(2))
+        after = max(watch.run(1 + k * reports // stops)[2] for k in range(stops))
+        out.text(f"{name:28} {min(run[0] for run in timed):6.2f} s, {reports:4} reports; longest without one "
+                 f"{clock[0]:.3f} s ({clock[1]}), {processors[0]:.3f} processor s ({processors[1]}); from cancel to return "
+                 f"{after:.3f} s")
+
+
+def run_python(data, scalar, iso, context):
+    import marchingcorrectors
+    arrays = {name: array_of(data, name).astype("float32") for name in names_of(data.GetPointData())}
+    words = {"smoothing_length": arrays["SmoothingLength"], "mass": arrays["Mass"], "density": arrays["Density"],
+             "attributes": arrays, "context": context, "iso": iso}
+    positions = points_of(data).astype("float32")
+    begin = time.perf_counter()
+    surface = marchingcorrectors.isosurface(positions, arrays[scalar], **words) if scalar else \
+        marchingcorrectors.free_surface(positions, **words)
+    return time.perf_counter() - begin, surface
+
+
+def wheel(benchmark):
+    """What calling from Python costs: isosurface() on NumPy arrays beside marching-correctors itself, on the same particles
+    and device, by turns; and pysplashsurf's free surface beside free_surface(). Runs in an environment with
+    marching-correctors[vtk] and, if it is to be compared, pysplashsurf. Reading the particles is not timed. The surfaces
+    must be the same to the last bit."""
+    import marchingcorrectors
+    out, context, rows, same = benchmark.report, marchingcorrectors.Context(), [], True
+    path = benchmark.sets.get("tank", benchmark.sizes[-1])
+    data = read(path)
+    for title, options, scalar, iso in (("Swirl = 1.2", ["--scalar", "Swirl", "--iso", "1.2"], "Swirl", 1.2),
+                                        ("free surface", ["--free-surface"], None, 0.5)):
+        pairs = []
+        run_python(data, scalar, iso, context)  # compiles
+        for _ in range(benchmark.runs):
+            report = benchmark.program.start(path, options, 2)[0]
+            run_python(data, scalar, iso, context)  # as the program's first
+            elapsed, surface = run_python(data, scalar, iso, context)
+            pairs.append((report["runs"][1]["wall_seconds"], elapsed, elapsed / report["runs"][1]["wall_seconds"]))
+            context.release_memory()
+        equal = points_of(read(benchmark.program.surface)).tobytes() == surface.points.astype(float).tobytes()
+        same = same and equal
+        rows.append([title, f"{len(surface.triangles):,}", *(f"{median:.3f}" for median in medians(pairs)),
+                     "the same" if equal else "DIFFERENT"])
+    out.heading(f"{data.GetNumberOfPoints():,} particles, {marchingcorrectors.devices()[0]}, medians of {benchmark.runs} pairs")
+    out.table(["", "triangles", "program, s", "Python, s", "Python / program", "points"], rows)
+    other = compete("splashsurf", path, data.GetNumberOfPoints(), max(1, benchmark.runs // 3), benchmark.limit)
+    out.text(f"splashsurf: {other['left_out']}" if "left_out" in other else
+             f"{other['name']}, free surface, one attribute, normals, same cube size: {other['triangles']:,} triangles, "
+             f"{other['seconds']:.3f} s")
+    if not same:
+        raise SystemExit("benchmark.py: the surfaces differ")
+
+
+class Walls:
+    """The planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
+
+    def __init__(self, solid, h):
+        self.low, self.high = solid.min(axis=0), solid.max(axis=0)
+        inside = self.tank(solid) > h
+        self.box = (solid[inside].min(axis=0), solid[inside].max(axis=0)) if inside.any() else None
+
+    def tank(self, points):
+        import numpy
+        return numpy.min([*(points - self.low).T, *(self.high - points).T], axis=0)
+
+    def distance(self, points):
+        """From the wall; below 0 behind it."""
+        import numpy
+        tank = self.tank(points)
+        if self.box is None:
+            return tank
+        low, high = self.box
+        low = numpy.where(numpy.arange(3) == 1, self.low, low)
+        outside = numpy.maximum(low - points, points - high)
+        beside, around = outside.max(axis=1), numpy.linalg.norm(numpy.maximum(0, outside), axis=1)
+        return numpy.minimum(tank, numpy.where(beside > 0, around, beside))
+
+
+def add_walls(data, path):
+    """Writes the particles with a layer of solids, of the fluid's volume, one particle spacing outside of it."""
+    import numpy
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk
+    fluid, h = points_of(data), array_of(data, "SmoothingLength")
+    spacing = h.min()
+    low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing
+    counts = numpy.ceil((high - low) / spacing).astype(int)
+    grid = numpy.meshgrid(*(numpy.linspace(low[a], high[a], counts[a] + 1) for a in range(3)), indexing="ij")
+    solid = numpy.stack(grid, axis=-1).reshape(-1, 3)
+    solid = solid[(solid == low).any(axis=1) | (solid == high).any(axis=1)]
+    made = vtk.vtkPolyData()
+    made.SetPoints(vtk.vtkPoints())
+    made.GetPoints().SetData(numpy_to_vtk(numpy.concatenate([fluid, solid]), deep=1))
+    for name, values, of_solids in (
+            ("SmoothingLength", h, spacing), ("Volume", array_of(data, "Mass") / 1000, spacing ** 3),
+            ("Speed", array_of(data, "Speed"), 0), ("ParticleType", numpy.zeros(len(fluid)), 1)):
+        column = numpy_to_vtk(numpy.concatenate([values, numpy.full(len(solid), of_solids)]), deep=1)
+        column.SetName(name)
+        made.GetPointData().AddArray(column)
+    write(made, path)
+
+
+WALL_CHOICES = {
+    "weight": ["--solids", "weight"], "ignore": ["--solids", "ignore"],
+    "wall, share 0.5": ["--solids", "wall", "--wall-share", "0.5"],
+    "wall, share 0.85": ["--solids", "wall", "--wall-share", "0.85"], "wall, measured": ["--solids", "wall"],
+}
+
+
+def walls(benchmark):
+    """Where surfaces end at walls, for each choice of --solids: distance of their border from the first layer of wall
+    particles, in smoothing lengths (below 0: behind it), and the share of points behind it. A file without solids gets
+    a layer of them."""
+    import numpy
+    import vtk
+    out, near = benchmark.report, 1.5  # what of the border is so near to a wall, in smoothing lengths, ends there
+    edges = vtk.vtkFeatureEdges()  # those that one triangle alone has
+    edges.FeatureEdgesOff()
+    edges.NonManifoldEdgesOff()
+    edges.ManifoldEdgesOff()
+    for path in benchmark.files or [GENERATORS / "double_dam_break_small.vtp"]:
+        data, given = read(path), path
+        if not data.GetPointData().HasArray("ParticleType"):
+            path = benchmark.folder / pathlib.Path(path).name
+            add_walls(data, path)
+            data = read(path)
+        out.text(f"{given}{', with walls' if path != given else ''}")
+        solid = array_of(data, "ParticleType") != 0
+        h = numpy.median(array_of(data, "SmoothingLength")[~solid])
+        at = Walls(points_of(data)[solid], h)
+        pressure = data.GetPointData().HasArray("Pressure")
+        for what in (["--scalar", "Pressure", "--iso", "1000"] if pressure else ["--scalar", "Speed", "--iso", "1.5"],
+                     ["--free-surface"]):
+            out.text("  " + " ".join(what))
+            for name, choice in WALL_CHOICES.items():
+                if "measured" in name and "--free-surface" in what:
+                    continue  # 0.5 there
+                benchmark.program.start(path, [*what, "--fluid", "ParticleType=0", *choice], 0)
+                surface = read(benchmark.program.surface)
+                edges.SetInputData(surface)
+                edges.Update()
+                border = edges.GetOutput()
+                ends = at.distance(points_of(border)) / h if border.GetNumberOfPoints() else numpy.zeros(0)
+                ends = ends[ends < near]
+                behind = 100 * (at.distance(points_of(surface)) < -0.01 * h).mean()
+                words = "%+.2f (%+.2f to %+.2f)" % tuple(numpy.percentile(ends, [50, 5, 95])) if len(ends) else \
+                    "no border there"
+                out.text(f"    {name:18} border at {words:28} {behind:5.1f} % of the points behind")
+
+
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+       "OMPI_MCA_mpi_yield_when_idle": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
+
+
+class Model:
+    """Particles in a box of these side lengths, halved across its longest side until each rank has one; lengths are
+    distances of particles. Copies lie in shells, so many particle distances deep, on all sides of a rank's box that are
+    not the whole's. Surface work is the area that a box has of the whole's surface."""
+
+    def __init__(self, count, shape, ranks):
+        scale = (count / (shape[0] * shape[1] * shape[2])) ** (1 / 3)
+        self.whole = [scale * side for side in shape]
+        self.sides, self.parts, self.ranks, self.each = list(self.whole), [1, 1, 1], ranks, count / ranks
+        while self.parts[0] * self.parts[1] * self.parts[2] < ranks:
+            longest = max(range(3), key=lambda a: self.sides[a])
+            self.sides[longest] /= 2
+            self.parts[longest] *= 2
+
+    def copies(self, depth, most=False):
+        """The mean: a side along an axis cut into p parts has neighbours with 1 - 1/p of probability; or the most."""
+        grown = 1
+        for side, parts in zip(self.sides, self.parts):
+            grown *= side + depth * (min(parts - 1, 2) if most else 2 * (1 - 1 / parts))
+        return grown - self.each
+
+    def surface(self):
+        """Mean of a rank, and that of a box in a corner."""
+        x, y, z = self.whole
+        return 2 * (x * y + y * z + z * x) / self.ranks, sum(
+            self.sides[a - 1] * self.sides[a - 2] * (2 if self.parts[a] == 1 else 1) for a in range(3))
+
+
+def ranks(benchmark):
+    """What processes exchange that share a surface, and what they would on larger data: particles owned, copies of
+    others', bytes sent, nodes evaluated, of boxes with as many particles each, and of boxes with as much expected work.
+    Then a model, fitted to the first ones. Bytes are those of the particles that travel, all but one in as many as there
+    are ranks, and of their copies."""
+    out, runs, options = benchmark.report, [], benchmark.more or ["--free-surface"]
+    for count in benchmark.sizes:
+        path = benchmark.sets.get("tank", count)
+        bounds = read(path).GetBounds()
+        shape = [bounds[2 * a + 1] - bounds[2 * a] for a in range(3)]
+        for number in (2,) if benchmark.quick else (2, 4, 8):
+            found, by_work = (benchmark.program.start(
+                path, [*options, *how], 1, MPI, benchmark.folder / "o.pvtp", ["mpirun", "-n", str(number)])[0]["statistics"]
+                for how in (["--partition", "particles"], []))
+            runs.append((Model(sum(found["rank_particles"]), shape, number), found, by_work))
+    low, depth = 0.0, 100.0
+    measured = sum(sum(found["rank_copies"]) for _, found, _ in runs)
+    for _ in range(60):  # the depth whose copies are, over all runs, those that were measured
+        middle = (low + depth) / 2
+        fewer = sum(model.copies(middle) * model.ranks for model, _, _ in runs) < measured
+        low, depth = (middle, depth) if fewer else (low, middle)
+
+    def excess(values):
+        return f"{max(values) * len(values) / max(sum(values), 1):.2f}"
+
+    rows = []
+    for model, found, by_work in runs:
+        copies = found["rank_copies"]
+        rows.append([sum(found["rank_particles"]), model.ranks, f"{sum(copies) / model.ranks:.0f}", max(copies),
+                     f"{model.copies(depth):.0f}", f"{sum(found['rank_bytes_sent']) / 1e6:.1f}",
+                     excess(found["rank_nodes_evaluated"]), excess(by_work["rank_nodes_evaluated"])])
+    out.table(["particles", "ranks", "copies per rank", "most", "model", "MB sent, all", "nodes, busiest / mean", "by work"],
+              rows)
+    # From one file, all travel that the first rank does not own, and all copies.
+    sent = sum(sum(found["rank_bytes_sent"]) for _, found, _ in runs) / sum(
+        sum(found["rank_particles"]) * (1 - 1 / model.ranks) + sum(found["rank_copies"]) for model, found, _ in runs)
+    nodes = (sum(sum(found["rank_nodes_evaluated"]) for _, found, _ in runs) /
+             sum(model.surface()[0] * model.ranks for model, _, _ in runs))
+    out.text(f"shells {depth:.2f} distances deep, {sent:.0f} bytes for each particle that travels, {nodes:.1f} nodes on each "
+             "square distance of surface", "")
+    rows = []
+    for total in (10**7, 10**9):
+        for number in (1, 8, 64, 512, 1024):
+            model = Model(total, shape, number)
+            copies, most = ((model.copies(depth, of_most) if number > 1 else 0) for of_most in (False, True))
+            mean, busiest = model.surface()
+            moved = model.each * (1 - 1 / number) + copies  # none lies where it belongs
+            rows.append([text_of(total), number, f"{model.each:.3g}", f"{copies:.3g}", f"{most:.3g}",
+                         f"{copies / model.each:.2f}", f"{moved * sent / 1e6:.3g}", f"{mean * nodes:.3g}",
+                         f"{busiest / mean:.1f}"])
+    out.table(["particles", "ranks", "per rank", "copies per rank", "most", "copies / particles", "MB sent per rank",
+               "nodes per rank", "busiest / mean"], rows)

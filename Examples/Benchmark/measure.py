@@ -1,0 +1,364 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all cases of the benchmark share: particle sets, runs of the program and of its competitors, tables."""
+import functools
+import hashlib
+import json
+import os
+import pathlib
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import time
+
+GENERATORS = pathlib.Path(__file__).resolve().parent.parent / "Data"
+PHASES = ("input", "search_grid", "seeds", "extraction", "correction", "trimming", "output")
+CUBE_FACTOR = 0.5
+THRESHOLD = 0.5  # of the weight sum, at the free surface
+ENOUGH_SECONDS = 120.0  # no further repetition once a competitor has had this much
+
+# Generators with their arguments, and what the program is to be told of the particles.
+SETS = {
+    # 70 neighbours, constant h: for comparisons with other software.
+    "tank": ("make_tank.py", ("COUNT", "OUT"), ()),
+    # 200 neighbours, constant h: stands for the paper's tsunami.
+    "dense-tank": ("make_tank.py", ("COUNT", "OUT", "--ratio", "1.814"), ("--kernel", "quadratic")),
+    # 70 neighbours, variable h: stands for the paper's dam break.
+    "dam-break": ("make_dam_break.py", ("COUNT", "OUT"), ()),
+    # A full lattice: stands for the paper's vortex rings. There is no free surface, so nothing is trimmed: with a
+    # shortened kernel, weights between the particles of a lattice are low.
+    "vortex-rings": ("make_vortex_rings.py", ("OUT", "-n", "COUNT", "--keep-all"),
+                     ("--kernel", "mprime4", "--node-threshold", 0, "--vertex-threshold", 0)),
+    # Smoothing lengths 1:10, 1:100, 1:1000.
+    **{f"graded-{ratio}": ("make_graded.py", ("COUNT", "OUT", "--ratio", str(ratio)), ()) for ratio in (10, 100, 1000)},
+}
+
+
+def count_of(text):
+    """670k -> 670000, 3M -> 3000000"""
+    factor = {"k": 1000, "m": 1000000}.get(text[-1:].lower(), 1)
+    return round(float(text[:-1] if factor > 1 else text) * factor)
+
+
+def text_of(count):
+    """670000 -> 670k, 3000000 -> 3M"""
+    for unit, letter in ((1000000, "M"), (1000, "k")):
+        if count >= unit:
+            return f"{count / unit:g}{letter}"
+    return str(count)
+
+
+def options_of(kind):
+    return SETS[kind][2]
+
+
+class Sets:
+    """The folder where the sets lie. One that is already there, made in the same way, is not made again."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        self.path.mkdir(parents=True, exist_ok=True)
+
+    def get(self, kind, count):
+        script, arguments, _ = SETS[kind]
+        arguments = [str(count) if a == "COUNT" else a for a in arguments]
+        version = hashlib.sha1((GENERATORS / script).read_bytes() + repr(arguments).encode()).hexdigest()[:8]
+        path = self.path / f"{kind}-{text_of(count)}-{version}.vtp"
+        if not path.exists():
+            print(f"making {path.name}", file=sys.stderr)
+            part = path.with_suffix(".part.vtp")
+            subprocess.run([sys.executable, GENERATORS / script, *(str(part) if a == "OUT" else a for a in arguments)],
+                           check=True, stdout=subprocess.DEVNULL)
+            part.rename(path)
+        return path
+
+    def get_with_one_array(self, kind, count, array):
+        """The same particles with one array alone, and the options that say what the others said:
+        smoothing length, mass and density must be the same for all particles."""
+        whole = self.get(kind, count)
+        path = whole.with_name(f"{whole.stem}-{array}.vtp")
+        particles = read(whole)
+        data = particles.GetPointData()
+        options = []
+        for name, option in (("SmoothingLength", "--smoothing-length"), ("Mass", "--mass"), ("Density", "--density")):
+            low, high = data.GetArray(name).GetRange()
+            if low != high:
+                raise ValueError(f"{kind}: {name} differs from particle to particle")
+            options += [option, repr(high)]
+        if not path.exists():
+            for name in names_of(data):
+                if name != array:
+                    data.RemoveArray(name)
+            write(particles, path)
+        return path, options
+
+
+def read(path):
+    import vtk
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def write(particles, path):
+    import vtk
+    writer = vtk.vtkXMLPolyDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(particles)
+    writer.SetDataModeToBinary()  # appended data cannot be read by every ParaView
+    writer.Write()
+
+
+def names_of(data):
+    return [data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+
+
+def points_of(data):
+    from vtk.util.numpy_support import vtk_to_numpy
+    return vtk_to_numpy(data.GetPoints().GetData()).astype(float)
+
+
+def array_of(data, name):
+    from vtk.util.numpy_support import vtk_to_numpy
+    return vtk_to_numpy(data.GetPointData().GetArray(name)).astype(float)
+
+
+def processor_seconds():
+    """Of all processes that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def peak_bytes():
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+class Program:
+    """marching-correctors; results are kept, so that tables may share a run."""
+
+    def __init__(self, path, device, runs, folder):
+        self.path, self.device, self.runs = pathlib.Path(path).resolve(), device, runs
+        self.folder, self.surface = folder, folder / "surface.vtp"  # of the last run
+        self.run = functools.lru_cache(None)(self.measure)
+
+    def measure(self, path, options, runs=None):
+        """Medians of the timed runs: one process that extracts the surface once more than it is timed, each time from
+        scratch but for the OpenCL program. The first, which loads that, is apart. A process before it builds the
+        program, if that is not cached: the compiler takes memory."""
+        print(f"marching-correctors {path.name} {' '.join(map(str, options))}", file=sys.stderr)
+        self.start(path, options)
+        found = self.start(path, options, (runs or self.runs) + 1)[0]
+        first, *rest = found["runs"]
+        seconds = [run["wall_seconds"] for run in rest]
+        return {
+            "name": found["program"], "vtk": found["vtk"], "device": found["device"], "platform": found["platform"],
+            "parameters": found["parameters"], "seconds": statistics.median(seconds), "all": seconds,
+            "first": first["wall_seconds"],
+            "phases": {name: statistics.median(run["seconds"][name] for run in rest)
+                       for name in (*PHASES, "program_build")},
+            "statistics": found["statistics"], "triangles": found["statistics"]["triangles"],
+            "bytes": found["peak_resident_bytes"]}
+
+    def start(self, path, options, repeat=1, environment=None, output=None, before=()):
+        """One process; its report where it makes a surface, and seconds from its start to its end by the clock and of
+        processors."""
+        report = self.folder / "statistics.json"
+        report.unlink(missing_ok=True)
+        statistics_of = ["--repeat", str(repeat), "--stats", report] if repeat else []
+        command = [*before, self.path, path, output or self.surface, *map(str, options),
+                   *(["--device", self.device] if self.device else []), "--quiet", *statistics_of]
+        begin, processors = time.perf_counter(), processor_seconds()
+        process = subprocess.run(command, stderr=subprocess.PIPE, text=True,
+                                 env={**os.environ, **(environment or {})}, check=False)
+        seconds = time.perf_counter() - begin, processor_seconds() - processors
+        if process.returncode != 0:
+            sys.exit(f"benchmark.py: {path.name} {' '.join(map(str, options))}: {process.stderr}")
+        return (json.loads(report.read_text()) if repeat else None, *seconds)
+
+
+def need_surface(result, what):
+    """The result; the benchmark ends where a measurement gave no surface."""
+    if result["triangles"] == 0:
+        sys.exit(f"benchmark.py: {what}: no surface")
+    return result
+
+
+def sum_of(result, *names):
+    return sum(result["phases"][name] for name in names)
+
+
+def lattice(particles, cube, dimension):
+    """An image of nodes at whole multiples of the cube size, around the particles; in two dimensions in the plane z = 0."""
+    import vtk
+    low = [int(b // cube) - 2 for b in particles.GetBounds()[:2 * dimension:2]]
+    high = [int(b // cube) + 3 for b in particles.GetBounds()[1:2 * dimension:2]]
+    image = vtk.vtkImageData()
+    image.SetOrigin(*[cube * i for i in low] + [0] * (3 - dimension))
+    image.SetSpacing(cube, cube, cube)
+    image.SetDimensions(*[b - a + 1 for a, b in zip(low, high)] + [1] * (3 - dimension))
+    return image
+
+
+def exclude_others(filter_, particles, *kept):
+    for name in names_of(particles.GetPointData()):
+        if name not in kept:
+            filter_.AddExcludedArray(name)
+
+
+def interpolator(particles, image, h, dimension, *kept):
+    """vtkSPHInterpolator of some arrays, not run yet."""
+    import vtk
+    kernel = vtk.vtkSPHCubicKernel()
+    kernel.SetSpatialStep(h)
+    kernel.SetDimension(dimension)
+    made = vtk.vtkSPHInterpolator()
+    made.SetInputData(image)
+    made.SetSourceData(particles)
+    made.SetLocator(vtk.vtkStaticPointLocator())
+    made.SetKernel(kernel)
+    made.SetMassArrayName("Mass")
+    made.SetDensityArrayName("Density")
+    made.SetShepardNormalization(True)
+    exclude_others(made, particles, *kept)
+    return made
+
+
+def run_vtk(path, iso="0", dimension="3", length=None):
+    """vtkSPHInterpolator of one scalar to an image of the particles' bounds, then vtkFlyingEdges."""
+    import vtk
+    particles, dimension = read(path), int(dimension)
+    h = float(length) if length else particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
+    image = lattice(particles, CUBE_FACTOR * h, dimension)
+    begin, processors = time.perf_counter(), time.process_time()
+    field = interpolator(particles, image, h, dimension, "Swirl", "Mass", "Density")
+    contour = vtk.vtkFlyingEdges3D() if dimension == 3 else vtk.vtkFlyingEdges2D()
+    contour.SetInputConnection(field.GetOutputPort())
+    contour.SetInputArrayToProcess(0, 0, 0, 0, "Swirl")
+    contour.SetValue(0, float(iso))
+    contour.Update()
+    return {"seconds": time.perf_counter() - begin, "processors": time.process_time() - processors,
+            "triangles": contour.GetOutput().GetNumberOfCells(), "bytes": peak_bytes(),
+            "name": "VTK " + vtk.vtkVersion.GetVTKVersion()}
+
+
+def run_splashsurf(path):
+    """Free surface with one attribute and normals."""
+    from importlib.metadata import version
+
+    import pysplashsurf
+    particles = read(path)
+    points, swirl = points_of(particles).astype("float32"), array_of(particles, "Swirl").astype("float32")
+    h, mass, density = (particles.GetPointData().GetArray(name).GetRange()[1]
+                        for name in ("SmoothingLength", "Mass", "Density"))
+    radius = (mass / density) ** (1 / 3) / 2
+    begin = time.perf_counter()
+    mesh, _ = pysplashsurf.reconstruction_pipeline(
+        points, attributes_to_interpolate={"Swirl": swirl}, particle_radius=radius,
+        smoothing_length=h / radius, cube_size=CUBE_FACTOR * h / radius,
+        iso_surface_threshold=THRESHOLD, compute_normals=True, sph_normals=True)
+    return {"seconds": time.perf_counter() - begin, "triangles": len(mesh.mesh.triangles), "bytes": peak_bytes(),
+            "name": "splashsurf " + version("pysplashsurf")}
+
+
+COMPETITORS = {"vtk": run_vtk, "splashsurf": run_splashsurf}
+
+
+def available_bytes():
+    """Memory that Linux could give without swapping: free, or used by caches of files alone."""
+    for line in pathlib.Path("/proc/meminfo").read_text().splitlines():
+        if line.startswith("MemAvailable:"):
+            return 1024 * int(line.split()[1])
+    raise OSError("/proc/meminfo does not say MemAvailable")
+
+
+def compete(name, path, count, runs, limit, smaller=None, arguments=()):
+    """Medians of a competitor's runs, each a process of its own, or why there are none. Reading the particles is not
+    timed. `smaller` is what it took for fewer particles, None if unknown; a set that would take longer than `limit`
+    seconds, or more memory than there is, is left out."""
+    if smaller:
+        factor = count / smaller["particles"]
+        seconds, size = factor * smaller["seconds"], factor * smaller["bytes"]
+        why = f"longer than {limit:.0f} s" if seconds > limit else \
+            "more memory than there is" if size > 0.9 * available_bytes() else ""
+        if why:
+            return {"left_out": f"would take {why} (estimated from the size before)", "estimated_seconds": seconds,
+                    "estimated_bytes": size}
+    results = []
+    while len(results) < runs and sum(r["seconds"] for r in results) < ENOUGH_SECONDS:
+        print(f"{name} {path.name}", file=sys.stderr)
+        try:
+            process = subprocess.run([sys.executable, __file__, name, path, *map(str, arguments)], capture_output=True,
+                                     text=True, timeout=limit, check=False)
+        except subprocess.TimeoutExpired:
+            return {"left_out": f"took longer than {limit:.0f} s"}
+        if process.returncode != 0:
+            reason = (process.stderr.strip().splitlines() or [f"exit {process.returncode}"])[-1]
+            return {"left_out": f"failed: {reason}"}
+        results.append(json.loads(process.stdout.splitlines()[-1]))
+    seconds = [r["seconds"] for r in results]
+    return {"name": results[0]["name"], "seconds": statistics.median(seconds), "all": seconds,
+            "processors": statistics.median(r.get("processors", 0.0) for r in results),
+            "triangles": results[0]["triangles"], "bytes": max(r["bytes"] for r in results), "particles": count}
+
+
+class Report:
+    """Text that grows; every line is printed at once, as a whole benchmark takes long. Tables as Markdown, aligned so
+    that they read well on a terminal too."""
+
+    def __init__(self):
+        self.lines = []
+
+    def text(self, *lines):
+        for line in lines or ("",):
+            self.lines.append(line)
+            print(line, flush=True)
+
+    def heading(self, line, *words, mark="##"):
+        self.text(*([""] if self.lines[-1:] != [""] else []), f"{mark} {line}", "", *words, *([""] if words else []))
+
+    def table(self, header, rows):
+        """First column to the left, all others to the right."""
+        rows = [[str(cell) for cell in row] for row in rows]
+        widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
+
+        def line(cells):
+            left, *right = cells
+            return "| " + " | ".join([left.ljust(widths[0]),
+                                      *(cell.rjust(width) for cell, width in zip(right, widths[1:]))]) + " |"
+
+        self.text(line(header))
+        self.text("| " + " | ".join(["-" * widths[0], *("-" * (width - 1) + ":" for width in widths[1:])]) + " |")
+        for row in rows:
+            self.text(line(row))
+        self.text()
+
+
+def mebibytes(size):
+    return f"{size / 2 ** 20:,.0f} MiB"
+
+
+def seconds_of(value):
+    """Three digits that count."""
+    return f"{value:.1f}" if value >= 100 else f"{value:.2f}" if value >= 10 else f"{value:.3f}"
+
+
+def ratio(value):
+    size = abs(value)
+    return f"{value:.0f}" if size >= 100 else f"{value:.1f}" if size >= 10 else \
+        f"{value:.2f}" if size >= 0.1 else f"{value:.2g}"
+
+
+def machine():
+    """Processor, cores, memory and system, as Linux tells them."""
+    models = [line.split(":", 1)[1].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+              if line.startswith("model name")]
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2 ** 30
+    return (f"{models[0] if models else platform.processor()}, {len(os.sched_getaffinity(0))} cores, {memory:.0f} GiB, "
+            f"{platform.freedesktop_os_release()['PRETTY_NAME']}")
+
+
+if __name__ == "__main__":
+    print(json.dumps(COMPETITORS[sys.argv[1]](*sys.argv[2:])))

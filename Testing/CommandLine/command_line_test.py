@@ -58,11 +58,19 @@ class CommandLineTest(unittest.TestCase):
     def extract(self, *options, source=None, **run_options):
         return self.run_program(source or self.input, self.output, *options, **run_options)
 
+    def run_good(self, *arguments, **options):
+        """The same, which must succeed without a word on stderr."""
+        result = self.run_program(*arguments, **options)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return result
+
+    def extract_good(self, *options, source=None, **run_options):
+        return self.run_good(source or self.input, self.output, *options, **run_options)
+
     def succeed(self, *options, source=None):
         """Runs the program, which must succeed without a word on stderr; returns its statistics."""
         statistics = self.directory / "statistics.json"
-        result = self.extract(*options, "--stats", statistics, source=source)
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.extract_good(*options, "--stats", statistics, source=source)
         self.assertIn("</VTKFile>", self.output.read_text())
         return json.loads(statistics.read_text())
 

@@ -69,9 +69,8 @@ class Walls(CommandLineTest):
         self.wall = self.write(self.wall.name, lambda kind, point: kind == 1, still)
         frame = [self.directory / f"surface_{i:04d}.vtp" for i in range(3)]
         wanted = self.surface(*HOW, "--fluid", "Kind=0")
-        done = self.run_program(self.fluid, self.fluid, self.directory / "surface_%04d.vtp", *HOW, "--walls", self.wall,
-                                "--times", "0,0.5,1")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.run_good(self.fluid, self.fluid, self.directory / "surface_%04d.vtp", *HOW, "--walls", self.wall,
+                      "--times", "0,0.5,1")
         self.assertEqual([path.read_bytes() for path in frame], [wanted] * 3)
 
     def test_walls_of_each_step(self):
@@ -94,8 +93,7 @@ class Walls(CommandLineTest):
         film = self.directory / "surface_%04d.vtp"
         for inputs, walls in ((fluids, numbered), (fluids, films["late"]), ([films["fluid"]], numbered),
                               ([films["fluid"]], films["paddle"])):
-            done = self.run_program(*inputs, film, *HOW, "--walls", still, "--walls", walls)
-            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.run_good(*inputs, film, *HOW, "--walls", still, "--walls", walls)
             self.assertEqual([path.read_bytes() for path in frames], wanted)
         for path in (self.output, *frames):
             path.unlink()
@@ -116,9 +114,8 @@ class Walls(CommandLineTest):
             output, found = self.directory / name, []
             for source, walls in ((self.input, ["--fluid", "Kind=0"]), (self.fluid, ["--walls", self.wall]),
                                   (self.input, [])):
-                done = self.run_program(source, output, *options, *walls, "--quiet", "--no-attributes"
-                                        if name.endswith("i") else "--quiet")
-                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.run_good(source, output, *options, *walls, "--quiet", "--no-attributes"
+                              if name.endswith("i") else "--quiet")
                 found.append(output.read_bytes().replace(bytes(source.name, "ascii"), b""))
             self.assertEqual(found[0], found[1])
             self.assertNotEqual(found[0], found[2])

@@ -93,7 +93,7 @@ macro (mcor_compile_variants instructions flags lanes double)
       string(REPLACE "." ";" variant "${variant}")
       list(GET variant 0 field)
       list(GET variant 1 solids)
-      set(programs FIELD ADAPTIVE)
+      set(programs FIELD)
       if (field EQUAL 2) # as mcor_program_options
         list(APPEND programs PROBE)
       endif ()

@@ -23,8 +23,7 @@ static mcor_status mcor_extract_iso(
   const double begin = 0.15 + 0.85 * i / options->iso_count, step = 0.85 / options->iso_count;
   /* [III-B, III-C] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEEDS, begin, begin + 0.2 * step));
-  MCOR_TRY(
-    mcor_is_adaptive(context) ? mcor_select_leaves(context, input) : mcor_select_seeds(context));
+  MCOR_TRY(mcor_select_seeds(context, input));
   /* [III-D.1] */
   MCOR_TRY(
     mcor_begin_phase(context, MCOR_PHASE_EXTRACTION, begin + 0.2 * step, begin + 0.5 * step));

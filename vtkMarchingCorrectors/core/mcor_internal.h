@@ -235,8 +235,7 @@ void mcor_release_topology(mcor_context* context);
 void mcor_release_trim(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
-mcor_status mcor_request_known(mcor_context* context);
-mcor_status mcor_select_seeds(mcor_context* context);
+mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
@@ -246,8 +245,6 @@ mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);
 mcor_status mcor_reserve_vertices(mcor_context* context, int count);
-/* Evaluates the needed nodes of `count` bricks from `first` on. */
-mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context);

@@ -76,16 +76,8 @@ typedef struct mcor_level
 #define MCOR_BELOW 2
 #define MCOR_EXAMINE 3 /* both, as far as is known; evaluate */
 #define MCOR_UNTRIED 7 /* the same, and nobody has looked */
-/* Of a leaf this is said, in two bits each, of its own nodes, and of those that the leaf down from it by d
- * has, bits x, y, z: times MCOR_EVERYWHERE it is the same of all. Beside that: of its nodes the values are
- * known; of those that cells of other levels have on its sides nothing is. */
-#define MCOR_EVERYWHERE 0x5555
-#define MCOR_EVALUATED (1 << 16)
-#define MCOR_OPEN_SIDES (1 << 17)
-
-/* A leaf is to be examined; its nodes' values are known. */
-#define MCOR_CHOSEN 1
-#define MCOR_CHOSEN_EVALUATED 2
+/* Beside the state of a leaf: nothing is known of the nodes that cells of other levels have on its sides. */
+#define MCOR_OPEN_SIDES 4
 
 /* Masks per brick: of lattice edges with a vertex, see mcor_march_count, and of decisions about the
  * topology: ambiguous faces with their lowest node in the brick, by axis of their normal, of which

@@ -75,18 +75,19 @@ typedef struct mcor_brick_data
 typedef struct mcor_bricks
 {
   mcor_buffer rungs; /* mcor_rung: of each level, and the end */
-  int block_count, block_shift;
+  int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
   mcor_buffer block_keys, block_buckets; /* by level, z, y, x */
   mcor_buffer block_states, inactive;    /* uchar; see mcor_block.cl */
   mcor_buffer states;                    /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;                /* [block_count][16] */
+  mcor_buffer leaves, finer; /* uint, as bits; [block_count][512]: with several levels, see mcor_leaf_finer */
   mcor_buffer seed_bits, seeds;          /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
   mcor_buffer cells;          /* ulong: those that may be used, all or none of a brick */
-  mcor_buffer plain, leaf_of; /* ulong, int: of adaptive cubes, see mcor_adaptive_cells */
+  mcor_buffer plain, leaf_of; /* ulong, int: of adaptive cubes, see mcor_leaf_cells */
   mcor_buffer neighbours;     /* see mcor_brick_neighbours */
-  mcor_buffer need;           /* see mcor_march_need */
+  mcor_buffer need;           /* see mcor_brick_need */
   mcor_buffer bit_counts;     /* of mcor_count_bits */
   mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
   mcor_buffer regions;                               /* int: those to examine */
@@ -121,37 +122,30 @@ typedef struct mcor_brick_set
   size_t count; /* of bricks */
 } mcor_brick_set;
 
-/* Leaves of adaptive cubes; see mcor_tree.h. */
+/* Leaves of adaptive cubes, in blocks; see mcor_tree.h. */
 typedef struct mcor_tree
 {
   const mcor_lattice* lattice;
   int top;       /* highest level of leaves; bricks have one more */
   bool is_plane; /* all bricks are of the lowest layer */
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
-  cl_int* leaves; /* [leaf_count][4]: brick of its level, level; by level, else in no order */
-  cl_uint* finer; /* [leaf_count]: what is finer around each, see MCOR_DIRECTION */
-  int leaf_count, first_leaf[MCOR_TREE_LEVEL_LIMIT + 2];
-  /* Leaves that are parts of one brick follow each other: first of each such region. */
-  cl_int* regions; /* [region_count + 1] */
-  int region_count, first_region[MCOR_TREE_LEVEL_LIMIT + 2];
+  int leaf_count;
+  int block_count, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
+  uint64_t* block_keys;                                    /* [block_count], ascending */
+  cl_uint *leaves, *is_split;                              /* bits [block_count][16] */
 } mcor_tree;
 
-/* Leaves that are marched, and their nodes; see mcor_adaptive_node.c. Slots are those of mcor_brick_data. */
+/* Leaves that are marched, and what their slots need; see mcor_leaf.c. */
 typedef struct mcor_adaptive
 {
-  int count;                                 /* leaves where there may be surface */
-  int first_leaf[MCOR_TREE_LEVEL_LIMIT + 2]; /* of them, of each level */
-  int evaluated, dropped; /* nodes along with states; of these, those that got no slot */
-  mcor_buffer leaves, leaf_finer, regions; /* int4, uint, int: of the tree */
-  mcor_buffer region_keys, region_order;   /* ulong, sorted; int: whose each is */
-  mcor_buffer states, chosen;              /* int, uchar: of all leaves */
-  mcor_buffer proofs, mixed; /* uchar: of slots; of leaves where there may be surface */
-  mcor_buffer cells;         /* int4: those where there may be surface, in order */
-  mcor_buffer finer;         /* uint: where their neighbours are finer */
-  mcor_buffer wanted;        /* int: how many blocks that they need each adds */
-  mcor_buffer tables;        /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
-  mcor_buffer quadrants;     /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
-  mcor_buffer flat;          /* int: loops that lie in one face between leaves */
+  int count;                  /* leaves where there may be surface */
+  mcor_buffer chosen, scanned; /* bits of these, by block; int: their counts */
+  mcor_buffer cells, finer;   /* int4, uint: of these, in order; where their neighbours are finer */
+  mcor_buffer tables;         /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
+  mcor_buffer mixed;          /* uchar: whether they have nodes on both sides */
+  mcor_buffer proofs;         /* uchar, of slots: states */
+  mcor_buffer quadrants;      /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
+  mcor_buffer flat;           /* int: loops that lie in one face between leaves */
 } mcor_adaptive;
 
 /* Which cells pairs reach; see mcor_pair.c. */

@@ -122,7 +122,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   const mcor_buffer* known = &context->bricks.now.known;
   int nodes = 0;
   MCOR_TRY(mcor_count_bits(context, known, known, context->bricks.now.count, &nodes));
-  s->nodes_evaluated = nodes + context->adaptive.dropped;
+  s->nodes_evaluated = nodes;
   if (mcor_is_plane(context))
   {
     mcor_unflatten_statistics(&context->plane, s);

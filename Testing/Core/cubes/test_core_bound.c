@@ -44,7 +44,7 @@ static const char source[] =
   "  const mcor_grid grid = MCOR_GRID;\n"
   "  mcor_tile wide;\n"
   "  mcor_tile_init(&wide);\n"
-  "  inside[b] = mcor_seed_is_inside(&grid, boxes[b], &wide, iso);\n"
+  "  inside[b] = mcor_seed_proof(&grid, boxes[b], 0, &wide, iso) == MCOR_ABOVE;\n"
   "}\n";
 
 /* The particles as they are on the device, lengths in cubes. */

@@ -13,6 +13,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The place and level of the first leaf from bit *i of the tree's blocks on; false: there is none. */
+static bool next_leaf(const mcor_tree* tree, int64_t* i, int leaf[4])
+{
+  for (; *i < (int64_t)tree->block_count * MCOR_BLOCK_BRICKS; ++*i)
+  {
+    const int64_t block = *i / MCOR_BLOCK_BRICKS;
+    if (tree->leaves[*i / 32] >> (*i % 32) & 1)
+    {
+      for (leaf[3] = 0; block >= tree->first_block[leaf[3] + 1];)
+      {
+        ++leaf[3];
+      }
+      const uint64_t key =
+        tree->block_keys[block] * MCOR_BLOCK_BRICKS + (uint64_t)(*i % MCOR_BLOCK_BRICKS);
+      mcor_brick_of_key(&tree->lattice->rungs[leaf[3]], key, leaf);
+      ++*i;
+      return true;
+    }
+  }
+  return false;
+}
+
 /* The level of every finest brick of a lattice of n^3 top bricks, by definition. */
 typedef struct plain_levels
 {
@@ -174,14 +196,15 @@ static void leaves_are_those_of_the_definition(void** state)
       divide(context, &set, &plain, top + 1, b);
     }
     balance(&plain);
-    for (int i = 0; i < tree->leaf_count; ++i)
+    int leaf[4], count_of_leaves = 0;
+    for (int64_t i = 0; next_leaf(tree, &i, leaf); ++count_of_leaves)
     {
-      const cl_int* leaf = tree->leaves + 4 * (size_t)i;
       const int level = leaf[3], w = 1 << level;
       CORE_CHECK(plain.level[at(&plain, leaf[0] * w, leaf[1] * w, leaf[2] * w)] == level,
         "seed %d, leaf %d %d %d of level %d", (int)seed, leaf[0], leaf[1], leaf[2], level);
       fill(&plain, level, leaf, -1);
     }
+    assert_int_equal(count_of_leaves, tree->leaf_count);
     /* What is left no particle reaches, or not with this level's cubes. */
     for (size_t i = 0; i < count; ++i)
     {
@@ -194,15 +217,14 @@ static void leaves_are_those_of_the_definition(void** state)
   is_cube = false;
 }
 
-/* Leaves as a sum over them that no order changes. */
 static uint64_t hash_leaves(const mcor_tree* tree)
 {
   uint64_t hash = (uint64_t)tree->leaf_count;
-  for (int i = 0; i < tree->leaf_count; ++i)
+  int leaf[4];
+  for (int64_t i = 0; next_leaf(tree, &i, leaf);)
   {
-    const cl_int* leaf = tree->leaves + 4 * (size_t)i;
-    uint64_t key = mcor_brick_key(&tree->lattice->rungs[leaf[3]], leaf);
-    hash += random_bits(&key);
+    uint64_t key = hash ^ mcor_brick_key(&tree->lattice->rungs[leaf[3]], leaf);
+    hash = random_bits(&key);
   }
   return hash;
 }
@@ -222,17 +244,28 @@ static void order_and_limit(void** state)
   assert_true(hash_leaves(&context->tree) == hash);
   make_tree(context, &set, 2, &options, &input);
   assert_int_equal(context->tree.top, 2);
-  for (int i = 0; i < context->tree.leaf_count; ++i)
-  {
-    assert_in_range(context->tree.leaves[4 * (size_t)i + 3], 0, 2);
-  }
+  assert_int_equal(context->tree.first_block[3], context->tree.block_count);
   free(order);
   core_free_set(&set);
   core_free_set(&other);
 }
 
-/* Leaves that follow each other in a region are parts of one brick. */
-static void regions(void** state)
+static bool has_block(const mcor_tree* tree, int level, const int brick[3])
+{
+  const uint64_t key = mcor_brick_key(&tree->lattice->rungs[level], brick) / MCOR_BLOCK_BRICKS;
+  int low = 0, high = tree->block_count;
+  while (low < high)
+  {
+    const int middle = (low + high) / 2;
+    low = tree->block_keys[middle] < key ? middle + 1 : low;
+    high = tree->block_keys[middle] < key ? high : middle;
+  }
+  return low < tree->block_count && tree->block_keys[low] == key;
+}
+
+/* All bricks whose nodes a leaf may need are in blocks: those up from it, and, beside finer ones, those of the next
+ * level in it and up from it. */
+static void blocks(void** state)
 {
   mcor_context* context = *state;
   mcor_options options;
@@ -240,18 +273,26 @@ static void regions(void** state)
   core_set set = core_make_random(2000, 60, 0.5, 9, 8);
   make_tree(context, &set, 24, &options, &input);
   const mcor_tree* tree = &context->tree;
-  for (int r = 0; r < tree->region_count; ++r)
+  int leaf[4], beside_finer = 0;
+  for (int64_t i = 0; next_leaf(tree, &i, leaf);)
   {
-    const cl_int* first = tree->leaves + 4 * (size_t)tree->regions[r];
-    assert_in_range(tree->regions[r + 1] - tree->regions[r], 1, 8);
-    for (int i = tree->regions[r]; i < tree->regions[r + 1]; ++i)
+    bool finer = false;
+    for (int d = 0; d < 27; ++d)
     {
-      const cl_int* leaf = tree->leaves + 4 * (size_t)i;
-      assert_true(leaf[0] / 2 == first[0] / 2 && leaf[1] / 2 == first[1] / 2 &&
-        leaf[2] / 2 == first[2] / 2 && leaf[3] == first[3]);
+      const int beside[3] = { leaf[0] + d % 3 - 1, leaf[1] + d / 3 % 3 - 1, leaf[2] + d / 9 - 1 };
+      finer = finer || mcor_tree_is_split(tree, leaf[3], beside);
+    }
+    beside_finer += finer;
+    for (int d = 0; d < 27; ++d)
+    {
+      const int by[3] = { d % 3, d / 3 % 3, d / 9 };
+      const int up[3] = { leaf[0] + by[0] / 2, leaf[1] + by[1] / 2, leaf[2] + by[2] / 2 };
+      const int below[3] = { 2 * leaf[0] + by[0], 2 * leaf[1] + by[1], 2 * leaf[2] + by[2] };
+      CORE_CHECK(has_block(tree, leaf[3], up) && (!finer || has_block(tree, leaf[3] - 1, below)),
+        "brick %d of leaf %d %d %d of level %d", d, leaf[0], leaf[1], leaf[2], leaf[3]);
     }
   }
-  assert_int_equal(tree->regions[tree->region_count], tree->leaf_count);
+  assert_in_range(beside_finer, 100, tree->leaf_count);
   core_free_set(&set);
 }
 
@@ -382,6 +423,6 @@ int main(void)
     cmocka_unit_test(making_leaves_can_be_cancelled), cmocka_unit_test(more_leaves_than_the_limit),
     cmocka_unit_test(more_leaves_of_all_levels),
     cmocka_unit_test(leaves_are_those_of_the_definition), cmocka_unit_test(order_and_limit),
-    cmocka_unit_test(regions), cmocka_unit_test(levels_of_particles) };
+    cmocka_unit_test(blocks), cmocka_unit_test(levels_of_particles) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

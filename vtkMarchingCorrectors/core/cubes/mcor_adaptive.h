@@ -41,44 +41,18 @@ mcor_status mcor_launch_at_vertices(
 /* From now on MCOR_GRID_ARGS are in cells of a level. */
 mcor_status mcor_view_level(mcor_context* context, int level);
 
-/* Work-items [first, first + count) of a heavy loop. On a CPU, where they are launched at once, so many that
- * they take some 0.1 s, as far as one does not take longer:
- *
- *   mcor_span span = { .end = count };
- *   MCOR_TRY(mcor_next_span(context, &span));
- *   while (span.count > 0)
- *     ... MCOR_INT(span.first), MCOR_INT(span.count) ...
- *     MCOR_TRY(mcor_next_span(context, &span)); */
-typedef struct mcor_span
-{
-  int first, count, end;
-  double begin; /* when it began */
-} mcor_span;
-
-mcor_status mcor_next_span(mcor_context* context, mcor_span* span);
-
-/* In place of mcor_select_seeds: the leaves where there may be surface, with their nodes' values. */
-mcor_status mcor_select_leaves(mcor_context* context, const mcor_input* input);
+/* mcor_leaf.c. Makes the leaves, and takes their blocks to the device, unless they are there. */
+mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
+/* Lists the leaves that may have surface. */
+mcor_status mcor_choose_leaves(mcor_context* context);
+/* Requests the bricks whose nodes these need. */
+mcor_status mcor_request_leaves(mcor_context* context);
+/* Finds which of them have surface, and evaluates what they need. */
+mcor_status mcor_complete_leaves(mcor_context* context);
 void mcor_release_adaptive(mcor_context* context);
 
-/* mcor_adaptive_seed.c. What is known of the nodes of all leaves, while slots are made. */
-typedef struct mcor_leaf_nodes
-{
-  mcor_buffer value, weight; /* of the leaves that are evaluated, in their order */
-  mcor_buffer place;         /* int, of each leaf: where these begin */
-  int count, room;           /* evaluated leaves, and for how many there is room */
-  mcor_buffer part_value,
-    part_weight;      /* of all leaves of a part, before it is known which are evaluated */
-  mcor_buffer counts; /* int: 1 where a leaf of the part is */
-} mcor_leaf_nodes;
-
-/* Takes the tree to the device. */
-mcor_status mcor_write_tree(mcor_context* context);
-/* Finds the leaves that may have surface: adaptive.count, cells, finer. found: their nodes' values are kept
- * there; NULL: they are not evaluated. */
-mcor_status mcor_choose_leaves(mcor_context* context, mcor_leaf_nodes* found);
-/* Takes over to the slots what was found. */
-mcor_status mcor_take_leaf_nodes(mcor_context* context, const mcor_leaf_nodes* found);
+#define MCOR_TREE_ARGS(c)                                                                          \
+  MCOR_INT(mcor_is_adaptive(c)), MCOR_BUFFER(&(c)->bricks.leaves), MCOR_BUFFER(&(c)->bricks.finer)
 
 /* The used cells that no finer ones touch. */
 static inline const mcor_buffer* mcor_plain_used(const mcor_context* context)

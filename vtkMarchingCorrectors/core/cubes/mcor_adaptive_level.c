@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: level by level. What evaluates the field at vertices of a level sees the search grid in
- * cells of that level; work that may take long goes span by span. */
+ * cells of that level. */
 
 #include "mcor_adaptive.h"
 
@@ -33,31 +33,6 @@ mcor_status mcor_view_level(mcor_context* context, int level)
   MCOR_TRY(mcor_reserve(context, &grid->view_inv_h, (size_t)count * context->cl.real_size));
   return MCOR_LAUNCH(context, "mcor_adaptive_scale", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
-}
-
-#define MCOR_SPAN_SECONDS 0.1
-#define MCOR_FIRST_SPAN 256
-
-mcor_status mcor_next_span(mcor_context* context, mcor_span* span)
-{
-  const mcor_cl* cl = &context->cl;
-  const bool waited_for = cl->is_cpu && context->run.options->progress;
-  const int most = cl->is_cpu ? MCOR_LARGE_LAUNCH - 1 : span->end;
-  int size = waited_for ? MCOR_FIRST_SPAN : most;
-  if (waited_for && span->count > 0)
-  {
-    MCOR_TRY(mcor_finish(context));
-    const double seconds = mcor_seconds() - span->begin;
-    size = seconds < MCOR_SPAN_SECONDS / 2             ? 2 * span->count
-      : seconds > MCOR_SPAN_SECONDS && span->count > 1 ? span->count / 2
-                                                       : span->count;
-  }
-  span->first += span->count;
-  const int rest = span->end - span->first;
-  size = size < most ? size : most;
-  span->count = size < rest ? size : rest;
-  span->begin = mcor_seconds();
-  return MCOR_OK;
 }
 
 /* Groups the vertices of a level. */

@@ -68,8 +68,8 @@ static mcor_status mcor_test_cubes(mcor_context* context, int level, int childre
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count;
-  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count, context->lattice.rungs[level + 1].base,
-    &bricks->block_buckets, &bricks->block_shift));
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count,
+    context->lattice.rungs[level + 1].base, &bricks->block_buckets, &bricks->block_shift));
   MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
   MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
@@ -126,16 +126,7 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     context, keys, *children + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* Requests the bricks of which nodes are known. */
-mcor_status mcor_request_known(mcor_context* context)
-{
-  mcor_bricks* bricks = &context->bricks;
-  return MCOR_LAUNCH(context, "mcor_block_request_known", MCOR_MEDIUM, bricks->now.count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
-}
-
-/* The active blocks, and those of bricks that are known, which are requested. */
+/* The active blocks, and those of bricks that are known. */
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -169,8 +160,6 @@ mcor_status mcor_make_blocks(mcor_context* context)
   mcor_release(context, &kept);
   MCOR_TRY(status);
   MCOR_TRY(mcor_test_cubes(context, 0, kept_count > 0 ? children : 0));
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
-  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
-  MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));
-  return mcor_request_known(context);
+  bricks->first_block[1] = bricks->block_count;
+  return MCOR_OK;
 }

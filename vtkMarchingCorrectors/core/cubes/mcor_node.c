@@ -3,31 +3,33 @@
 
 /* Nodes of the virtual grid: their values, and on which side of the iso value they are. */
 
+#include "mcor_adaptive.h"
 #include "mcor_plane.h"
 
-mcor_status mcor_evaluate_needed(mcor_context* context, int first, int count)
-{
-  mcor_bricks* bricks = &context->bricks;
-  /* One item per brick where one gathers for many lanes, else one per node. */
-  const bool plane = mcor_is_plane(context); /* there 16 of them, an item for all lanes */
-  const size_t items = (size_t)count *
-    (size_t)(plane               ? 16 / context->cl.lanes
-        : context->cl.lanes == 1 ? 64
-                                 : 1);
-  return MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_node_values", MCOR_HEAVY, items,
-    MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&bricks->now.bricks),
-    MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
-}
-
-/* Values of all nodes of the bricks that are not known yet. */
+/* Values of all nodes of the bricks of which they are needed and not known yet; level by level, each seen in its
+ * cells. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  const int count = bricks->now.count;
+  const int count = bricks->now.count, lanes = context->cl.lanes;
+  const bool plane = mcor_is_plane(context);
+  /* One item per brick where one gathers for many lanes, else one per node; in the plane 16 nodes, an item for all
+   * lanes. */
+  const int items = plane ? 16 / lanes : lanes == 1 ? 64 : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_need", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->need)));
-  return mcor_evaluate_needed(context, 0, count);
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),
+    MCOR_BUFFER(&bricks->now.known), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_BUFFER(&context->adaptive.proofs), MCOR_BUFFER(&bricks->need)));
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    const int first = bricks->first_slot[l], slots = bricks->first_slot[l + 1] - first;
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_node_values", MCOR_HEAVY,
+      (size_t)slots * (size_t)items, MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(slots),
+      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value),
+      MCOR_BUFFER(&bricks->now.weight)));
+  }
+  return mcor_view_level(context, 0);
 }
 
 /* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */

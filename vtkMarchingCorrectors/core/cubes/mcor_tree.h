@@ -65,6 +65,8 @@ static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 /* Where a brick is, or with a period its image there; false: it is off the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
 bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3]);
+/* Whether all bricks of a cluster are on the lattice, or in its first period. */
+bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
 /* Says that there are too many leaves, or no memory for more. */
 mcor_status mcor_fail_leaves(mcor_context* context);
 
@@ -74,6 +76,10 @@ mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mc
 /* mcor_tree_key.c. The keys of all split bricks, ascending; to be freed. */
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
+/* Sorts keys; `other` has as much room. The result is in *keys. */
+mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** other, size_t count);
+/* The position of a brick with a key. */
+void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 /* Splits the bricks with these keys. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
@@ -84,7 +90,7 @@ mcor_status mcor_take_splits(
 /* Which bricks are split, over the particles of all ranks; none with one level. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
-/* The leaves in the box. */
+/* The leaves in the box, and the blocks of all bricks whose nodes they may need. */
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input);
 void mcor_release_tree(mcor_tree* tree);
 

@@ -82,9 +82,25 @@ bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
 {
   int b[3];
   return level > 0 && mcor_place_brick(tree, level, brick, b) &&
-    mcor_table_find(&tree->split[level].clusters, mcor_cluster_key(&tree->lattice->rungs[level], b)) >>
+    mcor_table_find(
+      &tree->split[level].clusters, mcor_cluster_key(&tree->lattice->rungs[level], b)) >>
       mcor_cluster_bit(b) &
     1;
+}
+
+bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
+{
+  const mcor_lattice* lattice = tree->lattice;
+  const int edge = MCOR_BRICK << level;
+  bool within = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int period = lattice->period[a] / edge;
+    const int begin = period > 0 ? lattice->period_first[a] / edge : 0;
+    const int end = period > 0 ? begin + period : 8 * lattice->rungs[level].n[a];
+    within = within && first[a] >= begin && first[a] + MCOR_CLUSTER <= end;
+  }
+  return within;
 }
 
 mcor_status mcor_fail_leaves(mcor_context* context)

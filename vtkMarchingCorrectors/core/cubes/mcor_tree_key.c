@@ -28,9 +28,8 @@ static void mcor_merge_keys(const uint64_t* keys, size_t middle, size_t end, uin
   }
 }
 
-/* Sorts keys in runs that become longer; `other` has as much room. The result is in *keys. */
-static mcor_status mcor_sort_keys(
-  mcor_context* context, uint64_t** keys, uint64_t** other, size_t count)
+/* In runs that become longer. */
+mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** other, size_t count)
 {
   for (size_t i = 0; i < count; i += MCOR_SORTED_KEYS)
   {
@@ -99,8 +98,7 @@ mcor_status mcor_list_splits(
   return status;
 }
 
-/* The position of a brick with a key. */
-static void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3])
+void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3])
 {
   const uint64_t block = key / MCOR_BLOCK_BRICKS - rung->base;
   const uint64_t nx = (uint64_t)rung->n[0], ny = (uint64_t)rung->n[1];
@@ -117,11 +115,13 @@ mcor_status mcor_take_splits(
   for (int64_t i = 0; i < count; ++i)
   {
     level = i > 0 && keys[i] < keys[i - 1] ? 0 : level;
-    while (level <= tree->top && keys[i] / MCOR_BLOCK_BRICKS >= tree->lattice->rungs[level + 1].base)
+    while (
+      level <= tree->top && keys[i] / MCOR_BLOCK_BRICKS >= tree->lattice->rungs[level + 1].base)
     {
       ++level;
     }
-    MCOR_RETURN_IF(keys[i] >= mcor_tree_key_limit(tree) || level == 0, context, MCOR_INVALID_ARGUMENT,
+    MCOR_RETURN_IF(keys[i] >= mcor_tree_key_limit(tree) || level == 0, context,
+      MCOR_INVALID_ARGUMENT,
       "options.globals was measured with other options: a brick of adaptive cubes is not on the "
       "lattice.");
     const mcor_rung* rung = &tree->lattice->rungs[level];

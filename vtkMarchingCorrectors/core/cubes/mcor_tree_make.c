@@ -2,31 +2,75 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Adaptive cubes: the leaves, those parts of split bricks (mcor_tree_split.c) that are not split
- * themselves. Which bricks are split is global; leaves are listed in the box alone. */
+ * themselves. Which bricks are split is global; leaves are in the box alone. They are kept as bits of blocks: the parts
+ * of a cluster's bricks are those of a block of the level below. */
 
 #include "mcor_box.h"
 #include "mcor_tree.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* Room for eight more leaves. False: too many, or no memory. */
-static bool mcor_extend_leaves(mcor_tree* tree, size_t* room)
+/* So many blocks have numbers for their bricks. */
+#define MCOR_TREE_BLOCK_LIMIT (INT32_MAX / MCOR_BLOCK_BRICKS)
+
+/* What a block is in a table of them, by their keys. */
+enum
 {
-  const size_t most = (size_t)tree->leaf_count + 8;
-  if (most <= *room)
+  MCOR_HERE = 1,
+  MCOR_HAS_LEAVES = 2,
+  MCOR_HAS_SPLIT = 4
+};
+
+/* The key of a block of a level, or UINT64_MAX off the lattice. */
+static uint64_t mcor_block_key(const mcor_tree* tree, int level, const int block[3])
+{
+  const mcor_rung* rung = &tree->lattice->rungs[level];
+  const int brick[3] = { 8 * block[0], 8 * block[1], 8 * block[2] };
+  bool exists = true;
+  for (int a = 0; a < 3; ++a)
   {
-    return true;
+    exists = exists && block[a] >= 0 && block[a] < rung->n[a];
   }
-  if (most > MCOR_LEAF_LIMIT)
+  return exists ? mcor_brick_key(rung, brick) / MCOR_BLOCK_BRICKS : UINT64_MAX;
+}
+
+/* The level of a block with a key, and its place. */
+static int mcor_place_of_block(const mcor_tree* tree, uint64_t key, int block[3])
+{
+  const mcor_rung* rungs = tree->lattice->rungs;
+  int level = 0;
+  while (key >= rungs[level + 1].base)
   {
-    return false;
+    ++level;
   }
-  cl_int* leaves = realloc(tree->leaves, 2 * most * 4 * sizeof *leaves);
-  tree->leaves = leaves ? leaves : tree->leaves;
-  cl_int* regions = realloc(tree->regions, (2 * most + 1) * sizeof *regions);
-  tree->regions = regions ? regions : tree->regions;
-  *room = leaves && regions ? 2 * most : *room;
-  return leaves && regions;
+  mcor_brick_of_key(&rungs[level], key * MCOR_BLOCK_BRICKS, block);
+  for (int a = 0; a < 3; ++a)
+  {
+    block[a] /= 8;
+  }
+  return level;
+}
+
+/* Adds size^3 blocks from the first one on, as far as they are on the lattice. */
+static mcor_status mcor_add_blocks(mcor_context* context, const mcor_tree* tree, int level,
+  const int first[3], const int size[3], mcor_table* blocks)
+{
+  for (int i = 0; i < size[0] * size[1] * size[2]; ++i)
+  {
+    const int at[3] = { first[0] + i % size[0], first[1] + i / size[0] % size[1],
+      first[2] + i / size[0] / size[1] };
+    const uint64_t key = mcor_block_key(tree, level, at);
+    uint64_t* value = key == UINT64_MAX ? NULL : mcor_table_add(blocks, key);
+    MCOR_TRY(key == UINT64_MAX || (value && blocks->count <= MCOR_TREE_BLOCK_LIMIT)
+        ? MCOR_OK
+        : mcor_fail_leaves(context));
+    if (value)
+    {
+      *value |= MCOR_HERE;
+    }
+  }
+  return MCOR_OK;
 }
 
 /* Whether a brick, with a ring of a cell around it, is in the box. */
@@ -42,55 +86,10 @@ static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const
   return wanted;
 }
 
-/* Lists the parts of a split brick that are not split and in the box. */
-static void mcor_list_parts(mcor_tree* tree, const mcor_box* box, int level, const int parent[3])
-{
-  const int first = tree->leaf_count, parts = tree->is_plane ? 4 : 8;
-  for (int d = 0; d < parts; ++d)
-  {
-    const int b[3] = { 2 * parent[0] + (d & 1), 2 * parent[1] + (d >> 1 & 1),
-      2 * parent[2] + (d >> 2) };
-    if (!mcor_tree_is_split(tree, level, b) && mcor_is_wanted(box, level, level, b))
-    {
-      cl_int* leaf = tree->leaves + 4 * (size_t)tree->leaf_count++;
-      leaf[0] = b[0];
-      leaf[1] = b[1];
-      leaf[2] = b[2];
-      leaf[3] = level;
-    }
-  }
-  if (tree->leaf_count > first)
-  {
-    tree->regions[tree->region_count++] = first;
-  }
-}
-
-/* Lists the leaves of one level in a split brick of the next, and in its images. */
-static mcor_status mcor_list_in_images(
-  mcor_context* context, mcor_tree* tree, int level, const int brick[3], size_t* room)
-{
-  for (int image = 0; image < 27; ++image)
-  {
-    const int by[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
-    bool exists = true;
-    int parent[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      const int period = tree->lattice->period[a] / (MCOR_BRICK << (level + 1));
-      exists = exists && (by[a] == 0 || period > 0);
-      parent[a] = brick[a] + by[a] * period;
-    }
-    if (exists && mcor_is_wanted(&context->box, level + 1, level, parent))
-    {
-      MCOR_TRY(mcor_extend_leaves(tree, room) ? MCOR_OK : mcor_fail_leaves(context));
-      mcor_list_parts(tree, &context->box, level, parent);
-    }
-  }
-  return MCOR_OK;
-}
-
-/* Lists the leaves of one level: the parts of split bricks, and of their images, that are not split. */
-static mcor_status mcor_list_leaves(mcor_context* context, mcor_tree* tree, int level, size_t* room)
+/* Adds the blocks of one level that have parts of split bricks of the next, or of their images. Bricks beside a leaf
+ * of the box may be beyond it: blocks are bricks of three levels above, with their cells around them. */
+static mcor_status mcor_add_parts(
+  mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {
   const mcor_brick_set* set = &tree->split[level + 1];
   for (size_t i = 0; i < set->clusters.capacity; ++i)
@@ -98,16 +97,170 @@ static mcor_status mcor_list_leaves(mcor_context* context, mcor_tree* tree, int 
     const mcor_entry cluster = set->clusters.entries[i];
     int first[3];
     mcor_first_of_cluster(&tree->lattice->rungs[level + 1], cluster.key, first);
-    for (int bit = 0; bit < 64 && cluster.value >> bit; ++bit)
+    for (int image = cluster.value != 0 ? 0 : 27; image < 27; ++image)
     {
-      const int brick[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3),
-        first[2] + (bit >> 4) };
-      MCOR_TRY(cluster.value >> bit & 1 ? mcor_list_in_images(context, tree, level, brick, room)
-                                        : MCOR_OK);
+      const int by[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
+      bool exists = true;
+      int low[3], size[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        const int period = tree->lattice->period[a] / (MCOR_BRICK << (level + 1));
+        const int begin = first[a] + by[a] * period, end = begin + MCOR_CLUSTER - 1;
+        exists = exists && (by[a] == 0 || period > 0) && end >= 0;
+        low[a] = begin / MCOR_CLUSTER;
+        size[a] = end / MCOR_CLUSTER - low[a] + 1;
+      }
+      MCOR_TRY(exists && mcor_is_wanted(&context->box, level + 3, level + 3, low)
+          ? mcor_add_blocks(context, tree, level, low, size, blocks)
+          : MCOR_OK);
     }
     MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
   }
   return MCOR_OK;
+}
+
+/* Which bricks of a cluster are split. */
+static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const int first[3])
+{
+  if (level == 0 || mcor_has_cluster(tree, level, first))
+  {
+    return level == 0 ? 0
+                      : mcor_table_find(&tree->split[level].clusters,
+                          mcor_cluster_key(&tree->lattice->rungs[level], first));
+  }
+  uint64_t split = 0;
+  for (int i = 0; i < 64; ++i)
+  {
+    const int brick[3] = { first[0] + (i & 3), first[1] + (i >> 2 & 3), first[2] + (i >> 4) };
+    split |= (uint64_t)mcor_tree_is_split(tree, level, brick) << i;
+  }
+  return split;
+}
+
+/* Finds which bricks of a block are leaves, and which are split; returns the number of leaves. */
+static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, uint64_t key,
+  cl_uint leaves[MCOR_BLOCK_WORDS], cl_uint split[MCOR_BLOCK_WORDS])
+{
+  int block[3], count = 0;
+  const int level = mcor_place_of_block(tree, key, block);
+  uint64_t parts[8];
+  for (int d = 0; d < 8; ++d)
+  {
+    const int first[3] = { 8 * block[0] + 4 * (d & 1), 8 * block[1] + 4 * (d >> 1 & 1),
+      8 * block[2] + 4 * (d >> 2) };
+    parts[d] = mcor_split_of_cluster(tree, level, first);
+  }
+  const int parent[3] = { 4 * block[0], 4 * block[1], 4 * block[2] };
+  const uint64_t parents = mcor_split_of_cluster(tree, level + 1, parent);
+  memset(leaves, 0, MCOR_BLOCK_WORDS * sizeof *leaves);
+  memset(split, 0, MCOR_BLOCK_WORDS * sizeof *split);
+  for (int m = 0; m < MCOR_BLOCK_BRICKS && parents != 0; ++m)
+  {
+    const int x = m & 7, y = m >> 3 & 7, z = m >> 6;
+    const int brick[3] = { 8 * block[0] + x, 8 * block[1] + y, 8 * block[2] + z };
+    const bool is_part = parents >> (x >> 1 | (y >> 1) << 2 | (z >> 1) << 4) & 1;
+    const bool is_split =
+      parts[x >> 2 | (y >> 2) << 1 | (z >> 2) << 2] >> mcor_cluster_bit(brick) & 1;
+    const bool is_leaf = is_part && !is_split && !(tree->is_plane && z > 0) &&
+      mcor_is_wanted(box, level, level, brick);
+    split[m >> 5] |= (cl_uint)is_split << (m & 31);
+    leaves[m >> 5] |= (cl_uint)is_leaf << (m & 31);
+    count += is_leaf;
+  }
+  return count;
+}
+
+/* Whether any brick in and around a block is split. */
+static bool mcor_is_near_split(
+  const mcor_tree* tree, const mcor_table* parts, int level, const int block[3])
+{
+  bool near = false;
+  for (int d = 0; d < 27 && !near; ++d)
+  {
+    const int at[3] = { block[0] + d % 3 - 1, block[1] + d / 3 % 3 - 1, block[2] + d / 9 - 1 };
+    const uint64_t key = mcor_block_key(tree, level, at);
+    near = key != UINT64_MAX && (mcor_table_find(parts, key) & MCOR_HAS_SPLIT);
+  }
+  return near;
+}
+
+/* Adds, to blocks with leaves, or with bricks that are finer beside some, all those with bricks whose nodes these
+ * leaves may need: of their level up from them, of the level below in and up from them. */
+static mcor_status mcor_add_needed(
+  mcor_context* context, const mcor_tree* tree, mcor_table* parts, mcor_table* blocks)
+{
+  const int two[3] = { 2, 2, 2 }, three[3] = { 3, 3, 3 };
+  for (size_t i = 0; i < parts->capacity; ++i)
+  {
+    cl_uint leaves[MCOR_BLOCK_WORDS], split[MCOR_BLOCK_WORDS], any = 0;
+    mcor_entry* part = &parts->entries[i];
+    if (part->value != 0)
+    {
+      const int count = mcor_fill_block(tree, &context->box, part->key, leaves, split);
+      for (int w = 0; w < MCOR_BLOCK_WORDS; ++w)
+      {
+        any |= split[w];
+      }
+      part->value |= (count > 0 ? MCOR_HAS_LEAVES : 0) | (any ? MCOR_HAS_SPLIT : 0);
+    }
+    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+  }
+  for (size_t i = 0; i < parts->capacity; ++i)
+  {
+    int block[3];
+    const uint64_t value = parts->entries[i].value, key = parts->entries[i].key;
+    const int level = value != 0 ? mcor_place_of_block(tree, key, block) : 0;
+    const int finer[3] = { 2 * block[0], 2 * block[1], 2 * block[2] };
+    const bool is_near =
+      value & MCOR_HAS_LEAVES && level > 0 && mcor_is_near_split(tree, parts, level, block);
+    const int one[3] = { 1, 1, 1 };
+    MCOR_TRY(value & (MCOR_HAS_LEAVES | MCOR_HAS_SPLIT)
+        ? mcor_add_blocks(context, tree, level, block, value & MCOR_HAS_LEAVES ? two : one, blocks)
+        : MCOR_OK);
+    MCOR_TRY(is_near ? mcor_add_blocks(context, tree, level - 1, finer, three, blocks) : MCOR_OK);
+    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+/* Lists the blocks of a table by their keys, with their leaves. */
+static mcor_status mcor_list_blocks(
+  mcor_context* context, mcor_tree* tree, const mcor_table* blocks)
+{
+  const size_t n = blocks->count;
+  uint64_t* other = malloc((n + 1) * sizeof *other);
+  tree->block_keys = malloc((n + 1) * sizeof *tree->block_keys);
+  tree->leaves = malloc((n + 1) * MCOR_BLOCK_WORDS * sizeof *tree->leaves);
+  tree->is_split = malloc((n + 1) * MCOR_BLOCK_WORDS * sizeof *tree->is_split);
+  mcor_status status =
+    mcor_allocated(context, other && tree->block_keys && tree->leaves && tree->is_split);
+  for (size_t i = 0; i < blocks->capacity && status == MCOR_OK; ++i)
+  {
+    if (blocks->entries[i].value != 0)
+    {
+      tree->block_keys[tree->block_count++] = blocks->entries[i].key;
+    }
+  }
+  status = status == MCOR_OK ? mcor_sort_keys(context, &tree->block_keys, &other, n) : status;
+  free(other);
+  int level = 0;
+  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  {
+    const size_t words = i * MCOR_BLOCK_WORDS;
+    for (; tree->block_keys[i] >= tree->lattice->rungs[level + 1].base; ++level)
+    {
+      tree->first_block[level + 1] = (int)i;
+    }
+    tree->leaf_count += mcor_fill_block(
+      tree, &context->box, tree->block_keys[i], tree->leaves + words, tree->is_split + words);
+    status = i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK;
+  }
+  for (; level <= tree->top; ++level)
+  {
+    tree->first_block[level + 1] = (int)n;
+  }
+  return status == MCOR_OK && tree->leaf_count > MCOR_LEAF_LIMIT ? mcor_fail_leaves(context)
+                                                                 : status;
 }
 
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
@@ -127,22 +280,22 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
     MCOR_TRY(mcor_split_bricks(context, input, tree));
   }
   const bool keys = context->run.options->outputs & (MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS);
-  MCOR_RETURN_IF(keys && mcor_tree_key_limit(tree) >> MCOR_TREE_KEY_BITS > 0, context, MCOR_OUT_OF_CAPACITY,
+  MCOR_RETURN_IF(keys && mcor_tree_key_limit(tree) >> MCOR_TREE_KEY_BITS > 0, context,
+    MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
     "cubes. Use a larger cube size, or fewer levels.",
     context->lattice.cube, tree->top + 1);
-  size_t room = 0;
-  MCOR_TRY(mcor_extend_leaves(tree, &room) ? MCOR_OK : mcor_fail_leaves(context));
-  for (int l = 0; l <= tree->top; ++l)
+  mcor_table parts = { 0 }, blocks = { 0 };
+  mcor_status status = MCOR_OK;
+  for (int l = 0; l <= tree->top && status == MCOR_OK; ++l)
   {
-    tree->first_leaf[l] = tree->leaf_count;
-    tree->first_region[l] = tree->region_count;
-    MCOR_TRY(mcor_list_leaves(context, tree, l, &room));
-    tree->first_leaf[l + 1] = tree->leaf_count;
-    tree->first_region[l + 1] = tree->region_count;
+    status = mcor_add_parts(context, tree, l, &parts);
   }
-  tree->regions[tree->region_count] = tree->leaf_count;
-  return MCOR_OK;
+  status = status == MCOR_OK ? mcor_add_needed(context, tree, &parts, &blocks) : status;
+  status = status == MCOR_OK ? mcor_list_blocks(context, tree, &blocks) : status;
+  mcor_table_free(&parts);
+  mcor_table_free(&blocks);
+  return status;
 }
 
 mcor_status mcor_measure_splits(
@@ -167,8 +320,8 @@ void mcor_release_tree(mcor_tree* tree)
   {
     mcor_table_free(&tree->split[l].clusters);
   }
+  free(tree->block_keys);
   free(tree->leaves);
-  free(tree->finer);
-  free(tree->regions);
+  free(tree->is_split);
   *tree = (mcor_tree){ 0 };
 }

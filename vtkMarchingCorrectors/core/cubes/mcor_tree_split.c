@@ -30,15 +30,7 @@ static bool mcor_split_cluster(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {
   const mcor_rung* rung = &tree->lattice->rungs[level];
-  const int edge = MCOR_BRICK << level;
-  bool within = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int low = tree->lattice->period_first[a] / edge, period = tree->lattice->period[a] / edge;
-    const int begin = period > 0 ? low : 0, end = period > 0 ? low + period : 8 * rung->n[a];
-    within = within && first[a] >= begin && first[a] + MCOR_CLUSTER <= end;
-  }
-  if (within)
+  if (mcor_has_cluster(tree, level, first))
   {
     return mcor_set_add(set, mcor_cluster_key(rung, first), bricks);
   }

@@ -29,9 +29,9 @@ void mcor_release_bricks(mcor_context* context)
 {
   mcor_bricks* b = &context->bricks;
   MCOR_RELEASE(context, &b->rungs, &b->block_keys, &b->block_buckets, &b->block_states,
-    &b->inactive, &b->states, &b->bits, &b->base, &b->seed_bits, &b->seeds, &b->cells, &b->plain,
-    &b->leaf_of, &b->neighbours, &b->need, &b->bit_counts, &b->child_counts, &b->child_keys,
-    &b->child_index, &b->regions, &b->found);
+    &b->inactive, &b->states, &b->bits, &b->base, &b->leaves, &b->finer, &b->seed_bits, &b->seeds,
+    &b->cells, &b->plain, &b->leaf_of, &b->neighbours, &b->need, &b->bit_counts, &b->child_counts,
+    &b->child_keys, &b->child_index, &b->regions, &b->found);
   mcor_release_brick_data(context, &b->now);
 }
 
@@ -70,10 +70,16 @@ mcor_status mcor_place_bricks(mcor_context* context)
   MCOR_TRY(mcor_scan(context, &bricks->base, words, &count));
   mcor_brick_data last = bricks->now;
   bricks->now = (mcor_brick_data){ 0 };
-  bricks->first_slot[0] = 0;
-  bricks->first_slot[1] = count; /* with levels: until mcor_find_slot_levels */
-  const mcor_status status = mcor_fill_bricks(context, &last, count, words);
+  mcor_status status = mcor_fill_bricks(context, &last, count, words);
   mcor_release_brick_data(context, &last);
+  for (int l = 1; l <= context->lattice.top && status == MCOR_OK; ++l)
+  {
+    status = mcor_read(context, &bricks->base,
+      (size_t)bricks->first_block[l] * MCOR_BLOCK_WORDS * sizeof(cl_int), &bricks->first_slot[l],
+      sizeof(cl_int));
+  }
+  bricks->first_slot[0] = 0;
+  bricks->first_slot[context->lattice.top + 1] = count;
   return status;
 }
 

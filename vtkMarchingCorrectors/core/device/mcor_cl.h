@@ -34,7 +34,6 @@ typedef enum mcor_program
   MCOR_PROGRAM_LATTICE,  /* one for all SPH kernels and fields, with and without solids */
   MCOR_PROGRAM_FIELD,    /* surfaces of this build */
   MCOR_PROGRAM_PROBE,    /* mcor_probe and mcor_derive */
-  MCOR_PROGRAM_ADAPTIVE, /* adaptive cubes */
   MCOR_PROGRAM_COUNT
 } mcor_program;
 

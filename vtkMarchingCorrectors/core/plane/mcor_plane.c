@@ -470,17 +470,6 @@ mcor_status mcor_spread_signs(mcor_context* context)
         MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
-/* Requests the bricks whose side is not certain. */
-mcor_status mcor_find_seeds_in_plane(mcor_context* context)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  return MCOR_LAUNCH(context, "mcor_plane_seeds", MCOR_HEAVY,
-    (size_t)bricks->block_count * MCOR_BLOCK_REGIONS, MCOR_GRID_ARGS(context),
-    MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
-    MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_SEED_ARGS(context),
-    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits));
-}
-
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)
 {
   const int count = context->bricks.now.count;

@@ -65,7 +65,6 @@ double mcor_plane_factor(mcor_sph_kernel kernel);
 /* Marching squares: gives the nodes above the plane the signs of those in it; the second
  * function finds the seed bricks. */
 mcor_status mcor_spread_signs(mcor_context* context);
-mcor_status mcor_find_seeds_in_plane(mcor_context* context);
 /* Keeps of all cells those that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 

@@ -9,7 +9,7 @@
 /* Facts about a leaf's nodes. */
 typedef struct
 {
-  __global const int* slots; /* of mcor_adaptive_tables */
+  __global const int* slots; /* of mcor_leaf_tables */
   __global const ulong *above, *valid;
   uint hanging; /* where finer nodes are, by where they lie in the leaf: bits as of directions */
   int plane;    /* nodes above the plane are as those in it */
@@ -243,7 +243,7 @@ ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
 /* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes to its slot which of its cells are
  * plain, which leaf it is, and whether its cells may be used: whether any of them is valid at all nodes and has nodes
  * on both sides. */
-__kernel void mcor_adaptive_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
+__kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
   __global ulong* cells, __global ulong* plain, __global int* leaf_of)
 {
   MCOR_ITEM(i, i < count);

@@ -7,14 +7,6 @@
  * has all its nodes in bricks of its level. Of the others mcor_march_hanging finds which are used, and which edges
  * they use. */
 
-/* One work-item = one brick. Writes whether its nodes are still to be evaluated: all or none are. */
-__kernel void mcor_march_need(
-  const int brick_count, __global const ulong* known, __global ulong* need)
-{
-  MCOR_ITEM(slot, slot < brick_count);
-  need[slot] = known[slot] ? 0 : ~0UL;
-}
-
 /* One work-item = one leaf. Reads its nodes' masks. Of its cells that are not plain, leaves the used ones in `used`,
  * and notes which edges they use; writes the number of their triangles, or lines, by slot, and adds that of the loops
  * of owned ones that lie in one face between leaves. */

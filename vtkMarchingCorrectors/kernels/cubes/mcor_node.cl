@@ -36,13 +36,14 @@ void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
   mcor_query_place(grid, query, origin);
 }
 
-/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on. share: of
- * each particle's support. */
-MCOR_ONE_COPY mcor_query mcor_node_query(const mcor_grid* grid, int4 brick, int first, float share)
+/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on, and so many `more` beyond
+ * the last ones. share: of each particle's support. */
+MCOR_ONE_COPY mcor_query mcor_node_query(
+  const mcor_grid* grid, int4 brick, int first, int more, float share)
 {
   const int corner[3] = { brick.x * MCOR_BRICK + (first & 3),
     brick.y * MCOR_BRICK + (first >> 2 & 3), brick.z * MCOR_BRICK + (first >> 4) };
-  const fix extent = MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1;
+  const fix extent = MCOR_ITEM_NODES == 1 ? 0 : MCOR_BRICK - 1 + more;
   mcor_query query;
   query.radius = -share;
   for (int a = 0; a < 3; ++a)
@@ -92,7 +93,6 @@ ulong2 mcor_node_signs(
   return (ulong2)(a, v);
 }
 
-#if MCOR_OF_FIELD
 /* One work-item = MCOR_ITEM_NODES nodes of a brick, of `count` from `first` on. Where they are needed, reads the
  * particles that reach them. Writes their values and weights. */
 __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int count,
@@ -106,7 +106,7 @@ __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int coun
     return;
   }
   const mcor_grid grid = MCOR_GRID;
-  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(first_node % 64), 1);
+  mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(first_node % 64), 0, 1);
   mcor_node_sums sums;
   mcor_tile tile;
   mcor_tile_init(&tile);
@@ -127,4 +127,3 @@ __kernel void mcor_node_sides(const int brick_count, __global const ulong* evalu
   above[slot] = signs.x;
   valid[slot] = signs.y;
 }
-#endif

@@ -185,17 +185,93 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 /* A share of each particle's support. */
 #define MCOR_INSIDE_SHARE 0.5f
 
-/* Whether the particles within half their support of a brick's nodes, an eighth of all, which make
+/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by
+ * bricks. */
+#define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
+
+#if MCOR_PROVES_INSIDE && MCOR_LANES > 1
+/* Whether those of a tile's particles that are close to any of 2 x 2 points, as many above each other as there are
+ * lanes, `step` apart from `at` on, lift all points above the iso value. The order of the sum is not that of nodes:
+ * the margin covers it, too. */
+bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
+{
+  const fixv lane = mcor_lane_index();
+  const real ex = (real)0.5 * step[0], ey = (real)0.5 * step[1],
+             ez = (real)0.5 * step[2] * (MCOR_LANES / 4 - 1);
+  const realv px = at[0] + step[0] * MCOR_CONVERT_REALV(lane & 1);
+  const realv py = at[1] + step[1] * MCOR_CONVERT_REALV(lane >> 1 & 1);
+  const realv pz = at[2] + step[2] * MCOR_CONVERT_REALV(lane >> 2);
+  realv w = 0;
+  for (int begin = 0; begin < tile->count && !MCOR_ALL(w > iso * (real)1.0001f);
+       begin += MCOR_LANES)
+  {
+    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
+      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), at[0] + ex, at[1] + ey, at[2] + ez,
+      ex, ey, ez, MCOR_INSIDE_SHARE);
+    int list[MCOR_LANES];
+    const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
+    for (int k = 0; k < count; ++k)
+    {
+      const int i = begin + list[k];
+      const real inv_h = tile->inv_h[i];
+      const realv d = mcor_distance(tile->x[i] - px, tile->y[i] - py, tile->z[i] - pz, inv_h);
+      w = MCOR_FMA(tile->weight[i], mcor_weight(d, inv_h), w);
+    }
+  }
+  return MCOR_ALL(w > iso * (real)1.0001f);
+}
+
+/* Whether they do so at the nodes on a leaf's far sides, of its level. The finer ones there are nodes of finer leaves,
+ * too: either own ones, which a proof of those knows, or on their far sides, where a leaf beside a larger one is
+ * chosen. The march goes on from there. tile: what is close to all of the leaf. */
+bool mcor_sides_are_inside(
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
+{
+  bool inside = true;
+  for (int side = 0; side < 3; ++side)
+  {
+    const int x0 = side == 0 ? MCOR_BRICK : 0, y0 = side == 1 ? MCOR_BRICK : 0,
+              z0 = side == 2 ? MCOR_BRICK : 0;
+    for (int z = z0; z <= MCOR_BRICK && inside; z += MCOR_LANES / 4)
+    {
+      for (int y = y0; y <= MCOR_BRICK && inside; y += 2)
+      {
+        for (int x = x0; x <= MCOR_BRICK && inside; x += 2)
+        {
+          const int node[3] = { x, y, z };
+          real at[3];
+          for (int a = 0; a < 3; ++a)
+          {
+            at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit + grid->edge[a] * node[a];
+          }
+          inside = mcor_points_are_inside(tile, at, grid->edge, iso);
+        }
+      }
+    }
+  }
+  return inside;
+}
+#else
+bool mcor_sides_are_inside(
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
+{
+  return false;
+}
+#endif
+
+/* A brick is MCOR_ABOVE if the particles within half their support of its nodes, an eighth of all, which make
  * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
  * the rest can only add, in rounded sums, too, as rounding is monotone and the order is the same.
  * The margin is for a compiler that rounds the same term in another way in another place. Far inside
- * the fluid, no more is ever evaluated. wide: those of the brick's region, if it is complete. */
-bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wide, real iso)
+ * the fluid, no more is ever evaluated. Else MCOR_EXAMINE. Of a leaf beside others, `finer` or coarser, that does not
+ * hold on its far sides, too, these are open. wide: those of the brick's region, if it is complete. */
+int mcor_seed_proof(
+  const mcor_grid* grid, int4 brick, uint finer, const mcor_tile* wide, real iso)
 {
-  bool inside = true;
-  for (int first = 0; first < 64 && inside; first += MCOR_ITEM_NODES)
+  int state = MCOR_ABOVE;
+  for (int first = 0; first < 64 && state != MCOR_EXAMINE; first += MCOR_ITEM_NODES)
   {
-    mcor_query query = mcor_node_query(grid, brick, first, MCOR_INSIDE_SHARE);
+    mcor_query query = mcor_node_query(grid, brick, first, finer != 0, MCOR_INSIDE_SHARE);
     mcor_node_sums sums;
     mcor_tile tile;
     mcor_tile_init(&tile);
@@ -210,52 +286,87 @@ bool mcor_seed_is_inside(const mcor_grid* grid, int4 brick, const mcor_tile* wid
     if (tile.count == 0 ||
       (tile.complete && mcor_seed_filled(&query, grid->unit, &tile) < MCOR_INSIDE_FILLED))
     {
-      return false;
+      return MCOR_EXAMINE;
     }
     mcor_node_sum(grid, &query, &tile, &sums);
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
-      inside = inside && MCOR_ALL(sums.w[g] > iso * (real)1.0001f);
+      state = MCOR_ALL(sums.w[g] > iso * (real)1.0001f) ? state : MCOR_EXAMINE;
+    }
+    if (state == MCOR_ABOVE && finer &&
+      !(tile.complete && mcor_sides_are_inside(grid, &query, &tile, iso)))
+    {
+      state |= MCOR_OPEN_SIDES;
     }
   }
-  return inside;
+  return state;
 }
 
-/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by
- * bricks. */
-#define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
-
-#if MCOR_OF_FIELD
-/* One work-item = one region. Reads the particles that reach it, and the states of blocks. Writes
- * the states of its bricks as far as the region tells; requests those that are not certain, and
- * lists the regions that have such, in any order. */
-__kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count,
-  __global const mcor_rung* rungs, __global const ulong* block_keys,
-  __global const uchar* block_states, MCOR_SEED_PARAMS, __global uchar* states,
-  __global uint* brick_bits, __global int* list, __global int* list_count)
+/* The bricks of a region, bits x, y, z, that are leaves; with one level all are. */
+uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 {
-  const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
-  if (block >= block_count)
+  uint found = 0;
+  for (int b = 0; b < 8 && has_leaves; ++b)
+  {
+    found |= (uint)mcor_has_brick(leaves, number + mcor_region_offset(b)) << b;
+  }
+  return has_leaves ? found : 0xff;
+}
+
+/* What the range of raw values tells of a query's box, as a state. */
+int mcor_seed_range(const mcor_grid* grid, mcor_query* query, const mcor_seed_limits* limits)
+{
+  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
+  return of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(grid, query, limits->side_flags) : 3];
+}
+
+/* Parameters of mcor_seed_regions and mcor_plane_seeds, which are launched alike. */
+#define MCOR_REGION_PARAMS                                                                         \
+  MCOR_GRID_PARAMS, const int first, const int count, __global const mcor_rung *rungs,             \
+    __global const ulong *block_keys, __global const uchar *block_states, MCOR_TREE_PARAMS,        \
+    MCOR_SEED_PARAMS, __global uchar *states, __global uint *brick_bits, __global int *list,       \
+    __global int *list_count
+
+/* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and the states of blocks,
+ * which with several levels are not known. Writes the states of its bricks, or leaves, as far as the region tells;
+ * requests those that are not certain, and lists the regions that have such, in any order. With several levels, a
+ * region has the nodes on its far sides, too. */
+__kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
+{
+  const int region = first + get_global_id(0);
+  if (region >= first + count)
   {
     return;
   }
   const int number = mcor_region_number(region);
-  int state = block_states[block];
+  const uint own = mcor_region_leaves(MCOR_TREE_ARGS, number);
+  if (own == 0)
+  {
+    return;
+  }
+  int state = has_leaves ? MCOR_EXAMINE : block_states[region / MCOR_BLOCK_REGIONS];
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
-  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1);
+  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1 + has_leaves);
   mcor_tile tile;
   mcor_tile_init(&tile);
-  uint inside = 0; /* bricks */
+  uint inside = 0, open = 0; /* bricks */
+  if (has_leaves)
+  {
+    state = mcor_seed_range(&grid, &query, &limits);
+  }
   if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && state == MCOR_EXAMINE)
   {
     query.radius = -MCOR_INSIDE_SHARE;
     mcor_tile_next(&grid, &query, &tile, true);
-    for (int b = 0; b < 8 && tile.count > 0; ++b)
+    for (uint rest = tile.count > 0 ? own : 0; rest; rest &= rest - 1)
     {
-      const int4 own = brick + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
-      inside |= (uint)mcor_seed_is_inside(&grid, own, &tile, iso) << b;
+      const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
+      const int proof = mcor_seed_proof(&grid, brick + (int4)(b & 1, b >> 1 & 1, b >> 2, 0),
+        has_leaves ? finer[m] : 0, &tile, iso);
+      inside |= (uint)(proof != MCOR_EXAMINE) << b;
+      open |= (uint)((proof & MCOR_OPEN_SIDES) != 0) << b;
     }
     query.radius = -1;
     mcor_tile_init(&tile);
@@ -264,36 +375,38 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int block_count,
   {
     state = mcor_seed_state(&grid, &query, &tile, false, &limits);
   }
-  for (int b = 0; b < 8; ++b)
+  for (uint rest = own; rest; rest &= rest - 1)
   {
-    const int m = number + mcor_region_offset(b);
-    states[m] = (uchar)(inside >> b & 1 ? MCOR_ABOVE : state);
+    const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
+    states[m] = (uchar)(inside >> b & 1 ? MCOR_ABOVE | (open >> b & 1) * MCOR_OPEN_SIDES : state);
     if (states[m] == MCOR_EXAMINE)
     {
       mcor_request_brick(brick_bits, m);
     }
   }
-  if (state == MCOR_EXAMINE && inside != 0xff)
+  if (state == MCOR_EXAMINE && (own & ~inside))
   {
     list[atomic_inc(list_count)] = region;
   }
 }
 
-/* State of a brick whose region is not certain; wide: the particles of the region, if it is
- * complete. As the brick's are at hand, its nodes are evaluated if they are to be, where a
+/* State of a brick whose region is not certain: of its nodes, of a leaf beside other levels also of those on its far
+ * sides. wide: the particles of the region, if it is complete. As the brick's are at hand, its nodes are evaluated if they are to be, where a
  * work-item evaluates whole bricks; returns the known ones. */
-ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
+ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, uint finer, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
 {
   mcor_tile tile;
-  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64 &&
-    mcor_seed_is_inside(grid, brick, wide, limits->iso))
+  const int proof = MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64
+    ? mcor_seed_proof(grid, brick, finer, wide, limits->iso)
+    : MCOR_EXAMINE;
+  if (proof != MCOR_EXAMINE)
   {
-    *state = MCOR_ABOVE;
+    *state = (uchar)proof;
     return 0;
   }
-  mcor_query query = mcor_seed_query(grid, brick, MCOR_BRICK - 1);
+  mcor_query query = mcor_seed_query(grid, brick, MCOR_BRICK - (finer == 0));
   mcor_tile_init(&tile);
   if (wide->complete)
   {
@@ -313,11 +426,11 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, const mcor_tile* wide,
 /* Bricks of a region that a work-item treats. */
 #define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
 
-/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list. Reads the particles that reach
+/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list, of `list_count` from `list_first` on. Reads the particles that reach
  * it. Of bricks of which nothing is known, writes the states, and the nodes known by now with their
  * values and signs. */
-__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int list_count,
-  __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
+__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS,
+  const int list_first, const int list_count, __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
   __global real* node_value, __global real* node_weight, __global ulong* above,
   __global ulong* valid)
 {
@@ -328,9 +441,9 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
   }
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int number = mcor_region_number(list[i]);
+  const int number = mcor_region_number(list[list_first + i]);
   const int4 region = mcor_brick_of_number(rungs, block_keys, number);
-  mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1);
+  mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves);
   mcor_tile wide;
   mcor_tile_init(&wide);
   if (MCOR_ITEM_BRICKS > 1)
@@ -346,7 +459,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
     {
       const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
       __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
-      known[slot] = mcor_seed_brick(&grid, brick, &wide, &limits, states + m, value, weight);
+      known[slot] = mcor_seed_brick(
+        &grid, brick, has_leaves ? finer[m] : 0, &wide, &limits, states + m, value, weight);
       if (known[slot])
       {
         const ulong2 signs = mcor_node_signs(value, weight, iso, node_threshold);
@@ -354,6 +468,28 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, const int li
         valid[slot] = signs.y;
       }
     }
+  }
+}
+
+#if MCOR_PROVES_INSIDE
+/* One work-item = one slot, of `count` from `first` on. Tries the proof where its nodes are neither known nor
+ * certain, and it was not tried. */
+__kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
+  __global ulong* above, __global ulong* valid)
+{
+  const int slot = first + get_global_id(0);
+  if (slot >= first + count || known[slot] || proofs[slot] != MCOR_UNTRIED)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_tile none;
+  mcor_tile_init(&none);
+  proofs[slot] = (uchar)mcor_seed_proof(&grid, bricks[slot], 0, &none, iso);
+  if (proofs[slot] == MCOR_ABOVE)
+  {
+    above[slot] = valid[slot] = ~0UL;
   }
 }
 #endif

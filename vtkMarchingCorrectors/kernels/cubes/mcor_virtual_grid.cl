@@ -58,6 +58,12 @@ MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int
     : mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x + x, brick.y + y, brick.z + z);
 }
 
+/* Whether the brick with a number has its bit. */
+bool mcor_has_brick(__global const uint* bits, int number)
+{
+  return bits[number >> 5] >> (number & 31) & 1;
+}
+
 /* Slot of the brick with a number, or -1. */
 int mcor_slot_of_number(__global const uint* brick_bits, __global const int* brick_base, int number)
 {
@@ -77,6 +83,11 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, in
 }
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
+
+/* Leaves, if there are several levels: bits, as of slots, and by their numbers what is finer around them. */
+#define MCOR_TREE_PARAMS                                                                           \
+  const int has_leaves, __global const uint *leaves, __global const uint *finer
+#define MCOR_TREE_ARGS has_leaves, leaves, finer
 
 /* Position of a block, in blocks of its level, and the level. */
 int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
@@ -172,6 +183,18 @@ __kernel void mcor_brick_neighbours(
       neighbours[other * 14L + d + 6] = slot;
     }
   }
+}
+
+/* A slot's state that is certain, so that no node's value is needed. */
+#define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
+
+/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are neither known nor,
+ * with several levels, certain. */
+__kernel void mcor_brick_need(const int brick_count, __global const ulong* known, const int levels,
+  __global const uchar* proofs, __global ulong* need)
+{
+  MCOR_ITEM(slot, slot < brick_count);
+  need[slot] = known[slot] || (levels && MCOR_IS_CERTAIN(proofs[slot])) ? 0 : ~0UL;
 }
 
 /* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,

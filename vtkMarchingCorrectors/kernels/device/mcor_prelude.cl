@@ -22,7 +22,6 @@
  * solids and without: of what is set, it knows MCOR_LANES and MCOR_DOUBLE alone. */
 #define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
-#define MCOR_OF_ADAPTIVE (MCOR_PROGRAM == 3)
 
 /* Every device is to give the same bits. Additions and multiplications are exact to the last bit
  * everywhere, and so is fma, slow as it may be where it is no instruction; but a compiler may not

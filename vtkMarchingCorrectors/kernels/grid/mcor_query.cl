@@ -76,7 +76,7 @@ fix mcor_query_reach(float distance)
 
 /* With more rows, one passes over the empty ones at once. Where smoothing lengths differ much, nearly all
  * are: particles of most levels are elsewhere. */
-#define MCOR_MANY_ROWS (MCOR_OF_ADAPTIVE ? 3 : 64)
+#define MCOR_MANY_ROWS(grid) ((grid)->level_count > 1 ? 3 : 64)
 
 /* x + reach, or the greatest number: a lattice may be nearly as long. */
 fix mcor_query_beyond(fix x, fix reach)
@@ -108,7 +108,7 @@ bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
   query->z = query->first[2] - 1;
   query->has_many_rows =
     (long)(query->last[1] - query->first[1] + 1) * (query->last[2] - query->first[2] + 1) >
-    MCOR_MANY_ROWS;
+    MCOR_MANY_ROWS(grid);
   return some;
 }
 

@@ -97,47 +97,35 @@ void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global 
   mcor_plane_store(&sums, node_value + first, node_weight + first);
 }
 
-/* The state of a region's nodes in the plane, `cubes` along an edge, by raw values or by a bound. */
-int mcor_plane_state(const mcor_grid* grid, int4 brick, int cubes, const mcor_seed_limits* limits)
+/* One work-item = one region, of `count` from `first` on. As mcor_seed_regions, by raw values or by a bound; above the
+ * plane nothing is examined. Regions are not listed: bounds on bricks cost more than their few nodes. */
+__kernel void mcor_plane_seeds(MCOR_REGION_PARAMS)
 {
-  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
-  mcor_query query = mcor_plane_query(grid, brick, 0, cubes, cubes);
-  const int state =
-    of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(grid, &query, limits->side_flags) : 3];
-  if (state != MCOR_EXAMINE)
-  {
-    return state;
-  }
-  mcor_tile tile;
-  mcor_tile_init(&tile);
-  return mcor_seed_state(grid, &query, &tile, false, limits);
-}
-
-#if MCOR_OF_FIELD
-/* One work-item = one region. As mcor_seed_regions; above the plane nothing is examined. Regions are not listed:
- * bounds on bricks cost more than their few nodes. */
-__kernel void mcor_plane_seeds(MCOR_GRID_PARAMS, const int block_count,
-  __global const mcor_rung* rungs, __global const ulong* block_keys,
-  __global const uchar* block_states, MCOR_SEED_PARAMS, __global uchar* states,
-  __global uint* brick_bits)
-{
-  const int region = get_global_id(0), block = region / MCOR_BLOCK_REGIONS;
-  if (block >= block_count)
+  const int region = first + get_global_id(0);
+  if (region >= first + count)
   {
     return;
   }
   const int number = mcor_region_number(region);
+  const uint own = mcor_region_leaves(MCOR_TREE_ARGS, number);
   const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
-  int state = brick.z > 0 ? MCOR_VOID : block_states[block];
+  int state = brick.z > 0 || own == 0 ? MCOR_VOID
+    : has_leaves                      ? MCOR_EXAMINE
+                                      : block_states[region / MCOR_BLOCK_REGIONS];
   if (state == MCOR_EXAMINE)
   {
     const mcor_grid grid = MCOR_GRID;
     const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-    state = mcor_plane_state(&grid, brick, MCOR_REGION_CUBES - 1, &limits);
+    const int cubes = MCOR_REGION_CUBES - 1 + has_leaves;
+    mcor_query query = mcor_plane_query(&grid, brick, 0, cubes, cubes);
+    mcor_tile tile;
+    mcor_tile_init(&tile);
+    state = mcor_seed_range(&grid, &query, &limits);
+    state = state == MCOR_EXAMINE ? mcor_seed_state(&grid, &query, &tile, false, &limits) : state;
   }
-  for (int b = 0; b < 8; ++b)
+  for (uint rest = own; rest; rest &= rest - 1)
   {
-    const int m = number + mcor_region_offset(b);
+    const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
     states[m] = (uchar)(b < 4 ? state : MCOR_VOID);
     if (states[m] == MCOR_EXAMINE)
     {
@@ -161,28 +149,3 @@ __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int coun
   mcor_plane_evaluate(&grid, bricks[slot], (int)(item % MCOR_PLANE_ITEMS) * MCOR_LANES,
     node_value + slot * 64L, node_weight + slot * 64L);
 }
-#endif
-
-#if MCOR_OF_ADAPTIVE
-/* One work-item = one region, of `count` from `first` on. Reads the particles that reach its part of the
- * plane. Writes its leaves' states: all have that of the region, as bounds on leaves cost more than their nodes. */
-__kernel void mcor_adaptive_plane_regions(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int* regions, __global const int4* leaves, __global const uint* finer,
-  MCOR_SEED_PARAMS, __global int* states)
-{
-  const int region = first + get_global_id(0);
-  if (region >= first + count)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int begin = regions[region], end = regions[region + 1];
-  const int4 brick = leaves[begin] / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS;
-  const int state = mcor_plane_state(&grid, brick, MCOR_REGION_CUBES, &limits);
-  for (int i = begin; i < end; ++i)
-  {
-    states[i] = mcor_leaf_state(state, finer[i]);
-  }
-}
-#endif

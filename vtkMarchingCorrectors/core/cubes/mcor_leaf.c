@@ -1,0 +1,139 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: the leaves that are marched, and the slots of the nodes that they need. The seeds (mcor_seed.c) find
+ * the states of all leaves; those that may have surface are listed. All cells of these are examined, and no more.
+ * Nodes that are certain have a side without a value; it is evaluated where a cell is crossed that has them. */
+
+#include "mcor_adaptive.h"
+#include "mcor_plane.h"
+#include "mcor_tree.h"
+
+#include <string.h>
+
+mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input)
+{
+  mcor_tree* tree = &context->tree;
+  mcor_bricks* bricks = &context->bricks;
+  const mcor_rung* rungs = context->lattice.rungs;
+  if (tree->block_keys)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_make_tree(context, input));
+  const size_t blocks = (size_t)tree->block_count;
+  const size_t bytes = blocks * MCOR_BLOCK_WORDS * sizeof(cl_uint);
+  mcor_buffer* is_split = &bricks->bits; /* until bricks are requested */
+  bricks->block_count = tree->block_count;
+  memcpy(bricks->first_block, tree->first_block, sizeof tree->first_block);
+  MCOR_TRY(mcor_write(context, &bricks->rungs, rungs, (size_t)(tree->top + 3) * sizeof rungs[0]));
+  MCOR_TRY(mcor_write(context, &bricks->block_keys, tree->block_keys, blocks * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_write(context, &bricks->leaves, tree->leaves, bytes));
+  MCOR_TRY(mcor_write(context, is_split, tree->is_split, bytes));
+  MCOR_TRY(mcor_reserve(context, &bricks->finer, blocks * MCOR_BLOCK_BRICKS * sizeof(cl_uint)));
+  if (blocks == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, tree->block_count,
+    rungs[tree->top + 2].base, &bricks->block_buckets, &bricks->block_shift));
+  return MCOR_LAUNCH(context, "mcor_leaf_finer", MCOR_MEDIUM, blocks * MCOR_BLOCK_BRICKS / 8,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(tree->is_plane), MCOR_BUFFER(&bricks->leaves),
+    MCOR_BUFFER(is_split), MCOR_BUFFER(&bricks->finer));
+}
+
+mcor_status mcor_choose_leaves(mcor_context* context)
+{
+  mcor_adaptive* adaptive = &context->adaptive;
+  mcor_bricks* bricks = &context->bricks;
+  const mcor_brick_data* now = &bricks->now;
+  const int words = bricks->block_count * MCOR_BLOCK_WORDS;
+  MCOR_TRY(mcor_fill(context, &adaptive->chosen, 0, (size_t)words * sizeof(cl_uint)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_choose", MCOR_MEDIUM,
+    (size_t)bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BRICK_ARGS(context),
+    MCOR_BUFFER(&bricks->leaves), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&now->known),
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_INT(mcor_is_plane(context)),
+    MCOR_BUFFER(&bricks->finer), MCOR_BUFFER(&adaptive->chosen)));
+  MCOR_TRY(mcor_reserve(context, &adaptive->scanned, ((size_t)words + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_MEDIUM, words, MCOR_INT(words),
+    MCOR_BUFFER(&adaptive->chosen), MCOR_BUFFER(&adaptive->scanned)));
+  MCOR_TRY(mcor_scan(context, &adaptive->scanned, words, &adaptive->count));
+  const size_t count = (size_t)adaptive->count;
+  MCOR_TRY(mcor_reserve(context, &adaptive->cells, count * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &adaptive->finer, count * sizeof(cl_uint)));
+  return MCOR_LAUNCH(context, "mcor_leaf_list", MCOR_MEDIUM, words, MCOR_INT(words),
+    MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&adaptive->chosen),
+    MCOR_BUFFER(&adaptive->scanned), MCOR_BUFFER(&bricks->finer), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->finer));
+}
+
+mcor_status mcor_request_leaves(mcor_context* context)
+{
+  const mcor_adaptive* adaptive = &context->adaptive;
+  return MCOR_LAUNCH(context, "mcor_leaf_request", MCOR_MEDIUM, adaptive->count,
+    MCOR_BLOCK_ARGS(context), MCOR_INT(adaptive->count), MCOR_INT(mcor_is_plane(context)),
+    MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer),
+    MCOR_BUFFER(&context->bricks.bits));
+}
+
+/* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. */
+static mcor_status mcor_evaluate_slots(mcor_context* context)
+{
+  const mcor_options* options = context->run.options;
+  const mcor_bricks* bricks = &context->bricks;
+  const mcor_brick_data* now = &bricks->now;
+  /* The proof is tried where a work-item evaluates whole bricks, see MCOR_PROVES_INSIDE. */
+  const bool proves = options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
+    context->cl.lanes > 1 && !mcor_is_plane(context);
+  for (int l = 0; l <= context->lattice.top && proves; ++l)
+  {
+    const int first = bricks->first_slot[l], count = bricks->first_slot[l + 1] - first;
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_prove", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
+      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
+      MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&context->adaptive.proofs),
+      MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
+  }
+  MCOR_TRY(mcor_evaluate_nodes(context));
+  return mcor_sign_nodes(context, &bricks->need);
+}
+
+mcor_status mcor_complete_leaves(mcor_context* context)
+{
+  mcor_adaptive* adaptive = &context->adaptive;
+  mcor_bricks* bricks = &context->bricks;
+  const mcor_brick_data* now = &bricks->now;
+  const int count = adaptive->count;
+  const size_t n = (size_t)now->count;
+  MCOR_TRY(mcor_reserve(context, &adaptive->proofs, n));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_take", MCOR_MEDIUM, now->count, MCOR_BLOCK_ARGS(context),
+    MCOR_INT(now->count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&bricks->leaves),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
+  MCOR_TRY(mcor_evaluate_slots(context));
+  MCOR_TRY(
+    mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_tables", MCOR_MEDIUM, count, MCOR_BRICK_ARGS(context),
+    MCOR_INT(count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_need", MCOR_MEDIUM, count, MCOR_INT(count),
+    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&adaptive->mixed),
+    MCOR_BUFFER(&adaptive->proofs)));
+  MCOR_TRY(mcor_evaluate_slots(context));
+  MCOR_TRY(mcor_fill(context, &bricks->cells, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &bricks->plain, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &bricks->leaf_of, n * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_leaf_cells", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+    MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&bricks->plain),
+    MCOR_BUFFER(&bricks->leaf_of));
+}
+
+void mcor_release_adaptive(mcor_context* context)
+{
+  mcor_adaptive* g = &context->adaptive;
+  MCOR_RELEASE(context, &g->chosen, &g->scanned, &g->cells, &g->finer, &g->tables, &g->mixed,
+    &g->proofs, &g->quadrants, &g->flat, &context->grid.view_levels, &context->grid.view_inv_h);
+  mcor_release_tree(&context->tree);
+}

@@ -1,0 +1,148 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: which leaves may have surface in them.
+ *
+ * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have the nodes of that level, 5 along an edge, and
+ * where a leaf beside is finer those of the level below on its sides: 9 along an edge. Where all leaves up from it are
+ * of its level, each tells of its own nodes, 4 along an edge: by its state (mcor_seed.cl), or by their values. Then
+ * there is no surface in it if it and they are on one side. Beside leaves of other levels its state has to tell of
+ * all its points, sides included. All lengths are in cells of the level, as which the search grid is seen
+ * (mcor_view_level). */
+
+/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: of the 27 bricks in and around a leaf, those that are
+ * finer. */
+#define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
+
+/* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
+__kernel void mcor_adaptive_scale(
+  const int count, __global const real* inv_h, const real factor, __global real* scaled)
+{
+  MCOR_ITEM(i, i < count);
+  scaled[i] = inv_h[i] * factor;
+}
+
+/* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row have their bits. row: number in its block of the first. */
+uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
+{
+  const int word = row >> 5, at = row & 31;
+  uint found = blocks.x < 0 ? 0 : bits[blocks.x * MCOR_BLOCK_WORDS + word] >> (at + 7) & 1;
+  found |= blocks.y < 0 ? 0 : (bits[blocks.y * MCOR_BLOCK_WORDS + word] >> at & 0xff) << 1;
+  return found | (blocks.z < 0 ? 0 : (bits[blocks.z * MCOR_BLOCK_WORDS + word] >> at & 1) << 9);
+}
+
+/* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are split. Writes, of its
+ * leaves, what is finer around them. In the plane, none are up from it. */
+__kernel void mcor_leaf_finer(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
+  __global const uint* split, __global uint* finer)
+{
+  const int m = get_global_id(0) * 8;
+  const uint own = m < block_count * MCOR_BLOCK_BRICKS ? leaves[m >> 5] >> (m & 31) & 0xff : 0;
+  if (own == 0)
+  {
+    return;
+  }
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, m), block = brick >> 3;
+  const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, block.x, block.y, block.z);
+  uint rows[9], up[4];
+  for (int d = 0; d < 9; ++d)
+  {
+    const int y = brick.y + d % 3 - 1, z = brick.z + d / 3 - 1, row = (z & 7) * 64 + (y & 7) * 8;
+    const bool within = y >> 3 == block.y && z >> 3 == block.z;
+    const int3 at =
+      within ? blocks : mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, block.x, y >> 3, z >> 3);
+    rows[d] = mcor_row_bits(at, row, split);
+    if (d > 3 && d != 6)
+    {
+      up[d - (d < 6 ? 4 : 5)] = rows[d] | mcor_row_bits(at, row, leaves);
+    }
+  }
+  for (uint rest = own; rest; rest &= rest - 1)
+  {
+    const int x = mcor_ctz(rest);
+    uint found = 0;
+    for (int d = 0; d < 9; ++d)
+    {
+      found |= (rows[d] >> x & 7) << 3 * d;
+    }
+    for (int d = 1; d < (plane ? 4 : 8); ++d)
+    {
+      found |= up[d >> 1] >> (x + 1 + (d & 1)) & 1 ? 0 : MCOR_COARSER_UP;
+    }
+    finer[m + x] = found;
+  }
+}
+
+/* The leaves, and what is known of their nodes. */
+#define MCOR_KNOWN_PARAMS                                                                          \
+  MCOR_BRICK_PARAMS, __global const uint *leaves, __global const uchar *states,                    \
+    __global const ulong *known, __global const ulong *above, __global const ulong *valid
+#define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
+
+/* On which sides those nodes of brick m may be that the leaf down from it by d (bits x, y, z; 0: itself) has. */
+int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
+{
+  if (m < 0 || !mcor_has_brick(leaves, m))
+  {
+    return MCOR_EXAMINE;
+  }
+  const int slot = mcor_slot_of_number(brick_bits, brick_base, m);
+  if (slot < 0 || !known[slot])
+  {
+    return states[m] & MCOR_EXAMINE;
+  }
+  const ulong its = valid[slot] & (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) &
+    (d & 4 ? MCOR_LOW_Z : ~0UL);
+  return (its & above[slot] ? MCOR_ABOVE : 0) | (its & ~above[slot] ? MCOR_BELOW : 0);
+}
+
+/* One work-item = one row of 8 bricks of a block. Requests its leaves that are to be examined: nodes that cells of
+ * theirs may have are on both sides. */
+__kernel void mcor_leaf_choose(
+  MCOR_KNOWN_PARAMS, const int plane, __global const uint* finer, __global uint* chosen)
+{
+  const int m = get_global_id(0) * 8;
+  const uint own = m < block_count * MCOR_BLOCK_BRICKS ? leaves[m >> 5] >> (m & 31) & 0xff : 0;
+  if (own == 0)
+  {
+    return;
+  }
+  const int4 first = mcor_brick_of_number(rungs, block_keys, m);
+  uint found = 0;
+  for (uint rest = own; rest; rest &= rest - 1)
+  {
+    const int x = mcor_ctz(rest), at = m + x;
+    const int4 brick = first + (int4)(x, 0, 0, 0);
+    const int slot = mcor_slot_of_number(brick_bits, brick_base, at);
+    const bool evaluated = slot >= 0 && known[slot];
+    /* Nothing is known of nodes that cells of other levels have on its sides. */
+    const bool open = evaluated || states[at] == MCOR_EXAMINE ? finer[at] != 0
+                                                              : (states[at] & MCOR_OPEN_SIDES) != 0;
+    int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);
+    for (int d = 1; d < (plane ? 4 : 8) && finer[at] == 0 && sides != MCOR_EXAMINE; ++d)
+    {
+      sides |= mcor_leaf_sides(MCOR_KNOWN_ARGS,
+        mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, d & 1, d >> 1 & 1, d >> 2), d);
+    }
+    /* No branch asks `sides` after the loop: into such a one, LLVM 18 moves what the loop left, and PoCL
+     * 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
+    found |= (uint)(open | (sides == MCOR_EXAMINE)) << x;
+  }
+  atomic_or(chosen + (m >> 5), found << (m & 31));
+}
+
+/* One work-item = one word of 32 bricks. Reads the scanned counts of chosen ones. Writes these, in order, and where
+ * bricks around them are finer. */
+__kernel void mcor_leaf_list(const int word_count, __global const mcor_rung* rungs,
+  __global const ulong* block_keys, __global const uint* chosen, __global const int* scanned,
+  __global const uint* finer, __global int4* cells, __global uint* cells_finer)
+{
+  MCOR_ITEM(word, word < word_count);
+  int to = scanned[word];
+  for (uint bits = chosen[word]; bits; bits &= bits - 1)
+  {
+    const int m = word * 32 + mcor_ctz(bits);
+    cells[to] = mcor_brick_of_number(rungs, block_keys, m);
+    cells_finer[to++] = finer[m] & (MCOR_COARSER_UP - 1);
+  }
+}

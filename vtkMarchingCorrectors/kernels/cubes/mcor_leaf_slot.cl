@@ -1,0 +1,147 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Adaptive cubes: the nodes of leaves where there may be surface. They are kept in slots, of bricks of one
+ * level as everywhere: those of a leaf, and those that hold the far ends of its cells and the finer
+ * nodes. */
+
+#define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
+
+/* Bricks whose nodes a leaf needs: of its level bits 0 to 7 (x, y, z up), of the finer one from bit 8
+ * on, (x, y, z) 0 to 2 from its first one. Where a leaf beyond a far side is finer, that one has the
+ * leaf's nodes there, too. In the plane, those of its layer. */
+ulong mcor_leaf_wanted(uint finer, int plane)
+{
+  ulong wanted = 0;
+  for (int d = 0; d < 8; ++d)
+  {
+    const uint at = MCOR_DIRECTION(1 + (d & 1), 1 + (d >> 1 & 1), 1 + (d >> 2));
+    wanted |= (finer >> at & 1) ? 0 : 1UL << d;
+  }
+  for (int d = 0; d < 27 && finer; ++d)
+  {
+    const int x = d % 3, y = d / 3 % 3, z = d / 9;
+    if (finer >> d & 1)
+    {
+      for (int b = 0; b < 27; ++b)
+      {
+        const int bx = b % 3, by = b / 3 % 3, bz = b / 9;
+        const bool beside = (x == 1 || bx == x) && (y == 1 || by == y) && (z == 1 || bz == z);
+        wanted |= beside ? 1UL << (8 + b) : 0;
+      }
+    }
+  }
+  return plane ? wanted & MCOR_WANTED_IN_PLANE : wanted;
+}
+
+/* The brick of bit `b` of these, with its level. */
+int4 mcor_leaf_wanted_brick(int4 leaf, int b)
+{
+  const int f = b - 8;
+  return b < 8 ? leaf + (int4)(b & 1, b >> 1 & 1, b >> 2, 0)
+               : (int4)(2 * leaf.x + f % 3, 2 * leaf.y + f / 3 % 3, 2 * leaf.z + f / 9, leaf.w - 1);
+}
+
+/* One work-item = one leaf. Requests the bricks that it needs. */
+__kernel void mcor_leaf_request(MCOR_BLOCK_PARAMS, const int count, const int plane,
+  __global const int4* cells, __global const uint* finer, __global uint* brick_bits)
+{
+  MCOR_ITEM(i, i < count);
+  for (ulong rest = mcor_leaf_wanted(finer[i], plane); rest; rest &= rest - 1)
+  {
+    const int4 b = mcor_leaf_wanted_brick(cells[i], mcor_ctz(rest));
+    mcor_request_brick(brick_bits, mcor_brick_number(MCOR_BLOCK_ARGS, b.w, b.x, b.y, b.z));
+  }
+}
+
+/* One work-item = one leaf. Writes the slots of the bricks that it needs, -1 for others. */
+__kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int plane,
+  __global const int4* cells, __global const uint* finer, __global int* tables)
+{
+  MCOR_ITEM(i, i < count);
+  const ulong wanted = mcor_leaf_wanted(finer[i], plane);
+  for (int b = 0; b < MCOR_LEAF_SLOTS; ++b)
+  {
+    const int4 brick = mcor_leaf_wanted_brick(cells[i], b);
+    tables[i * (long)MCOR_LEAF_SLOTS + b] =
+      wanted >> b & 1 ? mcor_find_brick(MCOR_BRICK_ARGS, brick.w, brick.x, brick.y, brick.z) : -1;
+  }
+}
+
+/* One work-item = one slot. Writes the state of its brick if that is a leaf, and signs if they are certain, but not
+ * known. */
+__kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global const int4* bricks,
+  __global const uint* leaves, __global const uchar* states, __global const ulong* known,
+  __global uchar* proofs, __global ulong* above, __global ulong* valid)
+{
+  MCOR_ITEM(slot, slot < slot_count);
+  const int4 b = bricks[slot];
+  const int m = mcor_brick_number(MCOR_BLOCK_ARGS, b.w, b.x, b.y, b.z);
+  const int state = mcor_has_brick(leaves, m) ? states[m] & MCOR_EXAMINE : MCOR_UNTRIED;
+  proofs[slot] = (uchar)state;
+  if (MCOR_IS_CERTAIN(state) && !known[slot])
+  {
+    above[slot] = state == MCOR_ABOVE ? ~0UL : 0;
+    valid[slot] = state == MCOR_VOID ? 0 : ~0UL;
+  }
+}
+
+/* Marks a slot whose nodes' values are needed after all; of those below the node threshold they never
+ * are. */
+void mcor_leaf_ask(__global uchar* proofs, int slot)
+{
+  if (slot >= 0 && (proofs[slot] == MCOR_ABOVE || proofs[slot] == MCOR_BELOW))
+  {
+    proofs[slot] = MCOR_EXAMINE;
+  }
+}
+
+/* The same of those that crossed cells of a leaf need, which has no finer ones around it; whether there are
+ * any. */
+bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
+  __global const ulong* valid, __global uchar* proofs)
+{
+  ulong a[8], v[8];
+  for (int d = 0; d < 8; ++d)
+  {
+    a[d] = above[slots[d]];
+    v[d] = valid[slots[d]];
+  }
+  mcor_cell_corners(a);
+  mcor_cell_corners(v);
+  const ulong crossed = mcor_cell_some(a) & ~mcor_cell_all(a) & mcor_cell_all(v);
+  for (int d = 0; d < 8 && crossed; ++d)
+  {
+    if (mcor_cells_reach(crossed, d))
+    {
+      mcor_leaf_ask(proofs, slots[d]);
+    }
+  }
+  return crossed != 0;
+}
+
+/* One work-item = one leaf. Writes whether its cells have nodes on both sides: if not, there is no surface.
+ * Then values are needed, of slots that were certain, too. */
+__kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
+  __global const int* tables, __global const ulong* above, __global const ulong* valid,
+  __global uchar* mixed, __global uchar* proofs)
+{
+  MCOR_ITEM(i, i < count);
+  __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
+  if (finer[i] == 0 && !plane)
+  {
+    mixed[i] = mcor_leaf_ask_plain(slots, above, valid, proofs);
+    return;
+  }
+  int sides = 0;
+  for (int b = 0; b < MCOR_LEAF_SLOTS && sides != MCOR_EXAMINE; ++b)
+  {
+    const ulong a = slots[b] < 0 ? 0 : above[slots[b]], v = slots[b] < 0 ? 0 : valid[slots[b]];
+    sides |= (a & v ? MCOR_ABOVE : 0) | (~a & v ? MCOR_BELOW : 0);
+  }
+  mixed[i] = sides == MCOR_EXAMINE;
+  for (int b = 0; b < MCOR_LEAF_SLOTS && sides == MCOR_EXAMINE; ++b)
+  {
+    mcor_leaf_ask(proofs, slots[b]);
+  }
+}

@@ -158,6 +158,10 @@ extern "C"
     int smoothing_length_is_support_radius;
     int estimate_smoothing_length;
 
+    /* Factors of the smoothing lengths, at least 1, as mcor_widen makes them; not given: 1. Kernels are as long as
+     * the products; cubes, their levels and the statistics follow the smoothing lengths. Volumes must be known. */
+    mcor_array widening;
+
     /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if both are
      * given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else
      * 1 / (F_j sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the sum is
@@ -190,7 +194,7 @@ extern "C"
     int attribute_count;
 
     /* Reuse: equal nonzero numbers in two successive calls promise that these are the same: positions,
-     * smoothing lengths, volumes and solids (particles_version), the scalar (scalar_version), or all
+     * smoothing lengths, their factors, volumes and solids (particles_version), the scalar (scalar_version), or all
      * attributes (attributes_version; mcor_probe keeps them on the device). Reuse saves time and never
      * changes the result. 0: never reuse. */
     uint64_t particles_version;
@@ -242,7 +246,8 @@ extern "C"
     mcor_topology topology;
     /* 1 to 4; default 1: off. Above 1, each particle's smoothing length is multiplied by a factor up to this, as
      * large as leaves the particle inside of the free surface: see mcor_widen. Flat surfaces become flat, and
-     * drops, threads and sheets stay. Cubes and volumes are those of the original lengths. Not with ranks. */
+     * drops, threads and sheets stay. Cubes and volumes are those of the original lengths. With globals or ranks,
+     * call mcor_widen before, and set mcor_input.widening. */
     double widen;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
@@ -718,20 +723,20 @@ extern "C"
   /* Widened smoothing lengths. Owned; free with mcor_free_widening. */
   typedef struct mcor_widening
   {
-    int64_t count;                         /* of particles */
-    double* factor;                        /* [count]; 1 of solids */
-    double* smoothing_length;              /* [count], unit L, widened */
-    double* volume;                        /* [count], of the original lengths; NULL where they are not computed */
-    double smoothing_length_range[2];      /* of the original lengths of fluid particles, unit L */
-    double least, mean, greatest;          /* factors of fluid particles */
+    int64_t count;  /* of particles */
+    double* factor; /* [count]; 1 of solids */
+    double* volume; /* [count], of the original lengths; NULL where they are not computed */
     mcor_statistics statistics;
   } mcor_widening;
 
   /* Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which the weight sum
    * sum V_k W(x_j - x_k, s h_j) is at least 0.1 above the free surface's iso value (0.5 for scalars), on steps of 0.2
    * with linear interpolation; reduced to 1 where neighbours are few (drops, threads), and to the Shepard mean around
-   * the particle. A surface with options.widen is, to the last bit, that of smoothing_length and volume with the
-   * original cube size. Reads the options of mcor_extract; a box does not matter. *widening is overwritten. */
+   * the particle. A surface with options.widen is, to the last bit, that of an input with these factors and volumes; or
+   * with uniform cubes of the same size, with the products of smoothing lengths and factors. Reads the options of
+   * mcor_extract; a box only with globals, which are those of mcor_measure_globals with level_limit 0: results are then
+   * valid for particles in the box, which needs all particles within supports of (1 + widen) (1 + 1 / h_scale) around, or
+   * 1 + widen where volumes are known. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);

@@ -10,6 +10,7 @@
 #include "mcor_input.h"
 #include "mcor_pair.h"
 #include "mcor_plane.h"
+#include "mcor_widen.h"
 
 #include <stdlib.h>
 
@@ -75,6 +76,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_box(context);
   mcor_release_adaptive(context);
   mcor_release_pairs(context);
+  mcor_release_widening(context);
   mcor_release(context, &context->sort.sums);
   mcor_drop_kept(context, 0);
   free(context->source);

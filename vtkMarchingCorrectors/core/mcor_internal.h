@@ -193,6 +193,7 @@ double mcor_rounding(
  * the same particles as then. */
 void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor_options* options);
 bool mcor_same_particles(const mcor_input* input, const mcor_input* last);
+bool mcor_same_options(const mcor_options* a, const mcor_options* b);
 void mcor_keep_call(mcor_context* context, const mcor_input* input, const mcor_options* options);
 
 /* mcor_check.c, mcor_measure.c */

@@ -41,6 +41,8 @@ extern "C"
     double h_min, h_max;             /* of fluid particles */
     double support_min, support_max; /* scaled support radius of all particles that take part */
     double h_estimate;               /* 0: not asked for */
+    double widening_min, widening_max; /* factors of fluid particles; 0: there are none */
+    int64_t widening_sum;            /* of these, times 2^23 */
     double h_median, neighbours, spacing, filled; /* medians, as in mcor_statistics */
     double scalar_min, scalar_max;                /* over fluid particles */
     int64_t not_finite; /* the first fluid particle whose scalar is not finite; INT64_MAX: none */

@@ -18,6 +18,7 @@ bool mcor_same_particles(const mcor_input* input, const mcor_input* last)
     mcor_same_array(&input->smoothing_length, &last->smoothing_length) &&
     input->smoothing_length_is_support_radius == last->smoothing_length_is_support_radius &&
     input->estimate_smoothing_length == last->estimate_smoothing_length &&
+    mcor_same_array(&input->widening, &last->widening) &&
     mcor_same_array(&input->mass, &last->mass) &&
     mcor_same_array(&input->density, &last->density) &&
     mcor_same_array(&input->volume, &last->volume) &&
@@ -70,7 +71,7 @@ static bool mcor_same_bounds(const double a[6], const double b[6])
 }
 
 /* Whether all options are the same on which the search grid depends. */
-static bool mcor_same_options(const mcor_options* a, const mcor_options* b)
+bool mcor_same_options(const mcor_options* a, const mcor_options* b)
 {
   enum
   {

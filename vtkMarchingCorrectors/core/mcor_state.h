@@ -250,6 +250,7 @@ typedef struct mcor_run
 {
   const mcor_options* options;
   bool uses_solids;     /* solid particles must be on the device */
+  double widest;        /* factor of the lengths of sums at particles, see mcor_widen.c; 0: no such sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
   struct mcor_far* far; /* particles to leave out for that reason; NULL: none */
   struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; NULL */
@@ -279,6 +280,16 @@ typedef struct mcor_kept
   bool nodes; /* bricks hold node values of the current scalar */
 } mcor_kept;
 
+/* The factors of the last call with widening, and what they depend on. */
+typedef struct mcor_kept_widening
+{
+  mcor_widening widening; /* empty: none are kept */
+  mcor_input input;
+  mcor_options options;
+  double widest, least;
+  bool uses_solids;
+} mcor_kept_widening;
+
 struct mcor_context
 {
   bool created; /* false: mcor_create_context failed */
@@ -294,6 +305,7 @@ struct mcor_context
 
   /* The particles. */
   mcor_kept kept;
+  mcor_kept_widening kept_widening;
   mcor_measure measure;
   mcor_lattice lattice;
   mcor_plane plane; /* of the call under way */

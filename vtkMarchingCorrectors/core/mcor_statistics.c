@@ -88,6 +88,9 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   s->far_particles = m->far_count;
   s->far_first = m->far_first;
   s->particles_in_reach = context->grid.count;
+  s->widening_min = m->widening_min;
+  s->widening_max = m->widening_max;
+  s->widening_mean = m->fluid_count > 0 ? ldexp((double)m->widening_sum, -23) / (double)m->fluid_count : 0;
   s->smoothing_length_min = m->h_min;
   s->smoothing_length_max = m->h_max;
   s->smoothing_length_median = m->h_median;

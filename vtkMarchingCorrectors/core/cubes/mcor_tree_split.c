@@ -281,13 +281,15 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   const mcor_context* context = job->context;
   const mcor_lattice* lattice = &context->lattice;
   const double h_min = context->measure.h_min;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  const double longest = 1.000001 * context->measure.support_max / lattice->cube;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
   const int64_t end = job->begin + last;
   for (int64_t begin = job->begin + first; begin < end && !job->failed[slice]; begin += MCOR_CHUNK)
   {
     const int count = end - begin < MCOR_CHUNK ? (int)(end - begin) : MCOR_CHUNK;
     mcor_read_positions(job->input, begin, count, x);
     mcor_read_smoothing_length(context, job->input, begin, count, h);
+    mcor_widen_lengths(job->input, begin, count, h, length);
     for (int i = 0; i < count && !job->failed[slice]; ++i)
     {
       if (!mcor_is_used(context, job->input, begin + i))
@@ -295,8 +297,9 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
         continue;
       }
       /* As far as was measured, whatever other threads write to the arrays meanwhile. */
-      const double own = h[i] <= context->measure.h_max ? h[i] : context->measure.h_max;
-      const int level = mcor_tree_level_of(own, h_min, job->tree->top) + 1;
+      const int level = mcor_tree_level_of(h[i], h_min, job->tree->top) + 1;
+      const double support = length[i] * job->reach;
+      const double reach = support <= longest ? support : longest;
       double at[3];
       for (int a = 0; a < 3; ++a)
       {
@@ -307,7 +310,7 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
         at[a] = (inside < end_of_lattice ? inside : end_of_lattice) * mcor_edge_of(lattice, a);
       }
       const size_t before = job->split[slice][level].count;
-      job->failed[slice] = !mcor_split_reached(job, slice, level, at, own * job->reach) ||
+      job->failed[slice] = !mcor_split_reached(job, slice, level, at, reach) ||
         (job->split[slice][level].count > before && mcor_are_too_many(job->split[slice]));
     }
   }
@@ -327,7 +330,9 @@ static int64_t mcor_split_grain(const mcor_tree_job* job)
   const mcor_measure* measure = &job->context->measure;
   const double largest = fmax(2 * measure->h_min, ldexp(measure->h_max, -job->tree->top));
   const double cluster = 2 * MCOR_BRICK * MCOR_CLUSTER; /* of the level above the lowest */
-  const double along = 2 * job->reach * largest / cluster + 2;
+  const double widest = 
+    measure->support_max / job->context->lattice.cube / (job->reach * measure->h_max);
+  const double along = 2 * job->reach * widest * largest / cluster + 2;
   const double grain = 8 * MCOR_HEAVY_GRAIN / (along * along * (job->tree->is_plane ? 1 : along));
   return grain < 1 ? 1 : grain < MCOR_HEAVY_GRAIN ? (int64_t)grain : MCOR_HEAVY_GRAIN;
 }

@@ -70,29 +70,6 @@ static mcor_status mcor_load_arrays(mcor_derive_run* run)
 
 /* ---- evaluation ---- */
 
-/* The cells of the particles whose gradients are wanted; false: of all. Of a particle's images those in the
- * period alone, or on its upper side where the lower one is not in the box. */
-static bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3])
-{
-  const mcor_box* box = &context->box;
-  const mcor_lattice* lattice = &context->lattice;
-  bool bounded = box->of_points;
-  for (int a = 0; a < 3; ++a)
-  {
-    first[a] = box->first[a] - (box->of_points ? 1 : 0);
-    last[a] = box->last[a] + (box->of_points ? 1 : 0);
-    if (lattice->period[a] > 0)
-    {
-      const int from = lattice->period_first[a], to = from + lattice->period[a];
-      const int end = box->first[a] > from ? to + 1 : to;
-      first[a] = first[a] > from ? first[a] : from;
-      last[a] = last[a] < end ? last[a] : end;
-      bounded = true;
-    }
-  }
-  return bounded;
-}
-
 /* Sorts the batch's particles by place and cuts them into groups that are evaluated together. */
 static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
 {

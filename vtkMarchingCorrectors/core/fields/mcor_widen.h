@@ -3,10 +3,11 @@
 #ifndef mcor_widen_h
 #define mcor_widen_h
 
-#include "mcor.h"
+#include "mcor_internal.h"
 
 /* mcor_extract with options.widen above 1. */
 mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface);
+void mcor_release_widening(mcor_context* context);
 
 #endif

@@ -242,6 +242,17 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     MCOR_TRY(mcor_check_array(
       context, input, &input->smoothing_length, skip, "smoothing length", 1, true));
   }
+  if (mcor_is_given(&input->widening))
+  {
+    double range[2];
+    MCOR_TRY(mcor_check_array(context, input, &input->widening, skip, "widening", 1, true));
+    mcor_find_range(context, &input->widening, input->solid, skip, input->count, 0, range);
+    MCOR_RETURN_IF(range[0] < 1, context, MCOR_INVALID_DATA,
+      "The least factor of the smoothing lengths is %g; it must be at least 1.", range[0]);
+    MCOR_RETURN_IF(mcor_needs_density(input), context, MCOR_INVALID_ARGUMENT,
+      "With factors of the smoothing lengths volumes cannot be computed. Provide those of the "
+      "lengths themselves, which mcor_widen returns.");
+  }
   if (mcor_is_given(&input->volume))
   {
     MCOR_TRY(mcor_check_array(context, input, &input->volume, skip, "volume", 1, true));

@@ -61,7 +61,7 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_far_job* job = data;
   const mcor_input* input = job->input;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
   job->used[slice] = job->absent[slice] = job->fluid[slice] = 0;
   job->first[slice] = INT64_MAX;
   job->farthest[slice] = 0;
@@ -70,20 +70,21 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
     const int count = mcor_chunk_of(last - begin);
     mcor_read_positions(input, begin, count, x);
     mcor_read_smoothing_length(job->context, input, begin, count, h);
+    mcor_widen_lengths(input, begin, count, h, length);
     for (int i = 0; i < count; ++i)
     {
       const int64_t particle = begin + i;
       const uint8_t was = input->solid ? input->solid[particle] : 0;
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
       const bool is_used = mcor_is_used(job->context, input, particle);
-      const bool is_far = is_used && mcor_is_far(job, at, h[i]);
+      const bool is_far = is_used && mcor_is_far(job, at, length[i]);
       job->far->solid[particle] = is_far ? MCOR_ABSENT : was;
       job->used[slice] += is_used;
       job->absent[slice] += is_far;
       job->fluid[slice] += !is_far && !was;
       job->first[slice] = is_far && particle < job->first[slice] ? particle : job->first[slice];
       job->farthest[slice] =
-        is_used && !is_far ? fmax(job->farthest[slice], h[i] * job->reach) : job->farthest[slice];
+        is_used && !is_far ? fmax(job->farthest[slice], length[i] * job->reach) : job->farthest[slice];
     }
   }
 }
@@ -124,7 +125,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
     const double largest = job->farthest[0];
     const double volumes =
       mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
-    job->radius = largest > 0 ? volumes + largest + 2 * context->measure.h_min : 0;
+    const double around = (volumes + largest) * (1 + context->run.widest);
+    job->radius = largest > 0 ? around + 2 * context->measure.h_min : 0;
     return mcor_mark_far(context, job);
   }
   /* There is no fluid. A run needs some, wherever that is. */

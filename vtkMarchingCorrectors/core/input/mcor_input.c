@@ -442,3 +442,18 @@ void mcor_read_smoothing_length(
     out[i] *= scale;
   }
 }
+
+void mcor_widen_lengths(
+  const mcor_input* input, int64_t first, int count, const double* h, double* out)
+{
+  if (!mcor_is_given(&input->widening))
+  {
+    memcpy(out, h, (size_t)count * sizeof *out);
+    return;
+  }
+  mcor_read_array(&input->widening, first, count, 0, out);
+  for (int i = 0; i < count; ++i)
+  {
+    out[i] *= h[i];
+  }
+}

@@ -187,6 +187,9 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 /* Reads smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);
+/* Lengths of the kernels of particles that have these smoothing lengths. */
+void mcor_widen_lengths(
+  const mcor_input* input, int64_t first, int count, const double* h, double* out);
 
 /* Whether the device computes volumes from the particles' density. */
 static inline bool mcor_needs_density(const mcor_input* input)

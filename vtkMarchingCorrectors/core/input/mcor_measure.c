@@ -28,6 +28,8 @@ typedef struct mcor_chunk
 {
   int count;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], scalar[MCOR_CHUNK];
+  double factor[MCOR_CHUNK]; /* of h, if is_widened; else not read */
+  bool is_widened;
 } mcor_chunk;
 
 static void mcor_read_chunk(
@@ -35,6 +37,11 @@ static void mcor_read_chunk(
 {
   mcor_read_positions(input, first, chunk->count, chunk->x);
   mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
+  chunk->is_widened = mcor_is_given(&input->widening);
+  if (chunk->is_widened)
+  {
+    mcor_read_array(&input->widening, first, chunk->count, 0, chunk->factor);
+  }
   if (context->run.options->field != MCOR_WEIGHT_SUM)
   {
     mcor_read_scalar(input, first, chunk->count, chunk->scalar);
@@ -50,13 +57,14 @@ enum
   MCOR_SUPPORTS = 7,
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9, /* positions of all particles in use: x, y, z */
-  MCOR_RANGES = 12
+  MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
+  MCOR_RANGES = 13
 };
 
 typedef struct mcor_ranges
 {
   double least[MCOR_RANGES], most[MCOR_RANGES];
-  int64_t counts[2]; /* fluid particles, solids */
+  int64_t counts[3]; /* fluid particles, solids; the sum of factors */
   int64_t not_finite;
 } mcor_ranges;
 
@@ -85,7 +93,27 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
   }
   r->counts[0] += other->counts[0];
   r->counts[1] += other->counts[1];
+  r->counts[2] += other->counts[2];
   r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
+}
+
+/* What a factor may add to their sum. */
+#define MCOR_MOST_FACTOR 256.0
+
+/* The lengths of kernels; and of fluid the factors. */
+static void mcor_measure_factors(
+  const mcor_chunk* chunk, bool solids, mcor_ranges* r, double* length)
+{
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    const double factor = chunk->factor[i];
+    length[i] = factor * chunk->h[i];
+    if (!solids)
+    {
+      mcor_add_range(r, MCOR_FACTORS, factor, factor);
+      r->counts[2] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
+    }
+  }
 }
 
 /* Measures all but the scalar of a chunk's fluid, or of its solids. If all smoothing lengths are
@@ -94,6 +122,16 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
 {
   double h_min = DBL_MAX, h_max = -DBL_MAX;
   mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
+  double least = h_min, most = h_max, widened[MCOR_CHUNK];
+  const double* length = chunk->h;
+  if (chunk->is_widened)
+  {
+    mcor_measure_factors(chunk, solids, r, widened);
+    least = DBL_MAX;
+    most = -DBL_MAX;
+    length = widened;
+    mcor_widen_range(length, chunk->count, &least, &most);
+  }
   for (int a = 0; a < 3 && chunk->count > 0; ++a)
   {
     const double* x = chunk->x[a];
@@ -104,20 +142,20 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
     {
       mcor_add_range(r, MCOR_PLACES + a, low, high);
     }
-    if (h_min == h_max)
+    if (least == most)
     {
-      mcor_add_range(r, MCOR_REACHES + a, low - h_min * reach, high + h_min * reach);
+      mcor_add_range(r, MCOR_REACHES + a, low - least * reach, high + least * reach);
       continue;
     }
     for (int i = 0; i < chunk->count; ++i)
     {
-      const double support = chunk->h[i] * reach;
+      const double support = length[i] * reach;
       mcor_add_range(r, MCOR_REACHES + a, x[i] - support, x[i] + support);
     }
   }
   if (chunk->count > 0)
   {
-    mcor_add_range(r, MCOR_SUPPORTS, h_min * reach, h_max * reach);
+    mcor_add_range(r, MCOR_SUPPORTS, least * reach, most * reach);
     mcor_add_range(r, MCOR_LENGTHS, solids ? DBL_MAX : h_min, solids ? -DBL_MAX : h_max);
   }
 }
@@ -128,6 +166,7 @@ static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk*
 {
   const int count = chunk->count;
   solids->count = 0;
+  solids->is_widened = chunk->is_widened;
   chunk->count = solid ? 0 : count;
   for (int i = 0; i < count && solid; ++i)
   {
@@ -137,6 +176,7 @@ static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk*
       to->x[a][to->count] = chunk->x[a][i];
     }
     to->h[to->count] = chunk->h[i];
+    to->factor[to->count] = chunk->is_widened ? chunk->factor[i] : 1;
     to->count += solid[i] != MCOR_ABSENT;
   }
 }
@@ -226,7 +266,7 @@ static mcor_status mcor_measure_particles(
 static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
 {
   mcor_measure* m = &context->measure;
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, r->counts, 2));
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, r->counts, 3));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, r->least, MCOR_RANGES));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, r->most, MCOR_RANGES));
   m->fluid_count = r->counts[0];
@@ -242,6 +282,9 @@ static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
   m->h_max = r->most[MCOR_LENGTHS];
   m->support_min = r->least[MCOR_SUPPORTS];
   m->support_max = r->most[MCOR_SUPPORTS];
+  m->widening_min = r->counts[2] > 0 ? r->least[MCOR_FACTORS] : 0;
+  m->widening_max = r->counts[2] > 0 ? r->most[MCOR_FACTORS] : 0;
+  m->widening_sum = r->counts[2];
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->not_finite;

@@ -75,11 +75,12 @@ static int mcor_wall_first(const mcor_wall* wall, double x)
   return low;
 }
 
-static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[3], double h)
+static void mcor_wall_add(
+  mcor_wall* wall, int slice, int64_t i, const double x[3], double h, double length)
 {
   const mcor_options* options = wall->context->run.options;
   const bool solid = wall->input->solid && wall->input->solid[i];
-  const double scaled = h * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0;
+  const double scaled = length * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0;
   double weight = 0;
   for (int s = mcor_wall_first(wall, along - wall->reach); s < wall->count; ++s)
   {
@@ -111,18 +112,19 @@ static void mcor_wall_add(mcor_wall* wall, int slice, int64_t i, const double x[
 static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_wall* wall = data;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = mcor_chunk_of(last - begin);
     mcor_read_positions(wall->input, begin, count, x);
     mcor_read_smoothing_length(wall->context, wall->input, begin, count, h);
+    mcor_widen_lengths(wall->input, begin, count, h, length);
     for (int i = 0; i < count; ++i)
     {
       const double at[3] = { x[0][i], x[1][i], x[2][i] };
       if (mcor_is_used(wall->context, wall->input, begin + i))
       {
-        mcor_wall_add(wall, slice, begin + i, at, h[i]);
+        mcor_wall_add(wall, slice, begin + i, at, h[i], length[i]);
       }
     }
   }

@@ -7,6 +7,7 @@
 #include "mcor_stage.h"
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
+#include "mcor_tree.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,7 +108,7 @@ static int mcor_images_of(
     at[a] = chunk->x[a][i] * job->reach->unit;
   }
   const double h = chunk->h[i] <= job->h_max ? chunk->h[i] : job->h_max;
-  return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, h), images);
+  return mcor_list_images(job->reach, at, mcor_reach_of(job->reach, h, chunk->level[i]), images);
 }
 
 /* Marks the particles that may reach the box, by one test of each coordinate that the box
@@ -117,14 +118,16 @@ static void mcor_mark_near(const mcor_stage_job* job, int64_t first, int count)
   const mcor_reach_box* reach = job->reach;
   const mcor_lattice* lattice = &job->context->lattice;
   mcor_array positions = job->input->positions;
-  double x[MCOR_CHUNK], h[MCOR_CHUNK];
+  double x[MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
   uint8_t* near = job->images + first;
   positions.components = 3;
   memset(near, 1, (size_t)count);
   mcor_read_smoothing_length(job->context, job->input, first, count, h);
+  mcor_widen_lengths(job->input, first, count, h, length);
   for (int i = 0; i < count; ++i)
   {
-    h[i] = (reach->top > 0 ? mcor_reach_of(reach, h[i]) : h[i] * reach->support) * lattice->cube;
+    const int level = mcor_tree_level_of(h[i], reach->h_min, reach->top);
+    h[i] = mcor_reach_of(reach, length[i], level) * lattice->cube;
   }
   for (int a = 0; a < 3; ++a)
   {
@@ -271,6 +274,7 @@ static void mcor_stage_images(
         out->x[a][out->count] = chunk->x[a][i] + k[a] * period[a];
       }
       out->h[out->count] = chunk->h[i];
+      out->level[out->count] = chunk->level[i];
       out->size[out->count] = chunk->size[i];
       out->source[out->count++] = chunk->source[i];
       for (int a = 0; a < 3 && ++k[a] > images.last[a]; ++a)

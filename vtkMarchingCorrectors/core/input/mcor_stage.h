@@ -32,7 +32,8 @@ int mcor_spared_bits(const mcor_context* context, double support, double cube, i
 typedef struct mcor_stage_chunk
 {
   int count;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK];
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK]; /* h: the kernel's length */
+  uint8_t level[MCOR_CHUNK]; /* of adaptive cubes */
   int32_t source[MCOR_CHUNK];
 } mcor_stage_chunk;
 

@@ -32,9 +32,12 @@ void mcor_read_stage_places(const mcor_context* context, const mcor_input* input
       x[i] = mcor_wrap(reach, a, x[i]);
     }
   }
-  mcor_read_smoothing_length(context, input, first, count, chunk->h);
+  double h[MCOR_CHUNK];
+  mcor_read_smoothing_length(context, input, first, count, h);
+  mcor_widen_lengths(input, first, count, h, chunk->h);
   for (int i = 0; i < count; ++i)
   {
+    chunk->level[i] = (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->top);
     chunk->source[i] = (int32_t)(first + i);
   }
 }
@@ -99,8 +102,8 @@ static void mcor_round_positions(const mcor_context* context, double reach, mcor
   const double cube = context->lattice.cube;
   for (int i = 0; i < chunk->count; ++i)
   {
-    const int level = mcor_tree_level_of(chunk->h[i], context->measure.h_min, context->lattice.top);
-    const double unit = ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, level));
+    const double unit =
+      ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
     for (int a = 0; a < 3; ++a)
     {
       chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);

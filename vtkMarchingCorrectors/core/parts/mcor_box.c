@@ -258,6 +258,27 @@ mcor_status mcor_count_cells(
 
 /* ---- Particles ---- */
 
+bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3])
+{
+  const mcor_box* box = &context->box;
+  const mcor_lattice* lattice = &context->lattice;
+  bool bounded = box->is_part;
+  for (int a = 0; a < 3; ++a)
+  {
+    first[a] = box->first[a] - (box->of_points ? 1 : 0);
+    last[a] = box->last[a] + (box->of_points ? 1 : 0);
+    if (lattice->period[a] > 0)
+    {
+      const int from = lattice->period_first[a], to = from + lattice->period[a];
+      const int end = box->of_points && box->first[a] > from ? to + 1 : to;
+      first[a] = first[a] > from ? first[a] : from;
+      last[a] = last[a] < end ? last[a] : end;
+      bounded = true;
+    }
+  }
+  return bounded;
+}
+
 /* Finds the numbers of the images of a particle that come within `reach` of the places where the
  * field is evaluated. at: in cubes from the lattice's origin. Returns false if there is none.
  * Without a period the only number is 0. */
@@ -287,12 +308,10 @@ int mcor_list_images(
   return count;
 }
 
-double mcor_reach_of(const mcor_reach_box* box, double h)
+double mcor_reach_of(const mcor_reach_box* box, double length, int level)
 {
-  const double support = h * box->support;
-  return box->top > 0
-    ? support + ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(h, box->h_min, box->top))
-    : support;
+  const double support = length * box->support;
+  return box->top > 0 ? support + ldexp(MCOR_LEVEL_MARGIN, level) : support;
 }
 
 double mcor_reach_margin(
@@ -327,15 +346,17 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_reach_job* job = data;
   const mcor_lattice* lattice = &job->context->lattice;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], farthest = 0;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK], farthest = 0;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
     mcor_read_smoothing_length(job->context, job->input, begin, count, h);
+    mcor_widen_lengths(job->input, begin, count, h, length);
     mcor_read_positions(job->input, begin, count, x);
     for (int i = 0; i < count; ++i)
     {
-      const double support = mcor_reach_of(job->box, h[i]);
+      const int level = mcor_tree_level_of(h[i], job->box->h_min, job->box->top);
+      const double support = mcor_reach_of(job->box, length[i], level);
       double at[3];
       mcor_images images;
       for (int a = 0; a < 3; ++a)
@@ -355,11 +376,17 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
 
 /* Widens the reach for what is not a sum over supports: a volume sums all particles within the
  * particle's unscaled support; the nearest particle may be nearer than one that reaches; and the
- * other particle of a pair is within the smoothing length. */
+ * other particle of a pair is within the smoothing length. Sums at particles with longer lengths are
+ * needed as far as a support from the box. */
 static double mcor_reach_beyond(
-  const mcor_options* options, const mcor_input* input, double farthest)
+  const mcor_context* context, const mcor_input* input, double farthest)
 {
+  const mcor_options* options = context->run.options;
   const double volumes = mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
+  if (context->run.widest > 0)
+  {
+    return farthest > 0 ? fmax(volumes, farthest) * (1 + context->run.widest) + 2 : 0;
+  }
   const double nearest =
     (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS ? farthest + 2
                                                                                    : 0;
@@ -405,7 +432,8 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     reach->period[a] = context->lattice.period[a] * edge;
     reach->first[a] = context->lattice.period_first[a] * edge;
   }
-  if (mcor_needs_density(input) || mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) || pairs)
+  if (mcor_needs_density(input) || mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) || pairs ||
+    context->run.widest > 0)
   {
     mcor_reach_job job = { .context = context, .input = input, .box = reach };
     const int slices =
@@ -415,7 +443,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     {
       farthest = fmax(farthest, job.farthest[s]);
     }
-    reach->radius = mcor_reach_beyond(context->run.options, input, farthest);
+    reach->radius = mcor_reach_beyond(context, input, farthest);
   }
   return true;
 }

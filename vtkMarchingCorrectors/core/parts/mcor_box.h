@@ -44,8 +44,12 @@ typedef struct mcor_images
   int first[3], last[3];
 } mcor_images;
 
-/* Returns how near to the box a particle must be to matter. */
-double mcor_reach_of(const mcor_reach_box* box, double h);
+/* Returns how near to the box a particle must be to matter, by its kernel's length and its level of
+ * adaptive cubes. */
+double mcor_reach_of(const mcor_reach_box* box, double length, int level);
+/* Finds the cells of the particles at which sums are wanted; returns false where all are. Of a particle's
+ * images only that in the period counts, or that on its upper side where the lower one is not in the box. */
+bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* Returns false where all particles are needed. */

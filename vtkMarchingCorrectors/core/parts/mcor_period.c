@@ -135,7 +135,8 @@ mcor_status mcor_check_digits(mcor_context* context, double low, double high, do
 static double mcor_image_reach(
   const mcor_context* context, const mcor_options* options, double cube)
 {
-  return context->measure.support_max * (2 + 1 / options->h_scale) + 8 * cube;
+  const double beyond = context->run.widest * (1 + 1 / options->h_scale); /* see mcor_reach_beyond */
+  return context->measure.support_max * (2 + 1 / options->h_scale + beyond) + 8 * cube;
 }
 
 /* May lower lattice.top. */

@@ -4,85 +4,260 @@
 /* Widening: by how much each particle's smoothing length may grow so that the particle stays inside of the surface.
  *
  * c(s) = sum V_k W(x_j - x_k, s h_j) is the weight sum at particle j with its own length s h_j. The factor is the
- * greatest s in [1, widest] for which c(s) is at least `least`, between steps of 0.2 by linear interpolation. It
- * falls back to 1 where few neighbours are near: lone drops and threads would shrink. */
+ * greatest s in [1, widest] for which c(s) is at least `least`, between steps of 0.2 by linear interpolation; then
+ * 1 + (s - 1) times a share that falls to 0 where few neighbours are near, as lone drops and threads would shrink;
+ * then no more than the Shepard mean of these factors at h. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
+/* Particles j in the lanes, the first `count` of these; x: as in the grid. */
 typedef struct
 {
-  real h_scale, widest, least; /* h_scale: of the grid's lengths, which are s h_j for s = h_scale */
-  int plane;
-  realv scale, inv_h; /* 1 / h_j, in the unit of positions, and in cubes */
   fixv x[3];
+  realv inv_h, scale; /* 1 / h_j, in cubes and in the unit of positions */
+  int count, plane;
 } mcor_widen_at;
 
-/* Adds the particles within `share` of the supports of s h_j: c(s), and, unless NULL, the crowd
- * sum max(0, 1 - (r / 2 h_j)^3). Each lane has its own reach, so that its sum does not depend on the others. */
-realv mcor_widen_sum(
-  const mcor_grid* grid, int begin, int end, const mcor_widen_at* at, real s, real share, realv* crowd)
+/* One work-item = one sorted particle. Writes what its weight is made of, V_k norm; in the plane V_k norm / h_k. */
+__kernel void mcor_widen_sizes(const int count, const int plane, __global const real* inv_h,
+  __global const real* weight, __global real* size)
 {
-  const real inv_s = (real)1 / s;
-  realv sum = 0;
+  MCOR_ITEM(i, i < count);
+  const real h = (real)1 / inv_h[i];
+  size[i] = weight[i] * h * h * (plane ? (real)1 : h);
+}
+
+/* Fits the query's box to the particles of the lanes from `from` on, up to one that is far from the first or, as
+ * where a row ends, before the one before it. Returns which lane that is. */
+int mcor_widen_place(
+  const mcor_grid* grid, mcor_query* query, const mcor_widen_at* at, int from, real support)
+{
+  real coarsest = MCOR_GET(at->inv_h, from);
+  const fix far = mcor_query_reach((float)(MCOR_SUPPORT / coarsest) * (float)grid->units);
+  int next = from;
+  for (bool near = true; near; next += near)
+  {
+    near = next < at->count &&
+      (next == from || MCOR_GET_FIX(at->x[0], next) >= MCOR_GET_FIX(at->x[0], next - 1));
+    for (int a = 0; a < 3 && near; ++a)
+    {
+      const fix from_first = MCOR_GET_FIX(at->x[a], next) - MCOR_GET_FIX(at->x[a], from);
+      near = from_first <= far && from_first >= -far;
+    }
+    for (int a = 0; a < 3 && near; ++a)
+    {
+      const fix p = MCOR_GET_FIX(at->x[a], next);
+      query->low[a] = next == from ? p : min(query->low[a], p);
+      query->high[a] = next == from ? p : max(query->high[a], p);
+    }
+    coarsest = near ? fmin(coarsest, MCOR_GET(at->inv_h, next)) : coarsest;
+  }
+  mcor_query_place(grid, query, query->low);
+  query->radius = (float)(support / coarsest) * 1.0001f;
+  return next;
+}
+
+/* Offsets of particle k, in the unit of positions. */
+#define MCOR_WIDEN_OFFSET(axis, position) MCOR_CONVERT_REALV(grid->position[k] - at->x[axis])
+
+/* Values of s that one walk over the particles is for. */
+#define MCOR_WIDEN_LEVELS 3
+
+/* c(s) for each s of `levels`, the first of which is the largest, by the particles within `reach` h_j; and, unless
+ * NULL, the crowd, the sum of max(0, 1 - (r / 2 h_j)^3). Each lane has its own reach, so that its sum does not depend
+ * on the others. */
+__attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
+  __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
+  realv* c, realv* crowd)
+{
+  const realv scale2 = at->scale * at->scale;
+  real inv_s[MCOR_WIDEN_LEVELS];
+  realv part[MCOR_WIDEN_LEVELS];
   mcor_query query;
   mcor_tile tile;
-  for (int row = begin, next; row < end; row = next)
+  for (int l = 0; l < levels; ++l)
   {
-    real coarsest;
-    next = row + mcor_query_particles(grid, &query, row, end, &coarsest);
-    query.radius = (float)(MCOR_SUPPORT * s * share / (coarsest * at->h_scale)) * 1.0001f;
-    const fixv lane = mcor_lane_index();
-    const fixv inside = lane >= (fixv)(row - begin) && lane < (fixv)(next - begin);
+    inv_s[l] = (real)1 / s[l];
+  }
+  for (int lane = 0, next; lane < at->count; lane = next)
+  {
+    realv near = 0;
+    for (int l = 0; l < levels; ++l)
+    {
+      part[l] = 0;
+    }
+    next = mcor_widen_place(grid, &query, at, lane, reach);
     mcor_tile_init(&tile);
     for (bool first = true; mcor_tile_next(grid, &query, &tile, first); first = false)
     {
       for (int i = 0; i < tile.count; ++i)
       {
         const int k = MCOR_INDEX(&tile, i);
-        const realv dx = MCOR_CONVERT_REALV(grid->px[k] - at->x[0]) * at->scale;
-        const realv dy = MCOR_CONVERT_REALV(grid->py[k] - at->x[1]) * at->scale;
-        const realv dz = MCOR_CONVERT_REALV(grid->pz[k] - at->x[2]) * at->scale;
-        const realv q = mcor_sqrt(mcor_square(dx, dy, dz));
-        const realv ratio = at->inv_h * (inv_s / grid->inv_h[k]);
-        const realv size = grid->weight[k] * ratio * ratio * (at->plane ? (realv)1 : ratio);
-        const realv w = mcor_weight(mcor_distance(dx, dy, dz, inv_s), inv_s);
-        const fixv counts = inside && (MCOR_TENSOR || q < (realv)(MCOR_SUPPORT * s * share));
-        sum = MCOR_FMA(counts ? size : (realv)0, w, sum);
-        if (crowd)
+        const realv dx = MCOR_WIDEN_OFFSET(0, px), dy = MCOR_WIDEN_OFFSET(1, py),
+                    dz = MCOR_WIDEN_OFFSET(2, pz);
+        const realv q2 = mcor_square(dx, dy, dz) * scale2, q = mcor_sqrt(q2);
+        const realv size = MCOR_TENSOR || !crowd || q < (realv)reach ? (realv)sizes[k] : (realv)0;
+        for (int l = 0; l < levels; ++l)
         {
-          const realv r = q * (real)0.5f;
-          const realv near = fmax((real)1 - r * r * r, (realv)0);
-          *crowd += inside && grid->weight[k] > 0 ? near : (realv)0;
+          const realv w =
+            mcor_weight(MCOR_TENSOR ? mcor_distance(dx, dy, dz, at->scale * inv_s[l]) : q, inv_s[l]);
+          part[l] = MCOR_FMA(size, w, part[l]);
+        }
+        if (crowd && sizes[k] > 0)
+        {
+          near += fmax(MCOR_FMA(q2 * (real)-0.125f, q, (realv)1), (realv)0);
         }
       }
     }
+    const fixv inside = mcor_lane_index() >= (fixv)lane && mcor_lane_index() < (fixv)next;
+    for (int l = 0; l < levels; ++l)
+    {
+      const realv inv = at->inv_h * inv_s[l];
+      c[l] = inside ? part[l] * inv * inv * (at->plane ? (realv)1 : inv) : c[l];
+    }
+    if (crowd)
+    {
+      *crowd = inside ? near : *crowd;
+    }
   }
-  return sum;
 }
 
-/* The greatest s on the steps below `widest`, whose c is `above` and too low; lanes of `found` are done. */
-realv mcor_widen_solve(
-  const mcor_grid* grid, int begin, int end, const mcor_widen_at* at, realv above, fixv found)
+/* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factors of those for which the
+ * widest one will do, or for which 1 is known; to `wanted` 1 for the others, and their shares in place of factors. */
+__kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real least,
+  const real crowd_from, const real crowd_to, __global const real* sizes, __global real* factor,
+  __global int* wanted)
 {
-  realv s = found ? (realv)at->widest : (realv)1;
-  real upper = at->widest;
-  for (int step = (int)ceil((at->widest - 1) / MCOR_WIDEN_STEP) - 1;
-       step >= 0 && MCOR_ANY(!found); --step)
+  const mcor_grid grid = MCOR_GRID;
+  const int begin = get_global_id(0) * MCOR_LANES;
+  if (begin >= particle_count)
   {
-    const real lower = 1 + (real)step * MCOR_WIDEN_STEP;
-    const realv c = mcor_widen_sum(grid, begin, end, at, lower, 1, NULL);
-    const fixv here = !found && c >= (realv)at->least;
-    s = here ? MCOR_FMA((c - at->least) / (c - above), (realv)(upper - lower), (realv)lower) : s;
-    found = found || here;
-    above = c;
-    upper = lower;
+    return;
   }
-  return s;
+  const realv inv_h = MCOR_LOAD(begin, p_inv_h);
+  const mcor_widen_at at = {
+    { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv_h,
+    grid.unit * inv_h, min(MCOR_LANES, particle_count - begin), plane
+  };
+  /* Terms are not negative, so that inside of the fluid a part of the particles will do. */
+  const real reach = MCOR_TENSOR ? MCOR_SUPPORT * widest
+                                 : fmax(MCOR_SUPPORT * widest * (real)0.54f, (real)2);
+  realv crowd = 0, c = 0;
+  mcor_widen_sum(&grid, sizes, &at, 1, &widest, reach, &c, &crowd);
+  const realv t = clamp((crowd - 1 - crowd_from) / (crowd_to - crowd_from), (realv)0, (realv)1);
+  const realv taper = t * t * (3 - 2 * t);
+  const fixv known = c >= (realv)least || taper <= (realv)0;
+  const realv result = known ? MCOR_FMA((realv)(widest - 1), taper, (realv)1) : taper;
+  for (int lane = 0; lane < at.count; ++lane)
+  {
+    factor[begin + lane] = MCOR_GET(result, lane);
+    wanted[begin + lane] = !MCOR_GET_FIX(known, lane);
+  }
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the grid. Writes each particle's factor. */
-__kernel void mcor_widen_factors(MCOR_GRID_PARAMS, const real h_scale, const int plane,
-  const real widest, const real least, const real crowd_from, const real crowd_to,
+/* One work-item = one sorted particle. Reads `wanted` as scanned. Lists the particles that were wanted. */
+__kernel void mcor_widen_list(
+  const int count, __global const int* scanned, __global int* list)
+{
+  MCOR_ITEM(i, i < count);
+  if (scanned[i] != scanned[i + 1])
+  {
+    list[scanned[i]] = i;
+  }
+}
+
+/* An array of a work-item's own, with an element for each lane. */
+#if MCOR_LANES == 1
+#define MCOR_WIDEN_LANES(array) (array)[0]
+#else
+#define MCOR_WIDEN_LANES(array) MCOR_CAT(vload, MCOR_LANES)(0, array)
+#endif
+
+/* One work-item = MCOR_LANES listed particles. Reads their shares. Writes their factors. */
+__kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest,
+  const real least, __global const real* sizes, const int listed, __global const int* list,
   __global real* factor)
+{
+  const mcor_grid grid = MCOR_GRID;
+  const int begin = get_global_id(0) * MCOR_LANES;
+  if (begin >= listed)
+  {
+    return;
+  }
+  const int count = min(MCOR_LANES, listed - begin);
+  fix x[3][MCOR_LANES];
+  real of_h[MCOR_LANES], share[MCOR_LANES];
+  for (int lane = 0; lane < MCOR_LANES; ++lane)
+  {
+    const int i = list[begin + min(lane, count - 1)];
+    x[0][lane] = px[i];
+    x[1][lane] = py[i];
+    x[2][lane] = pz[i];
+    of_h[lane] = p_inv_h[i];
+    share[lane] = factor[i];
+  }
+  const realv inv_h = MCOR_WIDEN_LANES(of_h);
+  const mcor_widen_at at = {
+    { MCOR_WIDEN_LANES(x[0]), MCOR_WIDEN_LANES(x[1]), MCOR_WIDEN_LANES(x[2]) }, inv_h,
+    grid.unit * inv_h, count, plane
+  };
+  realv s = 1, above = 0;
+  real upper = widest;
+  fixv found = mcor_lane_index() >= (fixv)count;
+  int step = (int)ceil((widest - 1) / MCOR_WIDEN_STEP);
+  for (bool first = true; step >= (first ? 1 : 0) && MCOR_ANY(!found); first = false)
+  {
+    real level[MCOR_WIDEN_LEVELS];
+    realv c[MCOR_WIDEN_LEVELS];
+    for (int l = 0; l < MCOR_WIDEN_LEVELS; ++l)
+    {
+      const real at_step = 1 + (real)max(step - l, 0) * MCOR_WIDEN_STEP;
+      level[l] = first && l == 0 ? widest : at_step;
+      c[l] = 0;
+    }
+    mcor_widen_sum(
+      &grid, sizes, &at, MCOR_WIDEN_LEVELS, level, MCOR_SUPPORT * level[0], c, NULL);
+    for (int l = 0; l < MCOR_WIDEN_LEVELS; ++l)
+    {
+      const bool is_widest = first && l == 0;
+      const fixv here = !found && c[l] >= (realv)least;
+      const realv between = (c[l] - least) / (c[l] - above) * (upper - level[l]);
+      s = here ? (is_widest ? (realv)widest : level[l] + between) : s;
+      found = found || here;
+      above = c[l];
+      upper = level[l];
+    }
+    step -= MCOR_WIDEN_LEVELS;
+  }
+  s = MCOR_FMA(s - 1, MCOR_WIDEN_LANES(share), (realv)1);
+  for (int lane = 0; lane < count; ++lane)
+  {
+    factor[list[begin + lane]] = MCOR_GET(s, lane);
+  }
+}
+
+/* Whether all particles that may reach the query's box have the widest factor: nearly all groups are that deep
+ * inside, and their means are known. */
+bool mcor_widen_is_plain(
+  const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
+{
+  bool plain = true;
+  for (bool some = mcor_query_next_level(grid, query, 0);
+       some && plain && mcor_query_next_row(grid, query);)
+  {
+    for (int k = query->begin; k < query->end && plain; k += MCOR_LANES)
+    {
+      const fixv beyond = mcor_lane_index() >= (fixv)(query->end - k);
+      plain = !MCOR_ANY(!(beyond || MCOR_LOAD(k, factor) == (realv)widest));
+    }
+    query->begin = query->end;
+  }
+  return plain;
+}
+
+/* One work-item = MCOR_LANES sorted particles. Reads factors. Writes the lower of each one and the mean there; as that
+ * is the widest one less a mean of what others lack, it is exact where none lacks anything. */
+__kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global const real* factor,
+  __global real* limited)
 {
   const mcor_grid grid = MCOR_GRID;
   const int begin = get_global_id(0) * MCOR_LANES;
@@ -91,24 +266,47 @@ __kernel void mcor_widen_factors(MCOR_GRID_PARAMS, const real h_scale, const int
     return;
   }
   const int end = min(begin + MCOR_LANES, particle_count);
-  const realv inv_h = MCOR_LOAD(begin, p_inv_h) * h_scale;
-  const mcor_widen_at at = { h_scale, widest, least, plane, grid.unit * inv_h, inv_h,
-    { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) } };
-  /* Terms are not negative, so that inside of the fluid a part of the sum, and of the particles, will do. */
-  const real share = MCOR_TENSOR ? (real)1 : fmax((real)0.6f, 1 / widest);
-  realv crowd = 0, c = mcor_widen_sum(&grid, begin, end, &at, widest, share, &crowd);
-  fixv found = c >= (realv)least || mcor_lane_index() >= (fixv)(end - begin);
-  if (share < 1 && MCOR_ANY(!found))
+  const realv own = MCOR_LOAD(begin, factor);
+  const fixv x[3] = { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py),
+    MCOR_LOAD_FIX(begin, pz) };
+  realv lacks = 0, weights = 0;
+  mcor_query query;
+  mcor_tile tile;
+  for (int row = begin, next; row < end; row = next)
   {
-    c = mcor_widen_sum(&grid, begin, end, &at, widest, 1, NULL);
-    found = found || c >= (realv)least;
+    real coarsest;
+    next = row + mcor_query_particles(&grid, &query, row, end, &coarsest);
+    query.radius = -1;
+    if (mcor_widen_is_plain(&grid, &query, factor, widest))
+    {
+      continue;
+    }
+    const fixv lane = mcor_lane_index();
+    const fixv inside = lane >= (fixv)(row - begin) && lane < (fixv)(next - begin);
+    realv lack = 0, weight = 0;
+    mcor_tile_init(&tile);
+    for (bool first = true; mcor_tile_next(&grid, &query, &tile, first); first = false)
+    {
+      for (int i = 0; i < tile.count; ++i)
+      {
+        const int k = MCOR_INDEX(&tile, i);
+        const realv dx = MCOR_CONVERT_REALV(px[k] - x[0]) * grid.unit,
+                    dy = MCOR_CONVERT_REALV(py[k] - x[1]) * grid.unit,
+                    dz = MCOR_CONVERT_REALV(pz[k] - x[2]) * grid.unit;
+        const realv w = p_weight[k] *
+          mcor_weight(mcor_distance(dx, dy, dz, p_inv_h[k]), (realv)p_inv_h[k]);
+        weight += w;
+        lack = MCOR_FMA(w, (realv)(widest - factor[k]), lack);
+      }
+    }
+    lacks = inside ? lack : lacks;
+    weights = inside ? weight : weights;
   }
-  const realv s = mcor_widen_solve(&grid, begin, end, &at, c, found);
-  const realv t = clamp((crowd - 1 - crowd_from) / (crowd_to - crowd_from), (realv)0, (realv)1);
-  const realv result = MCOR_FMA(s - 1, t * t * (3 - 2 * t), (realv)1);
+  const realv mean = weights > (realv)0 ? widest - lacks / weights : own;
+  const realv result = fmax(fmin(own, mean), (realv)1);
 #if MCOR_LANES == 1
-  factor[begin] = result;
+  limited[begin] = result;
 #else
-  MCOR_CAT(vstore, MCOR_LANES)(result, 0, factor + begin);
+  MCOR_CAT(vstore, MCOR_LANES)(result, 0, limited + begin);
 #endif
 }

@@ -20,7 +20,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Rounds in place: the surface is the largest thing at this time. */
+/** Rounds in place: the surface is the largest object in memory at this time. */
 vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkIdType tuples)
 {
   const vtkIdType count = values ? tuples * components : 0;
@@ -51,7 +51,7 @@ void AddTuple(vtkFieldData* data, const char* name, std::initializer_list<ValueT
   vtkSPHAddArray(data, name, array);
 }
 
-// One component per phase, building the program and the total; 0 so far.
+// One component for each phase, one for building programs, and the total; 0 before the first run.
 void AddSeconds(vtkFieldData* run)
 {
   auto seconds = vtkSmartPointer<vtkDoubleArray>::New();
@@ -120,7 +120,7 @@ enum How
   OTHER
 };
 
-/// Counts of several runs add up.
+/// Adds up the counts of several runs.
 template <typename T>
 void AddToRun(vtkFieldData* run, How how, const char* name, const T& value)
 {
@@ -152,8 +152,9 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
   }
   addSeconds(MCOR_PHASE_COUNT, s.build_seconds);
   addSeconds(MCOR_PHASE_COUNT + 1, total);
-  const bool is_run = true, always = false, has_scalar = false, has_levels = false, is_widened = false, has_caps = false,
-             is_plane = false, has_area = false, has_volume = false;
+  const bool is_run = true, always = false, has_scalar = false, has_levels = false,
+             is_widened = false, has_caps = false, is_plane = false, has_area = false,
+             has_volume = false;
 #define STATISTIC(how, when, member, name)                                                         \
   if (when)                                                                                        \
   {                                                                                                \

@@ -22,7 +22,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
 
-/** A text of the core, which is freed; empty for null. */
+/** Takes over a text of the core, which it frees; empty for null. */
 std::string vtkSPHTakeText(char* text);
 
 /** Hands a malloc'ed buffer over to a VTK array. */
@@ -40,7 +40,10 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdopt(ValueT*& values, int components, vtkId
   return array;
 }
 
-/** malloc'ed double values as an array of either precision; no second copy of them is made. */
+/**
+ * Makes an array of either precision from malloc'ed double values, without a second copy of
+ * them.
+ */
 vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
   double*& values, int components, vtkIdType tuples, bool asFloat);
 
@@ -51,11 +54,15 @@ void vtkSPHAddCount(
   vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values);
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
 
-/** A number, or an array of them; counts of levels up to the last that has any, a tuple each. */
+/**
+ * Adds a number, or an array of numbers; counts of levels as a tuple each, up to the last level
+ * that has any.
+ */
 ///@{
 void vtkSPHAdd(vtkFieldData* data, const char* name, double value);
 void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value);
-void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
+void vtkSPHAdd(
+  vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
 inline void vtkSPHAdd(vtkFieldData* data, const char* name, int value)
 {
   vtkSPHAdd(data, name, static_cast<std::int64_t>(value));
@@ -72,31 +79,40 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&v)[N])
 }
 ///@}
 
-/** Adds what a call of the core cost to what calls before it did: not the same for each run. */
+/** Adds the cost of a call of the core to that of earlier calls. Costs differ from run to run. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 
-/** The point array with the most usual name for this quantity and so many components; nullptr: there is none. */
+/**
+ * Finds the point array with the most usual name for this quantity and this number of
+ * components; nullptr: there is none.
+ */
 vtkDataArray* vtkSPHDetect(vtkPointSet* points, mcor_quantity quantity, int components);
 
-/** Finds among arrays the one to be looked at where nobody has chosen one, see mcor_view_priority(). */
+/**
+ * Finds, among arrays, the one to show first where nobody has chosen one, see
+ * mcor_view_priority().
+ */
 struct vtkSPHArrayChoice
 {
   void Consider(const std::string& name, int components, bool isReal, bool varies);
 
-  std::string Best; ///< empty where none is fit
+  std::string Best; ///< empty where no array is fit
   int Rank = -1;
 };
 
-/** Which of the arrays, of so many components, have two different values in one. Null: there is none here. */
+/**
+ * Which of the arrays, with these numbers of components, have two different values in a
+ * component. A null array is one that is missing here.
+ */
 std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
   const vtkSPHMergeRanges& merge = nullptr);
 
-/** The name of the fittest array to be looked at; empty where none is. */
+/** The name of the fittest array to show; empty: there is none. */
 std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge = nullptr);
-/** Whether an array is fit. */
+/** Whether an array is fit to show. */
 bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge = nullptr);
 
-/** A line "Name: values" for each array. */
+/** Writes a line "Name: values" for each array. */
 std::string vtkSPHDescribe(vtkFieldData* data);
 VTK_ABI_NAMESPACE_END
 

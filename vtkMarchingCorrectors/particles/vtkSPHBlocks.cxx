@@ -33,8 +33,11 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
     array->GetNumberOfTuples() == block->GetNumberOfPoints();
 }
 
-/** The arrays of this name one after the other; nothing if a block lacks it that is no wall. What tells
- * kinds of particles apart is not made up for walls either. */
+/**
+ * Joins the arrays of this name, one block after the other. Returns nothing if a block that is
+ * no wall lacks the array; for walls values are made up, unless the array tells kinds of
+ * particles apart.
+ */
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
 {
@@ -78,18 +81,18 @@ bool TellsOfWalls(const std::string& name)
     [&small](const char* word) { return small.find(word) != std::string::npos; });
 }
 
-/** A place for a block, and what it is called. */
+/** A block, and what to call it. */
 struct Leaf
 {
-  vtkDataObject* Data; ///< null where it is empty
-  std::string Name;    ///< its own, or that of what it is a partition of; empty where there is none
+  vtkDataObject* Data; ///< null: the block is empty
+  std::string Name;    ///< its name, or that of the block that it is a partition of; empty: none
   unsigned int Index;
 };
 
 std::vector<Leaf> ListLeaves(vtkDataObjectTree* tree)
 {
   std::vector<Leaf> leaves;
-  std::string whole; // of which the blocks up to index `last` are partitions
+  std::string whole; // a block whose partitions are the blocks up to index `last`
   unsigned int last = 0;
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(tree->NewTreeIterator());
@@ -121,15 +124,17 @@ vtkPointSet* PointsOf(vtkDataObject* data)
   return points && points->GetNumberOfPoints() > 0 ? points : nullptr;
 }
 
-/** The name that stands for this block as a fluid array. */
+/** Returns the name by which a fluid array may choose this block. */
 std::string FluidArrayOf(const std::string& name)
 {
   return "Block: " + name;
 }
 
-/** Which of the blocks with points are walls: all but the one that was chosen as fluid, or those with names that tell
- * of walls; nothing where none of all that the tree has, or all are. Empty ones count, so that processes that have but
- * some agree. */
+/**
+ * Finds which of the blocks with points are walls: all but the block that was chosen as fluid,
+ * else those with names of walls. Returns nothing where no block of the tree, or every one, has
+ * such a name. Empty blocks count, so that processes with different blocks agree.
+ */
 std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArray)
 {
   const std::vector<std::string> choices = vtkSPHListFluidBlocks(tree);
@@ -182,7 +187,7 @@ void MarkWallParticles(const Blocks& blocks, const std::vector<bool>& walls, vtk
   joined->GetPointData()->AddArray(marks);
 }
 
-/** The data set, and all blocks in it at any depth. */
+/** Lists the data set itself and all blocks in it, at any depth. */
 std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
 {
   std::vector<vtkDataObject*> all{ tree };
@@ -278,7 +283,8 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
     MarkWallParticles(blocks, walls, joined);
   }
   const std::vector<vtkDataObject*> all = ListAll(tree);
-  for (auto each = all.rbegin(); each != all.rend(); ++each) // of several arrays the first stays
+  for (auto each = all.rbegin(); each != all.rend();
+       ++each) // the first of several arrays of one name stays
   {
     joined->GetFieldData()->PassData((*each)->GetFieldData());
   }

@@ -29,7 +29,9 @@ std::string NameOf(vtkDataArray* array)
   return array->GetName() ? array->GetName() : "";
 }
 
-/** False, and `bad`, the first particle whose number is not a whole one. */
+/**
+ * Reads whole numbers. Returns false if one is not whole; `bad` becomes the first such particle.
+ */
 bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
 {
   numbers.resize(static_cast<size_t>(array->GetNumberOfTuples()));
@@ -40,7 +42,8 @@ bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
     {
       for (const auto value : values)
       {
-        // Beyond 2^53 the floating point numbers are not all whole numbers that once were there.
+        // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have
+        // become equal.
         const double real = static_cast<double>(value);
         if (isReal && !(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
         {
@@ -60,7 +63,7 @@ bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
   return bad == std::numeric_limits<vtkIdType>::max();
 }
 
-/** Whether both steps have the same numbers in one ascending order. */
+/** Whether both steps have the same numbers in the same ascending order. */
 bool IsSameOrder(const Numbers& a, const Numbers& b)
 {
   return a == b &&
@@ -105,7 +108,7 @@ Partners Search(const Numbers& numbers, const std::vector<Entry>& sorted)
   return partners;
 }
 
-/** The other way round; false, and the two, where two particles have the same partner. */
+/** Inverts the partners. Returns false, and the two particles, where two have the same partner. */
 bool Invert(const Partners& partners, Partners& inverse, Entry& twins)
 {
   for (size_t i = 0; i < partners.size(); ++i)
@@ -126,7 +129,7 @@ bool Invert(const Partners& partners, Partners& inverse, Entry& twins)
 }
 }
 
-// The second set's numbers, sorted, are searched for each of the first's.
+// Sorts the numbers of the second set, and looks up those of the first one.
 std::string vtkSPHMatchNumbers(const std::array<vtkDataArray*, 2>& arrays,
   const std::array<std::string, 2>& sets, const std::array<std::vector<vtkIdType>*, 2>& partners)
 {

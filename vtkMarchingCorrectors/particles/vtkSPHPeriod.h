@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the project: the period that particles' field data tell of.
- */
+/** Private to the project: the period that the particles' field data tell. */
 #ifndef vtkSPHPeriod_h
 #define vtkSPHPeriod_h
 
@@ -18,30 +16,28 @@ class vtkPointSet;
 
 struct vtkSPHPeriod
 {
-  std::vector<double> Period; ///< three lengths or six bounds; empty: none is told
-  std::string Array;          ///< that tells of it
+  std::vector<double> Period; ///< three lengths or six bounds; empty: no period is told
+  std::string Array;          ///< the array that tells it
 };
 
-/**
- * As mcor_find_period finds it.
- */
+/** Finds it, see mcor_find_period. */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
 
-/** Whether an array of this name has a part in that. */
+/** Whether an array of this name may tell a period. */
 VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
 
-/** Six bounds, also of lengths alone: where the particles, of this extent, lie in them. */
+/** Returns six bounds. Lengths alone are placed around the particles, which have this extent. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
 /**
- * The same where many processes hold the particles: of the first of them whose field data tell of a period.
- * `problem` becomes a sentence where those of another one tell of another period. Collective.
+ * The same if many processes hold the particles: that of the first one whose field data tell a
+ * period. `problem` becomes a sentence if another one tells a different period. Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
 
-/** The bounds over all processes' particles; a process may have none. Collective. */
+/** Returns the bounds of all processes' particles; a process may have none. Collective. */
 VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
   vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 VTK_ABI_NAMESPACE_END

@@ -76,7 +76,7 @@ vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* soli
   return fluidCount;
 }
 
-// In an array that is not of kinds, the first values tell.
+// An array without kinds has too many values: its first ones suffice to see that.
 std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most)
 {
   std::map<double, vtkIdType> counts;

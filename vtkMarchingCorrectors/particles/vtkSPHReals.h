@@ -24,7 +24,7 @@ inline bool vtkSPHIsReal(vtkAbstractArray* array)
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
 }
 
-/** Itself where it is of a type and layout for vtkSPHReals, else a copy. */
+/** Returns the array itself if vtkSPHReals can read its type and layout, else a copy. */
 vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array);
 
 /** The values of an array that vtkSPHAsReal() has returned. */
@@ -52,7 +52,7 @@ private:
   const double* const Doubles;
 };
 
-/** work(values, index of the first) for all values, on all processors. */
+/** Calls work(values, index of the first) for all values, on all processors. */
 template <typename WorkT>
 void vtkSPHForValues(vtkDataArray* array, const WorkT& work)
 {
@@ -68,23 +68,32 @@ void vtkSPHForValues(vtkDataArray* array, const WorkT& work)
   }
 }
 
-/** Writes 0 to `solid` where the array has the value `fluid`, else 1. Returns how many are 0. */
+/**
+ * Sets `solid` to 0 where the array has the value `fluid`, else to 1. Returns the number of
+ * zeros.
+ */
 vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid);
 
 struct vtkSPHParticlesChoice;
 class vtkPointSet;
 
-/** Whether the choice leaves any particles out, and which of them it leaves; arrays that are not there choose none. */
+/**
+ * Whether the choice leaves any particles out, and which ones stay. A choice by an array that is
+ * not there leaves none out.
+ */
 bool vtkSPHLeavesOut(const vtkSPHParticlesChoice& choice);
 std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
-/** How often each value occurs in an array of one component; empty if there are more than `most`. */
+/**
+ * Counts how often each value occurs in an array of one component; empty if there are more than
+ * `most` values.
+ */
 std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most);
 
-/** An element of the core's array, or the constant that stands for it. */
+/** Returns an element of the core's array, or the constant that stands for it. */
 double vtkSPHValueOf(const mcor_array& array, std::int64_t i);
 
-/** The scalar to contour at a particle. */
+/** Returns the scalar to contour at a particle. */
 double vtkSPHScalarOf(const mcor_input& core, vtkIdType particle);
 VTK_ABI_NAMESPACE_END
 

@@ -13,7 +13,7 @@ namespace
 /** Tuples that one thread copies at a time. */
 constexpr vtkIdType CopyGrain = 1 << 14;
 
-/** With `null` where `valid` is 0. */
+/** Copies values, replaced by `null` where `valid` is 0. */
 template <typename ValueT>
 void Copy(const double* from, const std::uint8_t* valid, double null, vtkIdType tuples,
   int components, ValueT* to)

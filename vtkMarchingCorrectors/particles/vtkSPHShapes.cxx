@@ -18,7 +18,10 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Where the plane is in the box, along its own axes u and v. False: nowhere. */
+/**
+ * Finds the range of the plane in the box, along its axes u and v. Returns false if the plane
+ * misses the box.
+ */
 struct Rectangle
 {
   double U[3], V[3];
@@ -49,7 +52,7 @@ struct Rectangle
   bool IsEmpty() const { return this->Low[0] > this->High[0]; }
 
 private:
-  /** For a normal along an axis the other two, in their order. */
+  /** For a normal along an axis, u and v are the other two axes, in their order. */
   void ChooseAxes(const double normal[3])
   {
     const double size[3] = { std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2]) };

@@ -19,7 +19,7 @@ namespace
 {
 using Triple = std::array<double, 3>;
 
-/** A share of the period: how far from a side a point on it may have been rounded. */
+/** How far from a side rounding may have moved a point on it, as a share of the period. */
 constexpr double SideTolerance = 1e-5;
 }
 
@@ -67,7 +67,7 @@ vtkIdType vtkSPHPieces::RootOf(vtkIdType point)
   return root;
 }
 
-// The lowest point of each part is its root, whatever the order.
+// The root of each part is its lowest point, in any order of joining.
 void vtkSPHPieces::JoinPoints()
 {
   this->Root.resize(this->Points.size());
@@ -86,8 +86,9 @@ void vtkSPHPieces::JoinPoints()
   }
 }
 
-// Points on opposite sides are found by their other coordinates. Parts that meet there are one group,
-// of which each part has a shift; where two ways to a part have unlike ones, the group goes around.
+// Points on opposite sides are matched by their other two coordinates. Parts that meet there form a
+// group, in which each part has a shift in periods. If two ways to one part give it different
+// shifts, the group goes around the period.
 void vtkSPHPieces::JoinSides()
 {
   const size_t count = this->Points.size();
@@ -96,7 +97,7 @@ void vtkSPHPieces::JoinSides()
   this->Group = this->Root;
   this->GroupShift.assign(count, Shift{ { 0, 0, 0 } });
   this->GroupEndless.assign(count, 0);
-  std::vector<std::vector<vtkIdType>> members(count); // parts of a group, by its first
+  std::vector<std::vector<vtkIdType>> members(count); // parts of each group, by its first part
   for (int a = 0; a < 3; ++a)
   {
     const double period = this->Period[2 * a + 1] - this->Period[2 * a];
@@ -134,13 +135,13 @@ void vtkSPHPieces::JoinSides()
       }
       const auto twin = static_cast<size_t>(found->second);
       this->Twin[i] = this->Twin[twin];
-      // The lower point's part, a period higher, joins that of the upper one.
+      // The part at the lower side continues, a period higher, in that at the upper side.
       this->JoinParts(this->Root[twin], this->Root[i], a, members);
     }
   }
 }
 
-// The group of one part goes into that of the other, where it is a period of this axis higher.
+// Joins two groups; the first one's part lies a period of this axis higher.
 void vtkSPHPieces::JoinParts(
   vtkIdType lower, vtkIdType upper, int axis, std::vector<std::vector<vtkIdType>>& members)
 {
@@ -178,7 +179,7 @@ vtkSPHPieces::Shift vtkSPHPieces::ShiftOf(vtkIdType point) const
   return this->GroupShift[static_cast<size_t>(this->Root[static_cast<size_t>(point)])];
 }
 
-// Where its piece is in one.
+// Moves a point to where its piece is in one.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
   const auto& points = this->Triangles[static_cast<size_t>(triangle)];
@@ -193,10 +194,10 @@ void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
   }
 }
 
-// By area; of equal ones that first whose first triangle comes first.
+// Sorts by area; among equal areas the piece with the first triangle comes first.
 void vtkSPHPieces::NumberPieces()
 {
-  std::map<vtkIdType, vtkIdType> numbers; // of groups
+  std::map<vtkIdType, vtkIdType> numbers; // by group
   std::vector<vtkSPHPiece> found;
   std::vector<vtkIdType> of(this->Triangles.size());
   for (size_t t = 0; t < this->Triangles.size(); ++t)
@@ -241,7 +242,7 @@ void vtkSPHPieces::NumberPieces()
   }
 }
 
-// Each edge is run through as often one way as the other.
+// A piece is closed if each edge is run through as often one way as the other.
 void vtkSPHPieces::FindClosed()
 {
   struct Edge
@@ -281,8 +282,8 @@ void vtkSPHPieces::FindClosed()
   }
 }
 
-// About the middle of the bounds, as coordinates may be large; the centre is that of the volume, or else
-// of the area.
+// Measures about the middle of the bounds, since coordinates may be large. The centre is that of
+// the volume, or else of the area.
 void vtkSPHPieces::Measure()
 {
   const double far = VTK_DOUBLE_MAX;
@@ -343,8 +344,8 @@ void vtkSPHPieces::Measure()
   }
 }
 
-// Whichever part came first, and wherever the lattice's sides are. A centre on a side, but for rounding, is on the
-// lower one.
+// Moves each piece so that its centre is within the period, wherever the lattice's sides are. A
+// centre on a side, up to rounding, belongs to the lower one.
 void vtkSPHPieces::MoveHome()
 {
   std::vector<Shift> moves(this->Pieces.size());
@@ -374,7 +375,7 @@ void vtkSPHPieces::MoveHome()
   }
 }
 
-// A cavity in a piece without a volume, such as a layer over the whole period, has that one as parent.
+// A piece without a volume, such as a layer over the whole period, is the parent of cavities in it.
 void vtkSPHPieces::FindParents()
 {
   std::vector<Triple> places;

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: the pieces of a triangle mesh, and what they measure.
- */
+/** Private to the module: the connected pieces of a triangle mesh, and their measures. */
 #ifndef vtkSPHPieces_h
 #define vtkSPHPieces_h
 
@@ -14,14 +12,14 @@
 VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
-/** One piece. Lengths have the unit of the positions. */
+/** One piece. Lengths are in the unit of the positions. */
 struct vtkSPHPiece
 {
   vtkIdType Parent = -1; ///< of a cavity: the piece around it; -1: none
-  bool Closed = false;   ///< each edge has a triangle on either side
-  bool Endless = false;  ///< closed by going around a period, so that it has no volume
+  bool Closed = false;   ///< each edge has a triangle on both sides
+  bool Endless = false;  ///< closed only around a period, so that it has no volume
   double Area = 0.0;
-  double Volume = 0.0; ///< of a closed one; below 0 of a cavity
+  double Volume = 0.0; ///< if closed; negative for a cavity
   double Centre[3] = { 0.0, 0.0, 0.0 };
   double Bounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   vtkIdType FirstTriangle = 0;
@@ -30,10 +28,11 @@ struct vtkSPHPiece
 };
 
 /**
- * Triangles that share points are one piece, also across the sides of a period (bounds, 0 0 where there is
- * none): points there have the same other coordinates, to the last bit. A surface ends at planes of its lattice, up
- * to a cube from these bounds and a period from each other: where it passes them, its own bounds are these sides.
- * Pieces are in the order of their areas, the largest first. Each is where its centre is within the period.
+ * Finds the pieces: triangles that share points belong to one piece, also across the sides of a
+ * period (bounds; 0 0: no period), where points have the same other coordinates, to the last
+ * bit. A surface ends at planes of its lattice, which lie up to a cube from these bounds and a
+ * period apart; where the surface passes the bounds, its own bounds are the sides. Pieces are
+ * sorted by area, the largest first. Each is placed so that its centre is within the period.
  */
 class vtkSPHPieces
 {
@@ -42,11 +41,11 @@ public:
 
   std::vector<vtkSPHPiece> Pieces;
   std::vector<vtkIdType> PieceOfTriangle;
-  std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses it
+  std::vector<vtkIdType> PieceOfPoint; ///< -1: no triangle uses the point
 
   /**
-   * For each point the innermost piece with a volume that encloses it: -1 if that is a cavity or there is none.
-   * `without`: of each point, a piece that is as if it were not there; may be empty.
+   * Finds, for each point, the innermost piece with a volume that encloses it; -1: that piece is
+   * a cavity, or there is none. without: for each point a piece to ignore; may be empty.
    */
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
     const std::vector<vtkIdType>& without = {}) const;
@@ -72,10 +71,10 @@ private:
   double Period[6];
   std::vector<std::array<double, 3>> Points;
   std::vector<std::array<vtkIdType, 3>> Triangles;
-  std::vector<vtkIdType> Root; // of points: union by shared triangles; shrinks to one for each part
-  std::vector<vtkIdType> Twin; // the point that stands for all that are a period apart
+  std::vector<vtkIdType> Root;   // of points: joined by triangles; then one for each part
+  std::vector<vtkIdType> Twin;   // the point that stands for all those a period apart
   std::vector<vtkIdType> Group;  // of parts, by their roots: joined across sides
-  std::vector<Shift> GroupShift; // of a part: from it to its group's first part
+  std::vector<Shift> GroupShift; // of a part: periods to its group's first part
   std::vector<char> GroupEndless;
 };
 VTK_ABI_NAMESPACE_END

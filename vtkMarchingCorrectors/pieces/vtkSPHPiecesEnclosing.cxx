@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Which piece encloses a point: a ray along x leaves a closed piece once more than it enters it. Triangles
-// are in columns along x, by their y and z; a ray looks at those of its column.
+// Which piece encloses a point: a ray along x leaves an enclosing piece once more than it enters
+// it. Triangles are listed in columns along x, by y and z, and a ray tests those of its column.
 #include "vtkSPHPieces.h"
 
 #include "vtkSMPTools.h"
@@ -22,8 +22,10 @@ struct Face
   vtkIdType Piece;
 };
 
-/** Where the edge between two corners passes y, and whether the point (y, z) has it at greater z. Either
- * triangle beside an edge asks with the same numbers, so that no ray passes between them. */
+/**
+ * Finds where the edge between two corners passes y, and whether the point (y, z) lies below
+ * that in z. Both triangles at an edge ask with the same numbers, so no ray slips between them.
+ */
 bool IsBelow(const double* a, const double* b, double y, double z)
 {
   if ((a[1] > y) == (b[1] > y))
@@ -38,7 +40,10 @@ bool IsBelow(const double* a, const double* b, double y, double z)
   return z < first[2] + (y - first[1]) * ((second[2] - first[2]) / (second[1] - first[1]));
 }
 
-/** 1: the ray from the point leaves through this face; -1: it enters; 0: it passes by. *at: where, along x. */
+/**
+ * Returns 1 if the ray from the point leaves through this face, -1 if it enters, 0 if it passes
+ * by. *at: where along x.
+ */
 int Crossing(const Face& face, const Triple& point, double* at)
 {
   const double(&c)[3][3] = face.Corner;
@@ -66,7 +71,7 @@ int Crossing(const Face& face, const Triple& point, double* at)
   return *at <= point[0] ? 0 : n[0] > 0.0 ? 1 : -1;
 }
 
-/** Faces by columns. */
+/** The faces, listed by column. */
 class Columns
 {
 public:
@@ -146,12 +151,15 @@ private:
   const std::vector<size_t> None;
 };
 
-/** Makes `innermost` the piece of the least volume, a cavity's without its sign, of those around the point and it. */
+/**
+ * Sets `innermost` to the piece of least volume (a cavity's without its sign) among it and those
+ * around the point.
+ */
 void Enclose(const Columns& columns, const std::vector<vtkSPHPiece>& pieces, const Triple& point,
   vtkIdType without, vtkIdType& innermost)
 {
   std::vector<std::pair<vtkIdType, int>>
-    turns; // of pieces: how often the ray leaves rather than enters
+    turns; // by piece: how often the ray leaves it, less how often it enters
   for (const size_t f : columns.At(point[1], point[2]))
   {
     const Face& face = columns.Faces[f];
@@ -192,7 +200,7 @@ Triple WithinPeriod(const double period[6], const Triple& point)
 }
 }
 
-// From anywhere within the period to wherever these pieces are.
+// Tries all images: from anywhere within the period to wherever the pieces are.
 std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
 {
   std::vector<Triple> shifts = { { { 0.0, 0.0, 0.0 } } };
@@ -260,18 +268,18 @@ std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
   return found;
 }
 
-// Rays go both ways along each axis. Each ends at the first face of such a piece, which it leaves or enters: most of
-// them tell where an open piece has holes.
+// Rays go both ways along each axis. Each ends at the first face of such a piece, which it leaves
+// or enters; the majority decides, since an open piece has holes.
 std::vector<vtkIdType> vtkSPHPieces::FindAround(const std::vector<Triple>& points) const
 {
-  std::vector<int> left(points.size(), 0); // less those that were entered
+  std::vector<int> left(points.size(), 0); // rays that left, less those that entered
   std::vector<vtkIdType> found(points.size(), -1);
   std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
   const std::vector<Triple> shifts = this->ListShifts(false);
   for (int ray = 0; ray < 6; ++ray)
   {
     const int axis = ray / 2;
-    const double way = ray % 2 ? -1.0 : 1.0; // mirrored, a face has its other side in front
+    const double way = ray % 2 ? -1.0 : 1.0; // a mirrored face has its other side in front
     const auto turn = [axis, way](const double* x) {
       return Triple{ { way * x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3] } };
     };

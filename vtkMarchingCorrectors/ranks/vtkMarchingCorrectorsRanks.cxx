@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A run that many processes share. Each hands over the particles that it has; space is divided among
-// them; particles go to where they are needed; each process extracts its box's part of the surface, as
-// the core does for any box; points and triangles get the numbers that they have in the whole.
+// A run that several processes (ranks) share. Each hands over the particles that it has. Space is
+// divided among the ranks, and particles are sent where they are needed. Each rank extracts the
+// part of the surface in its box, as the core does for any box. Points and triangles get the
+// numbers that they have in the whole surface.
 #include "vtkMarchingCorrectors.h"
 
 #include "vtkCellData.h"
@@ -38,7 +39,7 @@ void vtkMarchingCorrectors::EstimateDistributed(
   }
 }
 
-// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+// No rank may return here while another goes on: all agree first on what one of them has found.
 void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyData* output)
 {
   vtkSPHRanksRun run(this->Controller);
@@ -75,7 +76,7 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   }
 }
 
-// From the particles that are near this rank's box.
+// Extracts this rank's part from the particles near its box.
 void vtkMarchingCorrectors::ExtractDistributed(vtkSPHRanksRun& run,
   vtkMarchingCorrectorsChoice& choice, const mcor_input& own, vtkPolyData* output)
 {
@@ -145,10 +146,10 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input core = input.Core;
     core.count = run.Particles;
-    core.positions.data = nullptr; // those at hand are a part
+    core.positions.data = nullptr; // this rank has only some of them
     core.solid = nullptr;
     mcor_options asked = options;
-    asked.dimension = this->Dimension; // not as found
+    asked.dimension = this->Dimension; // the user's choice, not what was found
     this->WarnOf(input, all, core, asked, *std::max_element(largest.begin(), largest.end()));
   }
   this->Summarize(input, options, surface.statistics);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the filters that many processes share have in common. All of this is collective.
+// What all filters do that ranks can share. Every function here is collective.
 #include "vtkSPHAlgorithm.h"
 
 #include "mcor.h"

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Pieces of a surface that many processes have parts of. The first one puts it together by its points' and
-// triangles' numbers, so that it has what one process has, and sends each the numbers of its pieces.
+// Pieces of a surface of which each rank has a part. The first rank puts the surface together by
+// the numbers of its points and triangles, just as one process would have it, and sends each rank
+// the numbers of its pieces.
 #include "vtkSPHComponents.h"
 
 #include "mcor.h"
@@ -31,7 +32,7 @@ namespace
 {
 using Ids = std::vector<vtkIdType>;
 
-/** Numbers as ids, whatever type they have. */
+/** Returns numbers of any type as ids. */
 Ids NumbersOf(vtkDataSetAttributes* data, vtkIdType count)
 {
   Ids numbers;
@@ -52,7 +53,7 @@ std::vector<double> ListPlaces(vtkPolyData* mesh)
   return places;
 }
 
-/** The corners of triangles by the points' numbers in the whole. */
+/** Lists the corners of triangles by the points' numbers in the whole. */
 Ids ListCorners(vtkPolyData* mesh, const Ids& numbers)
 {
   Ids corners;
@@ -68,7 +69,7 @@ Ids ListCorners(vtkPolyData* mesh, const Ids& numbers)
   return corners;
 }
 
-/** How many there are in the whole. */
+/** Returns how many there are in the whole. */
 vtkIdType CountOf(const vtkSPHRanksLists& numbers)
 {
   vtkIdType count = 0;
@@ -81,8 +82,8 @@ vtkIdType CountOf(const vtkSPHRanksLists& numbers)
 }
 
 /**
- * Sends what the first rank knows of the whole back: pieces, and numbers among those that stay. Returns the
- * pieces of this rank's; `numbers` become the new ones, of those that stay.
+ * Sends back what the first rank knows of the whole: the pieces, and numbers among what stays.
+ * Returns the pieces of this rank's elements; `numbers` become the new ones.
  */
 Ids Return(
   vtkSPHRanks& ranks, const vtkSPHRanksLists& sent, const Ids& pieces, vtkIdTypeArray* numbers)
@@ -126,7 +127,7 @@ void Renumber(vtkDataSetAttributes* data, vtkIdTypeArray* numbers)
 }
 }
 
-// On the first rank all of them, with what the table tells of them.
+// The first rank has all of them, with what the table tells of them.
 vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   vtkSPHRanks& ranks, vtkPointSet* particles) const
 {
@@ -151,7 +152,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
   return vtkSPHSendParticles(ranks, fluid, to).Get();
 }
 
-// Returns what is wrong, on all ranks alike; nothing here may return on one of them and go on on another.
+// Returns what is wrong, on all ranks alike. No rank may return here while another goes on.
 std::string vtkSPHComponents::SplitDistributed(
   vtkPolyData* mesh, vtkPointSet* particles, vtkPolyData* output, vtkTable* table) const
 {

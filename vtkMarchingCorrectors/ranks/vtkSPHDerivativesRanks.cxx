@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Derivatives that many processes share. Space is divided among them as for a surface; the rank that
-// owns a particle's place finds its derivatives, which then travel to where the particle came from.
+// Derivatives that ranks share. Space is divided as for a surface. The rank that owns a particle's
+// place computes its derivatives, which are then sent to where the particle came from.
 #include "vtkSPHDerivatives.h"
 
 #include "mcor.h"
@@ -23,7 +23,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Lists, for each rank, the particles that came from it and that this one owns. */
+/** Lists, for each rank, the particles that came from it and that this rank owns. */
 vtkSPHRanksLists ListOwned(const vtkSPHRanksRun& run)
 {
   vtkSPHRanksLists owned;
@@ -43,7 +43,7 @@ vtkSPHRanksLists ListOwned(const vtkSPHRanksRun& run)
 }
 }
 
-// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+// No rank may return here while another goes on: all agree first on what one of them has found.
 void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* output)
 {
   vtkSPHRanksRun run(this->Controller);
@@ -75,7 +75,7 @@ void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* 
   }
 }
 
-// `numbers`: which of the particles the run has.
+// numbers: the indices of the particles that the run has.
 void vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
   const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output)
 {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Gauges that many processes measure. Space around the lines is divided among them, particles go to where they
-// reach, and each measures the parts of all lines that are in its box; the core puts these together.
+// Gauges that ranks share. Space around the lines is divided, particles are sent where they reach,
+// and each rank measures the parts of all lines in its box. The core puts these together.
 #include "vtkSPHGauge.h"
 
 #include "mcor.h"
@@ -24,10 +24,16 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Around the lines, in cubes: so that one alone, too, has a box, and bricks to be cut at. */
+/**
+ * A margin around the lines, in cubes, so that even a single line has a box with bricks to cut
+ * at.
+ */
 constexpr double MarginCubes = 4.0;
 
-/** Around the lines, as far as there are particles; along periods, everywhere. */
+/**
+ * Finds the box around the lines, as far as there are particles; along periods it is without
+ * end.
+ */
 void FindBox(
   const std::vector<mcor_gauge_line>& lines, const mcor_globals& globals, mcor_options& options)
 {
@@ -51,12 +57,12 @@ void FindBox(
 }
 }
 
-// Those of all processes, each once.
+// Merges the gauges of all ranks, each once.
 std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   vtkSPHRanks& ranks, const std::vector<Gauge>& mine)
 {
   using Known =
-    std::pair<std::string, std::string>; // name, and bytes of ends, which may be no numbers
+    std::pair<std::string, std::string>; // the name, and the bytes of the ends, which may be NaN
   std::vector<Known> own;
   for (const Gauge& gauge : mine)
   {
@@ -67,7 +73,7 @@ std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   std::set<Known> known;
   for (const std::vector<Known>& theirs : ranks.Gather(own))
   {
-    const std::set<Known> before = known; // two of one process are for CheckNames()
+    const std::set<Known> before = known; // CheckNames() reports two of one rank
     for (const Known& one : theirs)
     {
       if (before.count(one) == 0)
@@ -81,7 +87,7 @@ std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::Merge(
   return all;
 }
 
-// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+// No rank may return here while another goes on: all agree first on what one of them has found.
 void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
 {
   vtkSPHRanksRun run(this->Controller);
@@ -104,7 +110,7 @@ void vtkSPHGauge::ProcessDistributed(vtkPointSet* particles, vtkTable* output)
   }
   else
   {
-    this->Measure(mine, run.Own, gauges, output); // nothing, on all of them
+    this->Measure(mine, run.Own, gauges, output); // without fluid, all ranks write empty readings
   }
   if (run.Ranks.GetRank() > 0)
   {
@@ -146,7 +152,7 @@ void vtkSPHGauge::GaugeDistributed(
   vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
   if (run.Ranks.GetRank() > 0)
   {
-    mcor_free_gauges(&found); // the first one has the table, and says what there is to say
+    mcor_free_gauges(&found); // the first rank has the table, and tells the warnings
   }
   this->Fill(output, gauges, found, true);
 }

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// A probe that many processes share. Space around the points is divided among them; points travel to
-// the rank that owns their place, particles to the ranks that they reach, and what was found there
-// travels back to where the points are. A point's value does not depend on the other points.
+// A probe that ranks share. Space around the points is divided. Points are sent to the rank that
+// owns their place, particles to the ranks that they reach, and the results back to where the
+// points are. The value at a point does not depend on other points.
 #include "vtkSPHProbe.h"
 
 #include "mcor.h"
@@ -26,7 +26,10 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Around the points, in cubes: so that a plane of them, too, has a box, and bricks to be cut at. */
+/**
+ * A margin around the points, in cubes, so that even a plane of points has a box with bricks to
+ * cut at.
+ */
 constexpr double MarginCubes = 4.0;
 
 bool IsFinite(const double at[3])
@@ -34,7 +37,7 @@ bool IsFinite(const double at[3])
   return std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
 }
 
-/** The points that are somewhere, of which `home` are the numbers. */
+/** Takes the points with finite coordinates; `home` lists their numbers. */
 vtkSmartPointer<vtkPolyData> TakePoints(vtkDataSet* data, std::vector<vtkIdType>& home)
 {
   auto taken = vtkSmartPointer<vtkPolyData>::New();
@@ -54,7 +57,7 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkDataSet* data, std::vector<vtkIdType>
   return taken;
 }
 
-/** Around the places of all ranks. */
+/** Finds the box around the places of all ranks. */
 void FindBox(
   vtkSPHRanks& ranks, const std::vector<vtkSPHRanksPlace>& places, double margin, double box[6])
 {
@@ -76,7 +79,7 @@ void FindBox(
   }
 }
 
-/** Where points are within the period. */
+/** Lists where the points are within the period. */
 std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points, const vtkSPHRanksPeriod& period)
 {
   std::vector<vtkSPHRanksPlace> places(static_cast<std::size_t>(points->GetNumberOfPoints()));
@@ -89,7 +92,7 @@ std::vector<vtkSPHRanksPlace> ListPlaces(vtkPolyData* points, const vtkSPHRanksP
   return places;
 }
 
-/** Numbers one after the other, so many for each rank. */
+/** Lists successive numbers, so many for each rank. */
 vtkSPHRanksLists ListInTurn(const std::vector<vtkIdType>& counts)
 {
   vtkSPHRanksLists lists;
@@ -105,7 +108,7 @@ vtkSPHRanksLists ListInTurn(const std::vector<vtkIdType>& counts)
   return lists;
 }
 
-/** As the core says of the components of the arrays. */
+/** Lists what the core says of the arrays' components. */
 std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor_globals& globals)
 {
   std::vector<std::int64_t> notFinite;
@@ -119,7 +122,7 @@ std::vector<std::int64_t> ListNotFinite(const vtkSPHParticles& input, const mcor
 }
 }
 
-// Nothing here may return on one rank and go on on another: what one finds, all agree on first.
+// No rank may return here while another goes on: all agree first on what one of them has found.
 void vtkSPHProbe::ProcessDistributed(vtkDataSet* points, vtkDataSet* output)
 {
   vtkSPHRanksRun run(this->Controller);

@@ -35,7 +35,8 @@ void vtkSPHRanks::FindNeighbors(int& place, int& count)
 
 void vtkSPHRanks::ReduceRanges(double* ranges, int count)
 {
-  std::vector<double> ends(ranges, ranges + 2 * count); // the greatest negated: one message
+  std::vector<double> ends(
+    ranges, ranges + 2 * count); // greatest values are negated, so that one message does for both
   for (std::size_t i = 1; i < ends.size(); i += 2)
   {
     ends[i] = -ends[i];
@@ -57,12 +58,12 @@ std::vector<std::vector<char>> vtkSPHRanks::GatherBytes(const std::vector<char>&
 
 void vtkSPHRanks::ExchangeBlocks(const Visit& send, const Visit& receive)
 {
-  char block = 0; // each rank is one, without data of its own
+  char block = 0; // each rank is one block, without data of its own
   vtkSPHAwaitRanks(this->Controller);
   diy::Master master(this->Communicator, 1);
   master.add(this->GetRank(), &block, new diy::Link);
   master.foreach (send);
-  master.exchange(true); // to whom there is something to say, no neighbours being known
+  master.exchange(true); // finds out who has something for whom
   master.foreach (receive);
 }
 VTK_ABI_NAMESPACE_END

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: the processes (ranks) that share one run, and what they tell each other.
- * Every function but the getters is collective: all ranks call it, in the same order. Built where VTK
- * has MPI and DIY, whose serialization says how values become bytes (diy::Serialization).
+ * Private to the module: the processes (ranks) that share one run, and what they tell each
+ * other. All functions except the getters are collective: all ranks call them in the same order.
+ * Built where VTK has MPI and DIY, whose serialization turns values into bytes
+ * (diy::Serialization).
  */
 #ifndef vtkSPHRanks_h
 #define vtkSPHRanks_h
@@ -22,28 +23,29 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-/** For each rank, or from each. */
+/** A list for each rank, or from each. */
 using vtkSPHRanksLists = std::vector<std::vector<vtkIdType>>;
 
 class vtkSPHRanks
 {
 public:
-  /** `controller` is one of MPI's. */
+  /** `controller` must be an MPI controller. */
   explicit vtkSPHRanks(vtkMultiProcessController* controller);
 
   int GetRank() const { return this->Controller->GetLocalProcessId(); }
   int GetCount() const { return this->Controller->GetNumberOfProcesses(); }
 
-  /** Bytes that this rank has handed to others by Exchange(). */
+  /** Returns the bytes that this rank has sent to others by Exchange(). */
   std::int64_t GetBytesSent() const { return this->BytesSent; }
 
   /**
-   * True if no rank failed: `sentence` is empty everywhere. Else it becomes, on all ranks, that of
-   * the first one that failed, which it names where not all say the same.
+   * Returns true if no rank failed, that is, `sentence` is empty everywhere. Else `sentence`
+   * becomes, on all ranks, that of the first rank that failed, whose number it names unless all
+   * say the same.
    */
   bool Agree(std::string& sentence);
 
-  /** Finds the `count` ranks on this machine, by its name, and the `place` of this one among them. */
+  /** Finds the number of ranks on this machine, by its name, and this rank's place among them. */
   void FindNeighbors(int& place, int& count);
 
   enum Operation
@@ -60,14 +62,17 @@ public:
     this->Controller->AllReduce(own.data(), values, count, operation);
   }
 
-  /** Merges ranges, each a least and a greatest value, infinite the wrong way where there is nothing. */
+  /**
+   * Merges ranges, each a least and a greatest value; an empty range is infinite the wrong way
+   * round.
+   */
   void ReduceRanges(double* ranges, int count);
   vtkSPHMergeRanges MergeRanges()
   {
     return [this](double* ranges, int count) { this->ReduceRanges(ranges, count); };
   }
 
-  /** Gathers what each rank gives, in the order of ranks. */
+  /** Gathers one value from each rank, in the order of ranks. */
   template <typename T>
   std::vector<T> Gather(const T& mine)
   {
@@ -84,7 +89,7 @@ public:
     return values;
   }
 
-  /** Number i of `messages` goes to rank i; number i of the result came from rank i. */
+  /** Sends messages[i] to rank i; element i of the result came from rank i. */
   template <typename T>
   std::vector<std::vector<T>> Exchange(std::vector<std::vector<T>> messages)
   {
@@ -119,7 +124,7 @@ public:
     return received;
   }
 
-  /** Gathers on the first rank alone; the others get nothing. */
+  /** Gathers on the first rank alone; the other ranks get nothing. */
   template <typename T>
   std::vector<std::vector<T>> GatherOnFirst(std::vector<T> mine)
   {
@@ -142,8 +147,9 @@ private:
 };
 
 /**
- * Moves the values of all ranks, as many for each number as for any other, to the first rank, to the places that
- * the numbers, of GatherOnFirst(), say; `to` may be null. Collective.
+ * Moves the values of all ranks, the same number of values for each of `numbers`, to the first
+ * rank, and there to the places that `numbers` (of GatherOnFirst()) say. `to` may be null.
+ * Collective.
  */
 template <typename T>
 void vtkSPHPlaceOnFirst(

@@ -21,8 +21,8 @@ vtkSPHRanksCalls::vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* r
   }
 }
 
-// Every callback, and the end, begin with this one: so all ranks meet here the same number of times
-// until one has failed, and not any more after that.
+// Every callback, and the end, begins with this call. So all ranks meet here equally often until
+// one has failed, and never after that.
 bool vtkSPHRanksCalls::AllGoOn(bool self)
 {
   std::int64_t goesOn = self ? 1 : 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: ranks as the core calls them, so that one that fails does not leave the
+ * Private to the module: the ranks' callbacks for the core. A rank that fails does not leave the
  * others waiting.
  */
 #ifndef vtkSPHRanksCalls_h
@@ -19,16 +19,16 @@ struct vtkSPHRanksRoute;
 class vtkSPHRanksCalls
 {
 public:
-  /** `route`: null until space is divided. */
+  /** `route` is null until space is divided. */
   explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, const vtkSPHRanksRoute* route = nullptr);
 
-  /** For mcor_options, during one call of the core. */
+  /** Returns the callbacks, for mcor_options during one call of the core. */
   const mcor_ranks* Get() const { return &this->Core; }
 
-  /** All ranks call this after the core's call, however that ended. */
+  /** Called by all ranks after the core's call, however that ended. */
   void End(bool failed);
 
-  /** Whether another rank failed, and this one was told so. */
+  /** Whether this rank was told that another one failed. */
   bool WasStopped() const { return this->Stopped; }
 
 private:

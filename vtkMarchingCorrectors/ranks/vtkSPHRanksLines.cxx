@@ -22,14 +22,14 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** The values of an array that a surface may lack. */
+/** Copies the values of an array that the surface may lack. */
 template <typename T>
 std::vector<T> List(const T* values, std::int64_t count)
 {
   return std::vector<T>(values, values + (values ? count : 0));
 }
 
-/** Uninitialized; not null where there are none. */
+/** Allocates, uninitialized; not null for 0 elements either. */
 template <typename T>
 bool Allocate(T*& array, vtkIdType count)
 {
@@ -37,7 +37,7 @@ bool Allocate(T*& array, vtkIdType count)
   return array != nullptr;
 }
 
-/** Whole numbers from 0 on. */
+/** Returns the whole numbers from 0 on. */
 vtkSmartPointer<vtkIdTypeArray> CountUp(const char* name, vtkIdType count)
 {
   auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
@@ -71,7 +71,7 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   const mcor_statistics& s = whole.statistics;
   std::int64_t counts[2] = { whole.line_count, this->Failed ? 1 : 0 };
   double measures[3] = { s.length, s.area, s.is_closed ? 1.0 : 0.0 };
-  ranks.Reduce(vtkSPHRanks::SUM, counts, 2); // of lines and measures the first rank's
+  ranks.Reduce(vtkSPHRanks::SUM, counts, 2); // the other ranks have no lines or measures
   ranks.Reduce(vtkSPHRanks::SUM, measures, 3);
   this->Count = counts[0];
   this->Failed = counts[1] > 0;
@@ -80,7 +80,8 @@ vtkSPHRanksLines::vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface,
   surface.statistics.is_closed = measures[2] > 0.0;
 }
 
-// Points and triangles into the whole; returns the pieces that lines are made of, between points of the whole.
+// Gathers points and triangles into the whole. Returns the pieces of lines, each between two points
+// of the whole.
 std::vector<vtkSPHRanksLines::Piece> vtkSPHRanksLines::Gather(
   vtkSPHRanks& ranks, const mcor_surface& surface, const vtkSPHRanksNumbers& numbers)
 {

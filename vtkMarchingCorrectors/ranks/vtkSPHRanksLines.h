@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: lines of particles in a plane, and what is filled. Ranks make their parts of them;
- * these come together on the first rank, which joins lines as one process does.
+ * Private to the module: lines of particles in a plane, and filled regions. Each rank makes its
+ * part; the first rank gathers all, and joins lines as one process does.
  */
 #ifndef vtkSPHRanksLines_h
 #define vtkSPHRanksLines_h
@@ -21,8 +21,8 @@ class vtkSPHRanksLines
 {
 public:
   /**
-   * Of this rank's surface, whose points and triangles have these numbers among all of them. Puts measures
-   * into the surface's statistics, on all ranks. Collective.
+   * Gathers the lines of all ranks. `numbers` are those of this rank's points and triangles in
+   * the whole. Sets the measures in the surface's statistics, on all ranks. Collective.
    */
   vtkSPHRanksLines(vtkSPHRanks& ranks, mcor_surface& surface, const vtkSPHRanksNumbers& numbers,
     const mcor_plane& plane, bool isFilled);
@@ -30,10 +30,13 @@ public:
 
   vtkIdType GetCount() const { return this->Count; }
 
-  /** Memory did not suffice, on any rank. */
+  /** Whether memory ran out on any rank. */
   bool HasFailed() const { return this->Failed; }
 
-  /** Moves the points and their arrays to the first rank, with all cells; others have none. Collective. */
+  /**
+   * Moves the points and their arrays to the first rank, which gets all cells; the others end
+   * empty. Collective.
+   */
   void Move(vtkSPHRanks& ranks, vtkPolyData* output);
 
 private:
@@ -45,7 +48,7 @@ private:
     vtkSPHRanks& ranks, const mcor_surface& surface, const vtkSPHRanksNumbers& numbers);
 
   mcor_surface Whole = {};  ///< points, lines and triangles, on the first rank
-  vtkSPHRanksLists Numbers; ///< on the first rank, of the points of each
+  vtkSPHRanksLists Numbers; ///< on the first rank: the points of each rank
   vtkIdType Count = 0;
   bool Failed = false;
 };

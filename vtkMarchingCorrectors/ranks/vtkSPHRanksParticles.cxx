@@ -12,8 +12,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHParticles.h"
-#include "vtkSPHReals.h"
 #include "vtkSPHRanksTuples.h"
+#include "vtkSPHReals.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Form
 {
   std::string Name;
   int Type;
-  std::vector<std::string> Labels; // of its components; empty where they have none
+  std::vector<std::string> Labels; // of its components; empty: they have none
   int Attribute;                   // of vtkDataSetAttributes, or -1
 
   bool IsLike(const Form& other) const
@@ -38,7 +38,7 @@ struct Form
   }
 };
 
-/** Positions, then point arrays; empty where there are no points. */
+/** The form of the positions, then of the point arrays; empty if there are no points. */
 using Layout = std::vector<Form>;
 }
 
@@ -70,7 +70,7 @@ std::vector<std::string> LabelsOf(vtkAbstractArray* array)
   return labels;
 }
 
-/** Lists the point arrays that have a name and a value for each point, but for vtkGhostType. */
+/** Lists the point arrays with a name and a value for each point, except vtkGhostType. */
 Layout Describe(vtkPolyData* particles)
 {
   Layout layout;
@@ -99,7 +99,10 @@ Layout Describe(vtkPolyData* particles)
   return layout;
 }
 
-/** Lists the arrays of all ranks that have points, in the order of the first of them. Collective. */
+/**
+ * Lists the arrays that all ranks with points have, in the order of the first such rank.
+ * Collective.
+ */
 Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
 {
   Layout common;
@@ -113,8 +116,8 @@ Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
     common[0].Type = std::max(common[0].Type, other[0].Type); // VTK_FLOAT < VTK_DOUBLE
     const auto isMissing = [&other](Form& form)
     {
-      const auto theirs = std::find_if(other.begin() + 1, other.end(),
-        [&form](const Form& one) { return form.IsLike(one); });
+      const auto theirs = std::find_if(
+        other.begin() + 1, other.end(), [&form](const Form& one) { return form.IsLike(one); });
       const bool isThere = theirs != other.end();
       // Numbers of several types become doubles, as where one process joins the pieces of a file.
       form.Type = isThere && form.Type != theirs->Type ? VTK_DOUBLE : form.Type;
@@ -125,7 +128,10 @@ Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
   return common;
 }
 
-/** These tuples of an array that may be none; where they are all, and it can travel as it is, the array itself. */
+/**
+ * Copies these tuples of an array, which may be null. Returns the array itself if all of it is
+ * wanted, in this form.
+ */
 vtkSmartPointer<vtkAbstractArray> TakeTuples(
   vtkAbstractArray* array, const Form& form, vtkIdList* ids)
 {
@@ -155,7 +161,7 @@ vtkSmartPointer<vtkAbstractArray> TakeTuples(
   return taken;
 }
 
-/** These points, with these arrays. */
+/** Copies these points, with these arrays. */
 vtkSmartPointer<vtkPolyData> TakePoints(vtkPolyData* from, const Layout& layout, vtkIdList* ids)
 {
   auto taken = vtkSmartPointer<vtkPolyData>::New();
@@ -180,7 +186,7 @@ vtkSmartPointer<vtkPolyData> TakePoints(vtkPolyData* from, const Layout& layout,
   return taken;
 }
 
-/** Lists the points that no other rank has, and that are not left out. */
+/** Lists the points that belong to this rank, without those that the choice leaves out. */
 vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data, const vtkSPHParticlesChoice& choice)
 {
   auto own = vtkSmartPointer<vtkIdList>::New();
@@ -205,9 +211,8 @@ vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data, const vtkSPHParticlesChoic
 }
 }
 
-vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
-  vtkSPHRanks& ranks, vtkPointSet* data, const vtkSPHParticlesChoice& choice,
-  std::vector<vtkIdType>* taken)
+vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet* data,
+  const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken)
 {
   vtkNew<vtkPolyData> view;
   if (data && data->GetNumberOfPoints() > 0)
@@ -228,7 +233,8 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(
   return particles;
 }
 
-// In the order in which they are, and what was made of some of them last: so they are found again.
+// Keeps the order of the arrays, and appends those that were computed, so that they are found
+// again.
 vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHParticles& used)
 {
   std::vector<vtkAbstractArray*> arrays = { used.SmoothingLength, used.Volume, used.Mass,

@@ -12,7 +12,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-constexpr int Bins = 64; // of a histogram: a round of the search for a plane
+constexpr int Bins = 64; // of a histogram, in each round of the search for a plane
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
@@ -45,7 +45,7 @@ vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanks
   this->Places = std::vector<vtkSPHRanksPlace>();
 }
 
-// All nodes of a depth at once: one message for them.
+// Divides all nodes of a depth at once, with one message for them.
 void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
 {
   for (std::size_t begin = 0, end = 1; begin < end; begin = end, end = this->Nodes.size())
@@ -69,7 +69,7 @@ void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
   }
 }
 
-// Across the longest side of the particles' bounds.
+// Cuts across the longest side of the particles' bounds.
 std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
   vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick)
 {
@@ -114,7 +114,7 @@ std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
   return cuts;
 }
 
-// One histogram of each node between the numbers that are left; false when no more than one is.
+// Narrows each cut by a histogram; returns false once each has a single plane left.
 bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick)
 {
   const auto isSought = [](const Cut& cut) { return cut.Most - cut.Least > 0.5; };
@@ -147,7 +147,7 @@ bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, do
     {
       continue;
     }
-    // Among single bricks, the plane after which the work below is nearest to the goal.
+    // Among single bricks, takes the plane whose work below is nearest to the goal.
     const double width = step(cut), least = cut.Least, most = cut.Most;
     int bin = 0;
     std::int64_t below = cut.Before;

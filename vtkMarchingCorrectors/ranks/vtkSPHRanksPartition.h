@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: how space is divided among ranks, by a k-d tree over the particles whose
- * cuts lie on the lattice's bricks. All ranks build the same tree; none sees all particles.
+ * Private to the module: divides space among ranks by a k-d tree over the particles, with cuts
+ * between the lattice's bricks. All ranks build the same tree, though none has all particles.
  */
 #ifndef vtkSPHRanksPartition_h
 #define vtkSPHRanksPartition_h
 
-#include "vtkType.h" // For VTK's namespace
+#include "vtkType.h" // for VTK's namespace
 
 #include <array>
 #include <cstddef>
@@ -17,7 +17,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHRanks;
 
-/** low and high side of x, y, z; the low side belongs to the box, the high side does not. */
+/** Low and high sides of x, y, z. The low sides belong to the box, the high ones do not. */
 using vtkSPHRanksBox = std::array<double, 6>;
 
 struct vtkSPHRanksPlace
@@ -30,8 +30,8 @@ class vtkSPHRanksPartition
 {
 public:
   /**
-   * Divides `whole`, whose sides may be infinite, so that each rank has about the same sum of Work.
-   * `places`: this rank's particles. Cuts lie on multiples of `brick`. Collective.
+   * Divides `whole`, whose sides may be infinite, so that each rank has about the same sum of
+   * Work. places: this rank's particles. Cuts lie on multiples of `brick`. Collective.
    */
   vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
     std::vector<vtkSPHRanksPlace> places, double brick);
@@ -41,16 +41,16 @@ public:
     return this->Boxes[static_cast<std::size_t>(rank)];
   }
 
-  /** The rank whose box holds the point, which is within the whole. */
+  /** Returns the rank whose box holds the point, which must be within the whole. */
   int FindOwner(const double point[3]) const;
 
-  /** Adds the ranks whose boxes overlap this one. */
+  /** Adds the ranks whose boxes overlap this box. */
   void FindOverlaps(const vtkSPHRanksBox& box, std::vector<int>& found) const;
 
 private:
   struct Node
   {
-    int FirstRank, Ranks;    ///< that share it
+    int FirstRank, Ranks;    ///< the ranks that share it
     std::size_t First, Last; ///< its places, [First, Last)
     int Axis = 0;
     double Plane = 0.0;
@@ -61,9 +61,9 @@ private:
   {
     int Node;
     double First;        ///< plane number 0, in bricks
-    double Least, Most;  ///< numbers between which the plane is sought
-    std::int64_t Goal;   ///< work below it
-    std::int64_t Before; ///< work below Least
+    double Least, Most;  ///< the planes among which it is sought
+    std::int64_t Goal;   ///< the work wanted below it
+    std::int64_t Before; ///< the work below Least
   };
 
   void Divide(vtkSPHRanks& ranks, double brick);

@@ -21,10 +21,10 @@ using Key = std::array<std::uint64_t, MCOR_POINT_KEY>;
 using Keys = std::vector<Key>;
 using Numbers = std::vector<std::int64_t>;
 
-/** Samples of all ranks' keys for each range that a rank sorts: ranges are even up to about an eighth. */
+/** Samples per rank's range of keys: ranges come out even within about an eighth. */
 constexpr std::int64_t Samples = 64;
 
-/** Where the range of keys that each rank sorts ends: the same on all ranks. */
+/** Finds where the range of keys of each rank ends; the same on all ranks. */
 Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 {
   const auto count = static_cast<std::size_t>(ranks.GetCount());
@@ -55,7 +55,7 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
 
 using Place = Keys::const_iterator;
 
-/** std::lower_bound() of what is probably near the beginning. */
+/** std::lower_bound() for a key that is probably near the beginning. */
 Place FindAfter(Place begin, Place end, const Key& key)
 {
   std::ptrdiff_t step = 1;
@@ -67,7 +67,7 @@ Place FindAfter(Place begin, Place end, const Key& key)
   return std::lower_bound(begin, begin + std::min(step, end - begin), key);
 }
 
-/** All keys of lists that ascend, each once. */
+/** Merges ascending lists; each key remains once. */
 Keys Merge(const std::vector<Keys>& lists)
 {
   Keys keys;
@@ -90,10 +90,10 @@ Keys Merge(const std::vector<Keys>& lists)
   return keys;
 }
 
-/** How many numbers a key takes. */
+/** Returns how many numbers a key takes. */
 using Weight = std::int64_t (*)(const Key& key);
 
-/** In place of the keys that each rank sent the numbers of these distinct ones. */
+/** Replaces the keys that each rank has sent by their numbers. */
 std::vector<Numbers> Number(
   const std::vector<Keys>& sent, const Keys& distinct, const Numbers& numbers)
 {
@@ -112,8 +112,8 @@ std::vector<Numbers> Number(
 }
 
 /**
- * Of each of this rank's keys, which ascend, the numbers that it takes where all ranks' distinct keys are
- * numbered in order; `total` of all numbers. Each rank sorts a range of the keys.
+ * Numbers the distinct keys of all ranks in order, and returns the numbers of this rank's keys,
+ * which must ascend. total: how many numbers there are. Each rank sorts a range of the keys.
  */
 vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   vtkSPHRanks& ranks, const Keys& keys, Weight weight, const char* name, vtkIdType& total)
@@ -130,12 +130,12 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   }
   sent = ranks.Exchange(std::move(sent));
   const Keys distinct = Merge(sent);
-  Numbers first(1, 0); // and behind the last one
+  Numbers first(1, 0); // and, last, the number behind them
   for (const Key& key : distinct)
   {
     first.push_back(first.back() + weight(key));
   }
-  const Numbers all = ranks.Gather(first.back()); // how many each rank has
+  const Numbers all = ranks.Gather(first.back()); // how many numbers each rank has given
   const std::int64_t before =
     std::accumulate(all.begin(), all.begin() + ranks.GetRank(), std::int64_t(0));
   total = static_cast<vtkIdType>(std::accumulate(all.begin(), all.end(), std::int64_t(0)));
@@ -161,7 +161,7 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
 }
 }
 
-// A cell's triangles are on one rank, beside each other: one key tells of all.
+// All triangles of a cell are on one rank, one behind the other, so one key stands for them all.
 vtkSPHRanksNumbers vtkSPHNumber(vtkSPHRanks& ranks, const mcor_surface& surface)
 {
   static_assert(MCOR_TRIANGLE_KEY + 1 == MCOR_POINT_KEY, "a key and how many have it");
@@ -191,7 +191,8 @@ void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArr
 {
   mcor_measures measures = {};
   const Numbers own(numbers->GetPointer(0), numbers->GetPointer(0) + numbers->GetNumberOfTuples());
-  const auto first = std::find(own.begin(), own.end(), std::int64_t(0)); // of all
+  const auto first =
+    std::find(own.begin(), own.end(), std::int64_t(0)); // the first point of the whole surface
   for (int a = 0; a < 3; ++a)
   {
     measures.origin[a] = first == own.end() ? std::numeric_limits<double>::infinity()

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: numbers of the whole surface's points and triangles.
- */
+/** Private to the module: numbers points and triangles as in the whole surface. */
 #ifndef vtkSPHRanksPoints_h
 #define vtkSPHRanksPoints_h
 
@@ -13,7 +11,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHRanks;
 
-/** Numbers of a rank's points and triangles, and how many there are on all ranks. */
+/** The numbers of a rank's points and triangles, and how many the whole surface has. */
 struct vtkSPHRanksNumbers
 {
   vtkSmartPointer<vtkIdTypeArray> OfPoints, OfTriangles;
@@ -21,13 +19,16 @@ struct vtkSPHRanksNumbers
 };
 
 /**
- * The number of each of this rank's points among the points of all ranks, those with the same key
- * being one: the index that it has where one process makes the whole surface. The same of this rank's
- * triangles, which ascend. Collective.
+ * Finds the number of each of this rank's points in the whole surface, which is its index where
+ * one process makes all of it. Points with the same key are one. Does the same for this rank's
+ * triangles, whose keys ascend. Collective.
  */
 vtkSPHRanksNumbers vtkSPHNumber(vtkSPHRanks& ranks, const mcor_surface& surface);
 
-/** Area and volume of all ranks' surface, into `statistics`; numbers: of this rank's points. Collective. */
+/**
+ * Measures area and volume of the whole surface into `statistics`. numbers: those of this rank's
+ * points. Collective.
+ */
 void vtkSPHMeasure(vtkSPHRanks& ranks, const mcor_surface& surface, vtkIdTypeArray* numbers,
   mcor_statistics& statistics);
 VTK_ABI_NAMESPACE_END

@@ -13,7 +13,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Along an edge; cuts need not lie on bricks, but those that do cost least. */
+/** Cubes along an edge of a brick. Cuts may lie anywhere, but those between bricks cost least. */
 constexpr double BrickCubes = 4.0;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
@@ -23,7 +23,7 @@ std::size_t Side(int axis)
   return static_cast<std::size_t>(2 * axis);
 }
 
-/** Whether all within `reach` of a place is. */
+/** Whether everything within `reach` of a place is in the box. */
 bool IsWithin(const vtkSPHRanksBox& box, const double at[3], double reach)
 {
   bool isWithin = true;
@@ -34,7 +34,7 @@ bool IsWithin(const vtkSPHRanksBox& box, const double at[3], double reach)
   return isWithin;
 }
 
-/** Makes a route, step by step. */
+/** Finds a route, step by step. */
 class Router
 {
 public:
@@ -65,7 +65,8 @@ public:
     std::copy(box.begin(), box.end(), this->Route.Box);
     if (box[0] >= box[1] || box[2] >= box[3] || box[4] >= box[5])
     {
-      // More ranks than bricks: to the core, which wants a box, one where there is nothing.
+      // There are more ranks than bricks: the core wants a box, so this rank gets one where there
+      // is nothing.
       const double nowhere[6] = { 1e300, 2e300, 1e300, 2e300, 1e300, 2e300 };
       std::copy(nowhere, nowhere + 6, this->Route.Box);
     }
@@ -87,7 +88,7 @@ private:
       {
         low = std::min(std::max(low, box[2 * a]), high);
         high = std::max(std::min(high, box[2 * a + 1]), low);
-        // A flat box in the plane of particles holds them.
+        // A flat box in the plane of particles must hold them.
         high = plane.axis == a + 1 && low == plane.at
           ? std::max(high, std::nextafter(low, Infinity))
           : high;
@@ -97,8 +98,10 @@ private:
     }
   }
 
-  /** Calls visit(i, at, owner) for each particle that is needed: where it is within the first period, and the rank that
-   * owns it, -1 beyond all boxes and until space is divided. */
+  /**
+   * Calls visit(i, at, owner) for each particle that is needed. at: its place in the first
+   * period; owner: the rank that owns it, -1 beyond all boxes, and until space is divided.
+   */
   template <typename Visit>
   void ForEach(const Visit& visit) const
   {
@@ -145,7 +148,10 @@ private:
       ranks, this->Route.Whole, std::move(places), BrickCubes * this->Globals.measured.cube);
   }
 
-  /** The scaled support radius, and by how much more a large particle matters than a small one. */
+  /**
+   * Returns the scaled support radius, enlarged by the margin that a large particle needs more
+   * than a small one.
+   */
   double ReachOf(std::int64_t i) const
   {
     const double support = this->Input.estimate_smoothing_length
@@ -156,21 +162,21 @@ private:
         mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
   }
 
-  /** The ranks that a particle at this place, or an image of it, reaches by `radius`. */
+  /** Finds the ranks that a particle at this place, or an image of it, reaches by `radius`. */
   void FindReached(const double at[3], int owner, double radius, std::vector<int>& found) const
   {
     const double reach = radius + this->LeastMargin;
     if (owner >= 0 && IsWithin(this->Route.Partition->GetBox(owner), at, reach))
     {
-      found.assign(1, owner); // as most are
+      found.assign(1, owner); // the usual case
       return;
     }
     this->Route.FindReached(at, reach, found);
   }
 
   /**
-   * How far around its box each rank needs all particles, whatever their supports are: for volumes
-   * that are computed, and nearest particles.
+   * Finds how far around its box each rank needs all particles, whatever their supports: for
+   * computed volumes, and for nearest particles.
    */
   std::vector<double> FindRadii(vtkSPHRanks& ranks) const
   {
@@ -202,7 +208,7 @@ private:
     return radii;
   }
 
-  /** Lists particles for the ranks that they reach, or that need all particles so near. */
+  /** Lists each particle for the ranks that it reaches, or that need all particles so near. */
   void Send(vtkSPHRanks& ranks, const std::vector<double>& radii)
   {
     const double widest = *std::max_element(radii.begin(), radii.end());
@@ -246,10 +252,10 @@ private:
   const mcor_options& Options;
   const mcor_globals& Globals;
   const vtkSPHRanksBalance& Balance;
-  double Support; ///< scaled support radius / what the input's array holds
-  double Factor;  ///< scaled support radius / smoothing length
+  double Support; ///< scaled support radius per value of the input's array
+  double Factor;  ///< scaled support radius per smoothing length
   double LeastMargin;
-  bool HasLevels; ///< margins differ
+  bool HasLevels; ///< the margin depends on the particle
   bool ComputesVolumes;
   vtkSPHRanksRoute Route;
 };
@@ -261,7 +267,7 @@ vtkSPHRanksPeriod::vtkSPHRanksPeriod(const mcor_options& options, const mcor_glo
   {
     const double edge = globals.measured.edge[a];
     const double first = options.periodic[2 * a];
-    // Across the plane of particles in two dimensions it means nothing.
+    // A period across the plane of two dimensions means nothing.
     const bool isAcross = globals.measured.plane.axis == a + 1;
     this->Length[a] = isAcross ? 0.0 : std::max(0.0, options.periodic[2 * a + 1] - first);
     this->First[a] = this->Length[a] > 0.0 ? edge * std::ceil(first / edge - 0.5) : 0.0;

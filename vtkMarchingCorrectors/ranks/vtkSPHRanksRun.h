@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: what one rank has of a run that ranks share. vtkSPHAlgorithm fills it, step by step.
+ * Private to the module: what one rank has of a shared run. vtkSPHAlgorithm fills it step by
+ * step.
  */
 #ifndef vtkSPHRanksRun_h
 #define vtkSPHRanksRun_h
@@ -25,14 +26,14 @@ struct vtkSPHRanksRun
   void operator=(const vtkSPHRanksRun&) = delete;
 
   vtkSPHRanks Ranks;
-  vtkSmartPointer<vtkPolyData> Own; ///< the particles that it was given, of vtkSPHTakeParticles()
+  vtkSmartPointer<vtkPolyData> Own; ///< the particles that it was given, see vtkSPHTakeParticles()
   std::int64_t Particles = 0;       ///< of all ranks
-  bool HasFluid = false;            ///< any of these
+  bool HasFluid = false;            ///< on any rank
   mcor_options Options = {};
   mcor_globals Globals = {};
   vtkSPHRanksRoute Route;
   vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
-  std::vector<vtkIdType> From;       ///< how many of these from each rank
+  std::vector<vtkIdType> From;       ///< how many of them came from each rank
 };
 VTK_ABI_NAMESPACE_END
 

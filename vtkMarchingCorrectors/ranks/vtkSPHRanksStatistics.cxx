@@ -46,7 +46,7 @@ void MergeAll(mcor_statistics& all, const mcor_statistics& one)
 #include "mcor_statistics.def"
 }
 
-/** The box around both. */
+/** Returns the box around both. */
 void AddCells(mcor_statistics& all, const mcor_statistics& one)
 {
   if (one.virtual_cells == 0)
@@ -93,7 +93,7 @@ struct Sums
 
 using Share = vtkSPHRanksShare;
 
-/** One component for each rank. */
+/** Adds an array with one component for each rank. */
 template <typename ArrayT, typename ValueOf>
 void Add(vtkFieldData* run, const char* name, const std::vector<Share>& shares, ValueOf valueOf)
 {
@@ -130,7 +130,7 @@ void AddSeconds(vtkFieldData* run, const std::vector<Share>& shares)
 
 mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
 {
-  // Of the first rank that had something to do: what is global is the same on all of these.
+  // Takes what is global from the first rank that had work: it is the same on all of these.
   const auto known = std::find_if(shares.begin(), shares.end(),
     [](const vtkSPHRanksShare& share) { return share.Statistics.cube_size > 0.0; });
   mcor_statistics all = known == shares.end() ? mcor_statistics() : known->Statistics;

@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: what each rank did, and what all of them did together.
- */
+/** Private to the module: what each rank has done, and what all have done together. */
 #ifndef vtkSPHRanksStatistics_h
 #define vtkSPHRanksStatistics_h
 
 #include "mcor.h"
-#include "vtkType.h" // For VTK's namespace
+#include "vtkType.h" // for VTK's namespace
 
 #include <cstdint>
 #include <vector>
@@ -22,14 +20,15 @@ struct vtkSPHRanksShare
 {
   mcor_statistics Statistics;
   std::int64_t Points, Triangles;
-  std::int64_t OwnedParticles, CopiedParticles; ///< of its box; of others' that reach it
+  std::int64_t OwnedParticles, CopiedParticles; ///< in its box; of others, which reach it
   std::int64_t BytesSent;
   std::int64_t Work; ///< as in vtkSPHRanksRoute
 };
 
 /**
- * Sums of counts, the longest seconds, means over all points, of which each was counted by one rank. What
- * is evaluated on both sides of a seam is in the counts of bricks, nodes and evaluations twice.
+ * Merges statistics: sums of counts, the longest seconds, and means over all points (one rank
+ * counts each point). What is evaluated on both sides of a seam counts twice among bricks, nodes
+ * and evaluations.
  */
 mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares);
 
@@ -40,9 +39,9 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares);
 void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& shares);
 
 /**
- * Adds what each rank did of a run without a surface: "RankParticles", "RankCopies", "RankPoints"
- * (where it evaluated), "RankBytesSent" and "RankSeconds", taken from the total of `run`'s "Seconds".
- * Collective.
+ * Adds what each rank has done in a run without a surface: "RankParticles", "RankCopies",
+ * "RankPoints" (where it evaluated), "RankBytesSent" and "RankSeconds", which is the total of
+ * `run`'s "Seconds". Collective.
  */
 void vtkSPHAddSampleShares(
   vtkSPHRanks& ranks, vtkFieldData* run, const vtkSPHRanksRoute& route, std::int64_t points);

@@ -36,13 +36,13 @@ std::size_t TupleSize(vtkAbstractArray* array)
     static_cast<std::size_t>(array->GetNumberOfComponents());
 }
 
-/** Whether values lie in bytes of their own, side by side. */
+/** Whether the values lie side by side, as bytes. */
 bool IsPlain(vtkAbstractArray* array)
 {
   return array->GetDataType() != VTK_STRING && array->GetDataType() != VTK_BIT;
 }
 
-/** Copies tuples of a size that the compiler knows: several times as fast. */
+/** Copies tuples of a size that the compiler knows, which is several times as fast. */
 template <std::size_t Size>
 void CopyTuples(const char* values, const std::vector<vtkIdType>& ids, char* to)
 {
@@ -78,7 +78,7 @@ void PutPlain(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vect
   }
 }
 
-/** Values that are not plain, as texts. */
+/** Writes values that are not plain as texts. */
 void PutTexts(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
 {
   const int components = array->GetNumberOfComponents();
@@ -111,7 +111,7 @@ void GetTuples(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType firs
   }
 }
 
-/** The message for a rank: how many tuples, and these; nothing where there are none. */
+/** Packs the message for a rank: the number of tuples, then the tuples; empty if there are none. */
 std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdType>& ids)
 {
   diy::MemoryBuffer bytes;
@@ -136,7 +136,7 @@ std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdT
 
 namespace
 {
-/** The array, or a copy whose values lie side by side. */
+/** Returns the array, or a copy whose values lie side by side. */
 vtkSmartPointer<vtkAbstractArray> AsPlain(vtkAbstractArray* array)
 {
   if (array->HasStandardMemoryLayout())

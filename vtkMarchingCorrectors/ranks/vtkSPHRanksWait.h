@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: waiting for other ranks without keeping a processor busy, as MPI's own calls do,
- * to the loss of ranks that compute on the same one.
+ * Private to the module: waiting for other ranks. MPI's own calls keep a processor busy while
+ * they wait, which slows down ranks that compute on it.
  */
 #ifndef vtkSPHRanksWait_h
 #define vtkSPHRanksWait_h
@@ -14,7 +14,7 @@
 #include <thread>
 
 VTK_ABI_NAMESPACE_BEGIN
-/** Looks at once, then less and less often. */
+/** Tests at once, then less and less often. */
 inline void vtkSPHAwait(vtkMPICommunicator::Request& request)
 {
   std::chrono::microseconds pause(10);
@@ -25,7 +25,10 @@ inline void vtkSPHAwait(vtkMPICommunicator::Request& request)
   }
 }
 
-/** Returns when all ranks have called it. Each hears of twice as many with every message. */
+/**
+ * Returns when all ranks have called it. With every message a rank hears of twice as many
+ * others.
+ */
 inline void vtkSPHAwaitRanks(vtkMPIController* controller)
 {
   constexpr int tag = 1719;

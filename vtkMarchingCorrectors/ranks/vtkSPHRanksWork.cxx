@@ -16,13 +16,13 @@ namespace
 /** Cells of the coarse grid. */
 constexpr double CellLimit = 1 << 18;
 
-/** Their edge in median smoothing lengths, where there are not too many of them. */
+/** Edge of a cell in median smoothing lengths, unless that makes too many cells. */
 constexpr double CellLengths = 2.0;
 
-/** The cost of a cube of the surface, in costs of a particle. */
+/** The cost of a cube with surface, in costs of a particle. */
 constexpr double CubeWork = 40.0;
 
-/** A cell has far fewer particles than another: less than one in so many. */
+/** A cell has far fewer particles than another if it has less than one in so many. */
 constexpr std::int64_t FarFewer = 4;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
@@ -53,7 +53,7 @@ public:
     this->Ranges.assign(count, { Infinity, -Infinity });
   }
 
-  /** Tells the cells of this rank's particles, then of all ranks'. */
+  /** Enters this rank's particles into the cells, then merges the cells of all ranks. */
   void Fill(vtkSPHRanks& ranks)
   {
     const bool hasValues = this->Options.field != MCOR_WEIGHT_SUM;
@@ -78,7 +78,7 @@ public:
     }
   }
 
-  /** The work that each particle of a cell stands for. */
+  /** Returns, for each cell, the work that each of its particles stands for. */
   std::vector<std::int64_t> Share() const
   {
     const double across = this->Edge / this->Globals.measured.cube;
@@ -95,7 +95,7 @@ public:
     return shares;
   }
 
-  /** The cell of a fluid particle of this rank. */
+  /** Returns the cell of a fluid particle of this rank. */
   std::size_t GetCell(std::int64_t i) const { return this->CellOf[static_cast<std::size_t>(i)]; }
 
 private:
@@ -114,13 +114,13 @@ private:
   }
 
   /**
-   * How many surfaces pass through a cell, each as large as a side of it, as far as it and the six around
-   * it tell.
+   * Estimates how many surfaces, each as large as a side of the cell, pass through it, from the
+   * cell and the six around it.
    */
   int CountSurfaces(std::size_t cell) const
   {
     double low = this->Ranges[cell][0], high = this->Ranges[cell][1];
-    int ends = 0; // sides at which the fluid does
+    int ends = 0; // sides at which the fluid ends
     std::size_t stride = 1;
     for (int a = 0; a < 3; ++a)
     {
@@ -152,7 +152,7 @@ private:
   std::vector<std::int64_t> Counts;
   std::vector<std::uint32_t> CellOf;
   using Range = std::array<double, 2>; // least and greatest
-  std::vector<Range> Ranges;           // of what is contoured, in each cell
+  std::vector<Range> Ranges;           // of what is contoured, by cell
 };
 }
 

@@ -6,7 +6,6 @@ What it computes is tested elsewhere; here it is files, options, sentences and e
 """
 import json
 import os
-import pathlib
 import re
 import resource
 import signal

@@ -129,40 +129,6 @@ class Components(CommandLineTest):
         self.assertEqual((layer["closed"], layer["particles"]), ("1", "1000"))
         self.assertAlmostEqual(float(layer["volume"]), 1, delta=0.02)
 
-    def test_box(self):
-        """What a box cuts has a volume with caps alone."""
-        box = ["--box=-inf,0.2,-inf,inf,-inf,inf"]
-        cut, = self.pieces(*box)
-        self.assertEqual((cut["closed"], cut["volume"], cut["particles"]), ("0", "", ""))
-        capped, = self.pieces(*box, "--capping")
-        side = float(capped["xmax"])
-        self.assertAlmostEqual(side, 0.2, delta=0.04)
-        self.assertEqual(capped["closed"], "1")
-        self.assertAlmostEqual(float(capped["volume"]), side + 0.5, delta=0.06)
-        self.assertEqual(int(capped["particles"]), sum(x < side for x, y, z in self.points) - 4)
-
-    def test_walls(self):
-        """A block in a tank that is open above: what walls leave open, caps close, and the fluid is in it, but for the
-        edges of the tank, where the walls' share is greater."""
-        points, arrays = files.lattice(16)
-        spacing = files.SPACING
-        layer = [any(abs(c) > 0.56 for c in (x, y)) or z < -0.56 for x, y, z in points]
-        kept = [i for i, (x, y, z) in enumerate(points) if layer[i] or z < 0.3]
-        arrays = {name: [values[i] for i in kept] for name, values in arrays.items()}
-        arrays["Kind"] = [int(layer[i]) for i in kept]
-        files.write_vtp(self.input, [points[i] for i in kept], arrays)
-        walls = ["--fluid", "Kind=0", "--solids", "wall", "--wall-share", "0.4"]
-        opened = self.pieces(*walls)
-        self.assertEqual({row["closed"] for row in opened}, {"0"})
-        water, = self.pieces(*walls, "--capping")
-        within = [points[i] for i in kept if not layer[i]]
-        near = 0.56 - spacing  # of a wall: the outermost particles
-        edges = sum((abs(x) > near) + (abs(y) > near) + (z < -near) > 1 for x, y, z in within)
-        fluid = len(within) - edges
-        self.assertEqual((water["closed"], water["particles"]), ("1", str(fluid)))
-        self.assertAlmostEqual(float(water["volume"]) / (fluid * spacing ** 3), 0.95, delta=0.05)
-        self.assertIn(" of them in caps); area", self.extract(*FREE, *walls, "--capping").stdout)
-
     def test_wrong_usage(self):
         for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
                                   ([*FREE, "--least-volume", "1"], "no pieces to remove; leave out --least-volume"),

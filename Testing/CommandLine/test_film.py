@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Films by the program marching-correctors: test_film.py PROGRAM PRELOAD."""
 import json
-import os
 import pathlib
-import random
 import re
 import signal
 import struct
@@ -98,20 +96,6 @@ class Film(CommandLineTest):
             self.assertEqual(self.extract(*FREE, source=path).returncode, 0)
             self.assertEqual(self.output.read_bytes().decode(), self.without_mark(surface))
 
-    def test_interpolated_surface(self):
-        """Where the particles are known: the free surface there and that of the film agree."""
-        self.write_steps(2)
-        self.good("steps.pvd", "--times", "0.05")
-        exact = self.directory / "exact.vtp"
-        files.write_vtp(exact, *files.drop_at(0.05))
-        self.assertEqual(self.extract(*FREE, source=exact).returncode, 0)
-        def bounds(path):
-            text = path.read_text()
-            array = re.search(r'Name="Points".*?RangeMin="(.*?)".*?RangeMax="(.*?)"', text, re.S)
-            return [float(v) for v in array.groups()]
-        for a, b in zip(bounds(self.output), bounds(self.listed()[0][1])):
-            self.assertAlmostEqual(a, b, delta=1e-5)
-
     def test_time_step(self):
         paths = self.write_steps(3)
         result = self.make(*paths, "--times", "0.5")
@@ -126,27 +110,6 @@ class Film(CommandLineTest):
     def test_one_step(self):
         self.good(self.input)
         self.assertEqual([p.name for _, p in self.listed()], ["film_0000.vtp"])
-
-    def test_shuffled_particles(self):
-        self.write_steps(2)
-        self.good("steps.pvd", "--times", "0.03")
-        expected = self.without_mark(self.listed()[0][1])
-        for i in range(2):
-            order = list(range(1000))
-            random.Random(i).shuffle(order)
-            files.write_vtp(self.directory / f"drop_00{i}.vtp", *files.drop_at(0.1 * i, numbers=order))
-        self.good("steps.pvd", "--times", "0.03")
-        self.assertEqual(self.without_mark(self.listed()[0][1]), expected)
-
-    def test_entering_and_leaving(self):
-        """Half of the block leaves, as many others enter."""
-        for i, numbers in enumerate((range(0, 600), range(400, 1000))):
-            files.write_vtp(self.directory / f"drop_00{i}.vtp",
-                            *files.drop_at(0.1 * i, numbers=list(numbers)))
-        files.write_pvd(self.directory / "steps.pvd", [(0, "drop_000.vtp"), (0.1, "drop_001.vtp")])
-        steps = self.good("steps.pvd", "--times", "0.02,0.08")["steps"]
-        self.assertEqual([s["statistics"]["fluid_particles"] for s in steps], [600, 600])
-        self.assertNotEqual(*[self.without_mark(p) for _, p in self.listed()])
 
     def test_numbers_by_another_name(self):
         paths = self.write_steps(2)

@@ -27,7 +27,7 @@ typedef struct mcor_lattice
   int64_t origin[3];         /* a multiple of MCOR_BLOCK_CUBES */
   int64_t first[3], last[3]; /* nodes that a particle's support may reach, counted from origin */
   int fix_bits;
-  int top; /* highest level of adaptive cubes; 0: uniform */
+  int levels; /* of cubes; 1: all have one size */
   int blocks[3];
   int period[3], period_first[3]; /* cells, 0: open; where a period begins, from origin */
   /* The blocks of each level, and the end; with uniform cubes, higher levels are larger cubes. */
@@ -76,29 +76,29 @@ typedef struct mcor_bricks
 {
   mcor_buffer rungs; /* mcor_rung: of each level, and the end */
   int block_count, block_shift, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
-  mcor_buffer block_keys, block_buckets; /* by level, z, y, x */
-  mcor_buffer block_states, inactive;    /* uchar; see mcor_block.cl */
-  mcor_buffer states;                    /* uchar [block_count][512], see mcor_seed.cl */
-  mcor_buffer bits, base;                /* [block_count][16] */
-  mcor_buffer leaves, finer; /* uint, as bits; [block_count][512]: with several levels, see mcor_leaf_finer */
-  mcor_buffer seed_bits, seeds;          /* bricks as in bits; ulong, cells by slot */
+  mcor_buffer block_keys, block_buckets;                                /* by level, z, y, x */
+  mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
+  mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
+  mcor_buffer bits, base;             /* [block_count][16] */
+  mcor_buffer leaves,
+    finer; /* uint, as bits; [block_count][512]: with several levels, see mcor_leaf_finer */
+  mcor_buffer seed_bits, seeds; /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
   mcor_buffer cells;          /* ulong: those that may be used, all or none of a brick */
-  mcor_buffer plain, leaf_of; /* ulong, int: of adaptive cubes, see mcor_leaf_cells */
+  mcor_buffer plain, leaf_of; /* ulong; int, of adaptive cubes: see mcor_leaf_cells */
   mcor_buffer neighbours;     /* see mcor_brick_neighbours */
   mcor_buffer need;           /* see mcor_brick_need */
   mcor_buffer bit_counts;     /* of mcor_count_bits */
   mcor_buffer child_counts, child_keys, child_index; /* while cubes are divided */
   mcor_buffer regions;                               /* int: those to examine */
-  mcor_buffer found; /* int: what a kernel found in any brick, or how many regions */
+  mcor_buffer found; /* int: what a kernel found in any brick, or how many regions of each level */
 } mcor_bricks;
 
 /* [III-D] The surface of one iso value while it is made. */
 typedef struct mcor_mesh
 {
-  mcor_buffer used,
-    plain_used; /* ulong: cells; the latter of adaptive cubes, see mcor_march_classify */
+  mcor_buffer used, plain_used; /* ulong: cells, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
@@ -138,14 +138,14 @@ typedef struct mcor_tree
 /* Leaves that are marched, and what their slots need; see mcor_leaf.c. */
 typedef struct mcor_adaptive
 {
-  int count;                  /* leaves where there may be surface */
+  int count;                   /* leaves where there may be surface */
   mcor_buffer chosen, scanned; /* bits of these, by block; int: their counts */
-  mcor_buffer cells, finer;   /* int4, uint: of these, in order; where their neighbours are finer */
-  mcor_buffer tables;         /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
-  mcor_buffer mixed;          /* uchar: whether they have nodes on both sides */
-  mcor_buffer proofs;         /* uchar, of slots: states */
-  mcor_buffer quadrants;      /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
-  mcor_buffer flat;           /* int: loops that lie in one face between leaves */
+  mcor_buffer cells, finer; /* int4, uint: of these, in order; where their neighbours are finer */
+  mcor_buffer tables;       /* int [MCOR_LEAF_SLOTS]: slots of their nodes */
+  mcor_buffer mixed;        /* uchar: whether they have nodes on both sides */
+  mcor_buffer proofs;       /* uchar, of slots: states */
+  mcor_buffer quadrants;    /* uint [MCOR_QUADRANT_WORDS], of a slot's edges */
+  mcor_buffer flat;         /* int: loops that lie in one face between leaves */
 } mcor_adaptive;
 
 /* Which cells pairs reach; see mcor_pair.c. */
@@ -153,9 +153,8 @@ typedef struct mcor_pairs
 {
   /* ulong, by a brick's number in its block: by pairs; by now; when last looked at */
   mcor_buffer marked, reached, grown;
-  mcor_buffer cells, seeds; /* ulong, by slot: those that are reached; that are marked */
-  mcor_buffer domain;       /* ulong, by slot: where growth may go */
-  mcor_buffer found;        /* int: what a kernel found in any brick */
+  mcor_buffer domain; /* ulong, by slot: where growth may go */
+  mcor_buffer found;  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
 /* Decisions of MCOR_TOPOLOGY_FIELD. */

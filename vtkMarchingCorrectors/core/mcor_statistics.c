@@ -108,7 +108,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   s->dimension = mcor_is_plane(context) ? 2 : 3;
   s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));
   s->position_error = sqrt(s->dimension) * mcor_rounding(context);
-  s->highest_level = lattice->top;
+  s->highest_level = lattice->levels - 1;
   s->scalar_min = m->scalar_min;
   s->scalar_max = m->scalar_max;
   s->virtual_cells = 1;

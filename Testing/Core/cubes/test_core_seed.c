@@ -131,7 +131,7 @@ static marked_cells read_cells(mcor_context* context)
   CORE_OK(context,
     mcor_read(context, &context->bricks.now.bricks, 0, brick, (size_t)bricks * 4 * sizeof *brick));
   CORE_OK(
-    context, mcor_read(context, &context->pairs.seeds, 0, cells, (size_t)bricks * sizeof *cells));
+    context, mcor_read(context, &context->bricks.seeds, 0, cells, (size_t)bricks * sizeof *cells));
   size_t total = 1;
   for (int a = 0; a < 3; ++a)
   {

@@ -317,7 +317,7 @@ static void more_bricks_than_numbers(void** state)
   mcor_input input;
   core_set set = core_make_block(4, 0, 1, core_slope);
   measure(context, &set, 24, &options, &input);
-  context->lattice.top = 23; /* as with h 1:10^7 and a cube size that lets the lattice be */
+  context->lattice.levels = 24; /* as with h 1:10^7 and a cube size that lets the lattice be */
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(strstr(mcor_last_error(context), "adaptive cubes of 24 levels"), "%s",
     mcor_last_error(context));

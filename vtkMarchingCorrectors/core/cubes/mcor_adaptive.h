@@ -8,10 +8,10 @@
 
 #include "mcor_internal.h"
 
-/* Whether this call's cubes are of several levels. */
-static inline bool mcor_is_adaptive(const mcor_context* context)
+/* Whether the cubes are of several levels. */
+static inline bool mcor_is_adaptive(const mcor_lattice* lattice)
 {
-  return context->lattice.top > 0;
+  return lattice->levels > 1;
 }
 
 /* Kernel arguments of MCOR_LEAF_PARAMS and MCOR_PLAIN_PARAMS. */
@@ -19,8 +19,7 @@ static inline bool mcor_is_adaptive(const mcor_context* context)
   MCOR_INT((c)->adaptive.count), MCOR_INT(mcor_is_plane(c)), MCOR_BUFFER(&(c)->adaptive.finer),    \
     MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
     MCOR_BUFFER(&(c)->bricks.now.valid)
-#define MCOR_PLAIN_ARGS(c)                                                                         \
-  MCOR_INT(mcor_is_adaptive(c)), MCOR_BUFFER(&(c)->bricks.plain), MCOR_BUFFER(&(c)->bricks.leaf_of)
+#define MCOR_PLAIN_ARGS(c) MCOR_BUFFER(&(c)->bricks.plain), MCOR_BUFFER(&(c)->bricks.leaf_of)
 
 /* Vertices on lattice edges, of the trim boundary, or both. */
 enum
@@ -29,9 +28,15 @@ enum
   MCOR_ON_BOUNDARY = 2,
   MCOR_ALL_VERTICES = 3
 };
-/* Launches what evaluates the field at vertices: level by level, each seen in its cells. The kernel takes
- * MCOR_GRID_PARAMS, groups, nodes, and up to MCOR_VERTEX_ARGS more. */
-#define MCOR_VERTEX_ARGS 32
+/* Launch heavy kernels level by level, each seen in its cells. They take MCOR_GRID_PARAMS, what is said here, and up to
+ * MCOR_MORE_ARGS more. At vertices: the groups of these, and their nodes. By level: first and count, of what is
+ * from first[l] to before end[l]; so many `items` for each. */
+#define MCOR_MORE_ARGS 32
+#define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
+  mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \
+    sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
+mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int items,
+  const int* first, const int* end, const mcor_arg* more, size_t count);
 #define MCOR_LAUNCH_AT_VERTICES(context, vertices, name, ...)                                      \
   mcor_launch_at_vertices(context, vertices, name, (const mcor_arg[]){ __VA_ARGS__ },              \
     sizeof((const mcor_arg[]){ __VA_ARGS__ }) / sizeof(mcor_arg))
@@ -45,19 +50,12 @@ mcor_status mcor_view_level(mcor_context* context, int level);
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
 /* Lists the leaves that may have surface. */
 mcor_status mcor_choose_leaves(mcor_context* context);
-/* Requests the bricks whose nodes these need. */
-mcor_status mcor_request_leaves(mcor_context* context);
-/* Finds which of them have surface, and evaluates what they need. */
+/* Places the bricks whose nodes these need, evaluates what is needed of them, and finds which leaves have surface. */
 mcor_status mcor_complete_leaves(mcor_context* context);
 void mcor_release_adaptive(mcor_context* context);
 
 #define MCOR_TREE_ARGS(c)                                                                          \
-  MCOR_INT(mcor_is_adaptive(c)), MCOR_BUFFER(&(c)->bricks.leaves), MCOR_BUFFER(&(c)->bricks.finer)
-
-/* The used cells that no finer ones touch. */
-static inline const mcor_buffer* mcor_plain_used(const mcor_context* context)
-{
-  return mcor_is_adaptive(context) ? &context->mesh.plain_used : &context->mesh.used;
-}
+  MCOR_INT(mcor_is_adaptive(&(c)->lattice)), MCOR_BUFFER(&(c)->bricks.leaves),                     \
+    MCOR_BUFFER(&(c)->bricks.finer)
 
 #endif

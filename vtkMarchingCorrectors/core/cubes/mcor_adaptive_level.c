@@ -43,14 +43,41 @@ static mcor_status mcor_group_level(mcor_context* context, bool boundary, int le
   const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with those of caps */
   const int first = level > 0 ? mesh->level_first[boundary][level] : begin;
   const int count =
-    (level < context->lattice.top ? mesh->level_first[boundary][level + 1] : end) - first;
+    (level + 1 < context->lattice.levels ? mesh->level_first[boundary][level + 1] : end) - first;
   return mcor_make_groups(context, &mesh->node, first, count, groups);
+}
+
+/* Launches a heavy kernel with the search grid, `own` arguments and more. */
+static mcor_status mcor_launch_joined(mcor_context* context, const char* name, size_t items,
+  const mcor_arg own[3], const mcor_arg* more, size_t count)
+{
+  const mcor_arg grid[] = { MCOR_GRID_ARGS(context) };
+  const size_t n = sizeof grid / sizeof grid[0];
+  mcor_arg args[sizeof grid / sizeof grid[0] + 3 + MCOR_MORE_ARGS];
+  const size_t owned = own[2].buffer ? 3 : 2;
+  memcpy(args, grid, sizeof grid);
+  memcpy(args + n, own, owned * sizeof *own);
+  memcpy(args + n + owned, more, count * sizeof *more);
+  return mcor_launch(context, name, MCOR_HEAVY, items, args, n + owned + count);
+}
+
+mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int items,
+  const int* first, const int* end, const mcor_arg* more, size_t count)
+{
+  for (int l = 0; l < context->lattice.levels; ++l)
+  {
+    const int rest = end[l] - first[l];
+    const mcor_arg own[3] = { MCOR_INT(first[l]), MCOR_INT(rest) };
+    MCOR_TRY(mcor_view_level(context, l));
+    MCOR_TRY(mcor_launch_joined(context, name, (size_t)rest * (size_t)items, own, more, count));
+  }
+  return mcor_view_level(context, 0);
 }
 
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count)
 {
-  for (int i = 0; i < 2 * (context->lattice.top + 1); ++i)
+  for (int i = 0; i < 2 * context->lattice.levels; ++i)
   {
     const int level = i / 2, boundary = i % 2;
     int groups;
@@ -60,13 +87,9 @@ mcor_status mcor_launch_at_vertices(
     }
     MCOR_TRY(mcor_view_level(context, level));
     MCOR_TRY(mcor_group_level(context, boundary, level, &groups));
-    const mcor_arg first[] = { MCOR_GRID_ARGS(context), MCOR_INT(groups),
-      MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&context->mesh.node) };
-    const size_t n = sizeof first / sizeof first[0];
-    mcor_arg args[sizeof first / sizeof first[0] + MCOR_VERTEX_ARGS];
-    memcpy(args, first, sizeof first);
-    memcpy(args + n, more, count * sizeof *more);
-    MCOR_TRY(mcor_launch(context, name, MCOR_HEAVY, (size_t)groups, args, n + count));
+    const mcor_arg own[3] = { MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
+      MCOR_BUFFER(&context->mesh.node) };
+    MCOR_TRY(mcor_launch_joined(context, name, (size_t)groups, own, more, count));
   }
   return mcor_view_level(context, 0);
 }

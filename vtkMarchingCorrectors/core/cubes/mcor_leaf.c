@@ -67,15 +67,6 @@ mcor_status mcor_choose_leaves(mcor_context* context)
     MCOR_BUFFER(&adaptive->finer));
 }
 
-mcor_status mcor_request_leaves(mcor_context* context)
-{
-  const mcor_adaptive* adaptive = &context->adaptive;
-  return MCOR_LAUNCH(context, "mcor_leaf_request", MCOR_MEDIUM, adaptive->count,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(adaptive->count), MCOR_INT(mcor_is_plane(context)),
-    MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer),
-    MCOR_BUFFER(&context->bricks.bits));
-}
-
 /* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. */
 static mcor_status mcor_evaluate_slots(mcor_context* context)
 {
@@ -85,12 +76,10 @@ static mcor_status mcor_evaluate_slots(mcor_context* context)
   /* The proof is tried where a work-item evaluates whole bricks, see MCOR_PROVES_INSIDE. */
   const bool proves = options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
     context->cl.lanes > 1 && !mcor_is_plane(context);
-  for (int l = 0; l <= context->lattice.top && proves; ++l)
+  if (proves)
   {
-    const int first = bricks->first_slot[l], count = bricks->first_slot[l + 1] - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_prove", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-      MCOR_INT(first), MCOR_INT(count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
+    MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_prove", 1, bricks->first_slot,
+      bricks->first_slot + 1, MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&now->known),
       MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&context->adaptive.proofs),
       MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
   }
@@ -104,6 +93,11 @@ mcor_status mcor_complete_leaves(mcor_context* context)
   mcor_bricks* bricks = &context->bricks;
   const mcor_brick_data* now = &bricks->now;
   const int count = adaptive->count;
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_request", MCOR_MEDIUM, count, MCOR_BLOCK_ARGS(context),
+    MCOR_INT(count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->cells),
+    MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_place_bricks(context));
+  ++context->run.statistics->march_rounds;
   const size_t n = (size_t)now->count;
   MCOR_TRY(mcor_reserve(context, &adaptive->proofs, n));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_take", MCOR_MEDIUM, now->count, MCOR_BLOCK_ARGS(context),
@@ -125,9 +119,10 @@ mcor_status mcor_complete_leaves(mcor_context* context)
   MCOR_TRY(mcor_fill(context, &bricks->cells, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &bricks->plain, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &bricks->leaf_of, n * sizeof(cl_int)));
-  return MCOR_LAUNCH(context, "mcor_leaf_cells", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_cells", MCOR_MEDIUM, count, MCOR_LEAF_ARGS(context),
     MCOR_BUFFER(&adaptive->mixed), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&bricks->plain),
-    MCOR_BUFFER(&bricks->leaf_of));
+    MCOR_BUFFER(&bricks->leaf_of)));
+  return mcor_copy(context, &bricks->cells, &bricks->seeds, 0, n * sizeof(cl_ulong));
 }
 
 void mcor_release_adaptive(mcor_context* context)

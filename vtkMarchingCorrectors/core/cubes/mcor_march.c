@@ -17,19 +17,9 @@ static mcor_status mcor_find_cells(mcor_context* context)
   mcor_mesh* mesh = &context->mesh;
   const size_t bytes = (size_t)context->bricks.now.count * sizeof(cl_ulong);
   MCOR_TRY(mcor_reserve(context, &mesh->used, bytes));
-  const mcor_buffer* cells =
-    mcor_uses_pairs(context) ? &context->pairs.cells : &context->bricks.cells;
-  MCOR_TRY(mcor_copy(context, cells, &mesh->used, 0, bytes));
+  MCOR_TRY(mcor_copy(context, &context->bricks.cells, &mesh->used, 0, bytes));
   MCOR_TRY(mcor_keep_squares(context, &mesh->used));
   return mcor_clip_used(context);
-}
-
-/* Cells that are counted as seeds. */
-static const mcor_buffer* mcor_seeds(const mcor_context* context)
-{
-  return mcor_uses_pairs(context) ? &context->pairs.seeds
-    : mcor_is_adaptive(context)   ? &context->bricks.cells
-                                  : &context->bricks.seeds;
 }
 
 /* Finds, among the cells that finer ones touch, those that are used, and their edges. */
@@ -42,7 +32,6 @@ static mcor_status mcor_find_hanging(mcor_context* context)
   cl_int flat = 0;
   MCOR_TRY(mcor_find_owned(context, &mesh->used, &owned));
   MCOR_TRY(mcor_fill(context, &adaptive->quadrants, 0, n * MCOR_QUADRANT_WORDS * sizeof(cl_uint)));
-  MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_write(context, &adaptive->flat, &flat, sizeof flat));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_hanging", MCOR_MEDIUM, adaptive->count,
     MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain), MCOR_BUFFER(owned),
@@ -50,7 +39,7 @@ static mcor_status mcor_find_hanging(mcor_context* context)
     MCOR_BUFFER(&adaptive->flat)));
   MCOR_TRY(mcor_read(context, &adaptive->flat, 0, &flat, sizeof flat));
   context->run.statistics->flat_loops += flat;
-  return mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong));
+  return MCOR_OK;
 }
 
 /* Element `at` of an array of ints. */
@@ -64,27 +53,23 @@ static mcor_status mcor_read_int(
 static mcor_status mcor_find_used(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
-  const mcor_buffer* seeds = mcor_seeds(context);
   mcor_mesh* mesh = &context->mesh;
   mcor_statistics* s = context->run.statistics;
-  int chosen = 0, used, hits;
+  const size_t n = (size_t)bricks->now.count;
+  int used, hits;
   cl_int begin = 0, end;
-  if (seeds != &bricks->seeds) /* which mcor_select_seeds has counted */
-  {
-    MCOR_TRY(mcor_count_cells(context, seeds, &mesh->used, &chosen));
-  }
-  MCOR_TRY(mcor_is_adaptive(context) ? mcor_find_hanging(context) : MCOR_OK);
+  MCOR_TRY(mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(context->adaptive.count > 0 ? mcor_find_hanging(context) : MCOR_OK);
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_classify", MCOR_MEDIUM, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours),
-    MCOR_INT(mcor_is_adaptive(context)), MCOR_BUFFER(&bricks->plain),
+    MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->neighbours), MCOR_BUFFER(&bricks->plain),
     MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid), MCOR_BUFFER(&mesh->used),
-    MCOR_BUFFER(mcor_plain_used(context))));
-  MCOR_TRY(mcor_count_cells(context, seeds, &mesh->used, &hits));
+    MCOR_BUFFER(&mesh->plain_used)));
+  MCOR_TRY(mcor_count_cells(context, &bricks->seeds, &mesh->used, &hits));
   MCOR_TRY(mcor_count_cells(context, &mesh->used, &mesh->used, &used));
-  s->seed_cells += chosen;
-  s->seed_cells_not_intersected += chosen - hits;
+  s->seed_cells_not_intersected -= hits;
   s->cells_used += used;
-  for (int l = 0; l <= context->lattice.top; ++l, begin = end)
+  for (int l = 0; l < context->lattice.levels; ++l, begin = end)
   {
     MCOR_TRY(mcor_read_int(context, &bricks->bit_counts, bricks->first_slot[l + 1], &end));
     s->cells_of_level[l] += end - begin;
@@ -105,11 +90,10 @@ static mcor_status mcor_count_edges(mcor_context* context)
   int tunnel_count = 0;
   MCOR_TRY(mcor_reserve(context, &mesh->edges, n * MCOR_EDGE_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &mesh->triangle_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, tunnels, of_tunnels * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_CUT_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_INT(mcor_is_adaptive(context)),
-    MCOR_BUFFER(&context->adaptive.quadrants), MCOR_BUFFER(mcor_plain_used(context)),
+    MCOR_CUT_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_INT(context->adaptive.count),
+    MCOR_BUFFER(&context->adaptive.quadrants), MCOR_BUFFER(&mesh->plain_used),
     MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_scan(context, tunnels, count, &tunnel_count) : MCOR_OK);
@@ -117,7 +101,7 @@ static mcor_status mcor_count_edges(mcor_context* context)
   MCOR_TRY(mcor_scan(context, &mesh->vertex_base, count, &mesh->march_count));
   MCOR_TRY(mcor_scan(context, &mesh->triangle_base, count, &mesh->triangle_count));
   mesh->vertex_count = mesh->march_count;
-  for (int l = 0; l <= context->lattice.top; ++l)
+  for (int l = 0; l < context->lattice.levels; ++l)
   {
     MCOR_TRY(mcor_read_int(
       context, &mesh->vertex_base, bricks->first_slot[l + 1], &mesh->level_first[0][l + 1]));
@@ -164,7 +148,7 @@ static mcor_status mcor_count_triangles(mcor_context* context)
 {
   mcor_statistics* s = context->run.statistics;
   cl_int begin = 0, end;
-  for (int l = 0; l <= context->lattice.top; ++l, begin = end)
+  for (int l = 0; l < context->lattice.levels; ++l, begin = end)
   {
     int count;
     MCOR_TRY(mcor_read_int(

@@ -6,8 +6,7 @@
 #include "mcor_adaptive.h"
 #include "mcor_plane.h"
 
-/* Values of all nodes of the bricks of which they are needed and not known yet; level by level, each seen in its
- * cells. */
+/* Values of all nodes of the bricks of which they are needed and not known yet. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -18,18 +17,11 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
   const int items = plane ? 16 / lanes : lanes == 1 ? 64 : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->now.known), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_BUFFER(&bricks->now.known), MCOR_INT(context->adaptive.count),
     MCOR_BUFFER(&context->adaptive.proofs), MCOR_BUFFER(&bricks->need)));
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    const int first = bricks->first_slot[l], slots = bricks->first_slot[l + 1] - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, plane ? "mcor_plane_nodes" : "mcor_node_values", MCOR_HEAVY,
-      (size_t)slots * (size_t)items, MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(slots),
-      MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value),
-      MCOR_BUFFER(&bricks->now.weight)));
-  }
-  return mcor_view_level(context, 0);
+  return MCOR_LAUNCH_BY_LEVEL(context, plane ? "mcor_plane_nodes" : "mcor_node_values", items,
+    bricks->first_slot, bricks->first_slot + 1, MCOR_BUFFER(&bricks->now.bricks),
+    MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
 /* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */

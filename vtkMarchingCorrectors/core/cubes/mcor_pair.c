@@ -133,16 +133,14 @@ mcor_status mcor_find_reached(mcor_context* context)
     MCOR_TRY(more ? MCOR_OK : mcor_wrap_reached(context, &more));
   }
   const int count = bricks->now.count;
-  MCOR_TRY(mcor_reserve(context, &pairs->cells, (size_t)count * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &pairs->seeds, (size_t)count * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &bricks->cells, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_pair_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached),
-    MCOR_BUFFER(&pairs->marked), MCOR_BUFFER(&pairs->cells), MCOR_BUFFER(&pairs->seeds));
+    MCOR_BUFFER(&pairs->marked), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&bricks->seeds));
 }
 
 void mcor_release_pairs(mcor_context* context)
 {
   mcor_pairs* p = &context->pairs;
-  MCOR_RELEASE(
-    context, &p->reached, &p->marked, &p->cells, &p->seeds, &p->domain, &p->grown, &p->found);
+  MCOR_RELEASE(context, &p->reached, &p->marked, &p->domain, &p->grown, &p->found);
 }

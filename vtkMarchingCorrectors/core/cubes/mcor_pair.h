@@ -7,7 +7,7 @@
 
 #include "mcor_adaptive.h"
 
-/* Ends with the cells that pairs reach in pairs.cells, all of whose nodes are evaluated; pairs.seeds: those that pairs
+/* Ends with the cells that pairs reach in bricks.cells, all of whose nodes are evaluated; bricks.seeds: those that pairs
  * mark. */
 mcor_status mcor_find_reached(mcor_context* context);
 void mcor_release_pairs(mcor_context* context);

@@ -30,64 +30,50 @@ static mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
   return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
-/* Counts the cells that are seeds: those of all bricks that the regions leave uncertain, whatever of them is known from
- * earlier iso values. Later, those that the surface uses are taken off. */
-static mcor_status mcor_count_seeds(mcor_context* context)
+/* Regions by level: those listed of a level are from first[l] to before end[l]. */
+typedef struct mcor_region_list
 {
-  mcor_buffer* seeds = &context->bricks.seeds;
-  int count;
-  MCOR_TRY(mcor_keep_squares(context, seeds));
-  MCOR_TRY(mcor_count_cells(context, seeds, seeds, &count));
-  context->run.statistics->seed_cells += count;
-  context->run.statistics->seed_cells_not_intersected += count;
+  int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
+} mcor_region_list;
+
+/* Requests the bricks that the regions leave uncertain, which are the seeds, and lists these regions. */
+static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* listed)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const int levels = context->lattice.levels;
+  const size_t blocks = (size_t)bricks->block_count, counts = (size_t)levels * sizeof(cl_int);
+  for (int l = 0; l <= levels; ++l)
+  {
+    listed->first[l] = bricks->first_block[l] * MCOR_BLOCK_REGIONS;
+  }
+  MCOR_TRY(mcor_reserve(context, &bricks->states, blocks * MCOR_BLOCK_BRICKS));
+  MCOR_TRY(mcor_reserve(context, &bricks->regions, blocks * MCOR_BLOCK_REGIONS * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &bricks->found, 0, counts));
+  MCOR_TRY(
+    MCOR_LAUNCH_BY_LEVEL(context, mcor_is_plane(context) ? "mcor_plane_seeds" : "mcor_seed_regions",
+      1, listed->first, listed->first + 1, MCOR_BUFFER(&bricks->rungs),
+      MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context),
+      MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits),
+      MCOR_BUFFER(&bricks->regions), MCOR_BUFFER(&bricks->found)));
+  MCOR_TRY(mcor_read(context, &bricks->found, 0, listed->end, counts));
+  for (int l = 0; l < levels; ++l)
+  {
+    listed->end[l] += listed->first[l];
+  }
   return MCOR_OK;
 }
 
-/* Requests the bricks that the regions leave uncertain, which are the seeds. Lists these regions, level by level:
- * listed[l + 1], where those of a level end. */
-static mcor_status mcor_test_regions(mcor_context* context, mcor_buffer* list, cl_int* listed)
-{
-  mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* list_count = &bricks->found;
-  const int regions = bricks->block_count * MCOR_BLOCK_REGIONS;
-  MCOR_TRY(mcor_reserve(context, &bricks->states, (size_t)bricks->block_count * MCOR_BLOCK_BRICKS));
-  MCOR_TRY(mcor_reserve(context, list, (size_t)regions * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, list_count, 0, sizeof(cl_int)));
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    const int first = bricks->first_block[l] * MCOR_BLOCK_REGIONS;
-    const int count = bricks->first_block[l + 1] * MCOR_BLOCK_REGIONS - first;
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, mcor_is_plane(context) ? "mcor_plane_seeds" : "mcor_seed_regions",
-      MCOR_HEAVY, count, MCOR_GRID_ARGS(context), MCOR_INT(first), MCOR_INT(count),
-      MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
-      MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context), MCOR_SEED_ARGS(context),
-      MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(list),
-      MCOR_BUFFER(list_count)));
-    MCOR_TRY(mcor_read(context, list_count, 0, &listed[l + 1], sizeof *listed));
-  }
-  return mcor_view_level(context, 0);
-}
-
 /* Tests, and in a CPU's form evaluates, the bricks of these regions of which nothing is known. */
-static mcor_status mcor_test_bricks(
-  mcor_context* context, const mcor_buffer* list, const cl_int* listed)
+static mcor_status mcor_test_bricks(mcor_context* context, const mcor_region_list* listed)
 {
   mcor_bricks* bricks = &context->bricks;
-  for (int l = 0; l <= context->lattice.top; ++l)
-  {
-    const int count = listed[l + 1] - listed[l];
-    /* One item per region where one gathers for many lanes, else one per brick. */
-    const size_t items = (size_t)count * (context->cl.lanes == 1 ? 8 : 1);
-    MCOR_TRY(mcor_view_level(context, l));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_bricks", MCOR_HEAVY, items, MCOR_GRID_ARGS(context),
-      MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context), MCOR_INT(listed[l]), MCOR_INT(count),
-      MCOR_BUFFER(list), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states),
-      MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
-      MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
-      MCOR_BUFFER(&bricks->now.valid)));
-  }
-  return mcor_view_level(context, 0);
+  /* One item per region where one gathers for many lanes, else one per brick. */
+  return MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1,
+    listed->first, listed->end, MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context),
+    MCOR_BUFFER(&bricks->regions), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states),
+    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+    MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&bricks->now.valid));
 }
 
 /* Requests the bricks of which nodes are known. */
@@ -109,52 +95,41 @@ static mcor_status mcor_request_uncertain(mcor_context* context)
   return mcor_request_beside(context, &bricks->now.known);
 }
 
-/* Places every brick whose nodes must be evaluated, and evaluates most of them; none in a plane, where bounds
- * on bricks cost more than their few nodes. While they are tested, all bricks that the regions leave uncertain have
- * places, and those that are known from earlier iso values. */
-static mcor_status mcor_place_complete(mcor_context* context)
+/* Counts the seeds, of which those that the surface uses are taken off later. */
+static mcor_status mcor_count_seeds(mcor_context* context)
 {
-  mcor_bricks* bricks = &context->bricks;
-  mcor_buffer* list = &bricks->regions;
-  const bool levels = mcor_is_adaptive(context);
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
-  cl_int listed[MCOR_TREE_LEVEL_LIMIT + 2] = { 0 };
-  MCOR_TRY(mcor_test_regions(context, list, listed));
-  MCOR_TRY(levels ? MCOR_OK : mcor_void_bricks(context)); /* leaves are in the box */
-  MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0, words * sizeof(cl_uint)));
-  MCOR_TRY(mcor_request_known(context));
-  MCOR_TRY(mcor_place_bricks(context));
-  MCOR_TRY(levels ? MCOR_OK : mcor_count_seeds(context));
-  MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
-  MCOR_TRY(mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, list, listed));
-  MCOR_TRY(levels ? mcor_choose_leaves(context) : MCOR_OK);
-  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
-  MCOR_TRY(mcor_request_known(context));
-  MCOR_TRY(levels ? mcor_request_leaves(context) : mcor_request_uncertain(context));
-  return mcor_place_bricks(context);
+  mcor_buffer* seeds = &context->bricks.seeds;
+  int count;
+  MCOR_TRY(mcor_keep_squares(context, seeds));
+  MCOR_TRY(mcor_count_cells(context, seeds, seeds, &count));
+  context->run.statistics->seed_cells += count;
+  context->run.statistics->seed_cells_not_intersected += count;
+  return MCOR_OK;
 }
 
-/* Ends with the bricks in place, and the values of their nodes. */
-mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
+/* Places all bricks that the regions leave uncertain, whose cells are the seeds, and those that are known from earlier
+ * iso values. Finds states of the former, and evaluates most of them; none in a plane, where bounds on bricks cost
+ * more than their few nodes. */
+static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_find_side_flags(context));
-  MCOR_TRY(
-    mcor_is_adaptive(context) ? mcor_begin_leaves(context, input) : mcor_make_blocks(context));
-  const size_t words = (size_t)bricks->block_count * MCOR_BLOCK_WORDS;
-  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, words * sizeof(cl_uint)));
-  MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, words * sizeof(cl_uint)));
-  if (mcor_uses_pairs(context))
-  {
-    MCOR_TRY(mcor_request_known(context));
-    return mcor_find_reached(context);
-  }
-  MCOR_TRY(mcor_place_complete(context));
-  if (mcor_is_adaptive(context))
-  {
-    ++context->run.statistics->march_rounds;
-    return mcor_complete_leaves(context);
-  }
+  mcor_region_list listed;
+  MCOR_TRY(mcor_test_regions(context, &listed));
+  MCOR_TRY(mcor_void_bricks(context));
+  MCOR_TRY(mcor_copy(context, &bricks->seed_bits, &bricks->bits, 0,
+    (size_t)bricks->block_count * MCOR_BLOCK_WORDS * sizeof(cl_uint)));
+  MCOR_TRY(mcor_request_known(context));
+  MCOR_TRY(mcor_place_bricks(context));
+  MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
+  return mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, &listed);
+}
+
+/* Evaluates the bricks of cubes of one size that must be, and those that these show to be needed. */
+static mcor_status mcor_complete_bricks(mcor_context* context)
+{
+  mcor_bricks* bricks = &context->bricks;
+  MCOR_TRY(mcor_request_uncertain(context));
+  MCOR_TRY(mcor_place_bricks(context));
   for (bool grown = true; grown;)
   {
     MCOR_TRY(mcor_evaluate_nodes(context));
@@ -162,5 +137,34 @@ mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
     ++context->run.statistics->march_rounds;
     MCOR_TRY(mcor_grow_bricks(context, &grown));
   }
-  return mcor_fill(context, &bricks->cells, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong));
+  return MCOR_OK;
+}
+
+/* Ends with the bricks in place, and the values of their nodes; which cells may be used, and are plain. */
+mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
+{
+  mcor_bricks* bricks = &context->bricks;
+  const bool adaptive = mcor_is_adaptive(&context->lattice), pairs = mcor_uses_pairs(context);
+  context->adaptive.count = 0;
+  MCOR_TRY(mcor_find_side_flags(context));
+  MCOR_TRY(adaptive ? mcor_begin_leaves(context, input) : mcor_make_blocks(context));
+  const size_t bits = (size_t)bricks->block_count * MCOR_BLOCK_WORDS * sizeof(cl_uint);
+  MCOR_TRY(mcor_fill(context, &bricks->bits, 0, bits));
+  MCOR_TRY(mcor_fill(context, &bricks->seed_bits, 0, bits));
+  if (!pairs)
+  {
+    MCOR_TRY(mcor_test_seeds(context));
+    MCOR_TRY(adaptive ? mcor_choose_leaves(context) : mcor_count_seeds(context));
+    MCOR_TRY(mcor_fill(context, &bricks->bits, 0, bits));
+  }
+  MCOR_TRY(mcor_request_known(context));
+  if (adaptive)
+  {
+    MCOR_TRY(mcor_complete_leaves(context));
+    return mcor_count_seeds(context);
+  }
+  MCOR_TRY(pairs ? mcor_find_reached(context) : mcor_complete_bricks(context));
+  const size_t cells = (size_t)bricks->now.count * sizeof(cl_ulong);
+  MCOR_TRY(mcor_fill(context, &bricks->plain, 0xff, cells));
+  return pairs ? mcor_count_seeds(context) : mcor_fill(context, &bricks->cells, 0xff, cells);
 }

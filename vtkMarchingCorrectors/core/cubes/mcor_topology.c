@@ -39,7 +39,7 @@ static mcor_status mcor_first_sample(mcor_context* context, int level, int* firs
 static mcor_status mcor_find_sides(mcor_context* context, int sample_count)
 {
   mcor_topology_data* topology = &context->topology;
-  const int top = context->lattice.top;
+  const int top = context->lattice.levels - 1;
   int first = 0, end, groups;
   for (int l = 0; l <= top; ++l, first = end)
   {
@@ -99,7 +99,7 @@ static mcor_status mcor_resolve_cells(mcor_context* context)
   const int count = context->bricks.now.count;
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(mcor_plain_used(context)),
+    MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->mesh.plain_used),
     MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
     MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
@@ -122,9 +122,9 @@ mcor_status mcor_resolve_topology(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &topology->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&bricks->neighbours), MCOR_INT(mcor_is_adaptive(context)),
+    MCOR_BUFFER(&bricks->neighbours), MCOR_INT(context->adaptive.count),
     MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&bricks->plain),
-    MCOR_BUFFER(mcor_plain_used(context)), MCOR_BUFFER(&bricks->now.above),
+    MCOR_BUFFER(&context->mesh.plain_used), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_resolve_faces(context));
   return mcor_resolve_cells(context);

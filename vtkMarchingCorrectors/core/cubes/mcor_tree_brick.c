@@ -33,7 +33,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
   uint64_t base = 0;
   double most = MCOR_BLOCK_BRICKS; /* bricks of all levels, nearly */
   tree->lattice = lattice;
-  tree->top = lattice->top;
+  tree->top = lattice->levels - 1;
   tree->is_plane = mcor_is_plane(context);
   for (int l = 0; l <= tree->top + 1; ++l)
   {
@@ -50,7 +50,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
     MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
       "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
       "remove particles whose smoothing length differs greatly from that of the others.",
-      lattice->top + 1);
+      lattice->levels);
     rung->base = base;
     rung->unused = 0;
     base += blocks;

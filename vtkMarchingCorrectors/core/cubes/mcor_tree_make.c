@@ -5,6 +5,7 @@
  * themselves. Which bricks are split is global; leaves are in the box alone. They are kept as bits of blocks: the parts
  * of a cluster's bricks are those of a block of the level below. */
 
+#include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_tree.h"
 
@@ -302,7 +303,7 @@ mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals)
 {
   mcor_tree tree = { 0 };
-  if (context->lattice.top == 0)
+  if (!mcor_is_adaptive(&context->lattice))
   {
     return MCOR_OK;
   }

@@ -461,7 +461,8 @@ static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* in
     mcor_read_smoothing_length(context, input, begin, count, h);
     for (int i = 0; i < count; ++i)
     {
-      const int level = mcor_tree_level_of(h[i], context->measure.h_min, context->lattice.top);
+      const int level =
+        mcor_tree_level_of(h[i], context->measure.h_min, context->lattice.levels - 1);
       const double bricks = h[i] / 1.3 / ldexp(brick, level);
       const double third = mcor_is_plane(context) ? 1 : bricks;
       leaves += mcor_is_used(context, input, begin + i) ? bricks * bricks * third : 0;

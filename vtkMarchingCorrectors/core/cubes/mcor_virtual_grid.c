@@ -72,14 +72,14 @@ mcor_status mcor_place_bricks(mcor_context* context)
   bricks->now = (mcor_brick_data){ 0 };
   mcor_status status = mcor_fill_bricks(context, &last, count, words);
   mcor_release_brick_data(context, &last);
-  for (int l = 1; l <= context->lattice.top && status == MCOR_OK; ++l)
+  for (int l = 1; l < context->lattice.levels && status == MCOR_OK; ++l)
   {
     status = mcor_read(context, &bricks->base,
       (size_t)bricks->first_block[l] * MCOR_BLOCK_WORDS * sizeof(cl_int), &bricks->first_slot[l],
       sizeof(cl_int));
   }
   bricks->first_slot[0] = 0;
-  bricks->first_slot[context->lattice.top + 1] = count;
+  bricks->first_slot[context->lattice.levels] = count;
   return status;
 }
 

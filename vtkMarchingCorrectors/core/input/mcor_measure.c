@@ -310,10 +310,10 @@ static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* i
 
 /* Whether keys have enough bits for all nodes and cells of a lattice, as far as there are
  * surfaces. */
-static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice)
+static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice, int top)
 {
-  const double unit = lattice->top > 0 ? ldexp(MCOR_BRICK, lattice->top + 1) : MCOR_BLOCK_CUBES;
-  double cells = lattice->top > 0 ? 8.0 / 7 : 1; /* counts the bricks of all levels */
+  const double unit = top > 0 ? ldexp(MCOR_BRICK, top + 1) : MCOR_BLOCK_CUBES;
+  double cells = top > 0 ? 8.0 / 7 : 1; /* counts the bricks of all levels */
   bool good = true;
   for (int a = 0; a < 3; ++a)
   {
@@ -340,14 +340,15 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     "The cube size %g is more than %g times the smallest support radius %g. Use a smaller cube "
     "size, or remove particles with such a small smoothing length.",
     cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
-  lattice->top = mcor_tree_top(m, options);
-  MCOR_TRY(mcor_fit_period(context, options, cube));
-  while (lattice->top > 0 && !mcor_has_keys(m, lattice))
+  int top = mcor_tree_top(m, options);
+  MCOR_TRY(mcor_fit_period(context, options, cube, &top));
+  while (top > 0 && !mcor_has_keys(m, lattice, top))
   {
-    --lattice->top;
+    --top;
   }
+  lattice->levels = top + 1;
   /* Whole bricks of all levels, and space around them for finer bricks beside. */
-  const int64_t unit = lattice->top > 0 ? (int64_t)MCOR_BRICK << (lattice->top + 1) : 0;
+  const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
   int64_t extent = 0;
   for (int a = 0; a < 3; ++a)
   {
@@ -380,7 +381,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       : 0;
     extent = lattice->last[a] > extent ? lattice->last[a] : extent;
   }
-  context->run.is_too_long = !mcor_has_keys(m, lattice);
+  context->run.is_too_long = !mcor_has_keys(m, lattice, top);
   MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
     "With cube size %g the virtual grid would be %.3g cells long, which is too long together with "
     "its other sides. "
@@ -388,7 +389,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
   /* Needs the last bit: where smoothing lengths differ much, lattices are long. */
-  const int bits = options->precision == MCOR_FLOAT64 ? 62 : lattice->top > 0 ? 31 : 30;
+  const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;
   while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
   {
     --lattice->fix_bits;

@@ -37,7 +37,7 @@ void mcor_read_stage_places(const mcor_context* context, const mcor_input* input
   mcor_widen_lengths(input, first, count, h, chunk->h);
   for (int i = 0; i < count; ++i)
   {
-    chunk->level[i] = (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->top);
+    chunk->level[i] = (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->levels - 1);
     chunk->source[i] = (int32_t)(first + i);
   }
 }
@@ -165,7 +165,8 @@ void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input
                scaled_cube = context->lattice.cube / h_scale;
   const double reach = mcor_support_factor(context->run.options->sph_kernel) * h_scale;
   uint8_t* level = (uint8_t*)staging->level + to;
-  if (mcor_spared_bits(context, m->support_max, context->lattice.cube, context->lattice.top) > 0)
+  if (mcor_spared_bits(
+        context, m->support_max, context->lattice.cube, context->lattice.levels - 1) > 0)
   {
     mcor_round_positions(context, reach, chunk);
   }

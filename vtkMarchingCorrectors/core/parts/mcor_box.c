@@ -73,7 +73,7 @@ int mcor_has_box(const mcor_options* options)
 static void mcor_place_halves(
   const mcor_lattice* lattice, int axis, const double* sides, int low, int high, int halves[6])
 {
-  if (lattice->top == 0)
+  if (!mcor_is_adaptive(lattice))
   {
     halves[axis] = 2 * low;
     halves[3 + axis] = 2 * high;
@@ -196,7 +196,7 @@ mcor_status mcor_void_cubes(mcor_context* context)
 mcor_status mcor_void_bricks(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
-  return !mcor_is_limited(context)
+  return !mcor_is_limited(context) || mcor_is_adaptive(&context->lattice) /* leaves are in it */
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
         (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
@@ -210,7 +210,7 @@ mcor_status mcor_void_bricks(mcor_context* context)
 static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lower, int upper,
   const mcor_buffer* cells, mcor_buffer* clipped)
 {
-  const bool adaptive = mcor_is_adaptive(context);
+  const bool adaptive = mcor_is_adaptive(&context->lattice);
   const int count = context->bricks.now.count;
   int s[6];
   for (int a = 0; a < 3; ++a)
@@ -414,7 +414,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
   *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits,
     .unit = ldexp(1, -context->lattice.fix_bits),
     .h_min = context->measure.h_min,
-    .top = context->lattice.top,
+    .top = context->lattice.levels - 1,
     .is_empty = box->is_empty };
   if (!mcor_is_limited(context))
   {

@@ -12,7 +12,8 @@
 mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
 /* Makes cubes, or unequal edges, a little smaller so that periods are whole numbers of them, and
  * finds the bounds of all images that may be needed. */
-mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double cube);
+mcor_status mcor_fit_period(
+  mcor_context* context, const mcor_options* options, double cube, int* top);
 /* Finds the edges in fixed-point units, and a cube as a length. */
 void mcor_fit_steps(mcor_context* context, int64_t extent);
 

@@ -94,9 +94,8 @@ static void mcor_divide_periods(
 
 /* Finds edges that divide the periods and are no longer than a cube, all equal if possible. */
 static mcor_status mcor_fit_edges(
-  mcor_context* context, const double length[3], int axis, double cube, double edge[3])
+  mcor_context* context, const double length[3], int axis, double cube, double edge[3], int* top)
 {
-  int* top = &context->lattice.top;
   int64_t fewest[3] = { 0 };
   for (int a = 0; a < 3; ++a)
   {
@@ -139,8 +138,9 @@ static double mcor_image_reach(
   return context->measure.support_max * (2 + 1 / options->h_scale + beyond) + 8 * cube;
 }
 
-/* May lower lattice.top. */
-mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, double cube)
+/* May lower *top, the highest level. */
+mcor_status mcor_fit_period(
+  mcor_context* context, const mcor_options* options, double cube, int* top)
 {
   mcor_measure* m = &context->measure;
   mcor_lattice* lattice = &context->lattice;
@@ -157,16 +157,15 @@ mcor_status mcor_fit_period(mcor_context* context, const mcor_options* options, 
    * close. Caps at walls consist of equal cubes. */
   const bool walls =
     options->field == MCOR_WEIGHT_SUM && mcor_asked_share(options) != 0 && m->solid_count > 0;
-  lattice->top =
-    options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX || walls) ? 0 : lattice->top;
+  *top = options->capping && (axis >= 0 || options->capping == MCOR_CAP_BOX || walls) ? 0 : *top;
   if (axis < 0)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge));
+  MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge, top));
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const double reach = mcor_image_reach(context, options, longest);
-  const double margin = lattice->top > 0 ? ldexp(8 * longest, lattice->top) : 0;
+  const double margin = *top > 0 ? ldexp(8 * longest, *top) : 0;
   for (int a = 0; a < 3; ++a)
   {
     if (length[a] > 0)
@@ -201,7 +200,8 @@ static int mcor_rounded_bits(const mcor_context* context, double longest, int64_
   int exponent;
   frexp((double)extent + 64, &exponent);
   const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;
-  const int spared = mcor_spared_bits(context, context->measure.support_max, longest, lattice->top);
+  const int spared =
+    mcor_spared_bits(context, context->measure.support_max, longest, lattice->levels - 1);
   return exact > spared ? exact : spared;
 }
 

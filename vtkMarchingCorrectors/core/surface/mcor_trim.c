@@ -145,7 +145,7 @@ static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_buffer* keys = &context->mesh.cut_edges;
-  for (int l = 0; l < context->lattice.top; ++l)
+  for (int l = 0; l + 1 < context->lattice.levels; ++l)
   {
     int low = 0, high = cut_count;
     while (low < high)

@@ -223,8 +223,8 @@ void mcor_leaf_mark(
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* For bricks, where cubes have several levels: which cells are plain, which leaf a brick is. */
-#define MCOR_PLAIN_PARAMS const int levels, __global const ulong *plain, __global const int *leaf_of
+/* For bricks: which cells are plain; of others, which leaf a brick is. */
+#define MCOR_PLAIN_PARAMS __global const ulong *plain, __global const int *leaf_of
 
 /* Parameters of mcor_march_triangles and mcor_plane_lines, which are launched alike. */
 #define MCOR_EMIT_PARAMS                                                                           \

@@ -3,8 +3,8 @@
 
 /* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by lattice edge.
  *
- * Where cubes have several levels (`levels`), a cell is plain that no finer brick touches, not even at its corner: it
- * has all its nodes in bricks of its level. Of the others mcor_march_hanging finds which are used, and which edges
+ * A cell is plain that no finer brick touches, not even at its corner: it has all its nodes in bricks of its level. Of
+ * the others, where cubes have several levels, mcor_march_hanging finds which are used, and which edges
  * they use. */
 
 /* One work-item = one leaf. Reads its nodes' masks. Of its cells that are not plain, leaves the used ones in `used`,
@@ -53,13 +53,12 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
 }
 
 /* One work-item = one brick. Reads the node masks. Of its plain cells, leaves in `used` those that are valid at all
- * nodes and have nodes on both sides; writes these to plain_used, too, the same array where all cells are plain. */
+ * nodes and have nodes on both sides; writes these to plain_used, too. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
-  const int levels, __global const ulong* plain, __global const ulong* above,
-  __global const ulong* valid, __global ulong* used, __global ulong* plain_used)
+  __global const ulong* plain, __global const ulong* above, __global const ulong* valid, __global ulong* used, __global ulong* plain_used)
 {
   MCOR_ITEM(slot, slot < brick_count);
-  const ulong own = levels ? plain[slot] : ~0UL, others = used[slot] & ~own;
+  const ulong own = plain[slot], others = used[slot] & ~own;
   ulong m[8];
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
@@ -72,7 +71,7 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
  * that have their lower node in the brick and a used cell around them; counts vertices, triangles, or lines, and
  * tunnels. */
 __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int plane,
-  const int levels, __global const uint* quadrants, __global const ulong* plain_used,
+  const int leaf_count, __global const uint* quadrants, __global const ulong* plain_used,
   __global const ulong* above, __global ulong* edges, __global int* vertex_count,
   __global int* triangle_count, __global int* tunnel_count)
 {
@@ -94,7 +93,7 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
     for (int k = 0; k < 4; ++k)
     {
       __global const uint* words = quadrants + slot * (long)MCOR_QUADRANT_WORDS + 8 * a + 2 * k;
-      q[k] = (q[k] & changes) | (levels ? (ulong)words[1] << 32 | words[0] : 0);
+      q[k] = (q[k] & changes) | (leaf_count > 0 ? (ulong)words[1] << 32 | words[0] : 0);
     }
     vertices += mcor_cell_edges(q, a, to);
   }
@@ -103,7 +102,7 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
   mcor_cell_corners(m);
   const int made = plane ? mcor_plane_count(m, plain_used[slot])
                          : mcor_cells_count(m, MCOR_CUT_ARGS, slot, plain_used[slot], &tunnels);
-  triangle_count[slot] = made + (levels ? triangle_count[slot] : 0);
+  triangle_count[slot] += made;
   if (resolved)
   {
     tunnel_count[slot] = tunnels;
@@ -172,7 +171,7 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
 __kernel void mcor_march_triangles(MCOR_EMIT_PARAMS)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
-  const ulong own = levels ? plain[slot] : ~0UL;
+  const ulong own = plain[slot];
   ulong m[8];
   int numbers[3][MCOR_CELL_NODES];
   mcor_leaf leaf;

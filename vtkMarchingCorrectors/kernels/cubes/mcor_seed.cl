@@ -329,7 +329,8 @@ int mcor_seed_range(const mcor_grid* grid, mcor_query* query, const mcor_seed_li
 
 /* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and the states of blocks,
  * which with several levels are not known. Writes the states of its bricks, or leaves, as far as the region tells;
- * requests those that are not certain, and lists the regions that have such, in any order. With several levels, a
+ * requests those that are not certain, and lists the regions that have such, in any order from
+ * number `first` on; list_count: of each level. With several levels, a
  * region has the nodes on its far sides, too. */
 __kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
 {
@@ -386,7 +387,7 @@ __kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
   }
   if (state == MCOR_EXAMINE && (own & ~inside))
   {
-    list[atomic_inc(list_count)] = region;
+    list[first + atomic_inc(list_count + brick.w)] = region;
   }
 }
 
@@ -426,22 +427,22 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, uint finer, const mcor_
 /* Bricks of a region that a work-item treats. */
 #define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
 
-/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list, of `list_count` from `list_first` on. Reads the particles that reach
+/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list, of `count` from `first` on. Reads the particles that reach
  * it. Of bricks of which nothing is known, writes the states, and the nodes known by now with their
  * values and signs. */
-__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS,
-  const int list_first, const int list_count, __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
+__kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int count,
+  MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS, __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
   __global real* node_value, __global real* node_weight, __global ulong* above,
   __global ulong* valid)
 {
   const int i = get_global_id(0) / (8 / MCOR_ITEM_BRICKS);
-  if (i >= list_count)
+  if (i >= count)
   {
     return;
   }
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int number = mcor_region_number(list[list_first + i]);
+  const int number = mcor_region_number(list[first + i]);
   const int4 region = mcor_brick_of_number(rungs, block_keys, number);
   mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves);
   mcor_tile wide;
@@ -450,8 +451,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, MCOR_BRICK_PARAMS, MCOR_TREE_PA
   {
     mcor_tile_next(&grid, &query, &wide, true);
   }
-  const int first = get_global_id(0) % (8 / MCOR_ITEM_BRICKS) * MCOR_ITEM_BRICKS;
-  for (int b = first; b < first + MCOR_ITEM_BRICKS; ++b)
+  const int own = get_global_id(0) % (8 / MCOR_ITEM_BRICKS) * MCOR_ITEM_BRICKS;
+  for (int b = own; b < own + MCOR_ITEM_BRICKS; ++b)
   {
     const int m = number + mcor_region_offset(b);
     const int slot = mcor_slot_of_number(brick_bits, brick_base, m);

@@ -17,10 +17,10 @@
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads used cells, node masks and, with levels, which cells are plain. Writes
+/* One work-item = one brick. Reads used cells, node masks and, beside leaves of several levels, which cells are plain. Writes
  * the ambiguous faces between plain cells, next to used ones, and their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
-  const int levels, const int plane, __global const ulong* plain, __global const ulong* used,
+  const int leaf_count, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)
 {
   MCOR_ITEM(slot, slot < brick_count);
@@ -28,16 +28,16 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   mcor_brick_masks(used, neighbours, slot, 7, u);
   mcor_brick_masks(above, neighbours, slot, 0, m);
   mcor_cell_corners(m);
-  if (levels)
+  if (leaf_count > 0)
   {
     mcor_brick_masks(plain, neighbours, slot, 7, p);
   }
   int count = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const ulong between = !levels ? ~0UL
-      : plane                     ? p[0]
-                                  : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
+    const ulong between = leaf_count == 0 ? ~0UL
+      : plane                             ? p[0]
+                                          : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
     const ulong layer =
       plane ? 0xffffUL : ~0UL; /* of squares; others of a plane are not ambiguous */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));

@@ -188,13 +188,13 @@ __kernel void mcor_brick_neighbours(
 /* A slot's state that is certain, so that no node's value is needed. */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
-/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are neither known nor,
- * with several levels, certain. */
-__kernel void mcor_brick_need(const int brick_count, __global const ulong* known, const int levels,
-  __global const uchar* proofs, __global ulong* need)
+/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are neither known nor, if
+ * there are leaves of several levels, certain. */
+__kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
+  const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
   MCOR_ITEM(slot, slot < brick_count);
-  need[slot] = known[slot] || (levels && MCOR_IS_CERTAIN(proofs[slot])) ? 0 : ~0UL;
+  need[slot] = known[slot] || (leaf_count > 0 && MCOR_IS_CERTAIN(proofs[slot])) ? 0 : ~0UL;
 }
 
 /* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,

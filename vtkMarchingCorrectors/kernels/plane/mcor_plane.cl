@@ -151,7 +151,7 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
 __kernel void mcor_plane_lines(MCOR_EMIT_PARAMS)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
-  const ulong own = levels ? plain[slot] : ~0UL;
+  const ulong own = plain[slot];
   ulong m[8];
   mcor_leaf leaf;
   mcor_brick_masks(above, neighbours, slot, 0, m);

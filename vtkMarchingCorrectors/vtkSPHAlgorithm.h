@@ -559,6 +559,9 @@ protected:
   /** Whether the particles, once collected, can be used on all ranks, and whether there is fluid on any. */
   bool AcceptDistributed(
     vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
+  /** WarnOfParticles(), of a rank's particles and what a call found of all. */
+  void WarnOfParticlesDistributed(
+    vtkSPHRanksRun& run, mcor_input core, const mcor_statistics& statistics);
   /** Measures all that is global, for a surface, or for mcor_probe and mcor_derive; the period and the dimension. */
   bool MeasureDistributed(vtkSPHRanksRun& run, vtkSPHParticles& particles, bool forSamples);
   /** Sends particles, which the core has as `input`, to the ranks whose boxes need them; a call is for its box then. */

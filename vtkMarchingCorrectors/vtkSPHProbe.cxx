@@ -157,6 +157,7 @@ int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mco
       return status;
     }
     results.Put(first, samples);
+    results.Statistics = samples.statistics;
     vtkSPHAddRunStatistics(statistics, samples.statistics);
     mcor_free_samples(&samples);
   }
@@ -283,6 +284,7 @@ void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* 
   {
     return;
   }
+  this->WarnOfParticles(input.Core, options, samples.Statistics);
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
   {
     this->Warn(sentence);

@@ -20,7 +20,7 @@ from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, c
                        with_options)
 from ._surface import Derivatives, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
-from ._warnings import describe_unused_type, describe_warnings, warn
+from ._warnings import describe_unused_type, describe_warnings, warn, warn_of_particles
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -130,6 +130,8 @@ def called(function, kind, arguments, given, *more):
         finally:
             if own:
                 context.release_memory()
+        if kind is not c.mcor_surface:
+            warn_of_particles(arguments, result.statistics)
         yield result
     finally:
         getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))

@@ -52,6 +52,14 @@ def describe_warnings(arguments, surface):
     return found
 
 
+def warn_of_particles(arguments, statistics):
+    """Of calls that make no surface."""
+    kinds, found = c.ENUMS["mcor_warning"], describe_warnings(arguments, c.mcor_surface(statistics=statistics))
+    for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
+        if kinds[kind] in found:
+            warn(found[kinds[kind]])
+
+
 def describe_unused_type(name, values):
     """A sentence about an array of particle types where all particles count as fluid, or ""."""
     kinds, counts = np.unique(np.asarray(values), return_counts=True)

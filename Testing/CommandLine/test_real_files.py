@@ -265,10 +265,16 @@ class RealFiles(CommandLineTest):
 
     def test_short_period(self):
         file = self.directory / "long.vtp"
-        files.write_vtp(file, block((20, 10, 10)), {})
+        points = block((20, 10, 10))
+        files.write_vtp(file, points, {"A": [p[0] for p in points]})
         self.volume(file, *H, "--periodic", "2,1,1", words="empty")
         self.volume(file, *H, "--periodic", "1.5,0,0", words="extend over 1.9 along x, farther than the period 1.5")
         self.levels([file], *H, "--periodic", "1.5,0,0", words="extend over 1.9 along x", gauge="a=1,0.5,-1:1,0.5,2")
+        for name, *how in (("slice.vti", "--slice", "z=0.5", "--resolution", "20"), ("line.vtp", "--line=0,0.5,0.5,2,0.5,0.5"),
+                           ("probe.vtp", "--probe", file), ("derived.vtp", "--derive", "A", "--scalar", "A", "--iso", "1")):
+            result = self.run_program(file, self.directory / name, "--quiet", *H, "--periodic", "1.5,0,0", *how)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stderr.count("extend over 1.9 along x"), 1, result.stderr)
 
     def test_bodies_in_vacuum(self):
         """The threshold that leaves nothing is named; without it there is the body in thin gas."""

@@ -236,6 +236,12 @@ class Warned(unittest.TestCase):
             self.assertRegex(str(found[0].message), sentence)
         self.assertEqual(caught(sphere, box=(9, 10) * 3), [])
 
+    def test_calls_without_a_surface(self):
+        words = {"periodic": (1.1, 0, 0), "smoothing_length": H}
+        for call in (lambda: mc.probe(POSITIONS, POSITIONS[:9], **words), lambda: mc.derivatives(POSITIONS, {"x": POSITIONS[:, 0]}, **words),
+                     lambda: mc.gauge(POSITIONS, [[0, 0, -9], [0, 0, 9]], **words)):
+            self.assertRegex(" ".join(str(each.message) for each in caught(call)), "^The fluid particles extend over .* farther than the period 1.1")
+
     def test_what_is_not_used(self):
         for words, sentence in (({"estimate_smoothing_length": True}, "smoothing_length is not used"),
                                 ({"density": 1.0, "volume": None}, "density is not used.*there is no mass"),

@@ -38,6 +38,7 @@ public:
   void AddTo(vtkFieldData* data) const;
 
   std::vector<std::int64_t> NotFinite; // of the interpolated arrays, as in mcor_samples
+  mcor_statistics Statistics = {};     // of the last points
 
 private:
   /** An array of the output, and that of its gradient, if wanted. */

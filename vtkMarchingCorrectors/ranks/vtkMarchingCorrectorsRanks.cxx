@@ -145,10 +145,8 @@ void vtkMarchingCorrectors::FinishDistributed(vtkSPHRanksRun& run,
     all.line_count = lines ? lines->GetCount() : 0;
     all.attribute_not_finite = surface.attribute_not_finite;
     mcor_input core = input.Core;
-    core.count = run.Particles;
-    core.positions.data = nullptr; // this rank has only some of them
-    core.solid = nullptr;
     mcor_options asked = options;
+    run.OfAll(core, asked);
     asked.dimension = this->Dimension; // the user's choice, not what was found
     this->WarnOf(input, all, core, asked, *std::max_element(largest.begin(), largest.end()));
   }

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 bool vtkSPHAlgorithm::BeginDistributed(
@@ -42,6 +43,21 @@ bool vtkSPHAlgorithm::AcceptDistributed(
     this->WarnOfFluid(particles, fluid, consequence);
   }
   return true;
+}
+
+// A rank without points has called nothing, and has no statistics.
+void vtkSPHAlgorithm::WarnOfParticlesDistributed(
+  vtkSPHRanksRun& run, mcor_input core, const mcor_statistics& statistics)
+{
+  const std::vector<mcor_statistics> all = run.Ranks.Gather(statistics);
+  const auto some = std::find_if(
+    all.begin(), all.end(), [](const mcor_statistics& each) { return each.fluid_particles > 0; });
+  if (run.Ranks.GetRank() == 0 && some != all.end())
+  {
+    mcor_options asked = run.Options;
+    run.OfAll(core, asked);
+    this->WarnOfParticles(core, asked, *some);
+  }
 }
 
 bool vtkSPHAlgorithm::MeasureDistributed(

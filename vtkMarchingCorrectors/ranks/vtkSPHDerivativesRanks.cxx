@@ -123,6 +123,7 @@ void vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& 
     ListOwned(run), home, particles ? particles->GetNumberOfPoints() : 0);
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
   vtkSPHAddSampleShares(run.Ranks, this->RunStatistics, run.Route, run.Route.OwnedParticles);
+  this->WarnOfParticlesDistributed(run, input.Core, derivatives.statistics);
   if (particles && output)
   {
     output->ShallowCopy(particles);

@@ -150,6 +150,7 @@ void vtkSPHGauge::GaugeDistributed(
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
+  this->WarnOfParticlesDistributed(run, input.Core, found.statistics);
   if (run.Ranks.GetRank() > 0)
   {
     mcor_free_gauges(&found); // the first rank has the table, and tells the warnings

@@ -201,6 +201,7 @@ void vtkSPHProbe::ProbeDistributed(
   const vtkSPHRanksArrays came = vtkSPHReturnTuples(run.Ranks, vtkSPHListArrays(found),
     ListInTurn(from), vtkSPHListAt(to, numbers), points ? points->GetNumberOfPoints() : 0);
   vtkSPHAddSampleShares(run.Ranks, statistics, run.Route, here->GetNumberOfPoints());
+  this->WarnOfParticlesDistributed(run, input.Core, samples.Statistics);
   for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
   {
     if (run.Ranks.GetRank() == 0)

@@ -25,6 +25,15 @@ struct vtkSPHRanksRun
   vtkSPHRanksRun(const vtkSPHRanksRun&) = delete;
   void operator=(const vtkSPHRanksRun&) = delete;
 
+  /** Makes of a rank's particles, of which the warnings read no positions, those of all ranks. */
+  void OfAll(mcor_input& core, mcor_options& options) const
+  {
+    core.count = this->Particles;
+    core.positions.data = nullptr;
+    core.solid = nullptr;
+    options.globals = nullptr;
+  }
+
   vtkSPHRanks Ranks;
   vtkSmartPointer<vtkPolyData> Own; ///< the particles that it was given, see vtkSPHTakeParticles()
   std::int64_t Particles = 0;       ///< of all ranks

@@ -179,7 +179,9 @@ pqSPHInUse::pqSPHInUse(vtkSMProxy* proxy, vtkSMPropertyGroup* group, QWidget* pa
     form->addRow(QString::fromUtf8(property->GetXMLLabel()) + ":", value);
     this->Rows << qMakePair(property, value);
   }
-  pqCoreUtilities::connect(proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()));
+  // Queued, as the first update comes before ParaView no longer calls the filter new.
+  pqCoreUtilities::connect(
+    proxy, vtkCommand::UpdateDataEvent, this, SLOT(showValues()), Qt::QueuedConnection);
   for (const char* name : { "FluidArray", "SelectInputScalars" })
   {
     vtkSMProperty* property = proxy->GetProperty(name);

@@ -232,7 +232,7 @@ const std::vector<Option> Table = {
   { "--density", "NAME|VALUE", "array of densities, or one value",
     DO(j.Density = ToQuantity(n, v)) },
   { "--fluid", "NAME=VALUE",
-    "particles with this value of this array are fluid, all others are solid", SetFluid },
+    "particles with this value of this array are fluid, all others are solids (walls, bodies)", SetFluid },
   { "--within", "X0,X1,Y0,Y1,Z0,Z1",
     "leave out particles that are not in these bounds, whose sides may be inf or -inf", SetWithin },
   { "--only", "NAME=VALUE[:VALUE]",
@@ -317,7 +317,8 @@ const std::vector<Option> Table = {
     DO(j.Surface->SetNodeThreshold(ToThreshold(n, v));
        j.Probe->SetWeightThreshold(ToThreshold(n, v))) },
   { "--boundary", "weight_sum|eigenvalue",
-    "trim by the weight sum (default), or by the boundary eigenvalue of Marrone et al.",
+    "how the end of the fluid is found, where surfaces are trimmed (no walls are meant): by the "
+    "weight sum (default), or by the boundary eigenvalue of Marrone et al.",
     SetBoundary },
   { "--vertex-threshold", "T",
     "trim triangles where the weight (or eigenvalue) is lower than T (default 0.5, or 0.3)",

@@ -155,15 +155,11 @@ int vtkSPHAlgorithm::RequestDataObject(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  if (!input)
-  {
-    return 0;
-  }
   const bool isTree = vtkDataObjectTree::SafeDownCast(input) != nullptr;
   const bool blocks = isTree && (!this->TakesTogether() || this->KeepsBlocks());
   const std::string name = blocks
     ? input->GetClassName()
-    : this->GetOutputClassName(isTree ? "vtkPolyData" : input->GetClassName());
+    : this->GetOutputClassName(isTree || !input ? "vtkPolyData" : input->GetClassName());
   if (!output || name != output->GetClassName())
   {
     auto made = vtkSmartPointer<vtkDataObject>::Take(

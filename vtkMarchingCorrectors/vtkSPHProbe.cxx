@@ -178,10 +178,10 @@ vtkDataObject* vtkSPHProbe::GetSource()
 
 int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
 {
+  // What is missing is told in words.
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), this->GetNumberOfInputPorts() > 1 ? 1 : 0);
   if (port == this->GetParticlesPort())
   {
-    info->Set(
-      vtkAlgorithm::INPUT_IS_OPTIONAL(), port > 0 ? 1 : 0); // what is missing is told in words
     return this->Superclass::FillInputPortInformation(port, info);
   }
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
@@ -219,6 +219,11 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* points = vtkDataSet::SafeDownCast(data);
   this->SetUsedNames(nullptr);
+  if (this->GetNumberOfInputConnections(0) == 0)
+  {
+    this->Fail("Choose the points, the first input: there are none to probe at.");
+    return;
+  }
   if (this->GetNumberOfInputConnections(this->GetParticlesPort()) == 0)
   {
     this->Fail("Choose the particles, the second input: there are none to probe.");

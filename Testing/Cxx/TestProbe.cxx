@@ -252,6 +252,16 @@ void CheckOddities()
   probe->Update();
   CHECK(probe->GetErrorMessage()[0] == '\0');
   CHECK(OutputOf(probe)->GetArray("Radius")->GetNumberOfTuples() == 0);
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkNew<vtkSPHProbe> forgotten;
+    int told = 0;
+    test::CountEvents(forgotten, vtkCommand::ErrorEvent, &told);
+    forgotten->SetInputDataObject(1 - port, cube);
+    forgotten->Update();
+    CHECK(
+      told == 1 && std::strstr(forgotten->GetErrorMessage(), port == 0 ? "points" : "particles"));
+  }
   probe->SetInputDataObject(points);
   int warnings = 0, errors = 0;
   test::CountEvents(probe, vtkCommand::WarningEvent, &warnings);

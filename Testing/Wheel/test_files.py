@@ -272,6 +272,7 @@ class Layouts(Case):
         alive = np.arange(len(X)) != 7
         self.assertEqual(particles.positions.tobytes(), X[alive].tobytes())
         self.assertLess(np.abs(particles.arrays["density"] / DENSITY[alive] - 1).max(), 1e-12)
+        self.assertNotIn("itype", particles.arrays)  # -1 is no wall
         self.assertEqual(particles.time, 7.0)
 
     def test_packages(self):

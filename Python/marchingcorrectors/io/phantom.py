@@ -34,7 +34,7 @@ def cube_of_ratio(factor, h):
 
 def make(path, array, positions, names, values):
     hfact, mass = values.get("hfact", [1.2])[0], values["massoftype"][0]
-    arrays = {name: lambda n=name: array(n) for name in names}
+    arrays = {name: lambda n=name: array(n) for name in names if name != "itype"}  # all that is here is gas
     arrays.setdefault("density", lambda: float(mass) * cube_of_ratio(float(hfact), array("h").astype(float)))
     return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=float(mass),
                      density="density", time=float(values["time"][0]) if "time" in values else None,

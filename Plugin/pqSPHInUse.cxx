@@ -253,14 +253,20 @@ void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();
   const vtkSMPropertyHelper fluid(filter, "NextBounds");
+  const vtkSMPropertyHelper input(filter, "Input");
+  vtkPVDataInformation* data =
+    vtkSMSourceProxy::SafeDownCast(input.GetAsProxy())->GetDataInformation(input.GetOutputPort());
   double low[3], high[3], middle[3], normal[3] = { 0.0, 0.0, 1.0 };
-  int longest = 0, up = 2;
+  double filled = 1.0; // of space, or of the plane
+  int longest = 0, up = 2, axes = 0;
   for (int a = 0; a < 3; ++a)
   {
     low[a] = fluid.GetAsDouble(2 * a);
     high[a] = fluid.GetAsDouble(2 * a + 1);
     middle[a] = rounded(0.5 * low[a] + 0.5 * high[a]);
     longest = high[a] - low[a] > high[longest] - low[longest] ? a : longest;
+    filled *= high[a] > low[a] ? high[a] - low[a] : 1.0;
+    axes += high[a] > low[a] ? 1 : 0;
   }
   const double length = high[longest] - low[longest];
   if (!(length > 0.0))
@@ -281,11 +287,8 @@ void pqSPHInUse::beginPlace()
   if (isGauge && up == 2)
   {
     // z, unless walls are higher than the water along y.
-    const vtkSMPropertyHelper input(filter, "Input");
     double all[6];
-    vtkSMSourceProxy::SafeDownCast(input.GetAsProxy())
-      ->GetDataInformation(input.GetOutputPort())
-      ->GetBounds(all);
+    data->GetBounds(all);
     const auto above = [&all, &low, &high](int a)
     { return all[2 * a + 1] - high[a] - (low[a] - all[2 * a]); };
     up = above(1) > 0.01 * (high[1] - low[1]) && above(1) > above(2) ? 1 : 2;
@@ -294,8 +297,12 @@ void pqSPHInUse::beginPlace()
   double from[3], to[3];
   std::copy_n(middle, 3, from);
   std::copy_n(middle, 3, to);
-  from[along] = rounded(low[along] - 0.05 * length);
-  to[along] = rounded(high[along] + 0.05 * length);
+  // Beyond the surface, which is half a spacing away from the uppermost particles.
+  const double spacing =
+    std::pow(filled / static_cast<double>(data->GetNumberOfPoints()), 1.0 / axes);
+  const double margin = std::max(0.05 * length, 2.0 * spacing);
+  from[along] = rounded(low[along] - margin);
+  to[along] = rounded(high[along] + margin);
   const std::pair<const char*, const double*> places[] = { { "Origin", middle },
     { "Normal", normal }, { "Point1", from }, { "Point2", to } };
   for (const auto& place : places)

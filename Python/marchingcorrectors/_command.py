@@ -199,7 +199,7 @@ def run_gauge(given, particles):
     rows = [[time, name, found.state[i], found.first[i], found.last[i], found.depth[i], len(found.crossings[name]),
              *found.place[i]] for i, name in enumerate(found.names)]
     write_table(given.output, ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"], rows)
-    return f"{len(rows)} gauges"
+    return f"{len(rows)} gauge{'s' if len(rows) != 1 else ''}"
 
 
 def write_table(output, head, rows):

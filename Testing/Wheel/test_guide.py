@@ -17,7 +17,7 @@ FENCE = re.compile(r"^```python(?: (\S+))?\n(.*?)^```$", re.M | re.S)
 
 
 def blocks(page):
-    return FENCE.findall((SOURCES / "Documentation" / "Guide" / page).read_text())
+    return FENCE.findall((SOURCES / "Documentation" / "Guide" / page).read_text(encoding="utf-8"))
 
 
 def recipes():
@@ -57,6 +57,18 @@ class Test(unittest.TestCase):
         self.assert_ball(surface.points, np.sqrt(-np.log(0.7)))
         self.assertTrue(surface.statistics["is_closed"])
         self.assertGreater(np.einsum("ij,ij->i", surface.normals, surface.points).min(), 0)
+
+    def test_files_page_and_the_package_page(self):
+        with h5py.File("snapshot.hdf5", "w") as file:
+            file.create_group("Header").attrs["Time"] = 0.5
+            gas = file.create_group("PartType0")
+            gas["Coordinates"], gas["Velocities"], gas["Density"] = X, X, 1e-4 / 1.5 * DENSITY
+            gas["Masses"], gas["SmoothingLength"] = 1e-4 / 1.5 * MASS, np.full(len(X), 0.26)
+        for page in ("files.md", "../../Python/README.md"):
+            scope = {}
+            for _, text in blocks(page):
+                exec(text, scope)
+            self.assert_ball(scope["surface"].points, 0.5)
 
     def test_gadget_and_swift(self):
         for swift in (False, True):

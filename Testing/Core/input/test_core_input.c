@@ -175,7 +175,7 @@ static void test_components(void** state)
   ARGUMENT("smoothing length|hsml|3 components|must have 1",
            call.input.smoothing_length = core_array(call.vector, 3);
            call.input.smoothing_length.name = "hsml");
-  ARGUMENT("volume|-1 components|must have 1", call.input.volume.components = -1);
+  ARGUMENT("The volume array has -1 components; it must have 1.", call.input.volume.components = -1);
   ARGUMENT("scalar|-2 components", call.input.scalar.components = -2);
   expect_good(*state);
 }

@@ -158,10 +158,12 @@ static mcor_status mcor_check_form(
   mcor_context* context, const mcor_array* array, const char* role, int components)
 {
   const char* name = mcor_array_name(array, role);
+  const bool same = strcmp(name, role) == 0;
+  const char *space = same ? "" : " ", *its = same ? "" : name;
   MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
-    "The %s array %s has an unknown element type.", role, name);
+    "The %s array%s%s has an unknown element type.", role, space, its);
   MCOR_RETURN_IF(array->components < 0 || mcor_components(array) != components, context,
-    MCOR_INVALID_ARGUMENT, "The %s array %s has %d components; it must have %d.", role, name,
+    MCOR_INVALID_ARGUMENT, "The %s array%s%s has %d components; it must have %d.", role, space, its,
     array->components, components);
   return MCOR_OK;
 }

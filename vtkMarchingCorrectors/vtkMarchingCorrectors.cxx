@@ -4,15 +4,18 @@
 
 #include "mcor.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHReals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -184,15 +187,77 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   this->FindFluid(choice, particles);
   choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
   vtkMarchingCorrectorsInput input(choice, particles);
-  if (this->Accept(input, input.Collect(), "no surface") && input.FluidCount > 0 &&
-    this->SetPeriod(particles, options))
+  if (this->IsTaken(input, particles, options))
   {
     this->Extract(input, options, vtkPolyData::SafeDownCast(output));
   }
-  else
+}
+
+// What the particles hold, and a fluid among them.
+bool vtkMarchingCorrectors::IsTaken(
+  vtkMarchingCorrectorsInput& input, vtkPointSet* particles, mcor_options& options)
+{
+  const bool isTaken = this->Accept(input, input.Collect(), "no surface") && input.FluidCount > 0 &&
+    this->SetPeriod(particles, options);
+  if (!isTaken)
   {
     this->SetUsedNames(&input, false); // no volumes were used
   }
+  return isTaken;
+}
+
+bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
+{
+  mcor_options options;
+  vtkMarchingCorrectorsChoice choice;
+  this->FillOptions(options);
+  this->FillChoice(choice, particles);
+  this->FindFluid(choice, particles);
+  choice.InterpolateAttributes = false;
+  vtkMarchingCorrectorsInput input(choice, particles);
+  std::vector<double> isoValues;
+  mcor_widening widening = {};
+  if (!this->IsTaken(input, particles, options))
+  {
+    return false;
+  }
+  this->ListIsoValues(input, nullptr, isoValues);
+  options.iso_values = isoValues.data();
+  options.iso_count = static_cast<int>(isoValues.size());
+  if (!this->CallCore(input, options, [&](mcor_context* context)
+        { return mcor_widen(context, &input.Core, &options, &widening); }))
+  {
+    return false;
+  }
+  const vtkIdType count = particles->GetNumberOfPoints();
+  const mcor_input& core = input.Core;
+  const double unit = core.smoothing_length_is_support_radius && !core.estimate_smoothing_length
+    ? 1.0 / mcor_support_factor(options.sph_kernel)
+    : 1.0;
+  vtkNew<vtkDoubleArray> lengths;
+  lengths->SetNumberOfValues(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const double length = core.estimate_smoothing_length
+      ? widening.statistics.smoothing_length_min
+      : vtkSPHValueOf(core.smoothing_length, i) * unit;
+    lengths->SetValue(i, length * widening.factor[i]);
+  }
+  output->Initialize();
+  output->SetPoints(particles->GetPoints());
+  output->GetPointData()->ShallowCopy(particles->GetPointData());
+  output->GetFieldData()->ShallowCopy(particles->GetFieldData());
+  vtkSPHAddArray(output->GetPointData(), "WidenedSmoothingLength", lengths.Get());
+  const bool hasVolumes = widening.volume;
+  const vtkSmartPointer<vtkDataArray> factors = vtkSPHAdopt(widening.factor, 1, count),
+                                      volumes = vtkSPHAdopt(widening.volume, 1, count);
+  vtkSPHAddArray(output->GetPointData(), "Widening", factors);
+  if (hasVolumes)
+  {
+    vtkSPHAddArray(output->GetPointData(), "WideningVolume", volumes);
+  }
+  mcor_free_widening(&widening);
+  return true;
 }
 
 // What an observer of the progress may change is read before the run.

@@ -347,6 +347,13 @@ public:
   vtkSPHValueMacro(Widening, double);
 
   /**
+   * The particles as a run with this filter's settings would take them, with the arrays Widening, the factors;
+   * WidenedSmoothingLength, the products; and, where volumes are computed, WideningVolume. Uniform cubes of the same
+   * size, these lengths and these volumes give the surface of Widening without it. False, and an error, where that fails.
+   */
+  bool Widen(vtkPointSet* particles, vtkPolyData* output);
+
+  /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by default.
    * Off keeps the triangles beyond, except for those that NodeThreshold discards. The free surface is not
    * trimmed.
@@ -551,6 +558,7 @@ private:
   /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
+  bool IsTaken(vtkMarchingCorrectorsInput& input, vtkPointSet* particles, mcor_options& options);
   void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
   void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);

@@ -5,6 +5,7 @@
 #include "ArrayList.h"
 #include "ColorScale.h"
 #include "ComponentRun.h"
+#include "DataSetFile.h"
 #include "Ending.h"
 #include "Film.h"
 #include "GaugeRun.h"
@@ -75,7 +76,8 @@ std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
   if (sharing.IsFirst())
   {
     outputs.insert(
-      outputs.end(), { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File });
+      outputs.end(), { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File,
+                       job.WideningFile });
   }
   return outputs;
 }
@@ -152,6 +154,10 @@ void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
+      if (!job.WideningFile.empty())
+      {
+        WriteDataSet(job.WideningFile, Widen(job, messages), messages);
+      }
       if (!job.StatisticsFile.empty())
       {
         std::cout.flush(); // the file may be /dev/stdout

@@ -16,7 +16,7 @@ from ._arrays import (Arguments, as_bytes, as_named, as_points, choose, contiguo
                       take, take_all, take_each, take_lines)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, InvalidData, lib
-from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, Function, check_names, did_you_mean,
+from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, WIDENING, Function, check_names, did_you_mean,
                        with_options)
 from ._surface import Derivatives, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
@@ -426,6 +426,46 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
             statistics=statistics(result.statistics))
     _warn_of(found.left_out)
     return found
+
+
+@of_files
+@with_options(WIDENING)
+def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float = 2,
+             smoothing_length: Optional[ArrayLike] = None,
+             volume: Optional[ArrayLike] = None,
+             mass: Optional[ArrayLike] = None,
+             density: Optional[ArrayLike] = None,
+             solid: Optional[ArrayLike] = None,
+             within: Optional[ArrayLike] = None,
+             only: Optional[Only] = None,
+             return_volume: bool = False,
+             context: Optional[Context] = None,
+             device: Union[None, str, int] = None,
+             progress: Optional[Progress] = None,
+             **options: Unpack[Options]) -> Any:
+    """The factors of smoothing lengths with which isosurface() and free_surface() contour where widen is above 1.
+
+    Example: s = widening(x, smoothing_length=h, volume=v, widen=2)
+
+    Returns s, (particles,) float64, from 1 to widen; or with return_volume=True s and the volumes, computed from the
+    smoothing lengths h themselves, or None where they are given. The surface of s * h with these volumes, the same
+    cube_size and cubes of one size (level_limit=0) is that of widen, bit for bit.
+
+    iso: the greatest iso value of the free surface; None: for the surface of a scalar.
+
+    The other arguments are those of isosurface().
+
+    {options}
+    """
+    check_names(widening, options, WIDENING)
+    given = locals()
+    arguments, _ = prepare(Units(positions), {}, given, {**options, "widen": widen})
+    if iso is not None:
+        arguments.options.field = c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
+        arguments.set_iso_values(iso)
+    with called(lib.mcor_widen, c.mcor_widening, arguments, given) as result:
+        factors = take(result.factor, (result.count,))
+        return (factors, take(result.volume, (result.count,))) if return_volume else factors
 
 
 def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:

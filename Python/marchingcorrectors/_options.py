@@ -98,9 +98,10 @@ FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
     "scalar_version", "attributes_version"))
 EVERY = ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids", "particles_version")
-DERIVATIVES, GAUGE, PROBE = (
+WIDENING = ("widen", "cube_size", "cube_size_factor", "wall_share")
+DERIVATIVES, GAUGE, PROBE, WIDENING = (
     more + tuple(name for name, (_, scope, _) in c.OPTIONS.items() if {"ALL", kind} & set(scope)) + EVERY
-    for kind, more in (("DERIVE", ()), ("GAUGE", ()), ("PROBE", ("gradients", "attributes_version"))))
+    for kind, more in (("DERIVE", ()), ("GAUGE", ()), ("PROBE", ("gradients", "attributes_version")), ("WIDENING", WIDENING)))
 
 
 def words_of(name):

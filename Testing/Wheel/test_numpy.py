@@ -179,6 +179,20 @@ class Results(unittest.TestCase):
         self.assertTrue((uses == 2).all())  # closed
         self.assertEqual(mc.free_surface(POSITIONS, estimate_smoothing_length=True).statistics["solid_particles"], 0)
 
+    def test_widening(self):
+        """The factors, and volumes of the lengths themselves, make the same surface with cubes of one size."""
+        jittered = POSITIONS + np.random.default_rng(45).normal(0, 0.01, POSITIONS.shape)
+        for given in ({}, {"volume": 1e-3}):
+            words = {"cube_size": H / 2, **given}
+            factors, volume = mc.widening(jittered, smoothing_length=H, return_volume=True, **words)
+            self.assertEqual(factors.tobytes(), mc.widening(jittered, smoothing_length=H, **words).tobytes())
+            self.assertEqual((factors.min() >= 1, factors.max(), volume is None), (True, 2, "volume" in given))
+            wide = mc.free_surface(jittered, smoothing_length=H, widen=2, **words)
+            plain = mc.free_surface(jittered, smoothing_length=factors * H, level_limit=0,
+                                    **{"volume": volume, **words})
+            self.assertEqual(wide.points.tobytes(), plain.points.tobytes())
+            self.assertEqual((wide.statistics["widening_min"], wide.statistics["widening_max"]), (factors.min(), 2))
+
     def test_lines(self):
         """Of two dimensions: one of a circle, with greater values outside on its left."""
         flat = np.stack(np.meshgrid(np.arange(N) * 0.1, [0.5], np.arange(N) * 0.1, indexing="ij"), -1).reshape(-1, 3)

@@ -41,7 +41,7 @@ def caught(function, *arguments, **words):
 class Signatures(unittest.TestCase):
     def functions(self):
         sph = pyvista.PolyData(POSITIONS).sph
-        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives, mc.gauge,
+        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives, mc.gauge, mc.widening,
                 sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge]
 
     def test_options_are_those_of_the_header(self):
@@ -50,7 +50,7 @@ class Signatures(unittest.TestCase):
         numbers.update(name[len("MCOR_OUT_"):].lower() for name in _structs.ENUMS["mcor_output"])
         others = {name for name in numbers if name.endswith("_count") or name in (
             "count", "outputs", "positions", "smoothing_length", "volume", "mass", "density", "scalar", "scalar_dot",
-            "progress")}
+            "widening", "progress")}
         self.assertEqual(set(_options.Options.__annotations__), numbers - others,
                          "add a row to core/mcor_options.def")
         self.assertEqual(set(_options.WORDS), set(_options.Options.__annotations__))

@@ -102,6 +102,7 @@ struct Job
   int LeastParticles = 0;    ///< in a piece
 
   std::string StatisticsFile;
+  std::string WideningFile; ///< particles with their factors; empty: none
   PictureOptions Picture;
   int Repeat = 1;
   bool Quiet = false;

@@ -302,6 +302,9 @@ const std::vector<Option> Table = {
   { "--widen", "S",
     "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
     DO(j.Surface->SetWidening(ToPositive(n, v))) },
+  { "--widening", "FILE.vtp",
+    "with --widen, write the particles with the factors of their smoothing lengths, and the products",
+    DO(j.WideningFile = v) },
   { "--topology", "table|field", "resolve ambiguous cells by the table (default), or by the field",
     DO(j.Surface->SetTopology(ToChoice(
       n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }))) },

@@ -379,6 +379,19 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
   return run;
 }
 
+vtkSmartPointer<vtkPolyData> Widen(const Job& job, MessageCapture* messages)
+{
+  messages->Clear();
+  const auto widened = vtkSmartPointer<vtkPolyData>::New();
+  vtkMarchingCorrectors* filter = job.Surface;
+  if (!filter->Widen(vtkPointSet::SafeDownCast(filter->GetInput()), widened))
+  {
+    const std::vector<std::string>& errors = messages->GetErrors();
+    throw std::runtime_error(errors.empty() ? "the factors could not be found" : errors.front());
+  }
+  return widened;
+}
+
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
 {
   std::vector<std::string> all;

@@ -44,6 +44,9 @@ double Update(vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages,
 /// One run of the surface. Throws as Update().
 Run Extract(const Job& job, MessageCapture* messages, const std::string& before = "");
 
+/// The particles of the last run with the factors of their smoothing lengths. Throws std::runtime_error.
+vtkSmartPointer<vtkPolyData> Widen(const Job& job, MessageCapture* messages);
+
 /// What the user should know of a run that went well, one sentence each.
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages);
 

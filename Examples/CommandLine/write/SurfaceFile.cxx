@@ -322,7 +322,7 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
     const std::string name = array->GetName();
     const bool isHeld =
-      name == "Normals" || name == "IsoValue" || (isPly && array == colors.ArrayOf(surface));
+      name == "Normals" || name == "IsoValue" || name == "Widening" || (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + name;
   }
   if (HoldsArrays(file) || names.empty() || (isPly && !colors.GetName().empty()))

@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Smoother surfaces: --widen and --widening."""
+import random
+
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+
+class Smooth(CommandLineTest):
+    def setUp(self):
+        super().setUp()
+        random.seed(45)
+        self.points = [tuple(x + random.gauss(0, 0.08) * 0.1 for x in point) for point in self.points]
+
+    def test_factors_in_a_file(self):
+        """The products of factors and lengths, with volumes of the lengths themselves and as large cubes."""
+        for computed in (True, False):
+            arrays = {name: array for name, array in self.arrays.items() if not computed or name not in (
+                "Mass", "Density", "Volume")}
+            files.write_vtp(self.input, self.points, arrays)
+            wide, plain, factors = (self.directory / name for name in ("wide.stl", "plain.stl", "factors.vtp"))
+            cube = ["--free-surface", "--cube-size", "0.05", "--no-attributes"]
+            self.run_good(self.input, wide, *cube, "--widen", "2", "--widening", factors)
+            volumes = ["--volume", "WideningVolume"] if computed else []
+            long = self.run_program(factors, plain, *cube, "--smoothing-length", "WidenedSmoothingLength", "--cubes",
+                                    "uniform", *volumes)  # which warns of so many neighbours
+            self.assertEqual(long.returncode, 0, long.stderr)
+            self.assertEqual(wide.read_bytes(), plain.read_bytes())
+            self.assertGreater(len(wide.read_bytes()), 10000)
+
+    def test_refused(self):
+        for options, sentence in ((["--widening", "f.vtp"], "without --widen"),
+                                  (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")):
+            with self.subTest(options):
+                self.refuse(self.extract("--free-surface", *options), 2, sentence)
+
+
+if __name__ == "__main__":
+    main()

@@ -53,6 +53,7 @@ const Advice All[] = {
   { "with the value of the fluid", "with the value of the fluid (--fluid NAME=VALUE)", "--fluid" },
   { "pthread_create has failed: Resource temporarily unavailable",
     "no thread can be started; raise the limit of processes (ulimit -u)", "ulimit -u" },
+  { "by a range of positions", "by a range of positions (--within)", "--within" },
   { "Set the periodic bounds", "Set the periodic bounds (--periodic)", "--periodic" },
 };
 

@@ -115,6 +115,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   }
   options.filled = this->Filled;
   options.capping = !this->Capping ? MCOR_CAP_NONE : this->UseBox ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
+  options.compact = this->Compact;
   options.widen = this->Widening;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
@@ -434,6 +435,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
   os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
+  os << indent << "Compact: " << this->Compact << "\n";
   os << indent << "Widening: " << this->Widening << "\n";
   os << indent << "Trim: " << this->Trim << "\n";
   os << indent << "Node Threshold: " << this->NodeThreshold << "\n";

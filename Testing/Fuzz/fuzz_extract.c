@@ -96,6 +96,7 @@ static void fuzz_options(fuzz_bytes* bytes, fuzz_call* call)
   o->field = (mcor_field)(modes / 16 == 15 ? 3 : modes / 16 % 3);
   o->seeds = (mcor_seed_mode)(what & 1);
   o->preview = (what & 0x0e) == 2;
+  o->compact = (what & 0x0c) == 4;
   o->boundary_detection = (mcor_boundary_detection)(what == 0xff ? 2 : what >> 3 & 1);
   o->outputs |= what >> 4 & 1 ? MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_GRADIENTS |
       MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_CORRECTION_LENGTH

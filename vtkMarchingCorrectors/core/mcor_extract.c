@@ -73,6 +73,9 @@ static mcor_status mcor_extract_all(
   MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
   MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
     "Filling is for two dimensions, but these particles do not lie in a plane. Turn filling off.");
+  MCOR_RETURN_IF(options->filled && options->compact, context, MCOR_INVALID_ARGUMENT,
+    "Filling needs the points on all edges of the virtual grid, which a compact contour lacks. Turn "
+    "one of them off.");
   MCOR_RETURN_IF(mcor_uses_pairs(context) && mcor_is_adaptive(&context->lattice), context,
     MCOR_INVALID_ARGUMENT,
     "Pair seeds need cubes of one size, and here cubes have up to %d. Choose uniform cubes, or "
@@ -120,7 +123,7 @@ static void mcor_count_below_threshold(mcor_context* context, const mcor_input* 
   own.node_threshold = 0;
   own.preview = 1;
   own.outputs = 0;
-  own.capping = own.filled = 0;
+  own.capping = own.filled = own.compact = 0;
   without.attribute_count = 0;
   if (mcor_run_call(context, &without, &own, mcor_uses_solids(input, options), &surface.statistics,
         mcor_extract_all, &surface) == MCOR_OK)

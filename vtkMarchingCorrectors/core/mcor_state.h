@@ -225,6 +225,7 @@ enum
 typedef struct mcor_box
 {
   bool is_part, is_empty; /* is_part: not all cells of the lattice are owned; is_empty: none is */
+  int ring;               /* cells around the owned ones that are examined, too */
   int first[3], last[3];  /* owned cells, [first, last), from the lattice's origin */
   int
     halves[6]; /* with adaptive cubes: from and to along x, y, z, in halves of the smallest cubes */

@@ -26,6 +26,7 @@ const Advice All[] = {
   { "fewer levels", "fewer levels (--max-level)", "--max-level" },
   { "complete seeds", "complete seeds (--seeds complete)", "--seeds" },
   { "uniform cubes", "uniform cubes (--cubes uniform)", "--cubes" },
+  { "urn one of them off", "urn one of them off (leave out --filled or --compact)", "--compact" },
   { "urn filling off", "urn filling off (leave out --filled)", "--filled" },
   { "or do not fill", "or do not fill (leave out --filled)", "--filled" },
   { "urn capping off", "urn capping off (leave out --capping)", "--capping" },

@@ -305,6 +305,10 @@ const std::vector<Option> Table = {
   { "--widening", "FILE.vtp",
     "with --widen, write the particles with the factors of their smoothing lengths, and the products",
     DO(j.WideningFile = v) },
+  { "--compact", "",
+    "a quarter fewer triangles and hardly any slivers: merge the vertices of each grid node, then "
+    "correct them",
+    DO(j.Surface->CompactOn()) },
   { "--topology", "table|field", "resolve ambiguous cells by the table (default), or by the field",
     DO(j.Surface->SetTopology(ToChoice(
       n, v, { { "table", Filter::TOPOLOGY_TABLE }, { "field", Filter::TOPOLOGY_FIELD } }))) },

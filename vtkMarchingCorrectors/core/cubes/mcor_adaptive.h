@@ -43,6 +43,9 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
+/* mcor_correct.c. Corrects vertices by a kernel; see above. */
+mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel);
+
 /* From now on MCOR_GRID_ARGS are in cells of a level. */
 mcor_status mcor_view_level(mcor_context* context, int level);
 

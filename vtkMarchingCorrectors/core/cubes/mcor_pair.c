@@ -102,7 +102,7 @@ static mcor_status mcor_wrap_reached(mcor_context* context, bool* reached)
   {
     MCOR_TRY(mcor_fill(context, &pairs->found, 0, sizeof flag));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_wrap", MCOR_LIGHT, mcor_count_places(context),
-      MCOR_BLOCK_ARGS(context), MCOR_INT(MCOR_BOX_RING), MCOR_INT(first[0]), MCOR_INT(first[1]),
+      MCOR_BLOCK_ARGS(context), MCOR_INT(context->box.ring), MCOR_INT(first[0]), MCOR_INT(first[1]),
       MCOR_INT(first[2]), MCOR_INT(period[0]), MCOR_INT(period[1]), MCOR_INT(period[2]),
       MCOR_BUFFER(&pairs->reached), MCOR_BUFFER(&pairs->found)));
     MCOR_TRY(mcor_read(context, &pairs->found, 0, &flag, sizeof flag));

@@ -74,13 +74,13 @@ static mcor_status mcor_add_blocks(mcor_context* context, const mcor_tree* tree,
   return MCOR_OK;
 }
 
-/* Whether a brick, with a ring of a cell around it, is in the box. */
+/* Whether a brick, with a ring of cells around it, is in the box. */
 static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const int brick[3])
 {
   bool wanted = true;
   for (int a = 0; a < 3 && box->is_part; ++a)
   {
-    const int64_t edge = (int64_t)(2 * MCOR_BRICK) << level, ring = INT64_C(2) << cell_level;
+    const int64_t edge = (int64_t)(2 * MCOR_BRICK) << level, ring = (int64_t)(2 * mcor_level_ring(box->ring)) << cell_level;
     const int64_t low = brick[a] * edge;
     wanted = wanted && low + edge + ring >= box->halves[a] && low - ring <= box->halves[3 + a];
   }

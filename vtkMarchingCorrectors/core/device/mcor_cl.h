@@ -174,6 +174,8 @@ mcor_status mcor_fill(mcor_context* context, mcor_buffer* buffer, uint8_t byte, 
 /* Fills bytes [first, last) alone. */
 mcor_status mcor_fill_range(
   mcor_context* context, mcor_buffer* buffer, uint8_t byte, size_t first, size_t last);
+/* Replaces one buffer by another, which is then empty. */
+void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to);
 /* Makes room for `bytes`, keeping the first `old`. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);
 mcor_status mcor_copy(

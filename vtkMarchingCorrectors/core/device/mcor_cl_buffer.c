@@ -267,6 +267,13 @@ mcor_status mcor_copy(
   return MCOR_OK;
 }
 
+void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to)
+{
+  mcor_release(context, to);
+  *to = *from;
+  *from = (mcor_buffer){ 0 };
+}
+
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes)
 {
   if (buffer->size >= bytes || old == 0)

@@ -18,6 +18,7 @@
 
 #include "mcor_box.h"
 #include "mcor_adaptive.h"
+#include "mcor_compact.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_tree.h"
@@ -46,13 +47,13 @@ int mcor_has_box(const mcor_options* options)
 #define MCOR_BOX_MARGIN 1.25
 
 /* A particle whose support misses a box by more than this, in cubes, is not needed there. */
-#define MCOR_GLOBALS_MARGIN 3
+#define MCOR_GLOBALS_MARGIN(ring) ((ring) + 2)
 
 /* The margin with adaptive cubes, in cubes of the particle's level; a particle reaches no larger
  * cells. A cell of the ring, or one whose centre is in the box, has nodes at most two cells away
  * from the box; trimming may move a vertex by another 3/4 of a cell, to where cells are half as
- * large. */
-#define MCOR_LEVEL_MARGIN 6
+ * large. For a wider ring see mcor_level_ring. */
+#define MCOR_LEVEL_MARGIN(ring) ((ring) == MCOR_BOX_RING ? 6 : 4 * (ring) + 4)
 
 /* The margin of a probe's points: rounding moves particles by less. */
 #define MCOR_POINTS_MARGIN 0.25
@@ -60,7 +61,12 @@ int mcor_has_box(const mcor_options* options)
 /* How far apart the particles of a pair may be, in smoothing lengths, rounded up. */
 #define MCOR_PAIR_REACH 1.001
 
-#define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, MCOR_BOX_RING, MCOR_BOX_RING)
+#define MCOR_NEAR_ARGS(r) MCOR_CELL_ARGS((r)->first, (r)->last, (r)->ring, (r)->ring)
+
+static int mcor_ring_of(const mcor_options* options)
+{
+  return options->compact ? mcor_compact_ring(options) : MCOR_BOX_RING;
+}
 
 /* ---- Cells ---- */
 
@@ -145,6 +151,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
   box->is_part = box->is_empty = false;
+  box->ring = mcor_has_box(options) ? mcor_ring_of(options) : MCOR_BOX_RING;
   for (int a = 0; a < 3; ++a)
   {
     const bool periodic = lattice->period[a] > 0;
@@ -220,14 +227,15 @@ static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lowe
   }
   MCOR_TRY(mcor_reserve(context, clipped, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&context->bricks.now.bricks), MCOR_SIDES_ARGS(s), MCOR_INT(adaptive && lower > 0),
+    MCOR_BUFFER(&context->bricks.now.bricks), MCOR_SIDES_ARGS(s),
+    MCOR_INT(adaptive ? mcor_level_ring(lower) : 0),
     MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
 }
 
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
 {
   return mcor_is_limited(context)
-    ? mcor_clip(context, context->box.halves, MCOR_BOX_RING, MCOR_BOX_RING, cells, cells)
+    ? mcor_clip(context, context->box.halves, context->box.ring, context->box.ring, cells, cells)
     : MCOR_OK;
 }
 
@@ -235,7 +243,7 @@ mcor_status mcor_clip_used(mcor_context* context)
 {
   mcor_buffer* used = &context->mesh.used;
   return context->box.is_part
-    ? mcor_clip(context, context->box.halves, MCOR_BOX_RING, MCOR_BOX_RING, used, used)
+    ? mcor_clip(context, context->box.halves, context->box.ring, context->box.ring, used, used)
     : MCOR_OK;
 }
 
@@ -311,18 +319,18 @@ int mcor_list_images(
 double mcor_reach_of(const mcor_reach_box* box, double length, int level)
 {
   const double support = length * box->support;
-  return box->top > 0 ? support + ldexp(MCOR_LEVEL_MARGIN, level) : support;
+  return box->top > 0 ? support + ldexp(MCOR_LEVEL_MARGIN(box->ring), level) : support;
 }
 
 double mcor_reach_margin(
   const mcor_options* options, const mcor_globals* globals, double smoothing_length)
 {
   const double h_min = globals->measured.h_min, h_max = globals->measured.h_max;
-  const int limit = options->level_limit;
+  const int limit = options->level_limit, ring = mcor_ring_of(options);
   const bool adaptive = mcor_tree_level_of(h_max, h_min, limit) > 0;
   return globals->measured.cube *
-    (adaptive ? ldexp(MCOR_LEVEL_MARGIN, mcor_tree_level_of(smoothing_length, h_min, limit))
-              : MCOR_GLOBALS_MARGIN);
+    (adaptive ? ldexp(MCOR_LEVEL_MARGIN(ring), mcor_tree_level_of(smoothing_length, h_min, limit))
+              : MCOR_GLOBALS_MARGIN(ring));
 }
 
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
@@ -398,7 +406,7 @@ static double mcor_reach_beyond(
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
 {
   const mcor_box* box = &context->box;
-  const double margin = box->of_points ? MCOR_POINTS_MARGIN : MCOR_BOX_RING + MCOR_BOX_MARGIN;
+  const double margin = box->of_points ? MCOR_POINTS_MARGIN : box->ring + MCOR_BOX_MARGIN;
   const bool limited = mcor_is_limited(context);
   for (int a = 0; a < 3; ++a)
   {
@@ -415,6 +423,7 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     .unit = ldexp(1, -context->lattice.fix_bits),
     .h_min = context->measure.h_min,
     .top = context->lattice.levels - 1,
+    .ring = box->ring,
     .is_empty = box->is_empty };
   if (!mcor_is_limited(context))
   {

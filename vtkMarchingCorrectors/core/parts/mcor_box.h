@@ -32,7 +32,7 @@ typedef struct mcor_reach_box
   double radius;          /* added as if no support radius were less */
   double unit;            /* 2^-fix_bits */
   double h_min;           /* with adaptive cubes, see mcor_reach_of; highest: their highest level */
-  int top;
+  int top, ring;
   double period[3], first[3]; /* period: 0: open; the others: where one begins */
   int fix_bits;
   bool is_empty; /* no particle matters */
@@ -73,8 +73,14 @@ int mcor_list_images(
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 
-/* The cells around the owned ones that are examined, too. */
+/* The cells around the owned ones that are examined, too, are box.ring; and those that caps are made for. */
 #define MCOR_BOX_RING 1
+/* The ring with adaptive cubes, in cells of each level. Two of a wide one for each, as a way there may lead through
+ * larger ones. */
+static inline int mcor_level_ring(int ring)
+{
+  return ring <= MCOR_BOX_RING ? ring : 2 * ring;
+}
 
 /* Whether the device lacks particles far from the box, or has images of some. */
 bool mcor_is_limited(const mcor_context* context);

@@ -32,6 +32,10 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   {
     const cl_int* node = nodes + 4 * (size_t)v;
     const int axis = node[3] & 3;
+    if (axis > 2) /* merged: away from all caps */
+    {
+      continue;
+    }
     bool on_side = all;
     for (int a = 0; a < 3; ++a)
     {

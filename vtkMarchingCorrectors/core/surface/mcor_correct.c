@@ -5,6 +5,7 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
+#include "mcor_compact.h"
 
 #include <stdlib.h>
 
@@ -40,21 +41,34 @@ static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* o
   return mcor_unmap(context, buffer, &view);
 }
 
-/* Moves the vertices onto the surface. In a preview they stay where linear interpolation puts
- * them, and are evaluated there. */
-mcor_status mcor_correct(mcor_context* context)
+mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
-  MCOR_TRY(mcor_reserve_vertices(context, mesh->march_count));
-  MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_EDGES, "mcor_correct_vertices",
-    MCOR_BUFFER(&mesh->ends), MCOR_REAL(context->run.iso.relative),
-    MCOR_REAL(options->tolerance * range),
+  return MCOR_LAUNCH_AT_VERTICES(context, vertices, kernel, MCOR_BUFFER(&mesh->ends),
+    MCOR_REAL(context->run.iso.relative), MCOR_REAL(options->tolerance * range),
     MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
-    MCOR_ATTRIBUTE_ARGS(context, &mesh->means)));
+    MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
+}
+
+/* Moves the vertices onto the surface. In a preview they stay where linear interpolation puts
+ * them, and are evaluated there. */
+mcor_status mcor_correct(mcor_context* context)
+{
+  const mcor_options* options = context->run.options;
+  const int count = context->mesh.march_count;
+  if (options->compact && count > 0)
+  {
+    MCOR_TRY(mcor_compact(context));
+  }
+  else
+  {
+    MCOR_TRY(mcor_reserve_vertices(context, count));
+    MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, "mcor_correct_vertices"));
+  }
   if (options->preview)
   {
     return MCOR_OK;

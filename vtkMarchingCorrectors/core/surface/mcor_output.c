@@ -120,9 +120,12 @@ static double mcor_length_of(const mcor_download* d, int64_t v, double length)
 /* Computes how far the correction moved vertex v, unit L. */
 static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
-  return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
-      mcor_length_of(d, v, d->context->lattice.edge[mcor_node_of(d, v)[3] & 3])
-                                          : 0;
+  const mcor_lattice* lattice = &d->context->lattice;
+  const int axis = mcor_node_of(d, v)[3] & 3;
+  return v < d->context->mesh.march_count
+    ? fabs(mcor_get_real(d->context, d->linear, v)) *
+      mcor_length_of(d, v, axis < 3 ? lattice->edge[axis] : lattice->cube)
+    : 0;
 }
 
 /* Computes how far rounded positions may move the value of vertex v. */

@@ -191,14 +191,6 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 
-/* Replaces one buffer by another. */
-static void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to)
-{
-  mcor_release(context, to);
-  *to = *from;
-  *from = (mcor_buffer){ 0 };
-}
-
 mcor_status mcor_trim(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;

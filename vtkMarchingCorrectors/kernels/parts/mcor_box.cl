@@ -45,12 +45,12 @@ __kernel void mcor_box_void_bricks(const int block_count, __global const mcor_ru
 }
 
 /* One work-item = one brick, of any level. Writes those of its cells that are in the box, or in a ring around it:
- * that would be in it if they were a cell larger all around. */
+ * that would be in it if they were so many cells larger all around. */
 __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, MCOR_SIDES_PARAMS,
   const int ring, __global const ulong* cells, __global ulong* clipped)
 {
   MCOR_ITEM(i, i < brick_count);
-  const int by = ring ? 3 << bricks[i].w : 0, end = ring ? by + 1 : 0;
+  const int by = ring ? (2 * ring + 1) << bricks[i].w : 0, end = ring ? by + 1 : 0;
   clipped[i] = cells[i] &
     mcor_cells_within(x0 - by, y0 - by, z0 - by, x1 + end, y1 + end, z1 + end, bricks[i]);
 }

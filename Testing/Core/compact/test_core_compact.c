@@ -1,0 +1,299 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Compact contours: what the mesh was before it is after, with fewer and better triangles and the same residual;
+ * boxes make the whole surface. */
+
+#include "core_parts.h"
+#include "core_period.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A block, a sheet, a thread and lone drops. */
+static core_set make_splash(double jitter, uint64_t seed)
+{
+  const int n = 10, side = 20;
+  core_set set = core_make_set((int64_t)n * n * n + side * side + side + 4);
+  for (int64_t p = 0; p < set.count; ++p)
+  {
+    const int i = (int)p, s = i - n * n * n, t = s - side * side, d = t - side;
+    const double block[3] = { i % n, i / n % n, i / (n * n) };
+    const double sheet[3] = { s % side, s / side, n + 6.0 };
+    const double other[3] = { d < 0 ? t : 8.0 * d, d < 0 ? -8 : -20, 0 };
+    for (int a = 0; a < 3; ++a)
+    {
+      set.position[3 * p + a] = (s < 0      ? block
+                                    : t < 0 ? sheet
+                                            : other)[a] -
+        5 + jitter * (random_unit(&seed) - 0.5);
+    }
+    set.smoothing_length[p] = 1.2;
+    set.volume[p] = 1;
+    set.scalar[p] = core_slope(set.position + 3 * p) + random_unit(&seed);
+  }
+  return set;
+}
+
+static core_set make_smooth(void)
+{
+  return make_splash(0.3, 1);
+}
+
+static core_set make_rough(void)
+{
+  return make_splash(0.9, 2);
+}
+
+static core_set make_noise(void)
+{
+  core_set set = core_make_random(3000, 14, 0.5, 1.1, 7);
+  uint64_t seed = 12;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = 2 * random_unit(&seed) - 1;
+    set.volume[i] = 0.5;
+  }
+  return set;
+}
+
+static core_set make_graded(void)
+{
+  return core_make_graded(8, 0.4);
+}
+
+static core_set make_wall(void)
+{
+  core_set set = core_make_block(10, 0.4, 3, core_slope);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.solid[i] = set.position[3 * i] < -2;
+  }
+  set.has_solids = 1;
+  return set;
+}
+
+static core_set make_period(void)
+{
+  const int length[3] = { 12, 10, 11 };
+  return core_make_period(length, 4);
+}
+
+/* All of them in a plane. */
+static core_set make_plane(void)
+{
+  core_set set = core_make_random(900, 14, 0.5, 0.8, 9);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.position[3 * i + 1] = 2;
+    set.volume[i] = 0.25;
+  }
+  return set;
+}
+
+typedef struct compact_case
+{
+  const char* name;
+  core_set (*make)(void);
+  mcor_field field;
+  double iso[2]; /* two where they differ */
+  double cube;
+  int levels, capping;
+  mcor_topology topology;
+  mcor_type precision;
+  double period[6];
+  int rough; /* a mesh of which little can be asked */
+} compact_case;
+
+static const compact_case cases[] = {
+  { "splash", make_smooth, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, 0, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0 }, 0 },
+  { "rough splash", make_rough, MCOR_WEIGHT_SUM, { 0.5, 0.4 }, 0.4, 0, 0, MCOR_TOPOLOGY_FIELD,
+    MCOR_FLOAT32, { 0 }, 0 },
+  { "in double precision", make_rough, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.6, 0, 0,
+    MCOR_TOPOLOGY_TABLE, MCOR_FLOAT64, { 0 }, 0 },
+  { "scalar", make_smooth, MCOR_SHEPARD, { 4, 0 }, 0.4, 0, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32,
+    { 0 }, 0 },
+  { "noise", make_noise, MCOR_SHEPARD, { 0.1, 0.1 }, 0.9, 0, 0, MCOR_TOPOLOGY_FIELD, MCOR_FLOAT32,
+    { 0 }, 1 },
+  { "sum of noise", make_noise, MCOR_SUM, { 0.3, 0.3 }, 0.7, 0, 0, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0 }, 1 },
+  { "levels", make_graded, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 4, 0, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0 }, 0 },
+  { "walls", make_wall, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, MCOR_CAP_PERIOD, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0 }, 1 },
+  { "period", make_period, MCOR_SHEPARD, { 0.1, 0.1 }, 0.5, 0, MCOR_CAP_PERIOD, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0, 12, 0, 10, 0, 11 }, 1 },
+  { "lines", make_plane, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, 0, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0 }, 0 },
+  { "lines of levels", make_plane, MCOR_WEIGHT_SUM, { 0.5, 0.3 }, 0.5, 3, 0, MCOR_TOPOLOGY_TABLE,
+    MCOR_FLOAT32, { 0 }, 0 },
+};
+
+static mcor_options options_of(const compact_case* at)
+{
+  mcor_options options = core_options(at->iso);
+  options.iso_count = at->iso[0] != at->iso[1] ? 2 : 1;
+  options.field = at->field;
+  options.cube_size_factor = at->cube;
+  options.level_limit = at->levels;
+  options.capping = at->capping;
+  options.topology = at->topology;
+  options.precision = at->precision;
+  options.wall_share = at->capping && at->period[1] == 0 ? 0.3 : 0;
+  memcpy(options.periodic, at->period, sizeof options.periodic);
+  core_ask_for_all(&options);
+  return options;
+}
+
+/* Of triangles: how many have an angle below 20 degrees, and how many face along the mean of their points' normals. */
+static void measure(const mcor_surface* s, int64_t* sharp, int64_t* turned)
+{
+  *sharp = *turned = 0;
+  for (int64_t t = 0; t < s->triangle_count; ++t)
+  {
+    const int32_t* corner = s->triangles + 3 * t;
+    double side[3][3], cosine = -1, n[3], along = 0;
+    for (int c = 0; c < 3; ++c)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        side[c][a] =
+          s->points[3 * (int64_t)corner[(c + 1) % 3] + a] - s->points[3 * (int64_t)corner[c] + a];
+      }
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      const double *u = side[c], *v = side[(c + 2) % 3];
+      const double dot = -(u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
+      cosine = fmax(cosine,
+        dot /
+          sqrt(
+            (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])));
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      n[a] = side[0][b] * side[1][c] - side[0][c] * side[1][b];
+      for (int k = 0; k < 3; ++k)
+      {
+        along += n[a] * s->normals[3 * (int64_t)corner[k] + a];
+      }
+    }
+    const bool on_border =
+      s->boundary_flag[corner[0]] | s->boundary_flag[corner[1]] | s->boundary_flag[corner[2]];
+    *sharp += !on_border && cosine > cos(20 * M_PI / 180);
+    *turned += !(along > 0);
+  }
+}
+
+static int64_t count_drops(const mcor_surface* s)
+{
+  int64_t closed = 0;
+  for (int64_t l = 0; l < s->line_count; ++l)
+  {
+    closed += s->line_points[s->line_offsets[l]] == s->line_points[s->line_offsets[l + 1] - 1];
+  }
+  return closed;
+}
+
+static void check_triangles(
+  const compact_case* at, const mcor_surface* without, const mcor_surface* with)
+{
+  mesh_report before = core_check_pinched_mesh(without), after = core_check_pinched_mesh(with);
+  int64_t sharp, turned, sharp_before, turned_before;
+  measure(without, &sharp_before, &turned_before);
+  measure(with, &sharp, &turned);
+  print_message("%s: %lld triangles, %lld pieces, %lld sharp, %lld turned, residual %.2g; before "
+                "%lld, %lld, %lld, %lld, %.2g\n",
+    at->name, (long long)after.triangles, (long long)after.components, (long long)sharp,
+    (long long)turned, with->statistics.residual_max, (long long)before.triangles,
+    (long long)before.components, (long long)sharp_before, (long long)turned_before,
+    without->statistics.residual_max);
+  CORE_CHECK((before.boundary_edges == 0) == (after.boundary_edges == 0), "%s: %lld border edges",
+    at->name, (long long)after.boundary_edges);
+  CORE_CHECK(at->rough || (after.components == before.components && after.euler == before.euler),
+    "%s: %lld pieces, %lld", at->name, (long long)after.components, (long long)after.euler);
+  CORE_CHECK((double)after.triangles < (at->rough ? 0.95 : 0.8) * (double)before.triangles,
+    "%s: %lld triangles of %lld", at->name, (long long)after.triangles,
+    (long long)before.triangles);
+  CORE_CHECK(turned <= turned_before, "%s: %lld turned over", at->name, (long long)turned);
+  CORE_CHECK(at->rough || (double)sharp < 0.01 * (double)after.triangles, "%s: %lld sharp ones",
+    at->name, (long long)sharp);
+  mesh_free_report(&before);
+  mesh_free_report(&after);
+}
+
+static void surfaces(void** state)
+{
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    const compact_case* at = cases + i;
+    core_set set = at->make();
+    const mcor_array attribute = core_array(set.position, 3);
+    mcor_input input = core_input(&set);
+    input.volume =
+      at->make == make_smooth || at->make == make_rough ? (mcor_array){ 0 } : input.volume;
+    input.attributes = &attribute;
+    input.attribute_count = 1;
+    mcor_options options = options_of(at);
+    mcor_surface without = core_extract(*state, &input, &options);
+    options.compact = 1;
+    mcor_surface with = core_extract(*state, &input, &options);
+    const mcor_statistics *s = &with.statistics, *old = &without.statistics;
+    if (with.line_offsets)
+    {
+      CORE_CHECK((double)with.point_count < 0.85 * (double)without.point_count,
+        "%s: %lld points of %lld", at->name, (long long)with.point_count,
+        (long long)without.point_count);
+      CORE_CHECK(
+        with.line_count == without.line_count && count_drops(&with) == count_drops(&without),
+        "%s: other pieces", at->name);
+    }
+    else
+    {
+      check_triangles(at, &without, &with);
+    }
+    CORE_CHECK(s->residual_max <= 1.5 * old->residual_max &&
+        s->vertices_above_tolerance <= old->vertices_above_tolerance,
+      "%s: residual %g, before %g; %lld above", at->name, s->residual_max, old->residual_max,
+      (long long)s->vertices_above_tolerance);
+    mcor_free_surface(&without);
+    mcor_free_surface(&with);
+    core_free_set(&set);
+  }
+}
+
+static void boxes(void** state)
+{
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    const compact_case* at = cases + i;
+    core_set set = at->make();
+    const mcor_array attribute = core_array(set.position, 3);
+    mcor_input input = core_input(&set);
+    input.volume =
+      at->make == make_smooth || at->make == make_rough ? (mcor_array){ 0 } : input.volume;
+    input.attributes = &attribute;
+    input.attribute_count = 1;
+    mcor_options options = options_of(at);
+    options.compact = 1;
+    if (at->period[1] == 0 && at->make != make_plane)
+    {
+      core_check_cuts(*state, at->name, &input, &options);
+      options.triangle_normals = 1;
+      core_check_these_cuts(*state, at->name, &input, &options, core_cuts + 3, 1);
+    }
+    core_free_set(&set);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(surfaces),
+    cmocka_unit_test(boxes),
+  };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

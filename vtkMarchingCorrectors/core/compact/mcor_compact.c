@@ -1,0 +1,681 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Compact contours. Marching leaves slivers where the surface passes close by a node. So vertices of one node that
+ * edges join are merged to their mean before the correction [Moore and Warren], which then moves them along the
+ * gradient. Triangles of which two corners are one go.
+ *
+ * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart again, which the bunches
+ * allow at any time: their vertices are corrected on their edges, as without. That may turn triangles beside them
+ * over, so there are two rounds.
+ *
+ * Vertices stay sorted by node, as keys need them: so what is corrected is gathered once more at the end where some
+ * were taken apart. */
+
+#include "mcor_compact.h"
+#include "mcor_adaptive.h"
+#include "mcor_box.h"
+#include "mcor_cap.h"
+#include "mcor_parallel.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Gives those that lean on a bunch another state. */
+static void mcor_drop_leaning(mcor_bunches* bunches, int32_t first, int state)
+{
+  for (int32_t e = bunches->leans[first] ? -1 : bunches->star[first]; e >= 0;
+       e = bunches->before[e])
+  {
+    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    for (int c = 0; c < 3; ++c)
+    {
+      if (mcor_state_of(bunches, bunches->first[corner[c]]) == MCOR_BUNCH_LEANING)
+      {
+        mcor_set_state(bunches, bunches->first[corner[c]], state);
+      }
+    }
+  }
+}
+
+/* ---- Vertices ---- */
+
+typedef struct mcor_sorted_bunch
+{
+  uint64_t key;
+  int32_t first;
+} mcor_sorted_bunch;
+
+/* The node that a bunch belongs to, as that of its merged vertex. */
+static void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, cl_int node[4])
+{
+  const cl_int* from = mcor_marched_node(bunches, first);
+  const uint64_t key = bunches->key[first];
+  for (int a = 0; a < 3; ++a)
+  {
+    node[a] = (cl_int)(key >> 21 * a & 0x1fffff);
+  }
+  node[3] = from[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS;
+}
+
+/* In the order of vertices. */
+static uint64_t mcor_order_key(const mcor_bunches* bunches, const cl_int node[4])
+{
+  return mcor_node_key(&bunches->context->lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1;
+}
+
+static int mcor_compare_bunches(const void* x, const void* y)
+{
+  const mcor_sorted_bunch *a = x, *b = y;
+  return a->key != b->key ? (a->key > b->key) - (a->key < b->key)
+                          : (a->first > b->first) - (a->first < b->first);
+}
+
+/* Takes a bunch apart before anything is placed, and those that lean on it. */
+static void mcor_drop_bunch(mcor_bunches* bunches, int32_t first)
+{
+  mcor_set_state(bunches, first, MCOR_BUNCH_APART);
+  mcor_drop_leaning(bunches, first, MCOR_BUNCH_APART);
+}
+
+/* Sorts the merged bunches. There are keys for two of one node: others stay apart. */
+static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
+{
+  mcor_sorted_bunch* sorted = NULL;
+  int64_t count = 0;
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    count += mcor_is_merged(bunches, v);
+  }
+  sorted = malloc(((size_t)count + 1) * sizeof *sorted);
+  bunches->sorted = sorted;
+  MCOR_TRY(mcor_allocated(bunches->context, sorted));
+  count = 0;
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    if (mcor_is_merged(bunches, v))
+    {
+      cl_int node[4];
+      mcor_bunch_node(bunches, v, node);
+      sorted[count++] = (mcor_sorted_bunch){ mcor_order_key(bunches, node), v };
+    }
+  }
+  qsort(sorted, (size_t)count, sizeof *sorted, mcor_compare_bunches);
+  for (int64_t i = 2; i < count; ++i)
+  {
+    if (sorted[i].key == sorted[i - 2].key)
+    {
+      mcor_drop_bunch(bunches, sorted[i].first);
+    }
+  }
+  bunches->sorted_count = (int)count;
+  return MCOR_OK;
+}
+
+/* Lists the mesh's vertices in order. Returns how many. */
+static int mcor_order_vertices(mcor_bunches* bunches)
+{
+  const mcor_sorted_bunch *merged = bunches->sorted, *end = merged + bunches->sorted_count;
+  int count = 0;
+  for (int32_t v = 0; v <= bunches->vertex_count; ++v)
+  {
+    const bool is_last = v == bunches->vertex_count;
+    if (!is_last && mcor_is_merged(bunches, bunches->first[v]))
+    {
+      continue; /* its bunch comes where the node is */
+    }
+    const uint64_t key =
+      is_last ? UINT64_MAX : mcor_order_key(bunches, mcor_marched_node(bunches, v));
+    for (; merged < end && merged->key < key; ++merged)
+    {
+      if (mcor_is_merged(bunches, merged->first))
+      {
+        bunches->order[count++] = merged->first;
+      }
+    }
+    if (!is_last)
+    {
+      bunches->order[count++] = v;
+    }
+  }
+  return count;
+}
+
+/* Where each of the mesh's vertices is, and where those of each level begin. */
+static void mcor_note_places(mcor_bunches* bunches, int count)
+{
+  mcor_mesh* mesh = &bunches->context->mesh;
+  int level = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    const int32_t v = bunches->order[i];
+    const int own = mcor_marched_node(bunches, v)[3] >> MCOR_LEVEL_SHIFT;
+    bunches->place[v] = i;
+    for (; level < own; ++level)
+    {
+      mesh->level_first[0][level + 1] = i;
+    }
+  }
+  for (; level <= bunches->context->lattice.top; ++level)
+  {
+    mesh->level_first[0][level + 1] = count;
+  }
+  for (int l = 0; l <= bunches->context->lattice.top; ++l)
+  {
+    mesh->level_first[1][l] = count;
+  }
+  mesh->march_count = mesh->vertex_count = count;
+}
+
+/* The mean of a bunch's vertices, where the field is linear along their edges; from their node, in edges. */
+static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean[3])
+{
+  const mcor_context* context = bunches->context;
+  int count = 0;
+  mean[0] = mean[1] = mean[2] = 0;
+  for (int32_t v = first; v >= 0; v = bunches->next[v], ++count)
+  {
+    const double low = mcor_get_real(context, bunches->ends, 2 * (int64_t)v),
+                 high = mcor_get_real(context, bunches->ends, 2 * (int64_t)v + 1);
+    const int axis = mcor_marched_node(bunches, v)[3] & 3;
+    mean[axis] += fabs(low) > fabs(high) ? high / (low - high) : low / (low - high);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    mean[a] /= count;
+  }
+}
+
+typedef struct mcor_placing
+{
+  const mcor_bunches* bunches;
+  void *node, *ends, *offset;
+} mcor_placing;
+
+static void mcor_place_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_placing* to = data;
+  const mcor_bunches* bunches = to->bunches;
+  const mcor_context* context = bunches->context;
+  for (int64_t i = first; i < last; ++i)
+  {
+    const int32_t v = bunches->order[i];
+    const bool merged = mcor_is_merged(bunches, v);
+    cl_int* node = (cl_int*)to->node + 4 * i;
+    double start[3] = { 0, 0, 0 };
+    memcpy(node, mcor_marched_node(bunches, v), 4 * sizeof *node);
+    if (merged)
+    {
+      mcor_bunch_node(bunches, v, node);
+      mcor_mean_of(bunches, v, start);
+    }
+    for (int k = 0; k < 2; ++k) /* a merged one has no edge: any ends of different signs */
+    {
+      mcor_put_real(context, to->ends, 2 * i + k,
+        merged ? 2 * k - 1 : mcor_get_real(context, bunches->ends, 2 * (int64_t)v + k));
+    }
+    for (int a = 0; a < 4; ++a)
+    {
+      mcor_put_real(context, to->offset, 4 * i + a, a < 3 ? start[a] : 0);
+    }
+  }
+  (void)slice;
+}
+
+/* Makes the mesh's vertices: those that stay, and means. */
+static mcor_status mcor_place_vertices(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  const int count = mcor_order_vertices(bunches);
+  const size_t n = (size_t)count, real = context->cl.real_size;
+  mcor_placing to = { .bunches = bunches };
+  mcor_note_places(bunches, count);
+  MCOR_TRY(mcor_reserve(context, &mesh->ends, 2 * n * real));
+  MCOR_TRY(mcor_reserve_vertices(context, count));
+  mcor_status status = mcor_map(context, &mesh->node, 4 * n * sizeof(cl_int), true, &to.node);
+  status =
+    status == MCOR_OK ? mcor_map(context, &mesh->ends, 2 * n * real, true, &to.ends) : status;
+  status =
+    status == MCOR_OK ? mcor_map(context, &mesh->offset, 4 * n * real, true, &to.offset) : status;
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_place_slice, &to, NULL)
+    : status;
+  const mcor_mapping mapped[] = { { &mesh->node, 0, &to.node }, { &mesh->ends, 0, &to.ends },
+    { &mesh->offset, 0, &to.offset } };
+  return mcor_unmap_all(context, mapped, 3, status);
+}
+
+/* ---- Taking apart ---- */
+
+typedef struct mcor_facing
+{
+  mcor_bunches* bunches;
+  int round;
+  void *node, *offset, *linear, *gradient;
+  atomic_int bad; /* whether any bunch is */
+} mcor_facing;
+
+static void mcor_make_bad(mcor_facing* facing, int32_t first)
+{
+  if (mcor_is_merged(facing->bunches, first))
+  {
+    mcor_set_state(facing->bunches, first, MCOR_BUNCH_BAD);
+    atomic_store_explicit(&facing->bad, 1, memory_order_relaxed);
+  }
+}
+
+/* Whether a triangle, or line, does not face against the mean of its corners' unit gradients. */
+static bool mcor_is_turned(const mcor_facing* facing, const int32_t* place, int corners)
+{
+  const mcor_context* context = facing->bunches->context;
+  double at[3][3], normal[3], against[3] = { 0, 0, 0 };
+  for (int c = 0; c < corners; ++c)
+  {
+    const int64_t i = place[c];
+    const cl_int* node = (const cl_int*)facing->node + 4 * i;
+    const int level = node[3] >> MCOR_LEVEL_SHIFT;
+    double g[3], length = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      at[c][a] = ldexp(node[a] + mcor_get_real(context, facing->offset, 4 * i + a), level) *
+        mcor_edge_of(&context->lattice, a);
+      g[a] = mcor_get_real(context, facing->gradient, 4 * i + a);
+      length += g[a] * g[a];
+    }
+    for (int a = 0; a < 3 && length > 0; ++a)
+    {
+      against[a] -= g[a] / sqrt(length);
+    }
+  }
+  double along = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int b = (a + 1) % 3, d = (a + 2) % 3;
+    normal[a] = corners == 3 ? (at[1][b] - at[0][b]) * (at[2][d] - at[0][d]) -
+        (at[1][d] - at[0][d]) * (at[2][b] - at[0][b])
+      : a == 0 ? at[1][1] - at[0][1]
+      : a == 1 ? at[0][0] - at[1][0]
+               : 0;
+    along += normal[a] * against[a];
+  }
+  return !(along > 0);
+}
+
+static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_facing* facing = data;
+  const mcor_bunches* bunches = facing->bunches;
+  const mcor_context* context = bunches->context;
+  const int corners = bunches->corners;
+  for (int64_t t = first; t < last; ++t)
+  {
+    const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+    int32_t place[3], of[3];
+    bool merged = false, fresh = facing->round == 0, missed = false;
+    for (int c = 0; c < corners; ++c)
+    {
+      const int32_t bunch = bunches->first[corner[c]];
+      of[c] = mcor_stand_in(bunches, corner[c]);
+      place[c] = bunches->place[of[c]];
+      merged = merged || mcor_is_merged(bunches, bunch);
+      fresh = fresh || mcor_state_of(bunches, bunch) == MCOR_BUNCH_FRESH;
+    }
+    const bool is_left = of[0] != of[1] && (corners == 2 || (of[1] != of[2] && of[2] != of[0]));
+    if (!merged || !fresh || !is_left)
+    {
+      continue;
+    }
+    for (int c = 0; c < corners; ++c)
+    {
+      if (mcor_is_merged(bunches, of[c]) && mcor_get_real(context, facing->linear, place[c]) > 0)
+      {
+        mcor_make_bad(facing, of[c]);
+        missed = true;
+      }
+    }
+    if (!missed && mcor_is_turned(facing, place, corners))
+    {
+      for (int c = 0; c < corners; ++c)
+      {
+        mcor_make_bad(facing, of[c]);
+      }
+    }
+  }
+  (void)slice;
+}
+
+/* Finds the bunches to be taken apart. */
+static mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
+  mcor_facing facing = { .bunches = bunches, .round = round };
+  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &facing.node },
+    { &mesh->offset, 4 * n * real, &facing.offset }, { &mesh->linear, n * real, &facing.linear },
+    { &mesh->gradient, 4 * n * real, &facing.gradient } };
+  atomic_init(&facing.bad, 0);
+  mcor_status status = mcor_map_all(context, views, 4);
+  status = status == MCOR_OK ? mcor_parallel_run(context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
+                                 mcor_face_slice, &facing, NULL)
+                             : status;
+  *found = atomic_load(&facing.bad);
+  return mcor_unmap_all(context, views, 4, status);
+}
+
+/* Takes the bad bunches apart, and those that lean on them; lists their vertices. Returns how many. */
+static int mcor_list_fresh(mcor_bunches* bunches, int32_t* fresh)
+{
+  int count = 0;
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    if (mcor_state_of(bunches, v) == MCOR_BUNCH_BAD)
+    {
+      mcor_drop_leaning(bunches, v, MCOR_BUNCH_BAD);
+    }
+  }
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    const int state = mcor_state_of(bunches, v);
+    if (state == MCOR_BUNCH_BAD || state == MCOR_BUNCH_FRESH)
+    {
+      mcor_set_state(bunches, v, state == MCOR_BUNCH_BAD ? MCOR_BUNCH_FRESH : MCOR_BUNCH_APART);
+    }
+    if (mcor_state_of(bunches, bunches->first[v]) == MCOR_BUNCH_FRESH) /* it comes first */
+    {
+      fresh[count++] = v;
+    }
+  }
+  return count;
+}
+
+/* Adds vertices behind the others of the mesh. */
+static mcor_status mcor_append_fresh(mcor_bunches* bunches, const int32_t* fresh, int count)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t old = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size;
+  cl_int* node = malloc(4 * n * sizeof *node);
+  uint8_t* ends = malloc(2 * n * real);
+  mcor_status status = mcor_allocated(context, node && ends);
+  int level = 0;
+  for (int i = 0; i < count && status == MCOR_OK; ++i)
+  {
+    const size_t v = (size_t)fresh[i], width = 2 * real;
+    memcpy(node + 4 * (size_t)i, mcor_marched_node(bunches, fresh[i]), 4 * sizeof *node);
+    memcpy(ends + (size_t)i * width, (const uint8_t*)bunches->ends + v * width, width);
+    bunches->place[v] = (int32_t)old + i;
+    for (; level <= node[4 * i + 3] >> MCOR_LEVEL_SHIFT; ++level)
+    {
+      mesh->level_first[1][level] = (int)old + i;
+    }
+  }
+  for (; level <= context->lattice.top; ++level)
+  {
+    mesh->level_first[1][level] = (int)old + count;
+  }
+  status = status == MCOR_OK
+    ? mcor_append_bytes(context, &mesh->ends, 2 * old * real, ends, 2 * n * real)
+    : status;
+  status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)old + count) : status;
+  status =
+    status == MCOR_OK ? mcor_append_bytes(context, &mesh->node, old * 16, node, n * 16) : status;
+  status =
+    status == MCOR_OK ? mcor_extend(context, &mesh->linear, old * real, (old + n) * real) : status;
+  status = status == MCOR_OK ? mcor_extend(context, &mesh->evaluations, old, old + n) : status;
+  mesh->march_count = (int)old;
+  mesh->vertex_count = (int)old + count;
+  free(node);
+  free(ends);
+  return status;
+}
+
+/* *apart: whether any bunch was taken apart. */
+static mcor_status mcor_take_apart(mcor_bunches* bunches, bool* apart)
+{
+  mcor_context* context = bunches->context;
+  int32_t* fresh = malloc((size_t)bunches->vertex_count * sizeof *fresh);
+  mcor_status status = mcor_allocated(context, fresh);
+  bool found = true;
+  for (int round = 0; round < MCOR_COMPACT_ROUNDS && found && status == MCOR_OK; ++round)
+  {
+    status = mcor_find_bad(bunches, round, &found);
+    if (found && status == MCOR_OK)
+    {
+      *apart = true;
+      status = mcor_append_fresh(bunches, fresh, mcor_list_fresh(bunches, fresh));
+      status = status == MCOR_OK
+        ? mcor_launch_correction(context, MCOR_ON_BOUNDARY, "mcor_compact_vertices")
+        : status;
+    }
+  }
+  free(fresh);
+  return status;
+}
+
+/* ---- In order again ---- */
+
+typedef struct mcor_gathering
+{
+  const int32_t* from;
+  size_t width;
+  void *in, *out;
+} mcor_gathering;
+
+static void mcor_gather_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_gathering* g = data;
+  for (int64_t i = first; i < last; ++i)
+  {
+    memcpy((uint8_t*)g->out + (size_t)i * g->width,
+      (const uint8_t*)g->in + (size_t)g->from[i] * g->width, g->width);
+  }
+  (void)slice;
+}
+
+/* Gathers an array's elements, `width` bytes each. */
+static mcor_status mcor_gather(
+  mcor_context* context, mcor_buffer* array, size_t width, const int32_t* from, int old, int count)
+{
+  mcor_buffer in = *array;
+  mcor_gathering g = { .from = from, .width = width };
+  *array = (mcor_buffer){ 0 };
+  mcor_status status = mcor_reserve(context, array, (size_t)count * width);
+  status = status == MCOR_OK ? mcor_map(context, &in, (size_t)old * width, false, &g.in) : status;
+  status =
+    status == MCOR_OK ? mcor_map(context, array, (size_t)count * width, true, &g.out) : status;
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_gather_slice, &g, NULL)
+    : status;
+  const mcor_mapping mapped[] = { { &in, 0, &g.in }, { array, 0, &g.out } };
+  status = mcor_unmap_all(context, mapped, 2, status);
+  mcor_release(context, &in);
+  return status;
+}
+
+static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t real = context->cl.real_size, means = (size_t)context->attributes.count * real;
+  const int old = mesh->vertex_count, count = mcor_order_vertices(bunches);
+  int32_t* from = malloc((size_t)count * sizeof *from);
+  MCOR_TRY(mcor_allocated(context, from));
+  for (int i = 0; i < count; ++i)
+  {
+    from[i] = bunches->place[bunches->order[i]];
+  }
+  struct
+  {
+    mcor_buffer* array;
+    size_t width;
+  } const arrays[] = { { &mesh->node, 16 }, { &mesh->offset, 4 * real }, { &mesh->linear, real },
+    { &mesh->field_value, real }, { &mesh->gradient, 4 * real }, { &mesh->vertex_weight, real },
+    { &mesh->evaluations, 1 }, { &mesh->means, means } };
+  mcor_status status = MCOR_OK;
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0] && status == MCOR_OK; ++i)
+  {
+    status = arrays[i].width > 0
+      ? mcor_gather(context, arrays[i].array, arrays[i].width, from, old, count)
+      : MCOR_OK;
+  }
+  free(from);
+  mcor_note_places(bunches, count);
+  return status;
+}
+
+/* ---- Triangles ---- */
+
+typedef struct mcor_filing
+{
+  const mcor_bunches* bunches;
+  bool follows;
+  cl_int* triangles;
+  cl_ulong* cells;
+  int64_t first[MCOR_SLICES + 1]; /* of each slice's; before, how many it has */
+} mcor_filing;
+
+/* Returns whether the triangle is left, with these corners. */
+static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3])
+{
+  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  for (int c = 0; c < 3; ++c)
+  {
+    to[c] = bunches->place[mcor_stand_in(bunches, corner[c])];
+  }
+  return to[0] != to[1] && (bunches->corners == 2 || (to[1] != to[2] && to[2] != to[0]));
+}
+
+static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_filing* filing = data;
+  int64_t count = 0;
+  for (int64_t t = first; t < last; ++t)
+  {
+    cl_int corners[3];
+    count += mcor_corners_of(filing->bunches, t, corners);
+  }
+  filing->first[slice + 1] = count;
+}
+
+static void mcor_fill_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_filing* filing = data;
+  int64_t to = filing->first[slice];
+  for (int64_t t = first; t < last; ++t)
+  {
+    cl_int corners[3];
+    if (mcor_corners_of(filing->bunches, t, corners))
+    {
+      memcpy(filing->triangles + 3 * to, corners, sizeof corners);
+      if (filing->follows)
+      {
+        filing->cells[to] = ((const cl_ulong*)filing->bunches->cells)[t];
+      }
+      ++to;
+    }
+  }
+}
+
+static mcor_status mcor_file_triangles(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_filing filing = { .bunches = bunches, .follows = mcor_follows_cells(context) };
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_count_slice, &filing, &slices));
+  for (int s = 0; s < slices; ++s)
+  {
+    filing.first[s + 1] += filing.first[s];
+  }
+  const size_t n = (size_t)filing.first[slices], cells = filing.follows ? n : 1;
+  void *triangle_view = NULL, *cell_view = NULL;
+  MCOR_TRY(mcor_reserve(context, &mesh->triangles, 3 * n * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &context->box.cells, cells * sizeof(cl_ulong)));
+  mcor_status status =
+    mcor_map(context, &mesh->triangles, 3 * n * sizeof(cl_int), true, &triangle_view);
+  status = status == MCOR_OK
+    ? mcor_map(context, &context->box.cells, cells * sizeof(cl_ulong), true, &cell_view)
+    : status;
+  filing.triangles = triangle_view;
+  filing.cells = cell_view;
+  status = status == MCOR_OK ? mcor_parallel_run(context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
+                                 mcor_fill_slice, &filing, NULL)
+                             : status;
+  const mcor_mapping mapped[] = { { &mesh->triangles, 0, &triangle_view },
+    { &context->box.cells, 0, &cell_view } };
+  mesh->triangle_count = (int)n;
+  return mcor_unmap_all(context, mapped, 2, status);
+}
+
+/* ---- All of it ---- */
+
+static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  bool apart = false;
+  MCOR_TRY(mcor_find_bunches(bunches));
+  MCOR_TRY(mcor_sort_bunches(bunches));
+  MCOR_TRY(mcor_place_vertices(bunches));
+  MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, "mcor_compact_vertices"));
+  MCOR_TRY(mcor_take_apart(bunches, &apart));
+  MCOR_TRY(apart ? mcor_gather_vertices(bunches) : MCOR_OK);
+  return mcor_file_triangles(bunches);
+}
+
+/* Memory of the host, and views of the mesh as marching has left it, which the mesh then has no more. */
+static mcor_status mcor_begin_bunches(mcor_bunches* b)
+{
+  mcor_context* context = b->context;
+  const size_t n = (size_t)b->vertex_count;
+  b->key = malloc(n * sizeof *b->key);
+  b->first = malloc(n * sizeof *b->first);
+  b->next = malloc(n * sizeof *b->next);
+  b->star = malloc(n * sizeof *b->star);
+  b->before = malloc(3 * (size_t)b->triangle_count * sizeof *b->before);
+  b->state = calloc(n, sizeof *b->state);
+  b->leans = calloc(n, sizeof *b->leans);
+  b->order = malloc(n * sizeof *b->order);
+  b->place = malloc(n * sizeof *b->place);
+  return mcor_allocated(context,
+    b->key && b->first && b->next && b->star && b->before && b->state && b->leans && b->order &&
+      b->place);
+}
+
+static void mcor_end_bunches(mcor_bunches* b)
+{
+  void* const arrays[] = { b->key, b->first, b->next, b->star, b->before, b->state, b->leans,
+    b->order, b->place, b->sorted };
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+  {
+    free(arrays[i]);
+  }
+  MCOR_RELEASE(b->context, &b->nodes, &b->edge_ends, &b->corner_buffer, &b->cell_buffer);
+}
+
+mcor_status mcor_compact(mcor_context* context)
+{
+  mcor_mesh* mesh = &context->mesh;
+  mcor_bunches bunches = { .context = context,
+    .corners = mcor_is_plane(context) ? 2 : 3,
+    .vertex_count = mesh->march_count,
+    .triangle_count = mesh->triangle_count };
+  const size_t n = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
+  mcor_take_buffer(context, &mesh->node, &bunches.nodes);
+  mcor_take_buffer(context, &mesh->ends, &bunches.edge_ends);
+  mcor_take_buffer(context, &mesh->triangles, &bunches.corner_buffer);
+  mcor_take_buffer(context, &context->box.cells, &bunches.cell_buffer);
+  const mcor_mapping views[] = { { &bunches.nodes, n * 16, &bunches.node },
+    { &bunches.edge_ends, 2 * n * context->cl.real_size, &bunches.ends },
+    { &bunches.corner_buffer, 3 * triangles * sizeof(cl_int), &bunches.triangles },
+    { &bunches.cell_buffer, triangles * sizeof(cl_ulong), &bunches.cells } };
+  const int count = mcor_follows_cells(context) ? 4 : 3;
+  mcor_status status = mcor_begin_bunches(&bunches);
+  status = status == MCOR_OK ? mcor_map_all(context, views, count) : status;
+  status = status == MCOR_OK ? mcor_merge_bunches(&bunches) : status;
+  status = mcor_unmap_all(context, views, count, status);
+  mcor_end_bunches(&bunches);
+  return status;
+}

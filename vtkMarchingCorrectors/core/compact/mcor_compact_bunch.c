@@ -1,0 +1,429 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Bunches of a marched mesh, and which of them may be merged.
+ *
+ * Merging must leave a manifold with the same pieces. It does if each bunch that is merged can be drawn together to a
+ * point, and if two vertices of the mesh are then joined by one edge at most, which becomes of edges beside each other
+ * and the triangles between. The latter is asked of pairs: of two bunches, or a bunch and a vertex. So a bunch is
+ *   - sure, where the triangles around it are one closed fan of three or more different vertices, both where all
+ *     bunches are merged and where no other one is;
+ *   - leaning, where they are with the sure ones merged. It goes where a sure one beside it goes. Of two that
+ *     may not both be merged the first is.
+ * Thus a bunch depends on the cells near it alone, whatever part of the surface a call makes, and may later be taken
+ * apart at any time. A closed piece that would be left with fewer than 8 triangles stays as it is. */
+
+#include "mcor_cap_job.h"
+#include "mcor_compact.h"
+#include "mcor_parallel.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* In place of a node: the vertex stays. */
+#define MCOR_FROZEN UINT64_MAX
+
+/* Vertices that bunches with one fan have beside them, at most. */
+#define MCOR_FAN_LIMIT 48
+
+/* Triangles that a closed piece keeps at least; lines. */
+#define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 8 : 4)
+
+/* ---- Nodes ---- */
+
+/* Sides of periods and of caps, on which vertices stay, as nodes along an axis; where the surface ends at walls that
+ * are capped, those in bricks which both fluid and solids reach. */
+typedef struct mcor_frozen
+{
+  const mcor_bunches* bunches;
+  int side_count;
+  struct
+  {
+    int axis, node;
+  } sides[12];
+  bool has_wall;
+  mcor_wall wall;
+} mcor_frozen;
+
+static mcor_status mcor_find_frozen(mcor_context* context, mcor_frozen* frozen)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  for (int i = 0; i < 6; ++i)
+  {
+    const int axis = i / 2, upper = i % 2, cap = mcor_cap_plane(context, axis, upper);
+    const int side = lattice->period_first[axis] + upper * lattice->period[axis];
+    if (lattice->period[axis] > 0)
+    {
+      frozen->sides[frozen->side_count].axis = axis;
+      frozen->sides[frozen->side_count++].node = side;
+    }
+    if (cap >= 0)
+    {
+      frozen->sides[frozen->side_count].axis = axis;
+      frozen->sides[frozen->side_count++].node = cap;
+    }
+  }
+  if (!mcor_caps_walls(context))
+  {
+    return MCOR_OK;
+  }
+  frozen->has_wall = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    frozen->wall.range[a][0] = (int)lattice->first[a];
+    frozen->wall.range[a][1] = (int)lattice->last[a];
+  }
+  return mcor_find_wall(context, &frozen->wall);
+}
+
+static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
+{
+  const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
+  bool is = node[3] >> 2 & 1; /* on the border that the node threshold leaves */
+  for (int i = 0; i < frozen->side_count; ++i)
+  {
+    const int a = frozen->sides[i].axis;
+    is = is || (a != axis && node[a] << level == frozen->sides[i].node);
+  }
+  const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
+  return is || (frozen->has_wall && mcor_find_wall_brick(&frozen->wall, brick));
+}
+
+/* A vertex belongs to the end of its edge that is nearer to where the field is linear; the lower one of two. Beside
+ * each other are levels that differ by one, so that the last bit of theirs will do. */
+static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_frozen* frozen = data;
+  const mcor_bunches* bunches = frozen->bunches;
+  const mcor_context* context = bunches->context;
+  for (int64_t v = first; v < last; ++v)
+  {
+    const cl_int* node = mcor_marched_node(bunches, (int32_t)v);
+    const bool is_upper = fabs(mcor_get_real(context, bunches->ends, 2 * v)) >
+      fabs(mcor_get_real(context, bunches->ends, 2 * v + 1));
+    cl_int at[3] = { node[0], node[1], node[2] };
+    at[node[3] & 3] += is_upper;
+    const uint64_t odd = (uint64_t)(node[3] >> MCOR_LEVEL_SHIFT & 1) << 63;
+    bunches->key[v] = mcor_is_frozen(frozen, node) ? MCOR_FROZEN : mcor_cap_key(at) ^ odd;
+  }
+  (void)slice;
+}
+
+static mcor_status mcor_key_vertices(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  mcor_frozen frozen = { .bunches = bunches };
+  mcor_status status = mcor_find_frozen(context, &frozen);
+  status = status == MCOR_OK ? mcor_parallel_run(context, bunches->vertex_count, MCOR_LIGHT_GRAIN,
+                                 mcor_key_slice, &frozen, NULL)
+                             : status;
+  mcor_free_wall(&frozen.wall);
+  return status;
+}
+
+/* ---- Bunches ---- */
+
+/* The first vertex that this one is known to be joined with. */
+static int32_t mcor_first_of(int32_t* first, int32_t v)
+{
+  while (first[v] != v)
+  {
+    first[v] = first[first[v]];
+    v = first[v];
+  }
+  return v;
+}
+
+static void mcor_join_vertices(mcor_bunches* bunches)
+{
+  const cl_int* corner = bunches->triangles;
+  const uint64_t* key = bunches->key;
+  int32_t* first = bunches->first;
+  for (int64_t t = 0; t < bunches->triangle_count; ++t, corner += 3)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const int32_t v = corner[c], w = corner[c < 2 ? c + 1 : 0];
+      if (key[v] == key[w] && key[v] != MCOR_FROZEN && v != w)
+      {
+        const int32_t p = mcor_first_of(first, v), q = mcor_first_of(first, w);
+        first[p > q ? p : q] = p > q ? q : p;
+      }
+    }
+  }
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    first[v] = first[first[v]]; /* the one before is first already */
+  }
+  for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
+  {
+    if (first[v] != v)
+    {
+      bunches->next[v] = bunches->next[first[v]];
+      bunches->next[first[v]] = v;
+    }
+  }
+}
+
+static void mcor_list_stars(mcor_bunches* bunches)
+{
+  const cl_int* corner = bunches->triangles;
+  for (int64_t t = 0; t < bunches->triangle_count; ++t, corner += 3)
+  {
+    for (int c = 0; c < bunches->corners; ++c)
+    {
+      int32_t* last = &bunches->star[bunches->first[corner[c]]];
+      bunches->before[3 * t + c] = *last;
+      *last = (int32_t)(3 * t + c);
+    }
+  }
+}
+
+/* ---- Whether they can be merged ---- */
+
+/* The edges opposite to a bunch in its triangles, as these go round. Of lines: one from the vertex before to
+ * that behind. */
+typedef struct mcor_fan
+{
+  int count;
+  int32_t from[MCOR_FAN_LIMIT], to[MCOR_FAN_LIMIT];
+} mcor_fan;
+
+/* Corners of a triangle, as the first vertices of their bunches. */
+static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3])
+{
+  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  for (int c = 0; c < 3; ++c)
+  {
+    of[c] = bunches->first[corner[c]];
+  }
+}
+
+/* False where the bunch cannot be drawn together, or there is no fan around it. */
+static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
+{
+  int size = 1, whole = 0, partly = 0; /* vertices; triangles within, and with two corners within */
+  for (int32_t v = bunch; bunches->next[v] >= 0; v = bunches->next[v])
+  {
+    ++size;
+  }
+  fan->count = 0;
+  for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
+  {
+    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    const int c = e % 3;
+    int32_t of[3];
+    mcor_bunches_of(bunches, e / 3, of);
+    const int32_t next = corner[(c + 1) % 3], last = corner[(c + 2) % 3];
+    const int others = (of[(c + 1) % 3] == bunch) + (of[(c + 2) % 3] == bunch);
+    const bool is_first = of[0] == bunch ? c == 0 : of[1] == bunch ? c == 1 : c == 2;
+    if (!is_first)
+    {
+      continue;
+    }
+    whole += others == 2;
+    partly += others == 1;
+    if (others == 0)
+    {
+      if (fan->count == MCOR_FAN_LIMIT)
+      {
+        return false;
+      }
+      fan->from[fan->count] = next;
+      fan->to[fan->count++] = last;
+    }
+  }
+  return 2 * size - whole - partly == 2;
+}
+
+/* Lines to and from a bunch. */
+static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
+{
+  int size = 1, within = 0, before = 0, behind = 0;
+  for (int32_t v = bunch; bunches->next[v] >= 0; v = bunches->next[v])
+  {
+    ++size;
+  }
+  for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
+  {
+    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    const int c = e % 3;
+    const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
+    within += joins && c == 0;
+    before += !joins && c == 1;
+    behind += !joins && c == 0;
+    fan->from[0] = !joins && c == 1 ? corner[0] : fan->from[0];
+    fan->to[0] = !joins && c == 0 ? corner[1] : fan->to[0];
+  }
+  fan->count = 1;
+  return size - within == 1 && before == 1 && behind == 1;
+}
+
+/* In place of vertices around a bunch, their bunches, or those of them that are sure; edges within one go. */
+static void mcor_merge_fan(
+  const mcor_bunches* bunches, bool all, const mcor_fan* from, mcor_fan* to)
+{
+  to->count = 0;
+  for (int i = 0; i < from->count; ++i)
+  {
+    const int32_t v = from->from[i], w = from->to[i], p = bunches->first[v], q = bunches->first[w];
+    const int32_t begin = all || mcor_state_of(bunches, p) == MCOR_BUNCH_MERGED ? p : v;
+    const int32_t end = all || mcor_state_of(bunches, q) == MCOR_BUNCH_MERGED ? q : w;
+    if (begin != end)
+    {
+      to->from[to->count] = begin;
+      to->to[to->count++] = end;
+    }
+  }
+}
+
+/* Whether the edges are one closed ring through different vertices; of lines, whether the two ends differ. */
+static bool mcor_is_ring(const mcor_fan* fan, int corners)
+{
+  int steps = 0, at = 0;
+  if (corners == 2)
+  {
+    return fan->count == 1 && fan->from[0] != fan->to[0];
+  }
+  do
+  {
+    int next = -1;
+    for (int i = 0; i < fan->count; ++i)
+    {
+      const bool follows = fan->from[i] == fan->to[at];
+      if (follows && next >= 0)
+      {
+        return false;
+      }
+      next = follows ? i : next;
+    }
+    if (next < 0)
+    {
+      return false;
+    }
+    at = next;
+    ++steps;
+  } while (at != 0 && steps < fan->count);
+  return at == 0 && steps == fan->count && steps >= 3;
+}
+
+/* Whether the triangles of a bunch and of those around it, where all are merged, are as many as a closed piece must
+ * have. */
+static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* fan)
+{
+  const int least = MCOR_LEAST_PIECE(bunches->corners);
+  int32_t near[MCOR_LEAST_PIECE(3) + 2] = { bunch };
+  int count = 1, triangles = 0;
+  if (fan->count >= least)
+  {
+    return true;
+  }
+  for (int i = 0; i < fan->count; ++i)
+  {
+    near[count++] = fan->from[i];
+  }
+  if (bunches->corners == 2 && fan->count == 1)
+  {
+    near[count++] = fan->to[0];
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    for (int32_t e = bunches->star[near[i]]; e >= 0 && triangles < least; e = bunches->before[e])
+    {
+      int32_t of[3];
+      mcor_bunches_of(bunches, e / 3, of);
+      bool counts = of[e % 3] == near[i] && of[0] != of[1] &&
+        (bunches->corners == 2 || (of[1] != of[2] && of[2] != of[0]));
+      for (int j = 0; j < i; ++j)
+      {
+        counts = counts && of[0] != near[j] && of[1] != near[j] && of[2] != near[j];
+      }
+      triangles += counts;
+    }
+  }
+  return triangles >= least;
+}
+
+/* Which bunches are sure; others may be leaning, or clash with some bunch beside them. */
+static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_bunches* bunches = data;
+  for (int32_t v = (int32_t)first; v < last; ++v)
+  {
+    if (bunches->first[v] != v || bunches->next[v] < 0)
+    {
+      continue;
+    }
+    mcor_fan fan, merged = { 0 };
+    bool may = bunches->corners == 3 ? mcor_read_fan(bunches, v, &fan)
+                                     : mcor_read_line_fan(bunches, v, &fan);
+    if (may)
+    {
+      mcor_merge_fan(bunches, true, &fan, &merged);
+      may = mcor_is_large(bunches, v, &merged);
+    }
+    const bool fits = may && mcor_is_ring(&merged, bunches->corners);
+    const int state = !may                   ? MCOR_BUNCH_APART
+      : !fits                                ? MCOR_BUNCH_CLASHES
+      : mcor_is_ring(&fan, bunches->corners) ? MCOR_BUNCH_MERGED
+                                             : MCOR_BUNCH_LEANING;
+    mcor_set_state(bunches, v, state);
+  }
+  (void)slice;
+}
+
+/* Of the others those that can be merged. */
+static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_bunches* bunches = data;
+  for (int32_t v = (int32_t)first; v < last; ++v)
+  {
+    const int state = bunches->first[v] == v ? mcor_state_of(bunches, v) : MCOR_BUNCH_APART;
+    if (state != MCOR_BUNCH_CLASHES && state != MCOR_BUNCH_LEANING)
+    {
+      continue;
+    }
+    mcor_fan fan, merged;
+    bool merges = bunches->corners == 3 ? mcor_read_fan(bunches, v, &fan)
+                                        : mcor_read_line_fan(bunches, v, &fan);
+    for (int i = 0; i < fan.count && state == MCOR_BUNCH_CLASHES; ++i)
+    {
+      const int32_t p = bunches->first[fan.from[i]], q = bunches->first[fan.to[i]];
+      merges = merges && (p > v || mcor_state_of(bunches, p) != MCOR_BUNCH_CLASHES) &&
+        (q > v || mcor_state_of(bunches, q) != MCOR_BUNCH_CLASHES);
+    }
+    mcor_merge_fan(bunches, false, &fan, &merged);
+    bunches->leans[v] = merges && mcor_is_ring(&merged, bunches->corners);
+  }
+  (void)slice;
+}
+
+mcor_status mcor_find_bunches(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  const size_t n = (size_t)bunches->vertex_count;
+  MCOR_TRY(mcor_key_vertices(bunches));
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    bunches->first[v] = v;
+  }
+  memset(bunches->next, 0xff, n * sizeof *bunches->next);
+  memset(bunches->star, 0xff, n * sizeof *bunches->star);
+  mcor_join_vertices(bunches);
+  MCOR_TRY(mcor_report_launch(context));
+  mcor_list_stars(bunches);
+  MCOR_TRY(mcor_report_launch(context));
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->vertex_count, MCOR_HEAVY_GRAIN, mcor_test_slice, bunches, NULL));
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_lean_slice, bunches, NULL));
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    const int state = mcor_state_of(bunches, v);
+    if (state == MCOR_BUNCH_CLASHES || state == MCOR_BUNCH_LEANING)
+    {
+      mcor_set_state(bunches, v, bunches->leans[v] ? MCOR_BUNCH_LEANING : MCOR_BUNCH_APART);
+    }
+  }
+  return MCOR_OK;
+}

@@ -7,6 +7,7 @@
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
 #include "mcor_cap.h"
+#include "mcor_compact.h"
 #include "mcor_fill.h"
 #include "mcor_pair.h"
 #include "mcor_plane.h"
@@ -44,6 +45,7 @@ static mcor_status mcor_extract_iso(
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_TRIMMING, begin + 0.7 * step, begin + 0.8 * step));
   MCOR_TRY(mcor_trim(context));
   MCOR_TRY(mcor_cap(context));
+  MCOR_TRY(options->compact && mcor_compacts_late(context) ? mcor_compact(context) : MCOR_OK);
   MCOR_TRY(mcor_take_lines(context));
   /* [III-D.4] */
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, begin + 0.8 * step, begin + step));

@@ -102,7 +102,7 @@ typedef struct mcor_mesh
   mcor_buffer edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
   int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
-  int cap_first;
+  int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;

@@ -2,15 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Compact contours. Marching leaves slivers where the surface passes close by a node. So vertices of one node that
- * edges join are merged to their mean before the correction [Moore and Warren], which then moves them along the
- * gradient. Triangles of which two corners are one go.
+ * edges join are merged to their mean [Moore and Warren], from where they are moved along the gradient onto the
+ * surface. Triangles of which two corners are one go.
  *
  * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart again, which the bunches
- * allow at any time: their vertices are corrected on their edges, as without. That may turn triangles beside them
- * over, so there are two rounds.
+ * allow at any time. That may turn triangles beside them over, so there are two rounds.
  *
- * Vertices stay sorted by node, as keys need them: so what is corrected is gathered once more at the end where some
- * were taken apart. */
+ * Vertices stay sorted by node, as keys need them: so they are gathered once more at the end where some were added
+ * behind. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -112,14 +111,14 @@ static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
   return MCOR_OK;
 }
 
-/* Lists the mesh's vertices in order. Returns how many. */
+/* Lists the mesh's vertices in order, but for cuts and caps. Returns how many. */
 static int mcor_order_vertices(mcor_bunches* bunches)
 {
   const mcor_sorted_bunch *merged = bunches->sorted, *end = merged + bunches->sorted_count;
   int count = 0;
-  for (int32_t v = 0; v <= bunches->vertex_count; ++v)
+  for (int32_t v = 0; v <= bunches->march_count; ++v)
   {
-    const bool is_last = v == bunches->vertex_count;
+    const bool is_last = v == bunches->march_count;
     if (!is_last && mcor_is_merged(bunches, bunches->first[v]))
     {
       continue; /* its bunch comes where the node is */
@@ -141,33 +140,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   return count;
 }
 
-/* Where each of the mesh's vertices is, and where those of each level begin. */
-static void mcor_note_places(mcor_bunches* bunches, int count)
-{
-  mcor_mesh* mesh = &bunches->context->mesh;
-  int level = 0;
-  for (int i = 0; i < count; ++i)
-  {
-    const int32_t v = bunches->order[i];
-    const int own = mcor_marched_node(bunches, v)[3] >> MCOR_LEVEL_SHIFT;
-    bunches->place[v] = i;
-    for (; level < own; ++level)
-    {
-      mesh->level_first[0][level + 1] = i;
-    }
-  }
-  for (; level <= bunches->context->lattice.top; ++level)
-  {
-    mesh->level_first[0][level + 1] = count;
-  }
-  for (int l = 0; l <= bunches->context->lattice.top; ++l)
-  {
-    mesh->level_first[1][l] = count;
-  }
-  mesh->march_count = mesh->vertex_count = count;
-}
-
-/* The mean of a bunch's vertices, where the field is linear along their edges; from their node, in edges. */
+/* The mean of a bunch's vertices, from its node, in edges. */
 static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean[3])
 {
   const mcor_context* context = bunches->context;
@@ -178,7 +151,10 @@ static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean
     const double low = mcor_get_real(context, bunches->ends, 2 * (int64_t)v),
                  high = mcor_get_real(context, bunches->ends, 2 * (int64_t)v + 1);
     const int axis = mcor_marched_node(bunches, v)[3] & 3;
-    mean[axis] += fabs(low) > fabs(high) ? high / (low - high) : low / (low - high);
+    const bool is_upper = fabs(low) > fabs(high);
+    mean[axis] += bunches->late
+      ? mcor_get_real(context, bunches->offset, 4 * (int64_t)v + axis) - is_upper
+      : (is_upper ? high : low) / (low - high);
   }
   for (int a = 0; a < 3; ++a)
   {
@@ -186,27 +162,29 @@ static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean
   }
 }
 
-typedef struct mcor_placing
+/* Vertices on their way to the mesh, behind those it has. */
+typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
-  void *node, *ends, *offset;
-} mcor_placing;
+  const int32_t* list;
+  cl_int* node;
+  uint8_t *ends, *offset;
+} mcor_adding;
 
-static void mcor_place_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_placing* to = data;
+  const mcor_adding* to = data;
   const mcor_bunches* bunches = to->bunches;
   const mcor_context* context = bunches->context;
   for (int64_t i = first; i < last; ++i)
   {
-    const int32_t v = bunches->order[i];
+    const int32_t v = to->list[i];
     const bool merged = mcor_is_merged(bunches, v);
-    cl_int* node = (cl_int*)to->node + 4 * i;
     double start[3] = { 0, 0, 0 };
-    memcpy(node, mcor_marched_node(bunches, v), 4 * sizeof *node);
+    memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
     if (merged)
     {
-      mcor_bunch_node(bunches, v, node);
+      mcor_bunch_node(bunches, v, to->node + 4 * i);
       mcor_mean_of(bunches, v, start);
     }
     for (int k = 0; k < 2; ++k) /* a merged one has no edge: any ends of different signs */
@@ -222,28 +200,92 @@ static void mcor_place_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Makes the mesh's vertices: those that stay, and means. */
-static mcor_status mcor_place_vertices(mcor_bunches* bunches)
+/* Notes where the vertices will be, and where those of each level begin. */
+static void mcor_note_added(mcor_bunches* bunches, const int32_t* list, int count)
+{
+  mcor_mesh* mesh = &bunches->context->mesh;
+  const int old = mesh->vertex_count;
+  int level = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    bunches->place[list[i]] = old + i;
+    for (; level <= mcor_marched_node(bunches, list[i])[3] >> MCOR_LEVEL_SHIFT; ++level)
+    {
+      mesh->level_first[1][level] = old + i;
+    }
+  }
+  for (; level <= bunches->context->lattice.top; ++level)
+  {
+    mesh->level_first[1][level] = old + count;
+  }
+  mesh->march_count = old;
+  mesh->vertex_count = old + count;
+}
+
+static mcor_status mcor_write_added(
+  mcor_context* context, const mcor_adding* add, int old, int count)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const mcor_bunches* bunches = add->bunches;
+  const size_t o = (size_t)old, n = (size_t)count, real = context->cl.real_size;
+  const size_t edges =
+    old > bunches->march_count && bunches->late ? (size_t)bunches->march_count : o;
+  MCOR_TRY(mcor_extend_vertices(context, old, old + count));
+  MCOR_TRY(mcor_extend(context, &mesh->linear, edges * real, (o + n) * real));
+  MCOR_TRY(mcor_extend(context, &mesh->evaluations, edges, o + n));
+  MCOR_TRY(mcor_extend(context, &mesh->ends, 2 * edges * real, 2 * (o + n) * real));
+  MCOR_TRY(mcor_append_bytes(context, &mesh->node, o * 16, add->node, n * 16));
+  MCOR_TRY(mcor_append_bytes(context, &mesh->ends, 2 * o * real, add->ends, 2 * n * real));
+  return mcor_append_bytes(context, &mesh->offset, 4 * o * real, add->offset, 4 * n * real);
+}
+
+/* Adds vertices behind those of the mesh, and corrects them. */
+static mcor_status mcor_add_vertices(mcor_bunches* bunches, const int32_t* list, int count)
 {
   mcor_context* context = bunches->context;
-  mcor_mesh* mesh = &context->mesh;
-  const int count = mcor_order_vertices(bunches);
   const size_t n = (size_t)count, real = context->cl.real_size;
-  mcor_placing to = { .bunches = bunches };
-  mcor_note_places(bunches, count);
-  MCOR_TRY(mcor_reserve(context, &mesh->ends, 2 * n * real));
-  MCOR_TRY(mcor_reserve_vertices(context, count));
-  mcor_status status = mcor_map(context, &mesh->node, 4 * n * sizeof(cl_int), true, &to.node);
-  status =
-    status == MCOR_OK ? mcor_map(context, &mesh->ends, 2 * n * real, true, &to.ends) : status;
-  status =
-    status == MCOR_OK ? mcor_map(context, &mesh->offset, 4 * n * real, true, &to.offset) : status;
+  const int old = context->mesh.vertex_count;
+  mcor_adding add = { .bunches = bunches,
+    .list = list,
+    .node = malloc(4 * n * sizeof *add.node + 1),
+    .ends = malloc(2 * n * real + 1),
+    .offset = malloc(4 * n * real + 1) };
+  mcor_status status = mcor_allocated(context, add.node && add.ends && add.offset);
   status = status == MCOR_OK
-    ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_place_slice, &to, NULL)
+    ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL)
     : status;
-  const mcor_mapping mapped[] = { { &mesh->node, 0, &to.node }, { &mesh->ends, 0, &to.ends },
-    { &mesh->offset, 0, &to.offset } };
-  return mcor_unmap_all(context, mapped, 3, status);
+  status = status == MCOR_OK ? mcor_write_added(context, &add, old, count) : status;
+  free(add.node);
+  free(add.ends);
+  free(add.offset);
+  MCOR_TRY(status);
+  mcor_note_added(bunches, list, count);
+  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, "mcor_compact_vertices");
+}
+
+/* Makes the first vertices: all, or, where there are corrected ones, means alone. */
+static mcor_status mcor_place_vertices(mcor_bunches* bunches)
+{
+  mcor_mesh* mesh = &bunches->context->mesh;
+  int count = 0;
+  if (!bunches->late)
+  {
+    mesh->vertex_count = 0;
+    count = mcor_order_vertices(bunches);
+    return mcor_add_vertices(bunches, bunches->order, count);
+  }
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    bunches->place[v] = v;
+  }
+  for (int i = 0; i < bunches->sorted_count; ++i)
+  {
+    if (mcor_is_merged(bunches, bunches->sorted[i].first))
+    {
+      bunches->order[count++] = bunches->sorted[i].first;
+    }
+  }
+  return mcor_add_vertices(bunches, bunches->order, count);
 }
 
 /* ---- Taking apart ---- */
@@ -390,47 +432,6 @@ static int mcor_list_fresh(mcor_bunches* bunches, int32_t* fresh)
   return count;
 }
 
-/* Adds vertices behind the others of the mesh. */
-static mcor_status mcor_append_fresh(mcor_bunches* bunches, const int32_t* fresh, int count)
-{
-  mcor_context* context = bunches->context;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t old = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size;
-  cl_int* node = malloc(4 * n * sizeof *node);
-  uint8_t* ends = malloc(2 * n * real);
-  mcor_status status = mcor_allocated(context, node && ends);
-  int level = 0;
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
-  {
-    const size_t v = (size_t)fresh[i], width = 2 * real;
-    memcpy(node + 4 * (size_t)i, mcor_marched_node(bunches, fresh[i]), 4 * sizeof *node);
-    memcpy(ends + (size_t)i * width, (const uint8_t*)bunches->ends + v * width, width);
-    bunches->place[v] = (int32_t)old + i;
-    for (; level <= node[4 * i + 3] >> MCOR_LEVEL_SHIFT; ++level)
-    {
-      mesh->level_first[1][level] = (int)old + i;
-    }
-  }
-  for (; level <= context->lattice.top; ++level)
-  {
-    mesh->level_first[1][level] = (int)old + count;
-  }
-  status = status == MCOR_OK
-    ? mcor_append_bytes(context, &mesh->ends, 2 * old * real, ends, 2 * n * real)
-    : status;
-  status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)old + count) : status;
-  status =
-    status == MCOR_OK ? mcor_append_bytes(context, &mesh->node, old * 16, node, n * 16) : status;
-  status =
-    status == MCOR_OK ? mcor_extend(context, &mesh->linear, old * real, (old + n) * real) : status;
-  status = status == MCOR_OK ? mcor_extend(context, &mesh->evaluations, old, old + n) : status;
-  mesh->march_count = (int)old;
-  mesh->vertex_count = (int)old + count;
-  free(node);
-  free(ends);
-  return status;
-}
-
 /* *apart: whether any bunch was taken apart. */
 static mcor_status mcor_take_apart(mcor_bunches* bunches, bool* apart)
 {
@@ -444,10 +445,12 @@ static mcor_status mcor_take_apart(mcor_bunches* bunches, bool* apart)
     if (found && status == MCOR_OK)
     {
       *apart = true;
-      status = mcor_append_fresh(bunches, fresh, mcor_list_fresh(bunches, fresh));
-      status = status == MCOR_OK
-        ? mcor_launch_correction(context, MCOR_ON_BOUNDARY, "mcor_compact_vertices")
-        : status;
+      const int count = mcor_list_fresh(bunches, fresh);
+      for (int i = 0; i < count && bunches->late; ++i)
+      {
+        bunches->place[fresh[i]] = fresh[i];
+      }
+      status = bunches->late ? MCOR_OK : mcor_add_vertices(bunches, fresh, count);
     }
   }
   free(fresh);
@@ -494,12 +497,68 @@ static mcor_status mcor_gather(
   return status;
 }
 
+/* Notes where vertices are now, and those of each level begin; cuts and caps follow those on edges. */
+static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
+{
+  const mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &bunches->context->mesh;
+  int level = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    bunches->place[bunches->order[i]] = i;
+  }
+  for (int i = 0; i < march_count; ++i)
+  {
+    for (; level < mcor_marched_node(bunches, bunches->order[i])[3] >> MCOR_LEVEL_SHIFT; ++level)
+    {
+      mesh->level_first[0][level + 1] = i;
+    }
+  }
+  for (; level <= context->lattice.top; ++level)
+  {
+    mesh->level_first[0][level + 1] = march_count;
+  }
+  for (int l = 0; l <= context->lattice.top; ++l)
+  {
+    mesh->level_first[1][l] =
+      march_count + (bunches->late ? bunches->cut_first[l] - bunches->march_count : 0);
+  }
+  mesh->cap_first += march_count - bunches->march_count;
+  mesh->march_count = march_count;
+  mesh->vertex_count = count;
+}
+
+/* Cuts are on edges between vertices that have other numbers now. */
+static mcor_status mcor_renumber_cuts(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
+  cl_ulong* cut = malloc(cuts * sizeof *cut + 1);
+  MCOR_TRY(mcor_allocated(context, cut));
+  mcor_status status = mcor_read(context, &mesh->cut_edges, 0, cut, cuts * sizeof *cut);
+  for (size_t i = 0; i < cuts && status == MCOR_OK; ++i)
+  {
+    cut[i] =
+      (cl_ulong)bunches->place[cut[i] >> 32] << 32 | (cl_ulong)bunches->place[cut[i] & UINT32_MAX];
+  }
+  status =
+    status == MCOR_OK ? mcor_write(context, &mesh->cut_edges, cut, cuts * sizeof *cut) : status;
+  free(cut);
+  return status;
+}
+
 static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
   mcor_mesh* mesh = &context->mesh;
   const size_t real = context->cl.real_size, means = (size_t)context->attributes.count * real;
-  const int old = mesh->vertex_count, count = mcor_order_vertices(bunches);
+  const int old = mesh->vertex_count, march_count = mcor_order_vertices(bunches);
+  int count = march_count;
+  for (int32_t v = bunches->march_count; v < bunches->vertex_count; ++v)
+  {
+    bunches->order[count++] = v;
+  }
   int32_t* from = malloc((size_t)count * sizeof *from);
   MCOR_TRY(mcor_allocated(context, from));
   for (int i = 0; i < count; ++i)
@@ -512,7 +571,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
     size_t width;
   } const arrays[] = { { &mesh->node, 16 }, { &mesh->offset, 4 * real }, { &mesh->linear, real },
     { &mesh->field_value, real }, { &mesh->gradient, 4 * real }, { &mesh->vertex_weight, real },
-    { &mesh->evaluations, 1 }, { &mesh->means, means } };
+    { &mesh->evaluations, 1 }, { &mesh->flag, 1 }, { &mesh->means, means } };
   mcor_status status = MCOR_OK;
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0] && status == MCOR_OK; ++i)
   {
@@ -521,8 +580,9 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
       : MCOR_OK;
   }
   free(from);
-  mcor_note_places(bunches, count);
-  return status;
+  MCOR_TRY(status);
+  mcor_note_order(bunches, march_count, count);
+  return bunches->late ? mcor_renumber_cuts(bunches) : MCOR_OK;
 }
 
 /* ---- Triangles ---- */
@@ -614,22 +674,34 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 
 static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
 {
-  mcor_context* context = bunches->context;
-  bool apart = false;
+  bool apart = bunches->late;
   MCOR_TRY(mcor_find_bunches(bunches));
   MCOR_TRY(mcor_sort_bunches(bunches));
   MCOR_TRY(mcor_place_vertices(bunches));
-  MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, "mcor_compact_vertices"));
   MCOR_TRY(mcor_take_apart(bunches, &apart));
-  MCOR_TRY(apart ? mcor_gather_vertices(bunches) : MCOR_OK);
+  if (apart)
+  {
+    MCOR_TRY(mcor_gather_vertices(bunches));
+  }
+  else
+  {
+    mcor_note_order(
+      bunches, bunches->context->mesh.vertex_count, bunches->context->mesh.vertex_count);
+  }
   return mcor_file_triangles(bunches);
 }
 
-/* Memory of the host, and views of the mesh as marching has left it, which the mesh then has no more. */
+/* Memory of the host, and a copy of the vertices. */
 static mcor_status mcor_begin_bunches(mcor_bunches* b)
 {
   mcor_context* context = b->context;
-  const size_t n = (size_t)b->vertex_count;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)b->vertex_count, march = (size_t)b->march_count,
+               real = context->cl.real_size;
+  memcpy(b->cut_first, mesh->level_first[1], sizeof b->cut_first);
+  b->node = malloc(4 * n * sizeof *b->node);
+  b->ends = malloc(2 * march * real);
+  b->offset = malloc(b->late ? 4 * n * real : 1);
   b->key = malloc(n * sizeof *b->key);
   b->first = malloc(n * sizeof *b->first);
   b->next = malloc(n * sizeof *b->next);
@@ -639,39 +711,50 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   b->leans = calloc(n, sizeof *b->leans);
   b->order = malloc(n * sizeof *b->order);
   b->place = malloc(n * sizeof *b->place);
-  return mcor_allocated(context,
-    b->key && b->first && b->next && b->star && b->before && b->state && b->leans && b->order &&
-      b->place);
+  MCOR_TRY(mcor_allocated(context,
+    b->node && b->ends && b->offset && b->key && b->first && b->next && b->star && b->before &&
+      b->state && b->leans && b->order && b->place));
+  MCOR_TRY(mcor_read(context, &mesh->node, 0, b->node, 4 * n * sizeof *b->node));
+  MCOR_TRY(mcor_read(context, &mesh->ends, 0, b->ends, 2 * march * real));
+  return b->late ? mcor_read(context, &mesh->offset, 0, b->offset, 4 * n * real) : MCOR_OK;
 }
 
 static void mcor_end_bunches(mcor_bunches* b)
 {
-  void* const arrays[] = { b->key, b->first, b->next, b->star, b->before, b->state, b->leans,
-    b->order, b->place, b->sorted };
+  void* const arrays[] = { b->node, b->ends, b->offset, b->key, b->first, b->next, b->star,
+    b->before, b->state, b->leans, b->order, b->place, b->sorted };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);
   }
-  MCOR_RELEASE(b->context, &b->nodes, &b->edge_ends, &b->corner_buffer, &b->cell_buffer);
+  MCOR_RELEASE(b->context, &b->corner_buffer, &b->cell_buffer);
+}
+
+bool mcor_compacts_late(const mcor_context* context)
+{
+  return mcor_is_trimmed(context) || mcor_makes_caps(context);
 }
 
 mcor_status mcor_compact(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
   mcor_bunches bunches = { .context = context,
+    .late = mcor_compacts_late(context),
     .corners = mcor_is_plane(context) ? 2 : 3,
-    .vertex_count = mesh->march_count,
+    .march_count = mesh->march_count,
+    .vertex_count = mesh->vertex_count,
     .triangle_count = mesh->triangle_count };
-  const size_t n = (size_t)mesh->march_count, triangles = (size_t)mesh->triangle_count;
-  mcor_take_buffer(context, &mesh->node, &bunches.nodes);
-  mcor_take_buffer(context, &mesh->ends, &bunches.edge_ends);
+  const size_t triangles = (size_t)mesh->triangle_count;
+  if (triangles == 0 || mesh->march_count == 0)
+  {
+    return MCOR_OK;
+  }
   mcor_take_buffer(context, &mesh->triangles, &bunches.corner_buffer);
   mcor_take_buffer(context, &context->box.cells, &bunches.cell_buffer);
-  const mcor_mapping views[] = { { &bunches.nodes, n * 16, &bunches.node },
-    { &bunches.edge_ends, 2 * n * context->cl.real_size, &bunches.ends },
-    { &bunches.corner_buffer, 3 * triangles * sizeof(cl_int), &bunches.triangles },
+  const mcor_mapping views[] = { { &bunches.corner_buffer, 3 * triangles * sizeof(cl_int),
+                                   &bunches.triangles },
     { &bunches.cell_buffer, triangles * sizeof(cl_ulong), &bunches.cells } };
-  const int count = mcor_follows_cells(context) ? 4 : 3;
+  const int count = mcor_follows_cells(context) ? 2 : 1;
   mcor_status status = mcor_begin_bunches(&bunches);
   status = status == MCOR_OK ? mcor_map_all(context, views, count) : status;
   status = status == MCOR_OK ? mcor_merge_bunches(&bunches) : status;

@@ -9,17 +9,15 @@
 
 #include <stdatomic.h>
 
-/* In place of the correction of the marched mesh, which is replaced. */
+/* Merges the vertices of the iso value under way, and corrects what is merged. Where the surface is neither trimmed nor
+ * capped this takes the place of the correction; elsewhere it comes after caps, whose borders stay as they are. */
+bool mcor_compacts_late(const mcor_context* context);
 mcor_status mcor_compact(mcor_context* context);
 
-/* A vertex depends on cells so far away, which a box has as its ring: whether it is merged on four, and on two
- * more with each round of taking bunches apart; then there are normals of triangles. Where the surface is closed at walls,
- * vertices in bricks near these stay. */
+/* A vertex depends on cells so far away, which a box has as its ring: whether it is merged on four, and on two more with
+ * each round of taking bunches apart; then there are normals of triangles. */
 #define MCOR_COMPACT_ROUNDS 2
-static inline int mcor_compact_ring(const mcor_options* options)
-{
-  return 2 * MCOR_COMPACT_ROUNDS + 5 + (options->capping ? 2 * MCOR_BRICK : 0);
-}
+#define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 5)
 
 /* ---- Private to the module ---- */
 
@@ -37,23 +35,26 @@ enum
   MCOR_BUNCH_BAD      /* is to be taken apart */
 };
 
-/* The marched mesh, and its bunches: vertices that belong to one lattice node and that edges of triangles join. Most
+/* The mesh as it was, and its bunches: vertices that belong to one lattice node and that edges of triangles join. Most
  * vertices are in one; the first stands for it. A vertex in no bunch counts as one that stays apart. */
 typedef struct mcor_bunches
 {
   mcor_context* context;
+  bool late;   /* see mcor_compacts_late */
   int corners; /* of a triangle that differ: 2 of one that stands for a line */
-  int vertex_count, triangle_count;
-  mcor_buffer nodes, edge_ends, corner_buffer, cell_buffer;
-  void *node, *ends, *triangles, *cells; /* their views */
-  uint64_t* key;         /* [vertex_count]: the lattice node that a vertex belongs to */
-  int32_t *first, *next; /* [vertex_count]: first vertex of the bunch; next one, or -1 */
+  int march_count, vertex_count, triangle_count; /* of the mesh as it was */
+  int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* its level_first[1] */
+  cl_int* node;                                  /* [vertex_count][4] */
+  void *ends, *offset; /* real [march_count][2]; [vertex_count][4], where late */
+  mcor_buffer corner_buffer, cell_buffer;
+  void *triangles, *cells; /* their views */
+  uint64_t* key;           /* [vertex_count]: the lattice node that a vertex belongs to */
+  int32_t *first, *next;   /* [vertex_count]: first vertex of the bunch; next one, or -1 */
   int32_t *star,
     *before; /* by bunch, the last of its triangles' corners; [3 triangle_count]: the one before, or -1 */
   atomic_uchar* state; /* [vertex_count], by bunch */
   uint8_t* leans;      /* [vertex_count], by bunch: whether one that is not sure can be merged */
-  /* Merged ones, as their vertices are sorted. */
-  struct mcor_sorted_bunch* sorted;
+  struct mcor_sorted_bunch* sorted; /* that were merged at first, as their vertices are sorted */
   int sorted_count;
   int32_t *order,
     *place; /* [vertex_count]: what the mesh's vertices stand for; where each of these is */
@@ -61,7 +62,7 @@ typedef struct mcor_bunches
 
 static inline const cl_int* mcor_marched_node(const mcor_bunches* bunches, int32_t v)
 {
-  return (const cl_int*)bunches->node + 4 * (int64_t)v;
+  return bunches->node + 4 * (int64_t)v;
 }
 
 static inline int mcor_state_of(const mcor_bunches* bunches, int32_t first)

@@ -13,7 +13,7 @@
  * Thus a bunch depends on the cells near it alone, whatever part of the surface a call makes, and may later be taken
  * apart at any time. A closed piece that would be left with fewer than 8 triangles stays as it is. */
 
-#include "mcor_cap_job.h"
+#include "mcor_cap.h"
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
 
@@ -31,8 +31,7 @@
 
 /* ---- Nodes ---- */
 
-/* Sides of periods and of caps, on which vertices stay, as nodes along an axis; where the surface ends at walls that
- * are capped, those in bricks which both fluid and solids reach. */
+/* Sides of periods and of caps, on which vertices stay, as nodes along an axis. */
 typedef struct mcor_frozen
 {
   const mcor_bunches* bunches;
@@ -41,52 +40,42 @@ typedef struct mcor_frozen
   {
     int axis, node;
   } sides[12];
-  bool has_wall;
-  mcor_wall wall;
 } mcor_frozen;
 
-static mcor_status mcor_find_frozen(mcor_context* context, mcor_frozen* frozen)
+static void mcor_add_side(mcor_frozen* frozen, int axis, int node)
+{
+  frozen->sides[frozen->side_count].axis = axis;
+  frozen->sides[frozen->side_count++].node = node;
+}
+
+static void mcor_list_sides(const mcor_context* context, mcor_frozen* frozen)
 {
   const mcor_lattice* lattice = &context->lattice;
   for (int i = 0; i < 6; ++i)
   {
     const int axis = i / 2, upper = i % 2, cap = mcor_cap_plane(context, axis, upper);
-    const int side = lattice->period_first[axis] + upper * lattice->period[axis];
     if (lattice->period[axis] > 0)
     {
-      frozen->sides[frozen->side_count].axis = axis;
-      frozen->sides[frozen->side_count++].node = side;
+      mcor_add_side(frozen, axis, lattice->period_first[axis] + upper * lattice->period[axis]);
     }
     if (cap >= 0)
     {
-      frozen->sides[frozen->side_count].axis = axis;
-      frozen->sides[frozen->side_count++].node = cap;
+      mcor_add_side(frozen, axis, cap);
     }
   }
-  if (!mcor_caps_walls(context))
-  {
-    return MCOR_OK;
-  }
-  frozen->has_wall = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    frozen->wall.range[a][0] = (int)lattice->first[a];
-    frozen->wall.range[a][1] = (int)lattice->last[a];
-  }
-  return mcor_find_wall(context, &frozen->wall);
 }
 
+/* On a side, or on the border that the node threshold leaves. */
 static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
 {
   const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
-  bool is = node[3] >> 2 & 1; /* on the border that the node threshold leaves */
+  bool is = node[3] >> 2 & 1;
   for (int i = 0; i < frozen->side_count; ++i)
   {
     const int a = frozen->sides[i].axis;
     is = is || (a != axis && node[a] << level == frozen->sides[i].node);
   }
-  const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
-  return is || (frozen->has_wall && mcor_find_wall_brick(&frozen->wall, brick));
+  return is;
 }
 
 /* A vertex belongs to the end of its edge that is nearer to where the field is linear; the lower one of two. Beside
@@ -109,16 +98,41 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
+/* Vertices of cuts and caps stay, and those beside them. */
+static mcor_status mcor_freeze_borders(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
+  const cl_int* corner = bunches->triangles;
+  for (int v = mesh->march_count; v < mesh->vertex_count; ++v)
+  {
+    bunches->key[v] = MCOR_FROZEN;
+  }
+  for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
+       ++c)
+  {
+    bunches->key[corner[c]] = MCOR_FROZEN;
+  }
+  cl_ulong* cut = malloc(cuts * sizeof *cut + 1);
+  MCOR_TRY(mcor_allocated(context, cut));
+  const mcor_status status = mcor_read(context, &mesh->cut_edges, 0, cut, cuts * sizeof *cut);
+  for (size_t i = 0; i < cuts && status == MCOR_OK; ++i)
+  {
+    bunches->key[cut[i] >> 32] = bunches->key[cut[i] & UINT32_MAX] = MCOR_FROZEN;
+  }
+  free(cut);
+  return status;
+}
+
 static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
   mcor_frozen frozen = { .bunches = bunches };
-  mcor_status status = mcor_find_frozen(context, &frozen);
-  status = status == MCOR_OK ? mcor_parallel_run(context, bunches->vertex_count, MCOR_LIGHT_GRAIN,
-                                 mcor_key_slice, &frozen, NULL)
-                             : status;
-  mcor_free_wall(&frozen.wall);
-  return status;
+  mcor_list_sides(context, &frozen);
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->march_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &frozen, NULL));
+  return bunches->late ? mcor_freeze_borders(bunches) : MCOR_OK;
 }
 
 /* ---- Bunches ---- */

@@ -65,7 +65,7 @@ int mcor_has_box(const mcor_options* options)
 
 static int mcor_ring_of(const mcor_options* options)
 {
-  return options->compact ? mcor_compact_ring(options) : MCOR_BOX_RING;
+  return options->compact ? MCOR_COMPACT_RING : MCOR_BOX_RING;
 }
 
 /* ---- Cells ---- */

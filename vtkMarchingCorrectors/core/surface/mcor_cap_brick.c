@@ -166,21 +166,16 @@ static mcor_status mcor_evaluate_wall(
   return mcor_take_cap_points(context, points);
 }
 
-mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall)
-{
-  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
-  wall->has_bricks = true;
-  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
-  return mcor_sort_wall(context, wall);
-}
-
 mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall)
 {
   for (int a = 0; a < 3; ++a)
   {
     mcor_cap_range(context, a, wall->range[a]);
   }
-  MCOR_TRY(mcor_find_wall(context, wall));
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  wall->has_bricks = true;
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  MCOR_TRY(mcor_sort_wall(context, wall));
   MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
   return mcor_evaluate_wall(context, wall, points);
 }

@@ -58,7 +58,7 @@ void mcor_cap_range(const mcor_context* context, int axis, int range[2])
   const int lower = mcor_cap_plane(context, axis, 0), higher = mcor_cap_plane(context, axis, 1);
   const int first = lower >= 0 ? lower : (int)lattice->first[axis];
   const int last = higher >= 0 ? higher : (int)lattice->last[axis];
-  const int low = box->first[axis] - MCOR_BOX_RING, high = box->last[axis] + MCOR_BOX_RING;
+  const int low = box->first[axis] - box->ring, high = box->last[axis] + box->ring;
   range[0] = low > first ? low : first;
   range[1] = high < last ? high : last;
 }

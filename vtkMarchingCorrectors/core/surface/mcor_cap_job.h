@@ -97,9 +97,7 @@ typedef struct mcor_wall
   int range[3][2]; /* first and last node along each axis: of the box and its ring */
 } mcor_wall;
 
-/* mcor_cap_brick.c. Lists the bricks where there may be caps, by key, within wall.range; all of that, and what is to be
- * known of their nodes. */
-mcor_status mcor_find_wall(mcor_context* context, mcor_wall* wall);
+/* mcor_cap_brick.c. Lists the bricks where there may be caps, by key. */
 mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall);
 /* Returns NULL where there is none. */
 const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[3]);

@@ -32,10 +32,6 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   {
     const cl_int* node = nodes + 4 * (size_t)v;
     const int axis = node[3] & 3;
-    if (axis > 2) /* merged: away from all caps */
-    {
-      continue;
-    }
     bool on_side = all;
     for (int a = 0; a < 3; ++a)
     {
@@ -171,6 +167,7 @@ mcor_status mcor_cap(mcor_context* context)
 {
   mcor_end_caps(context);
   context->mesh.cap_first = context->mesh.vertex_count;
+  context->mesh.cap_triangle_first = context->mesh.triangle_count;
   if (!mcor_makes_caps(context))
   {
     return MCOR_OK;

@@ -59,14 +59,13 @@ mcor_status mcor_launch_correction(mcor_context* context, int vertices, const ch
 mcor_status mcor_correct(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
-  const int count = context->mesh.march_count;
-  if (options->compact && count > 0)
+  if (options->compact && !mcor_compacts_late(context))
   {
     MCOR_TRY(mcor_compact(context));
   }
   else
   {
-    MCOR_TRY(mcor_reserve_vertices(context, count));
+    MCOR_TRY(mcor_reserve_vertices(context, context->mesh.march_count));
     MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, "mcor_correct_vertices"));
   }
   if (options->preview)

@@ -214,7 +214,7 @@ static void mcor_note_added(mcor_bunches* bunches, const int32_t* list, int coun
       mesh->level_first[1][level] = old + i;
     }
   }
-  for (; level <= bunches->context->lattice.top; ++level)
+  for (; level < bunches->context->lattice.levels; ++level)
   {
     mesh->level_first[1][level] = old + count;
   }
@@ -514,11 +514,11 @@ static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
       mesh->level_first[0][level + 1] = i;
     }
   }
-  for (; level <= context->lattice.top; ++level)
+  for (; level < context->lattice.levels; ++level)
   {
     mesh->level_first[0][level + 1] = march_count;
   }
-  for (int l = 0; l <= context->lattice.top; ++l)
+  for (int l = 0; l < context->lattice.levels; ++l)
   {
     mesh->level_first[1][l] =
       march_count + (bunches->late ? bunches->cut_first[l] - bunches->march_count : 0);
@@ -594,6 +594,7 @@ typedef struct mcor_filing
   cl_int* triangles;
   cl_ulong* cells;
   int64_t first[MCOR_SLICES + 1]; /* of each slice's; before, how many it has */
+  int64_t gone[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 1]; /* owned ones that are not left, by level */
 } mcor_filing;
 
 /* Returns whether the triangle is left, with these corners. */
@@ -610,11 +611,21 @@ static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3]
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_filing* filing = data;
+  const mcor_bunches* bunches = filing->bunches;
+  const bool is_part = bunches->context->box.is_part;
   int64_t count = 0;
+  int level = 0;
   for (int64_t t = first; t < last; ++t)
   {
     cl_int corners[3];
-    count += mcor_corners_of(filing->bunches, t, corners);
+    const bool is_left = mcor_corners_of(bunches, t, corners);
+    for (; level + 1 < bunches->context->lattice.levels && t >= bunches->level_end[level];)
+    {
+      ++level;
+    }
+    count += is_left;
+    filing->gone[slice][level] +=
+      !is_left && !(is_part && (((const cl_ulong*)bunches->cells)[t] & MCOR_RING_CELL));
   }
   filing->first[slice + 1] = count;
 }
@@ -638,6 +649,20 @@ static void mcor_fill_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
+/* Where trimming comes later, triangles that are gone were none before it. */
+static void mcor_count_gone(const mcor_bunches* bunches, const mcor_filing* filing, int slices)
+{
+  mcor_statistics* s = bunches->context->run.statistics;
+  for (int i = 0; i < slices && !bunches->late; ++i)
+  {
+    for (int l = 0; l < bunches->context->lattice.levels; ++l)
+    {
+      s->triangles_of_level[l] -= filing->gone[i][l];
+      s->triangles_before_trimming -= filing->gone[i][l];
+    }
+  }
+}
+
 static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -650,6 +675,7 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
   {
     filing.first[s + 1] += filing.first[s];
   }
+  mcor_count_gone(bunches, &filing, slices);
   const size_t n = (size_t)filing.first[slices], cells = filing.follows ? n : 1;
   void *triangle_view = NULL, *cell_view = NULL;
   MCOR_TRY(mcor_reserve(context, &mesh->triangles, 3 * n * sizeof(cl_int)));
@@ -714,6 +740,12 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   MCOR_TRY(mcor_allocated(context,
     b->node && b->ends && b->offset && b->key && b->first && b->next && b->star && b->before &&
       b->state && b->leans && b->order && b->place));
+  for (int l = 0; l < context->lattice.levels; ++l)
+  {
+    MCOR_TRY(mcor_read(context, &mesh->triangle_base,
+      (size_t)context->bricks.first_slot[l + 1] * sizeof(cl_int), &b->level_end[l],
+      sizeof(cl_int)));
+  }
   MCOR_TRY(mcor_read(context, &mesh->node, 0, b->node, 4 * n * sizeof *b->node));
   MCOR_TRY(mcor_read(context, &mesh->ends, 0, b->ends, 2 * march * real));
   return b->late ? mcor_read(context, &mesh->offset, 0, b->offset, 4 * n * real) : MCOR_OK;

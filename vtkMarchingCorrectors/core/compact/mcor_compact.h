@@ -44,6 +44,7 @@ typedef struct mcor_bunches
   int corners; /* of a triangle that differ: 2 of one that stands for a line */
   int march_count, vertex_count, triangle_count; /* of the mesh as it was */
   int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* its level_first[1] */
+  cl_int level_end[MCOR_TREE_LEVEL_LIMIT + 1];   /* where marched triangles of each level end */
   cl_int* node;                                  /* [vertex_count][4] */
   void *ends, *offset; /* real [march_count][2]; [vertex_count][4], where late */
   mcor_buffer corner_buffer, cell_buffer;

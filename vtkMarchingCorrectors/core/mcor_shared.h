@@ -108,9 +108,6 @@ typedef struct mcor_rung
 /* A vertex's level is above so many bits of its edge's last number. */
 #define MCOR_LEVEL_SHIFT 8
 
-/* Set beside the bits of what is finer around a leaf where, beyond a far side, one is coarser or none. */
-#define MCOR_COARSER_UP (1u << 27)
-
 /* Slots that hold the nodes of a leaf: of its level 2^3, of the next finer one 3^3. */
 #define MCOR_LEAF_SLOTS (8 + 27)
 

@@ -80,8 +80,7 @@ typedef struct mcor_bricks
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer leaves,
-    finer; /* uint, as bits; [block_count][512]: with several levels, see mcor_leaf_finer */
+  mcor_buffer leaves, split, beside;     /* the same; of several levels, see mcor_leaf_compare */
   mcor_buffer seed_bits, seeds; /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */

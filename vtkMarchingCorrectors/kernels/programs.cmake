@@ -20,6 +20,7 @@ set(mcor_program_sources
   "kernels/cubes/mcor_node_lanes.cl    FIELD lanes"
   "kernels/cubes/mcor_node_point.cl    FIELD point"
   "kernels/cubes/mcor_bound.cl         FIELD"
+  "kernels/cubes/mcor_inside.cl        FIELD"
   "kernels/cubes/mcor_seed.cl          LATTICE FIELD"
   "kernels/cubes/mcor_block.cl         LATTICE FIELD"
   "kernels/cubes/mcor_cell.cl          LATTICE"

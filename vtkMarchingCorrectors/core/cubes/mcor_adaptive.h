@@ -59,6 +59,6 @@ void mcor_release_adaptive(mcor_context* context);
 
 #define MCOR_TREE_ARGS(c)                                                                          \
   MCOR_INT(mcor_is_adaptive(&(c)->lattice)), MCOR_BUFFER(&(c)->bricks.leaves),                     \
-    MCOR_BUFFER(&(c)->bricks.finer)
+    MCOR_BUFFER(&(c)->bricks.beside)
 
 #endif

@@ -23,23 +23,22 @@ mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input)
   MCOR_TRY(mcor_make_tree(context, input));
   const size_t blocks = (size_t)tree->block_count;
   const size_t bytes = blocks * MCOR_BLOCK_WORDS * sizeof(cl_uint);
-  mcor_buffer* is_split = &bricks->bits; /* until bricks are requested */
   bricks->block_count = tree->block_count;
   memcpy(bricks->first_block, tree->first_block, sizeof tree->first_block);
   MCOR_TRY(mcor_write(context, &bricks->rungs, rungs, (size_t)(tree->top + 3) * sizeof rungs[0]));
   MCOR_TRY(mcor_write(context, &bricks->block_keys, tree->block_keys, blocks * sizeof(cl_ulong)));
   MCOR_TRY(mcor_write(context, &bricks->leaves, tree->leaves, bytes));
-  MCOR_TRY(mcor_write(context, is_split, tree->is_split, bytes));
-  MCOR_TRY(mcor_reserve(context, &bricks->finer, blocks * MCOR_BLOCK_BRICKS * sizeof(cl_uint)));
+  MCOR_TRY(mcor_write(context, &bricks->split, tree->is_split, bytes));
+  MCOR_TRY(mcor_fill(context, &bricks->beside, 0, bytes));
   if (blocks == 0)
   {
     return MCOR_OK;
   }
   MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, tree->block_count,
     rungs[tree->top + 2].base, &bricks->block_buckets, &bricks->block_shift));
-  return MCOR_LAUNCH(context, "mcor_leaf_finer", MCOR_MEDIUM, blocks * MCOR_BLOCK_BRICKS / 8,
+  return MCOR_LAUNCH(context, "mcor_leaf_compare", MCOR_MEDIUM, blocks * MCOR_BLOCK_BRICKS / 8,
     MCOR_BLOCK_ARGS(context), MCOR_INT(tree->is_plane), MCOR_BUFFER(&bricks->leaves),
-    MCOR_BUFFER(is_split), MCOR_BUFFER(&bricks->finer));
+    MCOR_BUFFER(&bricks->split), MCOR_BUFFER(&bricks->beside));
 }
 
 mcor_status mcor_choose_leaves(mcor_context* context)
@@ -53,7 +52,7 @@ mcor_status mcor_choose_leaves(mcor_context* context)
     (size_t)bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BRICK_ARGS(context),
     MCOR_BUFFER(&bricks->leaves), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&now->known),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_INT(mcor_is_plane(context)),
-    MCOR_BUFFER(&bricks->finer), MCOR_BUFFER(&adaptive->chosen)));
+    MCOR_BUFFER(&bricks->beside), MCOR_BUFFER(&adaptive->chosen)));
   MCOR_TRY(mcor_reserve(context, &adaptive->scanned, ((size_t)words + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_MEDIUM, words, MCOR_INT(words),
     MCOR_BUFFER(&adaptive->chosen), MCOR_BUFFER(&adaptive->scanned)));
@@ -61,10 +60,9 @@ mcor_status mcor_choose_leaves(mcor_context* context)
   const size_t count = (size_t)adaptive->count;
   MCOR_TRY(mcor_reserve(context, &adaptive->cells, count * 4 * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->finer, count * sizeof(cl_uint)));
-  return MCOR_LAUNCH(context, "mcor_leaf_list", MCOR_MEDIUM, words, MCOR_INT(words),
-    MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&adaptive->chosen),
-    MCOR_BUFFER(&adaptive->scanned), MCOR_BUFFER(&bricks->finer), MCOR_BUFFER(&adaptive->cells),
-    MCOR_BUFFER(&adaptive->finer));
+  return MCOR_LAUNCH(context, "mcor_leaf_list", MCOR_MEDIUM, words, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&adaptive->chosen), MCOR_BUFFER(&adaptive->scanned), MCOR_BUFFER(&bricks->split),
+    MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer));
 }
 
 /* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. */

@@ -49,12 +49,12 @@ static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* li
   MCOR_TRY(mcor_reserve(context, &bricks->states, blocks * MCOR_BLOCK_BRICKS));
   MCOR_TRY(mcor_reserve(context, &bricks->regions, blocks * MCOR_BLOCK_REGIONS * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &bricks->found, 0, counts));
-  MCOR_TRY(
-    MCOR_LAUNCH_BY_LEVEL(context, mcor_is_plane(context) ? "mcor_plane_seeds" : "mcor_seed_regions",
-      1, listed->first, listed->first + 1, MCOR_BUFFER(&bricks->rungs),
-      MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context),
-      MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits),
-      MCOR_BUFFER(&bricks->regions), MCOR_BUFFER(&bricks->found)));
+  MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_regions", 1, listed->first, listed->first + 1,
+    MCOR_INT(mcor_is_plane(context) ? 0 : MCOR_REGION_BRICKS * MCOR_BRICK),
+    MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
+    MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context), MCOR_SEED_ARGS(context),
+    MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(&bricks->regions),
+    MCOR_BUFFER(&bricks->found)));
   MCOR_TRY(mcor_read(context, &bricks->found, 0, listed->end, counts));
   for (int l = 0; l < levels; ++l)
   {

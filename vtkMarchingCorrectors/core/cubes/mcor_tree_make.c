@@ -15,80 +15,42 @@
 /* So many blocks have numbers for their bricks. */
 #define MCOR_TREE_BLOCK_LIMIT (INT32_MAX / MCOR_BLOCK_BRICKS)
 
-/* What a block is in a table of them, by their keys. */
-enum
-{
-  MCOR_HERE = 1,
-  MCOR_HAS_LEAVES = 2,
-  MCOR_HAS_SPLIT = 4
-};
-
-/* The key of a block of a level, or UINT64_MAX off the lattice. */
-static uint64_t mcor_block_key(const mcor_tree* tree, int level, const int block[3])
-{
-  const mcor_rung* rung = &tree->lattice->rungs[level];
-  const int brick[3] = { 8 * block[0], 8 * block[1], 8 * block[2] };
-  bool exists = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    exists = exists && block[a] >= 0 && block[a] < rung->n[a];
-  }
-  return exists ? mcor_brick_key(rung, brick) / MCOR_BLOCK_BRICKS : UINT64_MAX;
-}
-
-/* The level of a block with a key, and its place. */
-static int mcor_place_of_block(const mcor_tree* tree, uint64_t key, int block[3])
-{
-  const mcor_rung* rungs = tree->lattice->rungs;
-  int level = 0;
-  while (key >= rungs[level + 1].base)
-  {
-    ++level;
-  }
-  mcor_brick_of_key(&rungs[level], key * MCOR_BLOCK_BRICKS, block);
-  for (int a = 0; a < 3; ++a)
-  {
-    block[a] /= 8;
-  }
-  return level;
-}
-
-/* Adds size^3 blocks from the first one on, as far as they are on the lattice. */
-static mcor_status mcor_add_blocks(mcor_context* context, const mcor_tree* tree, int level,
-  const int first[3], const int size[3], mcor_table* blocks)
-{
-  for (int i = 0; i < size[0] * size[1] * size[2]; ++i)
-  {
-    const int at[3] = { first[0] + i % size[0], first[1] + i / size[0] % size[1],
-      first[2] + i / size[0] / size[1] };
-    const uint64_t key = mcor_block_key(tree, level, at);
-    uint64_t* value = key == UINT64_MAX ? NULL : mcor_table_add(blocks, key);
-    MCOR_TRY(key == UINT64_MAX || (value && blocks->count <= MCOR_TREE_BLOCK_LIMIT)
-        ? MCOR_OK
-        : mcor_fail_leaves(context));
-    if (value)
-    {
-      *value |= MCOR_HERE;
-    }
-  }
-  return MCOR_OK;
-}
-
 /* Whether a brick, with a ring of cells around it, is in the box. */
 static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const int brick[3])
 {
   bool wanted = true;
   for (int a = 0; a < 3 && box->is_part; ++a)
   {
-    const int64_t edge = (int64_t)(2 * MCOR_BRICK) << level, ring = (int64_t)(2 * mcor_level_ring(box->ring)) << cell_level;
+    const int64_t edge = (int64_t)(2 * MCOR_BRICK) << level;
+    const int64_t ring = (int64_t)(2 * mcor_level_ring(box->ring)) << cell_level;
     const int64_t low = brick[a] * edge;
     wanted = wanted && low + edge + ring >= box->halves[a] && low - ring <= box->halves[3 + a];
   }
   return wanted;
 }
 
-/* Adds the blocks of one level that have parts of split bricks of the next, or of their images. Bricks beside a leaf
- * of the box may be beyond it: blocks are bricks of three levels above, with their cells around them. */
+/* Adds a block of a level to a table of them, by their keys, if it is on the lattice and near the box. */
+static mcor_status mcor_add_block(
+  mcor_context* context, const mcor_tree* tree, int level, const int block[3], mcor_table* blocks)
+{
+  const mcor_rung* rung = &tree->lattice->rungs[level];
+  const int brick[3] = { 8 * block[0], 8 * block[1], 8 * block[2] };
+  bool exists = mcor_is_wanted(&context->box, level + 3, level + 4, block); /* of so large bricks */
+  for (int a = 0; a < 3; ++a)
+  {
+    exists = exists && block[a] >= 0 && block[a] < rung->n[a];
+  }
+  if (exists)
+  {
+    uint64_t* value = mcor_table_add(blocks, mcor_brick_key(rung, brick) / MCOR_BLOCK_BRICKS);
+    MCOR_TRY(value && blocks->count <= MCOR_TREE_BLOCK_LIMIT ? MCOR_OK : mcor_fail_leaves(context));
+    *value = 1;
+  }
+  return MCOR_OK;
+}
+
+/* Adds the blocks of one level that have parts of split bricks of the next, or of their images, and all blocks around
+ * these: so leaves find there what is finer beside them, and the bricks whose nodes they need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {
@@ -102,18 +64,25 @@ static mcor_status mcor_add_parts(
     {
       const int by[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
       bool exists = true;
-      int low[3], size[3];
+      int low[3], high[3], at[3];
       for (int a = 0; a < 3; ++a)
       {
         const int period = tree->lattice->period[a] / (MCOR_BRICK << (level + 1));
-        const int begin = first[a] + by[a] * period, end = begin + MCOR_CLUSTER - 1;
-        exists = exists && (by[a] == 0 || period > 0) && end >= 0;
-        low[a] = begin / MCOR_CLUSTER;
-        size[a] = end / MCOR_CLUSTER - low[a] + 1;
+        const int begin = first[a] + by[a] * period;
+        exists = exists && (by[a] == 0 || period > 0);
+        low[a] = begin / MCOR_CLUSTER - 1;
+        high[a] = exists ? (begin + MCOR_CLUSTER - 1) / MCOR_CLUSTER + 1 : low[a] - 1;
       }
-      MCOR_TRY(exists && mcor_is_wanted(&context->box, level + 3, level + 3, low)
-          ? mcor_add_blocks(context, tree, level, low, size, blocks)
-          : MCOR_OK);
+      for (at[2] = low[2]; at[2] <= high[2]; ++at[2])
+      {
+        for (at[1] = low[1]; at[1] <= high[1]; ++at[1])
+        {
+          for (at[0] = low[0]; at[0] <= high[0]; ++at[0])
+          {
+            MCOR_TRY(mcor_add_block(context, tree, level, at, blocks));
+          }
+        }
+      }
     }
     MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
   }
@@ -139,26 +108,26 @@ static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const in
 }
 
 /* Finds which bricks of a block are leaves, and which are split; returns the number of leaves. */
-static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, uint64_t key,
+static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, int level, uint64_t key,
   cl_uint leaves[MCOR_BLOCK_WORDS], cl_uint split[MCOR_BLOCK_WORDS])
 {
-  int block[3], count = 0;
-  const int level = mcor_place_of_block(tree, key, block);
+  int first[3], count = 0;
+  mcor_brick_of_key(&tree->lattice->rungs[level], key * MCOR_BLOCK_BRICKS, first);
+  const int parent[3] = { first[0] / 2, first[1] / 2, first[2] / 2 };
+  const uint64_t parents = mcor_split_of_cluster(tree, level + 1, parent);
   uint64_t parts[8];
   for (int d = 0; d < 8; ++d)
   {
-    const int first[3] = { 8 * block[0] + 4 * (d & 1), 8 * block[1] + 4 * (d >> 1 & 1),
-      8 * block[2] + 4 * (d >> 2) };
-    parts[d] = mcor_split_of_cluster(tree, level, first);
+    const int cluster[3] = { first[0] + 4 * (d & 1), first[1] + 4 * (d >> 1 & 1),
+      first[2] + 4 * (d >> 2) };
+    parts[d] = mcor_split_of_cluster(tree, level, cluster);
   }
-  const int parent[3] = { 4 * block[0], 4 * block[1], 4 * block[2] };
-  const uint64_t parents = mcor_split_of_cluster(tree, level + 1, parent);
   memset(leaves, 0, MCOR_BLOCK_WORDS * sizeof *leaves);
   memset(split, 0, MCOR_BLOCK_WORDS * sizeof *split);
   for (int m = 0; m < MCOR_BLOCK_BRICKS && parents != 0; ++m)
   {
     const int x = m & 7, y = m >> 3 & 7, z = m >> 6;
-    const int brick[3] = { 8 * block[0] + x, 8 * block[1] + y, 8 * block[2] + z };
+    const int brick[3] = { first[0] + x, first[1] + y, first[2] + z };
     const bool is_part = parents >> (x >> 1 | (y >> 1) << 2 | (z >> 1) << 4) & 1;
     const bool is_split =
       parts[x >> 2 | (y >> 2) << 1 | (z >> 2) << 2] >> mcor_cluster_bit(brick) & 1;
@@ -169,59 +138,6 @@ static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, uint64_t 
     count += is_leaf;
   }
   return count;
-}
-
-/* Whether any brick in and around a block is split. */
-static bool mcor_is_near_split(
-  const mcor_tree* tree, const mcor_table* parts, int level, const int block[3])
-{
-  bool near = false;
-  for (int d = 0; d < 27 && !near; ++d)
-  {
-    const int at[3] = { block[0] + d % 3 - 1, block[1] + d / 3 % 3 - 1, block[2] + d / 9 - 1 };
-    const uint64_t key = mcor_block_key(tree, level, at);
-    near = key != UINT64_MAX && (mcor_table_find(parts, key) & MCOR_HAS_SPLIT);
-  }
-  return near;
-}
-
-/* Adds, to blocks with leaves, or with bricks that are finer beside some, all those with bricks whose nodes these
- * leaves may need: of their level up from them, of the level below in and up from them. */
-static mcor_status mcor_add_needed(
-  mcor_context* context, const mcor_tree* tree, mcor_table* parts, mcor_table* blocks)
-{
-  const int two[3] = { 2, 2, 2 }, three[3] = { 3, 3, 3 };
-  for (size_t i = 0; i < parts->capacity; ++i)
-  {
-    cl_uint leaves[MCOR_BLOCK_WORDS], split[MCOR_BLOCK_WORDS], any = 0;
-    mcor_entry* part = &parts->entries[i];
-    if (part->value != 0)
-    {
-      const int count = mcor_fill_block(tree, &context->box, part->key, leaves, split);
-      for (int w = 0; w < MCOR_BLOCK_WORDS; ++w)
-      {
-        any |= split[w];
-      }
-      part->value |= (count > 0 ? MCOR_HAS_LEAVES : 0) | (any ? MCOR_HAS_SPLIT : 0);
-    }
-    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
-  }
-  for (size_t i = 0; i < parts->capacity; ++i)
-  {
-    int block[3];
-    const uint64_t value = parts->entries[i].value, key = parts->entries[i].key;
-    const int level = value != 0 ? mcor_place_of_block(tree, key, block) : 0;
-    const int finer[3] = { 2 * block[0], 2 * block[1], 2 * block[2] };
-    const bool is_near =
-      value & MCOR_HAS_LEAVES && level > 0 && mcor_is_near_split(tree, parts, level, block);
-    const int one[3] = { 1, 1, 1 };
-    MCOR_TRY(value & (MCOR_HAS_LEAVES | MCOR_HAS_SPLIT)
-        ? mcor_add_blocks(context, tree, level, block, value & MCOR_HAS_LEAVES ? two : one, blocks)
-        : MCOR_OK);
-    MCOR_TRY(is_near ? mcor_add_blocks(context, tree, level - 1, finer, three, blocks) : MCOR_OK);
-    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
-  }
-  return MCOR_OK;
 }
 
 /* Lists the blocks of a table by their keys, with their leaves. */
@@ -252,8 +168,8 @@ static mcor_status mcor_list_blocks(
     {
       tree->first_block[level + 1] = (int)i;
     }
-    tree->leaf_count += mcor_fill_block(
-      tree, &context->box, tree->block_keys[i], tree->leaves + words, tree->is_split + words);
+    tree->leaf_count += mcor_fill_block(tree, &context->box, level, tree->block_keys[i],
+      tree->leaves + words, tree->is_split + words);
     status = i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK;
   }
   for (; level <= tree->top; ++level)
@@ -286,15 +202,13 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
     "The virtual grid is too large for point keys, with cube size %g and %d levels of adaptive "
     "cubes. Use a larger cube size, or fewer levels.",
     context->lattice.cube, tree->top + 1);
-  mcor_table parts = { 0 }, blocks = { 0 };
+  mcor_table blocks = { 0 };
   mcor_status status = MCOR_OK;
   for (int l = 0; l <= tree->top && status == MCOR_OK; ++l)
   {
-    status = mcor_add_parts(context, tree, l, &parts);
+    status = mcor_add_parts(context, tree, l, &blocks);
   }
-  status = status == MCOR_OK ? mcor_add_needed(context, tree, &parts, &blocks) : status;
   status = status == MCOR_OK ? mcor_list_blocks(context, tree, &blocks) : status;
-  mcor_table_free(&parts);
   mcor_table_free(&blocks);
   return status;
 }

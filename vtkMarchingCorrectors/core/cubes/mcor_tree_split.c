@@ -330,7 +330,7 @@ static int64_t mcor_split_grain(const mcor_tree_job* job)
   const mcor_measure* measure = &job->context->measure;
   const double largest = fmax(2 * measure->h_min, ldexp(measure->h_max, -job->tree->top));
   const double cluster = 2 * MCOR_BRICK * MCOR_CLUSTER; /* of the level above the lowest */
-  const double widest = 
+  const double widest =
     measure->support_max / job->context->lattice.cube / (job->reach * measure->h_max);
   const double along = 2 * job->reach * widest * largest / cluster + 2;
   const double grain = 8 * MCOR_HEAVY_GRAIN / (along * along * (job->tree->is_plane ? 1 : along));

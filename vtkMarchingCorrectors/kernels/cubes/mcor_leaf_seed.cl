@@ -31,10 +31,10 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
   return found | (blocks.z < 0 ? 0 : (bits[blocks.z * MCOR_BLOCK_WORDS + word] >> at & 1) << 9);
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are split. Writes, of its
- * leaves, what is finer around them. In the plane, none are up from it. */
-__kernel void mcor_leaf_finer(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
-  __global const uint* split, __global uint* finer)
+/* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are split. Notes its leaves
+ * that are beside others: finer ones around them, or up from them none or coarser ones. In the plane, none are up. */
+__kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
+  __global const uint* split, __global uint* beside)
 {
   const int m = get_global_id(0) * 8;
   const uint own = m < block_count * MCOR_BLOCK_BRICKS ? leaves[m >> 5] >> (m & 31) & 0xff : 0;
@@ -57,20 +57,16 @@ __kernel void mcor_leaf_finer(MCOR_BLOCK_PARAMS, const int plane, __global const
       up[d - (d < 6 ? 4 : 5)] = rows[d] | mcor_row_bits(at, row, leaves);
     }
   }
-  for (uint rest = own; rest; rest &= rest - 1)
+  uint finer = 0, all = ~0u; /* bits x: around, up from it */
+  for (int d = 0; d < 9; ++d)
   {
-    const int x = mcor_ctz(rest);
-    uint found = 0;
-    for (int d = 0; d < 9; ++d)
-    {
-      found |= (rows[d] >> x & 7) << 3 * d;
-    }
-    for (int d = 1; d < (plane ? 4 : 8); ++d)
-    {
-      found |= up[d >> 1] >> (x + 1 + (d & 1)) & 1 ? 0 : MCOR_COARSER_UP;
-    }
-    finer[m + x] = found;
+    finer |= rows[d] | rows[d] >> 1 | rows[d] >> 2;
   }
+  for (int d = 0; d < (plane ? 2 : 4); ++d)
+  {
+    all &= up[d] >> 1 & up[d] >> 2;
+  }
+  atomic_or(beside + (m >> 5), (own & (finer | ~all)) << (m & 31));
 }
 
 /* The leaves, and what is known of their nodes. */
@@ -99,7 +95,7 @@ int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 /* One work-item = one row of 8 bricks of a block. Requests its leaves that are to be examined: nodes that cells of
  * theirs may have are on both sides. */
 __kernel void mcor_leaf_choose(
-  MCOR_KNOWN_PARAMS, const int plane, __global const uint* finer, __global uint* chosen)
+  MCOR_KNOWN_PARAMS, const int plane, __global const uint* beside, __global uint* chosen)
 {
   const int m = get_global_id(0) * 8;
   const uint own = m < block_count * MCOR_BLOCK_BRICKS ? leaves[m >> 5] >> (m & 31) & 0xff : 0;
@@ -114,12 +110,12 @@ __kernel void mcor_leaf_choose(
     const int x = mcor_ctz(rest), at = m + x;
     const int4 brick = first + (int4)(x, 0, 0, 0);
     const int slot = mcor_slot_of_number(brick_bits, brick_base, at);
-    const bool evaluated = slot >= 0 && known[slot];
+    const bool evaluated = slot >= 0 && known[slot], is_beside = mcor_has_brick(beside, at);
     /* Nothing is known of nodes that cells of other levels have on its sides. */
-    const bool open = evaluated || states[at] == MCOR_EXAMINE ? finer[at] != 0
+    const bool open = evaluated || states[at] == MCOR_EXAMINE ? is_beside
                                                               : (states[at] & MCOR_OPEN_SIDES) != 0;
     int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);
-    for (int d = 1; d < (plane ? 4 : 8) && finer[at] == 0 && sides != MCOR_EXAMINE; ++d)
+    for (int d = 1; d < (plane ? 4 : 8) && !is_beside && sides != MCOR_EXAMINE; ++d)
     {
       sides |= mcor_leaf_sides(MCOR_KNOWN_ARGS,
         mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, d & 1, d >> 1 & 1, d >> 2), d);
@@ -131,18 +127,26 @@ __kernel void mcor_leaf_choose(
   atomic_or(chosen + (m >> 5), found << (m & 31));
 }
 
-/* One work-item = one word of 32 bricks. Reads the scanned counts of chosen ones. Writes these, in order, and where
- * bricks around them are finer. */
-__kernel void mcor_leaf_list(const int word_count, __global const mcor_rung* rungs,
-  __global const ulong* block_keys, __global const uint* chosen, __global const int* scanned,
-  __global const uint* finer, __global int4* cells, __global uint* cells_finer)
+/* One work-item = one word of 32 bricks. Reads the scanned counts of chosen ones. Writes these, in order, and which
+ * bricks around them are split. */
+__kernel void mcor_leaf_list(MCOR_BLOCK_PARAMS, __global const uint* chosen,
+  __global const int* scanned, __global const uint* split, __global int4* cells,
+  __global uint* finer)
 {
-  MCOR_ITEM(word, word < word_count);
+  MCOR_ITEM(word, word < block_count * MCOR_BLOCK_WORDS);
   int to = scanned[word];
-  for (uint bits = chosen[word]; bits; bits &= bits - 1)
+  for (uint bits = chosen[word]; bits; bits &= bits - 1, ++to)
   {
     const int m = word * 32 + mcor_ctz(bits);
-    cells[to] = mcor_brick_of_number(rungs, block_keys, m);
-    cells_finer[to++] = finer[m] & (MCOR_COARSER_UP - 1);
+    const int4 leaf = mcor_brick_of_number(rungs, block_keys, m);
+    uint found = 0;
+    for (int d = 0; d < 27; ++d)
+    {
+      const int other =
+        mcor_number_beside(MCOR_BLOCK_ARGS, m, leaf, d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1);
+      found |= (uint)(other >= 0 && mcor_has_brick(split, other)) << d;
+    }
+    cells[to] = leaf;
+    finer[to] = found;
   }
 }

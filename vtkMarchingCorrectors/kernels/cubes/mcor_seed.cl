@@ -57,7 +57,7 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 }
 #endif
 
-/* Sides of all particles that may reach a query's box, and maybe some more. */
+/* Sides of all particles that may reach a query's box, and maybe some more; as a state. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
@@ -75,8 +75,8 @@ int mcor_query_side_flags(
   return seen;
 }
 
-/* The query for a cube of nodes, `cubes` long, from the first one of a brick on. */
-MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes)
+/* The query for a cube of nodes, `cubes` long, but no more than `depth` along z, from the first one of a brick on. */
+MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes, int depth)
 {
   mcor_query query;
   query.radius = -1;
@@ -85,7 +85,7 @@ MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int 
   query.low[2] = (fix)(brick.z * MCOR_BRICK) * grid->step[2];
   for (int a = 0; a < 3; ++a)
   {
-    query.high[a] = query.low[a] + (fix)cubes * grid->step[a];
+    query.high[a] = query.low[a] + (fix)(a == 2 ? min(cubes, depth) : cubes) * grid->step[a];
   }
   mcor_query_in_region(grid, brick, &query);
   return query;
@@ -114,13 +114,12 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {
-  const int of_sides[3] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW };
   if (MCOR_RANGE_DECIDES && coarse)
   {
-    const int seen = mcor_query_side_flags(grid, query, limits->side_flags);
-    if (seen != 3)
+    const int state = mcor_query_side_flags(grid, query, limits->side_flags);
+    if (state != MCOR_EXAMINE)
     {
-      return of_sides[seen];
+      return state;
     }
   }
   mcor_bound bound = mcor_bound_start();
@@ -140,7 +139,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   }
   if (MCOR_RANGE_DECIDES && seen != 3)
   {
-    return of_sides[seen];
+    return seen;
   }
   if (bound.count == 0)
   {
@@ -163,145 +162,6 @@ int mcor_region_offset(int b)
   return (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
 }
 
-/* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
-real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
-{
-  realv volume = 0, inv_h = 0;
-  for (int i = 0; i < tile->count; i += MCOR_LANES)
-  {
-    const realv s = MCOR_TILE(tile, inv_h, i);
-    volume += MCOR_TILE(tile, weight, i) / fmax(s * s * s, (realv)1e-30f);
-    inv_h += s;
-  }
-  const real r = -query->radius * MCOR_SUPPORT * tile->count / mcor_lane_sum(inv_h);
-  const real e = (real)(query->high[0] - query->low[0]) * unit;
-  const real box = e * e * e + 6 * e * e * r + M_PI_F * r * r * (3 * e + 4 * r / 3);
-  return mcor_lane_sum(volume) / (MCOR_NORM * box);
-}
-
-/* With less than this filled, a brick is taken to be near the surface. */
-#define MCOR_INSIDE_FILLED ((real)0.8f)
-
-/* A share of each particle's support. */
-#define MCOR_INSIDE_SHARE 0.5f
-
-/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by
- * bricks. */
-#define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
-
-#if MCOR_PROVES_INSIDE && MCOR_LANES > 1
-/* Whether those of a tile's particles that are close to any of 2 x 2 points, as many above each other as there are
- * lanes, `step` apart from `at` on, lift all points above the iso value. The order of the sum is not that of nodes:
- * the margin covers it, too. */
-bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
-{
-  const fixv lane = mcor_lane_index();
-  const real ex = (real)0.5 * step[0], ey = (real)0.5 * step[1],
-             ez = (real)0.5 * step[2] * (MCOR_LANES / 4 - 1);
-  const realv px = at[0] + step[0] * MCOR_CONVERT_REALV(lane & 1);
-  const realv py = at[1] + step[1] * MCOR_CONVERT_REALV(lane >> 1 & 1);
-  const realv pz = at[2] + step[2] * MCOR_CONVERT_REALV(lane >> 2);
-  realv w = 0;
-  for (int begin = 0; begin < tile->count && !MCOR_ALL(w > iso * (real)1.0001f);
-       begin += MCOR_LANES)
-  {
-    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
-      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), at[0] + ex, at[1] + ey, at[2] + ez,
-      ex, ey, ez, MCOR_INSIDE_SHARE);
-    int list[MCOR_LANES];
-    const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
-    for (int k = 0; k < count; ++k)
-    {
-      const int i = begin + list[k];
-      const real inv_h = tile->inv_h[i];
-      const realv d = mcor_distance(tile->x[i] - px, tile->y[i] - py, tile->z[i] - pz, inv_h);
-      w = MCOR_FMA(tile->weight[i], mcor_weight(d, inv_h), w);
-    }
-  }
-  return MCOR_ALL(w > iso * (real)1.0001f);
-}
-
-/* Whether they do so at the nodes on a leaf's far sides, of its level. The finer ones there are nodes of finer leaves,
- * too: either own ones, which a proof of those knows, or on their far sides, where a leaf beside a larger one is
- * chosen. The march goes on from there. tile: what is close to all of the leaf. */
-bool mcor_sides_are_inside(
-  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
-{
-  bool inside = true;
-  for (int side = 0; side < 3; ++side)
-  {
-    const int x0 = side == 0 ? MCOR_BRICK : 0, y0 = side == 1 ? MCOR_BRICK : 0,
-              z0 = side == 2 ? MCOR_BRICK : 0;
-    for (int z = z0; z <= MCOR_BRICK && inside; z += MCOR_LANES / 4)
-    {
-      for (int y = y0; y <= MCOR_BRICK && inside; y += 2)
-      {
-        for (int x = x0; x <= MCOR_BRICK && inside; x += 2)
-        {
-          const int node[3] = { x, y, z };
-          real at[3];
-          for (int a = 0; a < 3; ++a)
-          {
-            at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit + grid->edge[a] * node[a];
-          }
-          inside = mcor_points_are_inside(tile, at, grid->edge, iso);
-        }
-      }
-    }
-  }
-  return inside;
-}
-#else
-bool mcor_sides_are_inside(
-  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
-{
-  return false;
-}
-#endif
-
-/* A brick is MCOR_ABOVE if the particles within half their support of its nodes, an eighth of all, which make
- * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
- * the rest can only add, in rounded sums, too, as rounding is monotone and the order is the same.
- * The margin is for a compiler that rounds the same term in another way in another place. Far inside
- * the fluid, no more is ever evaluated. Else MCOR_EXAMINE. Of a leaf beside others, `finer` or coarser, that does not
- * hold on its far sides, too, these are open. wide: those of the brick's region, if it is complete. */
-int mcor_seed_proof(
-  const mcor_grid* grid, int4 brick, uint finer, const mcor_tile* wide, real iso)
-{
-  int state = MCOR_ABOVE;
-  for (int first = 0; first < 64 && state != MCOR_EXAMINE; first += MCOR_ITEM_NODES)
-  {
-    mcor_query query = mcor_node_query(grid, brick, first, finer != 0, MCOR_INSIDE_SHARE);
-    mcor_node_sums sums;
-    mcor_tile tile;
-    mcor_tile_init(&tile);
-    if (wide->complete)
-    {
-      mcor_tile_narrow(wide, &query, &tile);
-    }
-    else
-    {
-      mcor_tile_next(grid, &query, &tile, true);
-    }
-    if (tile.count == 0 ||
-      (tile.complete && mcor_seed_filled(&query, grid->unit, &tile) < MCOR_INSIDE_FILLED))
-    {
-      return MCOR_EXAMINE;
-    }
-    mcor_node_sum(grid, &query, &tile, &sums);
-    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
-    {
-      state = MCOR_ALL(sums.w[g] > iso * (real)1.0001f) ? state : MCOR_EXAMINE;
-    }
-    if (state == MCOR_ABOVE && finer &&
-      !(tile.complete && mcor_sides_are_inside(grid, &query, &tile, iso)))
-    {
-      state |= MCOR_OPEN_SIDES;
-    }
-  }
-  return state;
-}
-
 /* The bricks of a region, bits x, y, z, that are leaves; with one level all are. */
 uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 {
@@ -313,51 +173,42 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
   return has_leaves ? found : 0xff;
 }
 
-/* What the range of raw values tells of a query's box, as a state. */
-int mcor_seed_range(const mcor_grid* grid, mcor_query* query, const mcor_seed_limits* limits)
+/* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and the states of blocks;
+ * of a plane (depth 0), or with several levels, it asks the range of raw values first. Writes the states of its bricks,
+ * or leaves, as far as the region tells; requests those that are not certain, and lists the regions that have such, in
+ * any order from number `first` on; list_count: of each level. With several levels, a region has the nodes on its
+ * far sides, too. Above a plane nothing is examined. */
+__kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
+  __global const mcor_rung* rungs, __global const ulong* block_keys,
+  __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
+  __global uint* brick_bits, __global int* list, __global int* list_count)
 {
-  const int of_sides[4] = { MCOR_VOID, MCOR_ABOVE, MCOR_BELOW, MCOR_EXAMINE };
-  return of_sides[MCOR_RANGE_DECIDES ? mcor_query_side_flags(grid, query, limits->side_flags) : 3];
-}
-
-/* Parameters of mcor_seed_regions and mcor_plane_seeds, which are launched alike. */
-#define MCOR_REGION_PARAMS                                                                         \
-  MCOR_GRID_PARAMS, const int first, const int count, __global const mcor_rung *rungs,             \
-    __global const ulong *block_keys, __global const uchar *block_states, MCOR_TREE_PARAMS,        \
-    MCOR_SEED_PARAMS, __global uchar *states, __global uint *brick_bits, __global int *list,       \
-    __global int *list_count
-
-/* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and the states of blocks,
- * which with several levels are not known. Writes the states of its bricks, or leaves, as far as the region tells;
- * requests those that are not certain, and lists the regions that have such, in any order from
- * number `first` on; list_count: of each level. With several levels, a
- * region has the nodes on its far sides, too. */
-__kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
-{
-  const int region = first + get_global_id(0);
+  const int region = first + get_global_id(0), number = mcor_region_number(region);
   if (region >= first + count)
   {
     return;
   }
-  const int number = mcor_region_number(region);
-  const uint own = mcor_region_leaves(MCOR_TREE_ARGS, number);
-  if (own == 0)
+  const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
+  const uint layers = depth > 0 ? 0xff : brick.z == 0 ? 0x0f : 0;
+  const uint own = layers & mcor_region_leaves(MCOR_TREE_ARGS, number);
+  if (has_leaves && own == 0)
   {
     return;
   }
-  int state = has_leaves ? MCOR_EXAMINE : block_states[region / MCOR_BLOCK_REGIONS];
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-  const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
-  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1 + has_leaves);
+  mcor_query query = mcor_seed_query(&grid, brick, MCOR_REGION_CUBES - 1 + has_leaves, depth);
   mcor_tile tile;
   mcor_tile_init(&tile);
-  uint inside = 0, open = 0; /* bricks */
-  if (has_leaves)
+  int state = own == 0 ? MCOR_VOID
+    : has_leaves       ? MCOR_EXAMINE
+                       : block_states[region / MCOR_BLOCK_REGIONS];
+  if (MCOR_RANGE_DECIDES && state == MCOR_EXAMINE && (has_leaves || depth == 0))
   {
-    state = mcor_seed_range(&grid, &query, &limits);
+    state = mcor_query_side_flags(&grid, &query, side_flags);
   }
-  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && state == MCOR_EXAMINE)
+  uint inside = 0, open = 0; /* bricks */
+  if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && depth > 0 && state == MCOR_EXAMINE)
   {
     query.radius = -MCOR_INSIDE_SHARE;
     mcor_tile_next(&grid, &query, &tile, true);
@@ -365,7 +216,7 @@ __kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
     {
       const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
       const int proof = mcor_seed_proof(&grid, brick + (int4)(b & 1, b >> 1 & 1, b >> 2, 0),
-        has_leaves ? finer[m] : 0, &tile, iso);
+        has_leaves && mcor_has_brick(beside, m), &tile, iso);
       inside |= (uint)(proof != MCOR_EXAMINE) << b;
       open |= (uint)((proof & MCOR_OPEN_SIDES) != 0) << b;
     }
@@ -376,10 +227,11 @@ __kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
   {
     state = mcor_seed_state(&grid, &query, &tile, false, &limits);
   }
-  for (uint rest = own; rest; rest &= rest - 1)
+  for (int b = 0; b < 8; ++b)
   {
-    const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
-    states[m] = (uchar)(inside >> b & 1 ? MCOR_ABOVE | (open >> b & 1) * MCOR_OPEN_SIDES : state);
+    const int m = number + mcor_region_offset(b);
+    const int proven = MCOR_ABOVE | (open >> b & 1) * MCOR_OPEN_SIDES;
+    states[m] = (uchar)(!(own >> b & 1) ? MCOR_VOID : inside >> b & 1 ? proven : state);
     if (states[m] == MCOR_EXAMINE)
     {
       mcor_request_brick(brick_bits, m);
@@ -394,20 +246,20 @@ __kernel void mcor_seed_regions(MCOR_REGION_PARAMS)
 /* State of a brick whose region is not certain: of its nodes, of a leaf beside other levels also of those on its far
  * sides. wide: the particles of the region, if it is complete. As the brick's are at hand, its nodes are evaluated if they are to be, where a
  * work-item evaluates whole bricks; returns the known ones. */
-ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, uint finer, const mcor_tile* wide,
+ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
 {
   mcor_tile tile;
   const int proof = MCOR_PROVES_INSIDE && MCOR_ITEM_NODES != 64
-    ? mcor_seed_proof(grid, brick, finer, wide, limits->iso)
+    ? mcor_seed_proof(grid, brick, beside, wide, limits->iso)
     : MCOR_EXAMINE;
   if (proof != MCOR_EXAMINE)
   {
     *state = (uchar)proof;
     return 0;
   }
-  mcor_query query = mcor_seed_query(grid, brick, MCOR_BRICK - (finer == 0));
+  mcor_query query = mcor_seed_query(grid, brick, MCOR_BRICK - !beside, MCOR_BRICK);
   mcor_tile_init(&tile);
   if (wide->complete)
   {
@@ -444,7 +296,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int number = mcor_region_number(list[first + i]);
   const int4 region = mcor_brick_of_number(rungs, block_keys, number);
-  mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves);
+  mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves, MCOR_REGION_CUBES);
   mcor_tile wide;
   mcor_tile_init(&wide);
   if (MCOR_ITEM_BRICKS > 1)
@@ -461,7 +313,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
       const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
       __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
       known[slot] = mcor_seed_brick(
-        &grid, brick, has_leaves ? finer[m] : 0, &wide, &limits, states + m, value, weight);
+        &grid, brick, has_leaves && mcor_has_brick(beside, m), &wide, &limits, states + m, value, weight);
       if (known[slot])
       {
         const ulong2 signs = mcor_node_signs(value, weight, iso, node_threshold);
@@ -471,29 +323,6 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
     }
   }
 }
-
-#if MCOR_PROVES_INSIDE
-/* One work-item = one slot, of `count` from `first` on. Tries the proof where its nodes are neither known nor
- * certain, and it was not tried. */
-__kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
-  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
-  __global ulong* above, __global ulong* valid)
-{
-  const int slot = first + get_global_id(0);
-  if (slot >= first + count || known[slot] || proofs[slot] != MCOR_UNTRIED)
-  {
-    return;
-  }
-  const mcor_grid grid = MCOR_GRID;
-  mcor_tile none;
-  mcor_tile_init(&none);
-  proofs[slot] = (uchar)mcor_seed_proof(&grid, bricks[slot], 0, &none, iso);
-  if (proofs[slot] == MCOR_ABOVE)
-  {
-    above[slot] = valid[slot] = ~0UL;
-  }
-}
-#endif
 #endif
 
 #if MCOR_OF_LATTICE

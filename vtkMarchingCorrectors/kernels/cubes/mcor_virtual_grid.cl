@@ -84,10 +84,10 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, in
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
 
-/* Leaves, if there are several levels: bits, as of slots, and by their numbers what is finer around them. */
+/* If there are several levels: which bricks are leaves, and which of these are beside others, see mcor_leaf_compare. */
 #define MCOR_TREE_PARAMS                                                                           \
-  const int has_leaves, __global const uint *leaves, __global const uint *finer
-#define MCOR_TREE_ARGS has_leaves, leaves, finer
+  const int has_leaves, __global const uint *leaves, __global const uint *beside
+#define MCOR_TREE_ARGS has_leaves, leaves, beside
 
 /* Position of a block, in blocks of its level, and the level. */
 int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)

@@ -97,43 +97,6 @@ void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global 
   mcor_plane_store(&sums, node_value + first, node_weight + first);
 }
 
-/* One work-item = one region, of `count` from `first` on. As mcor_seed_regions, by raw values or by a bound; above the
- * plane nothing is examined. Regions are not listed: bounds on bricks cost more than their few nodes. */
-__kernel void mcor_plane_seeds(MCOR_REGION_PARAMS)
-{
-  const int region = first + get_global_id(0);
-  if (region >= first + count)
-  {
-    return;
-  }
-  const int number = mcor_region_number(region);
-  const uint own = mcor_region_leaves(MCOR_TREE_ARGS, number);
-  const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
-  int state = brick.z > 0 || own == 0 ? MCOR_VOID
-    : has_leaves                      ? MCOR_EXAMINE
-                                      : block_states[region / MCOR_BLOCK_REGIONS];
-  if (state == MCOR_EXAMINE)
-  {
-    const mcor_grid grid = MCOR_GRID;
-    const mcor_seed_limits limits = MCOR_SEED_LIMITS;
-    const int cubes = MCOR_REGION_CUBES - 1 + has_leaves;
-    mcor_query query = mcor_plane_query(&grid, brick, 0, cubes, cubes);
-    mcor_tile tile;
-    mcor_tile_init(&tile);
-    state = mcor_seed_range(&grid, &query, &limits);
-    state = state == MCOR_EXAMINE ? mcor_seed_state(&grid, &query, &tile, false, &limits) : state;
-  }
-  for (uint rest = own; rest; rest &= rest - 1)
-  {
-    const int b = mcor_ctz(rest), m = number + mcor_region_offset(b);
-    states[m] = (uchar)(b < 4 ? state : MCOR_VOID);
-    if (states[m] == MCOR_EXAMINE)
-    {
-      mcor_request_brick(brick_bits, m);
-    }
-  }
-}
-
 /* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. Evaluates them where they are needed. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,

@@ -1,0 +1,167 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that its nodes are above the
+ * iso value of the free surface, before any others are looked at. */
+
+/* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
+real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
+{
+  realv volume = 0, inv_h = 0;
+  for (int i = 0; i < tile->count; i += MCOR_LANES)
+  {
+    const realv s = MCOR_TILE(tile, inv_h, i);
+    volume += MCOR_TILE(tile, weight, i) / fmax(s * s * s, (realv)1e-30f);
+    inv_h += s;
+  }
+  const real r = -query->radius * MCOR_SUPPORT * tile->count / mcor_lane_sum(inv_h);
+  const real e = (real)(query->high[0] - query->low[0]) * unit;
+  const real box = e * e * e + 6 * e * e * r + M_PI_F * r * r * (3 * e + 4 * r / 3);
+  return mcor_lane_sum(volume) / (MCOR_NORM * box);
+}
+
+/* With less than this filled, a brick is taken to be near the surface. */
+#define MCOR_INSIDE_FILLED ((real)0.8f)
+
+/* A share of each particle's support. */
+#define MCOR_INSIDE_SHARE 0.5f
+
+/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by
+ * bricks. */
+#define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
+
+#if MCOR_PROVES_INSIDE && MCOR_LANES > 1
+/* Whether those of a tile's particles that are close to any of 2 x 2 points, as many above each other as there are
+ * lanes, `step` apart from `at` on, lift all points above the iso value. The order of the sum is not that of nodes:
+ * the margin covers it, too. */
+bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
+{
+  const fixv lane = mcor_lane_index();
+  const real ex = (real)0.5 * step[0], ey = (real)0.5 * step[1],
+             ez = (real)0.5 * step[2] * (MCOR_LANES / 4 - 1);
+  const realv px = at[0] + step[0] * MCOR_CONVERT_REALV(lane & 1);
+  const realv py = at[1] + step[1] * MCOR_CONVERT_REALV(lane >> 1 & 1);
+  const realv pz = at[2] + step[2] * MCOR_CONVERT_REALV(lane >> 2);
+  realv w = 0;
+  for (int begin = 0; begin < tile->count && !MCOR_ALL(w > iso * (real)1.0001f);
+       begin += MCOR_LANES)
+  {
+    const fixv near = mcor_tile_near(MCOR_TILE(tile, x, begin), MCOR_TILE(tile, y, begin),
+      MCOR_TILE(tile, z, begin), MCOR_TILE(tile, inv_h, begin), at[0] + ex, at[1] + ey, at[2] + ez,
+      ex, ey, ez, MCOR_INSIDE_SHARE);
+    int list[MCOR_LANES];
+    const int count = mcor_list_lanes(near, min(MCOR_LANES, tile->count - begin), list);
+    for (int k = 0; k < count; ++k)
+    {
+      const int i = begin + list[k];
+      const real inv_h = tile->inv_h[i];
+      const realv d = mcor_distance(tile->x[i] - px, tile->y[i] - py, tile->z[i] - pz, inv_h);
+      w = MCOR_FMA(tile->weight[i], mcor_weight(d, inv_h), w);
+    }
+  }
+  return MCOR_ALL(w > iso * (real)1.0001f);
+}
+
+/* Whether they do so at the nodes on a leaf's far sides, of its level. The finer ones there are nodes of finer leaves,
+ * too: either own ones, which a proof of those knows, or on their far sides, where a leaf beside a larger one is
+ * chosen. The march goes on from there. tile: what is close to all of the leaf. */
+bool mcor_sides_are_inside(
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
+{
+  bool inside = true;
+  for (int side = 0; side < 3; ++side)
+  {
+    const int x0 = side == 0 ? MCOR_BRICK : 0, y0 = side == 1 ? MCOR_BRICK : 0,
+              z0 = side == 2 ? MCOR_BRICK : 0;
+    for (int z = z0; z <= MCOR_BRICK && inside; z += MCOR_LANES / 4)
+    {
+      for (int y = y0; y <= MCOR_BRICK && inside; y += 2)
+      {
+        for (int x = x0; x <= MCOR_BRICK && inside; x += 2)
+        {
+          const int node[3] = { x, y, z };
+          real at[3];
+          for (int a = 0; a < 3; ++a)
+          {
+            at[a] = (real)(query->low[a] - query->origin[a]) * grid->unit + grid->edge[a] * node[a];
+          }
+          inside = mcor_points_are_inside(tile, at, grid->edge, iso);
+        }
+      }
+    }
+  }
+  return inside;
+}
+#else
+bool mcor_sides_are_inside(
+  const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
+{
+  return false;
+}
+#endif
+
+/* A brick is MCOR_ABOVE if the particles within half their support of its nodes, an eighth of all, which make
+ * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
+ * the rest can only add, in rounded sums, too, as rounding is monotone and the order is the same.
+ * The margin is for a compiler that rounds the same term in another way in another place. Far inside
+ * the fluid, no more is ever evaluated. Else MCOR_EXAMINE. Of a leaf `beside` finer or coarser ones,
+ * of which that does not hold on its far sides, too, these are open. wide: those of the brick's region, if it is complete. */
+int mcor_seed_proof(
+  const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide, real iso)
+{
+  int state = MCOR_ABOVE;
+  for (int first = 0; first < 64 && state != MCOR_EXAMINE; first += MCOR_ITEM_NODES)
+  {
+    mcor_query query = mcor_node_query(grid, brick, first, beside, MCOR_INSIDE_SHARE);
+    mcor_node_sums sums;
+    mcor_tile tile;
+    mcor_tile_init(&tile);
+    if (wide->complete)
+    {
+      mcor_tile_narrow(wide, &query, &tile);
+    }
+    else
+    {
+      mcor_tile_next(grid, &query, &tile, true);
+    }
+    if (tile.count == 0 ||
+      (tile.complete && mcor_seed_filled(&query, grid->unit, &tile) < MCOR_INSIDE_FILLED))
+    {
+      return MCOR_EXAMINE;
+    }
+    mcor_node_sum(grid, &query, &tile, &sums);
+    for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
+    {
+      state = MCOR_ALL(sums.w[g] > iso * (real)1.0001f) ? state : MCOR_EXAMINE;
+    }
+    if (state == MCOR_ABOVE && beside &&
+      !(tile.complete && mcor_sides_are_inside(grid, &query, &tile, iso)))
+    {
+      state |= MCOR_OPEN_SIDES;
+    }
+  }
+  return state;
+}
+
+#if MCOR_PROVES_INSIDE
+/* One work-item = one slot, of `count` from `first` on. Tries the proof where its nodes are neither known nor
+ * certain, and it was not tried. */
+__kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
+  __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
+  __global ulong* above, __global ulong* valid)
+{
+  const int slot = first + get_global_id(0);
+  if (slot >= first + count || known[slot] || proofs[slot] != MCOR_UNTRIED)
+  {
+    return;
+  }
+  const mcor_grid grid = MCOR_GRID;
+  mcor_tile none;
+  mcor_tile_init(&none);
+  proofs[slot] = (uchar)mcor_seed_proof(&grid, bricks[slot], false, &none, iso);
+  if (proofs[slot] == MCOR_ABOVE)
+  {
+    above[slot] = valid[slot] = ~0UL;
+  }
+}
+#endif

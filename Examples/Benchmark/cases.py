@@ -144,7 +144,7 @@ def first(benchmark):
             taken["import to first surface"] = [
                 float(subprocess.run([python, "-c", IN_PYTHON], check=True, capture_output=True, text=True).stdout)
                 for _ in range(benchmark.runs)]
-    program.device = program.device or "built in"
+    device = [] if program.device else ["--device", "built in"]
     for _ in range(0 if taken else benchmark.runs):
         with tempfile.TemporaryDirectory() as folder:
             os.mkdir(os.path.join(folder, "pocl"))
@@ -152,7 +152,7 @@ def first(benchmark):
             for name, options in (("first", []), ("next", ["--kernel", "wendland"]), ("warm", [])):
                 path = (benchmark.files or [GENERATORS / "dam_break_45k.vtp"])[0]
                 taken.setdefault(name, []).append(program.start(
-                    path, ["--free-surface", "--fluid", "ParticleType=0", *options], 0, environment)[1])
+                    path, ["--free-surface", "--fluid", "ParticleType=0", *device, *options], 0, environment)[1])
     for name, seconds in taken.items():
         out.text(f"{name:6} {statistics.median(seconds):.2f} s  ({', '.join(f'{t:.2f}' for t in seconds)})")
 

@@ -16,7 +16,7 @@ from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from marchingcorrectors import io
-from test_files import DENSITY, X, Case, quietly, write_bgeo, write_bi4, write_gadget, write_phantom, write_pysph
+from test_files import DENSITY, X, Case, write_bgeo, write_bi4, write_gadget, write_phantom, write_pysph
 
 
 def write_vtk(path):
@@ -184,29 +184,16 @@ class Hostile(Case):
         self.assertEqual(found.arrays["Density"].tobytes(), wanted.arrays["Density"].tobytes())
 
     def test_fuzz(self):
-        """Truncated, and with bits turned: a FileError of one line, or particles."""
-        random, refused = np.random.default_rng(34), 0
+        random = np.random.default_rng(34)
         makers = {"snap.hdf5": write_gadget, "dump.h5": write_phantom, "run.hdf5": write_pysph,
                   "Part_0001.bi4": write_bi4, "fluid.bgeo": write_bgeo, "body.vtp": write_vtk, "body.vtu": write_vtk,
                   "body.vtk": write_vtk, "grid.vtk": write_grid, "text.vtk": lambda path: write_grid(path, True),
                   **{f"{kind}.vtp": lambda path, kind=kind: write_packed(path, kind) for kind in ("ZLib", "LZ4", "LZMA")}}
-        for name, make in makers.items():
-            make(self.at(name))
-            whole = self.at(name).read_bytes()
-            for i in range(120):
-                data = bytearray(whole[:random.integers(1, len(whole))] if i % 3 == 0 else whole)
-                for _ in range(0 if i % 3 == 0 else random.integers(1, 9)):
-                    at = random.integers(min(len(data), 4000 if i % 3 == 1 else len(data)))
-                    data[at] ^= 1 << random.integers(8)
-                self.at(name).write_bytes(data)
-                try:
-                    particles = quietly(io.read, self.at(name))
-                    particles.positions, dict(particles.arrays), len(particles)
-                except io.FileError as error:
-                    refused += 1
-                    self.assertNotIn("\n", str(error))
-                    self.assertLess(len(str(error)), 400)
-        self.assertGreater(refused, 400)
+
+        def turn(data, is_head):
+            data[random.integers(min(len(data), 4000 if is_head else len(data)))] ^= 1 << random.integers(8)
+
+        self.fuzz(makers, random, 120, turn, 400)
 
 
 if __name__ == "__main__":

@@ -188,6 +188,28 @@ class Case(unittest.TestCase):
         self.assertNotIn("\n", str(caught.exception))
 
 
+    def fuzz(self, makers, random, tries, damage, least, readings=({},)):
+        """Each file cut off, or as `damage` makes it: a FileError of one line, at least so often, or particles."""
+        refused = 0
+        for name, make in makers.items():
+            make(self.at(name))
+            whole = self.at(name).read_bytes()
+            for i in range(tries):
+                data = bytearray(whole[:random.integers(1, len(whole))] if i % 3 == 0 else whole)
+                for _ in range(0 if i % 3 == 0 else random.integers(1, 9)):
+                    damage(data, i % 3 == 1)
+                self.at(name).write_bytes(data)
+                try:
+                    for words in readings:
+                        particles = quietly(io.read, self.at(name), **words)
+                        particles.positions, dict(particles.arrays), len(particles)
+                except io.FileError as error:
+                    refused += 1
+                    self.assertNotIn("\n", str(error))
+                    self.assertLess(len(str(error)), 400)
+        self.assertGreater(refused, least)
+
+
 class Layouts(Case):
     def assert_surface(self, found, positions=X, **words):
         wanted = quietly(mc.isosurface, positions, words.pop("scalar", DENSITY), words.pop("iso", 1.5), **words)

@@ -11,6 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pyvista
+from test_files import SPACING, X, write_gadget, write_phantom
 
 SOURCES = Path(os.environ["MCOR_TEST_SOURCES"])
 FENCE = re.compile(r"^```python(?: (\S+))?\n(.*?)^```$", re.M | re.S)
@@ -27,17 +28,7 @@ def recipes():
     return scope
 
 
-def ball(spacing=0.1, radius=0.9):
-    """A ball on a lattice; its density falls outwards."""
-    line = np.arange(-12, 13) * spacing
-    x = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
-    x = x[np.linalg.norm(x, axis=1) < radius]
-    return x, 2 - np.linalg.norm(x, axis=1)
-
-
-X, DENSITY = ball()
-SPACING, DP = 0.1, 0.0236
-MASS = DENSITY * SPACING ** 3
+DP = 0.0236
 
 
 class Test(unittest.TestCase):
@@ -73,29 +64,17 @@ class Test(unittest.TestCase):
     def test_gadget_and_swift(self):
         for swift in (False, True):
             for arepo in (False, True):
-                with h5py.File("snapshot.hdf5", "w") as file:
-                    gas = file.create_group("PartType0")
-                    gas["Coordinates"] = X
-                    gas["Densities" if swift else "Density"] = DENSITY.astype(np.float32)
-                    gas["Masses"] = MASS
-                    gamma = 1.825742
-                    h = np.full(len(X), 0.26 / (gamma if swift else 1))
-                    if not arepo:
-                        gas["SmoothingLengths" if swift else "SmoothingLength"] = h
-                    file.create_group("HydroScheme").attrs["Kernel gamma"] = [gamma]
+                write_gadget("snapshot.hdf5", swift=swift)
+                if arepo:
+                    with h5py.File("snapshot.hdf5", "a") as file:
+                        del file["PartType0/SmoothingLengths" if swift else "PartType0/SmoothingLength"]
                 found = recipes()["density_surface"]("snapshot.hdf5", 1.5)
                 self.assert_ball(found.points, 0.5)
                 if not arepo:
                     self.assertAlmostEqual(found.statistics["smoothing_length_min"], 0.13)
 
     def test_phantom(self):
-        with h5py.File("dump.h5", "w") as file:
-            header, gas = file.create_group("header"), file.create_group("particles")
-            header["massoftype"] = np.array([0.001] + [0.0] * 6)
-            header["hfact"] = 1.2
-            h = 1.2 * (0.001 / DENSITY) ** (1 / 3)
-            gas["xyz"], gas["h"] = X, np.where(np.arange(len(X)) == 7, -h, h)
-            gas["itype"] = np.where(X[:, 0] < 0, -1, 1).astype(np.int8)  # Half of them inactive in this step.
+        write_phantom("dump.h5")
         points = recipes()["density_surface"]("dump.h5", 1.5).points
         self.assert_ball(points, 0.5, tolerance=0.06)
         self.assertAlmostEqual(points[:, 0].min(), -0.5, delta=0.06)

@@ -135,12 +135,15 @@ const std::vector<Rule> OfSurfaces = {
 #undef IF
 
 /// Whether an option asks for something, and does not say what holds without it.
-bool IsAsked(const Job& job, const char* option)
+bool IsAsked(const Job& job, const std::string& option)
 {
-  static const std::map<std::string, std::string> usual = { { "--time-step", "1" },
-    { "--repeat", "1" }, { "--up", "y" } };
-  const auto given = job.Given.find(option), plain = usual.find(option);
-  return given != job.Given.end() && (plain == usual.end() || plain->second != given->second);
+  const auto given = job.Given.find(option);
+  double value = 0.0;
+  const bool isUsual = given != job.Given.end() &&
+    (option == "--up" ? given->second == "y"
+                      : (option == "--time-step" || option == "--repeat") &&
+          ParseNumber(given->second, value) && value == 1.0);
+  return given != job.Given.end() && !isUsual;
 }
 
 /// The sentence with what stands for the names in braces.

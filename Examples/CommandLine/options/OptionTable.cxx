@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 namespace
 {
@@ -94,12 +95,6 @@ void SetSolids(Job& job, Text option, Text text)
   job.Surface->SetSolids(solids);
 }
 
-void SetComponent(Job& job, Text option, Text text)
-{
-  const bool isMagnitude = text == "magnitude" || text == "-1"; // the filter's number for it
-  job.Surface->SetScalarComponent(isMagnitude ? Filter::MAGNITUDE : ToCount(option, text, 0));
-}
-
 /// Either is used in its mode alone.
 void SetIsoValues(Job& job, Text option, Text text)
 {
@@ -135,13 +130,6 @@ std::string DescribeKernels()
   return text;
 }
 
-void SetField(Job& job, Text option, Text text)
-{
-  const int isShepard = ToChoice(option, text, { { "shepard", 1 }, { "sum", 0 } });
-  job.Surface->SetShepardNormalization(isShepard);
-  job.Probe->SetShepardNormalization(isShepard);
-}
-
 void SetBoundary(Job& job, Text option, Text text)
 {
   const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text, // its word of old
@@ -151,19 +139,6 @@ void SetBoundary(Job& job, Text option, Text text)
   {
     job.Surface->SetVertexThreshold(boundary == Filter::EIGENVALUE ? 0.3 : 0.5);
   }
-}
-
-void SetPeriod(Job& job, Text option, Text text)
-{
-  job.DetectPeriod = text == "auto";
-  job.Periodic = job.DetectPeriod ? std::vector<double>() : ToPeriod(option, text);
-}
-
-void SetTimes(Job& job, Text option, Text text)
-{
-  job.Times = ToNumbers(option, text);
-  std::sort(job.Times.begin(), job.Times.end());
-  job.Times.erase(std::unique(job.Times.begin(), job.Times.end()), job.Times.end());
 }
 
 /// What an option does to the job `j`; `n` is its name as given, and `v` the value behind it.
@@ -176,7 +151,9 @@ const std::vector<Option> Table = {
     DO(j.Scalar = Printable(v); j.Surface->SetInputArrayToProcess(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str())) },
   { "--component", "N|magnitude",
-    "component of a vector, counted from 0, or its magnitude (default)", SetComponent },
+    "component of a vector, counted from 0, or its magnitude (default)",
+    DO(j.Surface->SetScalarComponent( // -1 is the filter's number for it
+      v == "magnitude" || v == "-1" ? Filter::MAGNITUDE : ToCount(n, v, 0))) },
   { "--iso", "V[,V...]",
     "iso values of the scalar (default: chosen, about the median, and told), or of the weight sum "
     "with --free-surface (default 0.5)",
@@ -187,7 +164,10 @@ const std::vector<Option> Table = {
     "compute Gradients of this array first; of a vector also Vorticity, Lambda2, ...",
     DO(j.Derive = Printable(v); j.Derivatives->SetInputArrayToProcess(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Derive.c_str())) },
-  { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum", SetField },
+  { "--field", "shepard|sum", "normalised field (default), or the plain SPH sum",
+    DO(const int isShepard = ToChoice(n, v, { { "shepard", 1 }, { "sum", 0 } });
+       j.Surface->SetShepardNormalization(isShepard);
+       j.Probe->SetShepardNormalization(isShepard)) },
 
   { "", "", "The field at points, in place of a surface; OUTPUT is a data set of these points",
     {} },
@@ -286,7 +266,8 @@ const std::vector<Option> Table = {
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
     "periodic particles: lengths (0: not periodic), bounds X0,X1,Y0,Y1,Z0,Z1, or those in the "
     "field data",
-    SetPeriod },
+    DO(j.DetectPeriod = v == "auto";
+       j.Periodic = j.DetectPeriod ? std::vector<double>() : ToPeriod(n, v)) },
   { "--capping", "",
     "close the surface at the sides of the period and the box, where values exceed the iso value; "
     "with --solids wall also the free surface at walls",
@@ -364,7 +345,9 @@ const std::vector<Option> Table = {
     "for a film: write a row for each step: area, volume, pieces, and readings of --gauge",
     DO(j.NumbersFile = v) },
   { "--times", "T[,T...]", "for a film or gauges: at these times, which may lie between two steps",
-    SetTimes },
+    DO(const std::vector<double> times = ToNumbers(n, v);
+       const std::set<double> sorted(times.begin(), times.end());
+       j.Times.assign(sorted.begin(), sorted.end())) },
   { "--ids", "NAME",
     "with --times, array of ids that tell which particle of a step is which of the next",
     DO(j.IdArray = Printable(v)) },

@@ -69,22 +69,10 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
   {
     filter->SetSmoothingLengthArrayName(job.SmoothingLength.c_str());
   }
-  if (IsConstant(job.Mass, particles, value))
-  {
-    filter->SetMass(value);
-  }
-  else
-  {
-    filter->SetMassArrayName(job.Mass.c_str());
-  }
-  if (IsConstant(job.Density, particles, value))
-  {
-    filter->SetDensity(value);
-  }
-  else
-  {
-    filter->SetDensityArrayName(job.Density.c_str());
-  }
+  IsConstant(job.Mass, particles, value) ? filter->SetMass(value)
+                                         : filter->SetMassArrayName(job.Mass.c_str());
+  IsConstant(job.Density, particles, value) ? filter->SetDensity(value)
+                                            : filter->SetDensityArrayName(job.Density.c_str());
   if (!job.Walls.empty())
   {
     filter->SetFluidArrayName(WallArrayName);

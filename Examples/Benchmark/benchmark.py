@@ -49,7 +49,7 @@ QUICK_PAPER = {"rings": 20000, "tsunami": 6000, "dam": 6000}
 
 
 class Benchmark:
-    """What the cases need: particle sets, the program, how often, how large, where to write."""
+    """All that the cases need: particle sets, the program, how often, how large, where to write."""
 
     def __init__(self, arguments, folder):
         self.report, self.folder = Report(), folder

@@ -15,7 +15,7 @@ from measure import (GENERATORS, array_of, compete, exclude_others, interpolator
 
 
 def medians(rows):
-    """Of each column."""
+    """Each column's."""
     return [statistics.median(column) for column in zip(*rows)]
 
 
@@ -240,7 +240,7 @@ def make_image(bounds, *dimensions):
 
 
 def make_probe(particles, image, *arrays, keep=True):
-    """Of these arrays alone, or of all."""
+    """Probes these arrays alone, or all."""
     from marchingcorrectors import vtkSPHProbe
     probe = vtkSPHProbe()
     probe.SetInputData(image)
@@ -251,7 +251,7 @@ def make_probe(particles, image, *arrays, keep=True):
 
 
 def seconds_of_update(filter_):
-    """Of the clock, and of the processors."""
+    """By the clock, and of the processors."""
     filter_.Modified()
     begin = time.perf_counter(), time.process_time()
     filter_.Update()
@@ -373,7 +373,7 @@ def run_python(data, scalar, iso, context):
 
 
 def wheel(benchmark):
-    """What calling from Python costs: isosurface() on NumPy arrays beside marching-correctors itself, on the same particles
+    """The cost of calling from Python: isosurface() on NumPy arrays beside marching-correctors itself, on the same particles
     and device, by turns; and pysplashsurf's free surface beside free_surface(). Runs in an environment with
     marching-correctors[vtk] and, if it is to be compared, pysplashsurf. Reading the particles is not timed. The surfaces
     must be the same to the last bit."""
@@ -535,7 +535,7 @@ class Model:
 
 
 def ranks(benchmark):
-    """What processes exchange that share a surface, and what they would on larger data: particles owned, copies of
+    """Traffic of processes that share a surface, and what it would be on larger data: particles owned, copies of
     others', bytes sent, nodes evaluated, of boxes with as many particles each, and of boxes with as much expected work.
     Then a model, fitted to the first ones. Bytes are those of the particles that travel, all but one in as many as there
     are ranks, and of their copies."""

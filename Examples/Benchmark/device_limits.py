@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an OpenCL device can do at most: bytes copied and floating-point operations per second.
+"""The limits of an OpenCL device: bytes copied and floating-point operations per second.
 
 Every figure is the best of several runs: a limit is not a typical value. The arrays that are copied should be well above
 the caches.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What all cases of the benchmark share: particle sets, runs of the program and of its competitors, tables."""
+"""Shared by all cases of the benchmark: particle sets, runs of the program and of its competitors, tables."""
 import functools
 import hashlib
 import json
@@ -75,7 +75,7 @@ class Sets:
         return path
 
     def get_with_one_array(self, kind, count, array):
-        """The same particles with one array alone, and the options that say what the others said:
+        """These particles with one array alone, and the options that say what the others said:
         smoothing length, mass and density must be the same for all particles."""
         whole = self.get(kind, count)
         path = whole.with_name(f"{whole.stem}-{array}.vtp")
@@ -127,7 +127,7 @@ def array_of(data, name):
 
 
 def processor_seconds():
-    """Of all processes that have ended."""
+    """By all processes that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

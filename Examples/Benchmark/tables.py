@@ -17,7 +17,7 @@ FREE_SURFACE = ("--free-surface", "--iso", THRESHOLD, *CUBE)
 
 
 def competitor_row(count, name, theirs, ours):
-    """Of what was measured, ours too, or of what was left out."""
+    """A row of what was measured, ours too, or of what was left out."""
     head = [text_of(count), theirs.get("name", name)]
     if "left_out" not in theirs:
         every = theirs["all"]
@@ -116,7 +116,7 @@ def work(result, volume):
     marched, marched_triangles = s["vertices_corrected"], s["triangles_before_trimming"]
     h, cube = s["smoothing_length_range"][0], result["parameters"]["cube_size"]
     neighbours, r, edge = support_volume(h) / volume, 2 * h, 3 * cube
-    # Of all points within 2 h of a brick.
+    # The volume of all points within 2 h of a brick.
     reach = edge ** 3 + 6 * r * edge ** 2 + 3 * math.pi * r * r * edge + support_volume(h)
     near = min(n, s["bricks"] * (4 * cube) ** 3 / volume)  # bricks of 4^3 cells
     surface = vertices * (6 + ATTRIBUTES) * FLOAT + triangles * (3 + 1) * 8  # as VTK stores it

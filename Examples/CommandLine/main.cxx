@@ -62,7 +62,7 @@ void ListDevices()
   }
 }
 
-/// Those that a process writes, or, of all, the first one.
+/// Lists the outputs of a process; to the first one, those of all.
 std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
 {
   std::vector<std::string> outputs;

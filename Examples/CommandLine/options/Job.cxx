@@ -19,7 +19,7 @@
 namespace
 {
 
-/// What is refused before the input is looked at.
+/// A reason to refuse a command line before the input is looked at.
 struct Rule
 {
   bool (*Holds)(const Job& j);
@@ -62,7 +62,7 @@ const std::vector<Rule> OfGauges = {
     "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
 };
 
-/// What is not the gauges'.
+/// For all but gauges.
 const std::vector<Rule> OfOthers = {
   { IF(!j.Has("--screenshot")), "without --screenshot there is no picture", { "--view", "--up" } },
   { IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
@@ -178,7 +178,7 @@ void Enforce(const std::vector<Rule>& rules, const Job& job)
   }
 }
 
-/// What can be said without looking at the input.
+/// Refuses what can be refused without looking at the input.
 void Check(const Job& job)
 {
   if (job.Inputs.empty())
@@ -243,7 +243,7 @@ bool LooksLikeOption(const std::string& word)
       std::string("0123456789.").find(word[1]) == std::string::npos);
 }
 
-/// Takes an option whose name, with a value behind "=" if there is one, was `next[-1]`, and its value.
+/// Takes an option and its value; the name, with a value behind "=" if there is one, was `next[-1]`.
 void TakeOption(const char* const*& next, const char* const* end, Job& job)
 {
   std::string name = next[-1], value;

@@ -35,7 +35,7 @@ struct SliceOptions
   int Resolution = 0;       ///< points along the longest side; 0: 512
 };
 
-/// What the command line asks for: the filters, set up as far as that can be done without the input,
+/// A command line's request: the filters, set up as far as that can be done without the input,
 /// and what the program does around them. Array names are spelled as ReadParticles() spells them.
 struct Job
 {

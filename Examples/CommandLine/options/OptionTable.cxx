@@ -21,7 +21,7 @@ namespace
 using Filter = vtkMarchingCorrectors;
 using Text = const std::string&;
 
-/// Of all filters.
+/// Sets a property of all filters.
 template <typename T>
 void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T), T value)
 {
@@ -141,7 +141,7 @@ void SetBoundary(Job& job, Text option, Text text)
   }
 }
 
-/// What an option does to the job `j`; `n` is its name as given, and `v` the value behind it.
+/// An option's effect on the job `j`; `n` is its name as given, and `v` the value behind it.
 #define DO(...)                                                                                    \
   []([[maybe_unused]] Job& j, [[maybe_unused]] Text n, [[maybe_unused]] Text v) { __VA_ARGS__; }
 

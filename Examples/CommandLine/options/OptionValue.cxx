@@ -14,7 +14,7 @@ namespace
 
 using Text = const std::string&;
 
-/// What stands between commas.
+/// Texts between commas.
 std::vector<std::string> ItemsOf(Text text)
 {
   std::vector<std::string> items;

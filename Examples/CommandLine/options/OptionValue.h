@@ -23,7 +23,7 @@ void Need(
 /// True, and the value, if the whole text is one finite number.
 bool ParseNumber(const std::string& text, double& value);
 
-/// What the text behind an option means; a UsageError names the option where it means nothing.
+/// Reads the text behind an option; a UsageError names the option where it means nothing.
 ///@{
 double ToNumber(const std::string& option, const std::string& text);
 double ToPositive(const std::string& option, const std::string& text);

@@ -8,7 +8,7 @@
 #include <string>
 
 /// Text from a file or the command line, made fit for a terminal and for XML: one line of UTF-8.
-/// What could steer a terminal (control characters, marks that turn the direction of writing) or is
+/// Whatever could steer a terminal (control characters, marks that turn the direction of writing) or is
 /// not UTF-8 becomes its code, "\x1b" or "\u202e". Text that is fit already stays as it is.
 std::string Printable(const std::string& text);
 

@@ -53,7 +53,7 @@ void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
 
 }
 
-// Of the particles as the surface was told of them.
+// Particles count as the surface was told of them.
 void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time)
 {
   if (this->Options->ComponentFile.empty())

@@ -25,10 +25,10 @@
 namespace
 {
 
-/// What people and batch systems send to end a program.
+/// People and batch systems send these to end a program.
 const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
 
-/// Those of them that were not ignored at the start, as hangups are under nohup.
+/// Ending signals that were not ignored at the start, as hangups are under nohup.
 sigset_t Awaited;
 
 void FindAwaited()

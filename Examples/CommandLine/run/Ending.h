@@ -15,7 +15,7 @@ void KeepWatchOfCrashes();
 /// All is done: a driver that crashes later, when it is unloaded, changes this status no more.
 int Finish(int status);
 
-/// What a run that crashes may be blamed on. A file that PoCL has kept half-written makes it crash whenever it
+/// Names what a crash may be blamed on. A file that PoCL has kept half-written makes it crash whenever it
 /// loads that: its folder is named where there is one, and `device` does not name the built-in one.
 std::string FaultsOfDrivers(const std::string& device);
 

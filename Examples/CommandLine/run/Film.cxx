@@ -171,7 +171,7 @@ private:
     return step;
   }
 
-  /// What was made of a step. The statistics of many are kept where somebody wants them only.
+  /// Keeps what was made of a step. The statistics of many are kept where somebody wants them only.
   void Add(FilmStep step, const std::string& statistics)
   {
     if (!this->Options.StatisticsFile.empty())

@@ -27,7 +27,7 @@ void AddNumber(vtkTable* row, const std::string& name, double value)
   row->AddColumn(column);
 }
 
-/// What of a run's statistics is one number; not a number where it does not apply.
+/// One number of a run's statistics; not a number where it does not apply.
 double NumberOf(vtkFieldData* statistics, const char* name)
 {
   vtkDataArray* array = statistics->GetArray(name);

@@ -13,7 +13,7 @@ class vtkPointSet;
 class vtkTable;
 struct Job;
 
-/// Those of the options, in their order. Throws UsageError or std::runtime_error with one sentence.
+/// Gauges of the options, in their order. Throws UsageError or std::runtime_error with one sentence.
 std::vector<GaugeLine> ListGauges(const Job& job);
 
 /// To the job's filter.

@@ -22,7 +22,7 @@ public:
   void DisplayGenericWarningText(const char* text) override;
   void DisplayDebugText(const char* text) override;
 
-  /// What has been reported as an error since the last Clear(), without file, line and address.
+  /// Errors that have been reported since the last Clear(), without file, line and address.
   const std::vector<std::string>& GetErrors() const { return this->Errors; }
   const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
   void Clear();

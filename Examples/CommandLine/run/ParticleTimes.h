@@ -39,7 +39,7 @@ public:
   /// All that are read.
   std::vector<std::string> ListFiles() const;
 
-  /// Those that a time is made of, without walls.
+  /// Files that a time is made of, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
   /// The walls of a time that is stored, or of all times.

@@ -100,7 +100,7 @@ vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
   return line;
 }
 
-/// What is valid: elsewhere arrays are 0, which would look like values.
+/// Takes the valid part: elsewhere arrays are 0, which would look like values.
 vtkSmartPointer<vtkDataSet> ValidPart(vtkDataSet* data)
 {
   vtkNew<vtkThreshold> threshold;
@@ -134,7 +134,7 @@ std::string ArrayToShow(vtkDataSet* data)
   return found.empty() ? "WeightSum" : found;
 }
 
-/// Those of a slice or a line, which needs the bounds of all particles.
+/// Points of a slice or a line, which needs the bounds of all particles.
 vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
 {
   double bounds[6];

@@ -357,7 +357,7 @@ void WriteList(JsonText& json, const char* key, const std::vector<std::string>& 
   json.EndList();
 }
 
-/// Who made it, of which files. Opens the outermost braces.
+/// Tells who made it, of which files. Opens the outermost braces.
 void WriteBeginning(JsonText& json, const Job& job)
 {
   json.Begin("");

@@ -11,7 +11,7 @@
 struct Job;
 class vtkFieldData;
 
-/// What a run's field data says, as a few lines to read; empty if the run had no particles to use.
+/// Tells a run's field data in a few lines to read; empty if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run);
 
 /// "seconds     input 0.010, search grid 0.020, ..., total 0.500\n", or empty as above.
@@ -23,7 +23,7 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
   double peakResidentBytes);
 
-/// What is said of one step of a film.
+/// Report on one step of a film.
 struct FilmStep
 {
   double Time = 0.0;
@@ -33,7 +33,7 @@ struct FilmStep
   std::string Statistics; ///< as StepAsJson() gives it
 };
 
-/// Of a step whose surface was written (run is not null), or that failed.
+/// Reports a step whose surface was written (run is not null), or that failed.
 std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds);
 
 /// Device, arrays and parameters of a run.

@@ -14,7 +14,8 @@
 class MessageCapture;
 class ParticleTimes;
 
-/// What is different where processes share the work; as it is, there is one. What one process throws, all throw.
+/// Hides whether processes share the work; this class is that of one process. If one of them throws,
+/// all throw.
 class Sharing
 {
 public:
@@ -38,7 +39,7 @@ public:
   virtual vtkSmartPointer<vtkPointSet> Read(
     const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages);
 
-  /// The same of a time.
+  /// As Read() above, of a time.
   virtual vtkSmartPointer<vtkPointSet> Read(
     ParticleTimes& times, double time, std::vector<std::string>& warnings);
 
@@ -46,7 +47,7 @@ public:
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
 };
 
-/// What the environment tells of mpirun, before MPI is asked. Built without MPI, there is none.
+/// The environment tells of mpirun before MPI is asked. Built without MPI, there is none.
 
 /// How many processes mpirun started; 1 where it did not.
 int LaunchedCount();

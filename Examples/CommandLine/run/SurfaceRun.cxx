@@ -45,7 +45,7 @@ bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
 }
 
-/// What of the settings depends on the input: whether a text is a number or the name of an array, and
+/// Makes the settings that depend on the input: whether a text is a number or the name of an array, and
 /// where a period lies.
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
@@ -250,7 +250,7 @@ private:
   std::thread Waiting;
 };
 
-/// What is said of a run's progress.
+/// How a run's progress is told.
 struct Progress
 {
   std::string Before; ///< the words before it

@@ -18,12 +18,12 @@ struct Job;
 /// Whether standard error is a terminal whose user has not asked for silence.
 bool ShowsProgress(const Job& job);
 
-/// What of the settings depends on the input, for one of the job's filters. Returns the particles, with
+/// Makes the settings that depend on the input, for one of the job's filters. Returns the particles, with
 /// the arrays derived from theirs. Throws std::runtime_error with one sentence where an array is lacking.
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
 
-/// The same for the surface, which gets the particles as its input.
+/// As SetUpParticles(), for the surface, which gets the particles as its input.
 void SetUpSurface(const Job& job, vtkPointSet* input);
 
 /// Arrays of the particles that are not interpolated because the surface's file could not hold them.
@@ -47,7 +47,7 @@ Run Extract(const Job& job, MessageCapture* messages, const std::string& before 
 /// The particles of the last run with the factors of their smoothing lengths. Throws std::runtime_error.
 vtkSmartPointer<vtkPolyData> Widen(const Job& job, MessageCapture* messages);
 
-/// What the user should know of a run that went well, one sentence each.
+/// Sentences that the user should know of a run that went well.
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages);
 
 /// Where --periodic is not given, and the particles' field data may tell of a period: that.

@@ -140,7 +140,7 @@ Target Find(const std::string& name)
   return target;
 }
 
-/// The same for all names of one file; of one that does not exist yet, its folder and its name there.
+/// Equal for all names of one file; of one that does not exist yet, its folder and its name there.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 Identity Identify(const struct stat& status, const std::string& name = "")
@@ -226,7 +226,7 @@ void SetAttributes(int descriptor, const Target& target)
   }
 }
 
-/// What a name for a file beside the target begins with.
+/// The beginning of a name for a file beside the target.
 std::string NameBeside(const Target& target)
 {
   const std::size_t longest = 200; // of 255 bytes

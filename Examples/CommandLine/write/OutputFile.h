@@ -39,7 +39,7 @@ private:
 void WriteOutput(const std::string& file, const std::string& bytes);
 
 /// A file of all steps so far, that can be looked at while there are more and more of them, and where the program is ended.
-/// That of a long series is not written after each step, but as often as it takes a twentieth of the time. A device
+/// The file of a long series is not written after each step, but as often as it takes a twentieth of the time. A device
 /// or a pipe gets it once, at the end.
 class GrowingFile
 {

@@ -106,7 +106,7 @@ struct View
   Vector ToEye;
 };
 
-/// Of a direction that is not along `up`; if it is, the next axis points upwards.
+/// Looks from `toEye`; if that is along `up`, the next axis points upwards.
 View MakeView(Vector up, Vector toEye)
 {
   View view;

@@ -183,7 +183,7 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   return true;
 }
 
-/// Of two dimensions: a row for each point of each line, a column for each component. An array whose column would
+/// Writes lines: a row for each point of each line, a column for each component. An array whose column would
 /// have the name of one before it gets another one: readers go by names.
 bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {

@@ -103,6 +103,15 @@ def first_apply(folder):
     ]
 
 
+def empty_first():
+    """A first output that is empty is told of, in the panel, too: of the surface's own points, which fill no space."""
+    return [
+        FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),
+        change("FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit", "set_string", "1000"), PAUSE, APPLY, PAUSE,
+        shown("sph_in_use/Show", "text", "The output is empty: what was found, and what is used"),
+    ]
+
+
 def later_applies(folder):
     """Undo and redo of an Apply with several changes; a second array chosen and given up again; own iso values."""
     return [
@@ -162,7 +171,7 @@ def check_states(states):
 
 def main(paraview):
     with tempfile.TemporaryDirectory() as folder:
-        run(paraview, first_apply(folder) + later_applies(folder), folder)
+        run(paraview, first_apply(folder) + later_applies(folder) + empty_first(), folder)
         check_states({name[:-5]: properties(os.path.join(folder, name))
                       for name in os.listdir(folder) if name.endswith(".pvsm")})
     print("the panel works")

@@ -56,7 +56,7 @@ static void trim(mcor_context* context, flat_mesh* m)
   mesh->march_count = mesh->vertex_count = m->vertices;
   mesh->triangle_count = m->triangles;
   context->run.statistics = &surface.statistics;
-  CORE_OK(context, mcor_trim(context, 0));
+  CORE_OK(context, mcor_trim(context));
   m->vertices = mesh->vertex_count;
   m->triangles = mesh->triangle_count;
   assert_true(m->vertices <= VERTEX_LIMIT && m->triangles <= TRIANGLE_LIMIT);
@@ -356,7 +356,7 @@ static void test_vertex_limit(void** state)
   mesh->march_count = mesh->vertex_count = MCOR_COUNT_LIMIT - 1;
   context->run.options = &options;
   context->run.statistics = &surface.statistics;
-  assert_int_equal(mcor_trim(context, 0), MCOR_OUT_OF_CAPACITY);
+  assert_int_equal(mcor_trim(context), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(
     strstr(mcor_last_error(context), "2147479553 vertices"), "%s", mcor_last_error(context));
   mcor_release_memory(context);

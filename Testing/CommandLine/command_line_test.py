@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of the program marching-correctors share."""
+import csv
 import ctypes
 import json
 import os
@@ -26,6 +27,12 @@ def drop_privileges():
         libc = ctypes.CDLL(None)
         for capability in range(64):
             libc.prctl(24, capability, 0, 0, 0)  # PR_CAPBSET_DROP, which exec then goes by
+
+
+def read_table(path):
+    """Rows by the names of their columns."""
+    with open(path, encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
 
 
 class CommandLineTest(unittest.TestCase):

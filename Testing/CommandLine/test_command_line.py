@@ -619,7 +619,7 @@ class Options(CommandLineTest):
         self.succeed(*ISO, "--fluid", "ParticleType=0")
 
     def test_solvers_names(self):
-        """DualSPHysics stores no smoothing length; SPH-EXA a velocity in three arrays."""
+        """DualSPHysics stores no smoothing length."""
         arrays, count = self.arrays, len(self.points)
         dual = {"Idp": list(range(count)), "Rhop": arrays["Density"], "Vel": arrays["Velocity"],
                 "Type": [3] * count, "Mass": arrays["Mass"], "Radius": arrays["Radius"]}
@@ -629,17 +629,6 @@ class Options(CommandLineTest):
         self.assertEqual(found["arrays"]["density_array"], "Rhop")
         length = found["statistics"]["smoothing_length_range"][0]
         self.assertAlmostEqual(length, 1.2 * 3 ** 0.5 * 0.1)
-        exa = {"Smoothing Length": arrays["SmoothingLength"], "Mass": arrays["Mass"],
-               "Density": arrays["Density"]}
-        exa.update({f"v{axis}": [v[a] for v in arrays["Velocity"]] for a, axis in enumerate("xyz")})
-        files.write_vtp(self.input, self.points, exa)
-        found = self.succeed("--scalar", "Velocity", "--iso", "0.3")
-        self.assertEqual(found["arrays"]["smoothing_length_array"], "Smoothing Length")
-        self.assertGreater(found["statistics"]["triangles"], 100)
-        self.assertIn('Name="Velocity"', self.output.read_text())
-        files.write_vtp(self.input, self.points, self.arrays)
-        expected = self.succeed("--scalar", "Velocity", "--iso", "0.3")
-        self.assertEqual(found["statistics"]["triangles"], expected["statistics"]["triangles"])
 
     def test_settings(self):
         """Each option, what it makes of the parameters, and whether the surface is another one than without it."""
@@ -727,11 +716,8 @@ class Options(CommandLineTest):
         expected = self.output.read_bytes()
         box = (-length / 2, length / 2, -length / 2, length / 2, 0.0, 1.5 * length)
         self.assertNotIn("may be a period", self.extract(*free).stderr)
-        for arrays, bounds, same in (
-                ({"BoxSize": [length, length, 0.0]}, None, True),
-                ({"boxsize": [1.5 * length]}, [-0.75 * length, 0.75 * length] * 3, False),
-                ({"PeriodicBounds": box}, list(box), False),
-                ({"box": box, "boundaryType": [1, 0, 2]}, [*box[:2], 0, 0, 0, 0], False)):
+        for arrays, bounds, same in (({"BoxSize": [length, length, 0.0]}, None, True),
+                                     ({"box": box, "boundaryType": [1, 0, 2]}, [*box[:2], 0, 0, 0, 0], False)):
             data = "".join(f'<DataArray type="Float64" Name="{name}" NumberOfTuples="{len(values)}" format="ascii">'
                            f'{" ".join(map(repr, values))}</DataArray>' for name, values in arrays.items())
             self.input.write_text(plain.replace("<PolyData>", f"<PolyData><FieldData>{data}</FieldData>"))

@@ -1,12 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Pieces of surfaces by the program marching-correctors: test_components.py PROGRAM PRELOAD."""
-import csv
 import json
 import math
 
 import particle_files as files
-from command_line_test import CommandLineTest, main
+from command_line_test import CommandLineTest, main, read_table
 
 COLUMNS = ("component parent closed area volume x y z xmin xmax ymin ymax zmin zmax diameter particles mass "
            "vx vy vz").split()
@@ -30,10 +29,8 @@ class Components(CommandLineTest):
         return self.rows(COLUMNS)
 
     def rows(self, columns):
-        with self.table.open() as file:
-            reader = csv.DictReader(file)
-            rows = list(reader)
-        self.assertEqual(reader.fieldnames, columns)
+        rows = read_table(self.table)
+        self.assertEqual(list(rows[0]), columns)
         return rows
 
     def test_two_blocks(self):
@@ -90,8 +87,7 @@ class Components(CommandLineTest):
         rows = []
         for options in ([], ["--components", self.table], ["--components", self.table, "--least-volume", "0.3"]):
             self.run_good(*film, *options)
-            with numbers.open() as file:
-                rows.append(list(csv.DictReader(file)))
+            rows.append(read_table(numbers))
         names = ["time", "triangles", "area", "volume", "pieces", "mast.last", "mast.depth", "mast.crossings"]
         self.assertEqual([list(table[0]) for table in rows], [names[:4] + names[5:], names, names])
         self.assertEqual([row["time"] for row in rows[0]], ["0", "0.1", "0.25"])

@@ -1,13 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Gauges by the program marching-correctors: test_gauge.py PROGRAM PRELOAD."""
-import csv
 import subprocess
 import time
 import xml.etree.ElementTree
 
 import particle_files as files
-from command_line_test import CommandLineTest, main
+from command_line_test import CommandLineTest, main, read_table
 
 COLUMNS = ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"]
 UP = "mast=0,0,-1:0,0,1"
@@ -24,8 +23,7 @@ class Gauge(CommandLineTest):
         return self.run_program(source or self.input, self.table, *options)
 
     def rows(self):
-        with self.table.open() as file:
-            rows = list(csv.DictReader(file))
+        rows = read_table(self.table)
         self.assertEqual(list(rows[0]), COLUMNS)
         return rows
 

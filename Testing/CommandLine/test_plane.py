@@ -8,7 +8,7 @@ import struct
 
 import particle_files as files
 from binary_files import unpacked
-from command_line_test import ISO, CommandLineTest, main
+from command_line_test import ISO, CommandLineTest, main, read_table
 
 SIDE = 20
 
@@ -121,8 +121,7 @@ class Plane(CommandLineTest):
         """Of two lines, one after the other; a closed one ends with its first point."""
         table = self.directory / "surface.csv"
         self.run_good(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6")
-        with open(table, encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = read_table(table)
         self.assertEqual({row["Line"] for row in rows}, {"0", "1"})
         for row in rows:
             self.assertAlmostEqual(math.hypot(float(row["X"]), float(row["Z"])), float(row["Radius"]), delta=0.02)
@@ -134,8 +133,7 @@ class Plane(CommandLineTest):
         # The numbers are those of the .vtp file, to the last bit.
         self.extract("--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
         self.run_program(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6", "--gradients")
-        with open(table, encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = read_table(table)
         for names, array in (("X", "Y", "Z"), "Points"), (("Radius",), "Radius"), ([f"Gradients:{a}" for a in range(3)], "Gradients"):
             values = iter(self.point_values(array))
             self.assertEqual({tuple(float(row[name]) for name in names) for row in rows}, set(zip(*[values] * len(names))))
@@ -166,14 +164,12 @@ class Plane(CommandLineTest):
         files.write_pvd(self.directory / "steps.pvd", [("0", "particles.vtp"), ("1", "particles.vtp")])
         table = self.directory / "numbers.csv"
         self.run_good("steps.pvd", "film_%d.vtp", "--free-surface", "--numbers", table)
-        with open(table, encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
+        rows = read_table(table)
         self.assertEqual(len(rows), 2)
         for row in rows:
             self.assertAlmostEqual(float(row["area"]), 4, delta=0.1)
         self.run_good(self.input, table, "--gauge", "up=0,0.25,-2:0,0.25,2")
-        with open(table, encoding="utf-8", newline="") as stream:
-            row, = csv.DictReader(stream)
+        row, = read_table(table)
         self.assertEqual((row["gauge"], row["state"]), ("up", "wet"))
         self.assertAlmostEqual(float(row["last"]), 3, delta=0.05)
 

@@ -1,10 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """What particles lack: volumes, smoothing lengths, densities. test_volumes.py PROGRAM PRELOAD"""
-import csv
-
 import particle_files as files
-from command_line_test import CommandLineTest, main
+from command_line_test import CommandLineTest, main, read_table
 
 DX = files.SPACING
 
@@ -19,8 +17,7 @@ class Volumes(CommandLineTest):
         table = self.directory / "levels.csv"
         result = self.run_program(self.input, table, "--gauge", "up=0.02,0,-.1:0.02,0,1", *options)
         self.assertEqual(result.returncode, 0, result.stderr)
-        with table.open() as file:
-            row, = csv.DictReader(file)
+        row, = read_table(table)
         return float(row["z"]) / DX - 4.5, result.stdout
 
     def test_still_water(self):

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The smallest runs that reach all kernels of adaptive cubes, probe, gauges, derivatives, box and period, and a
- * tank with all options in turn. Prints a hash of all bits of their results, for same_bits.cmake, and keeps
+/* The smallest runs that reach all kernels of adaptive cubes, probe, gauges, fluxes, derivatives, box and period,
+ * and a tank with all options in turn. Prints a hash of all bits of their results, for same_bits.cmake, and keeps
  * them for bits.cmake; whether these are right is tested elsewhere. With words: those of these runs. */
 
 #include "core_keep.h"
@@ -249,6 +249,31 @@ static int modules_gauge(mcor_context* context, const mcor_input* input)
   return good;
 }
 
+static int modules_flux(mcor_context* context, const mcor_input* input)
+{
+  static const double wall[9] = { -1, -3, 0.7, 30, -3, 0.9, -1, 20, 0.7 };
+  static const double disc[6] = { 1, 1, 1, 1, 2, 3 };
+  const mcor_section sections[2] = {
+    { .shape = MCOR_SECTION_RECTANGLE, .points = wall, .point_count = 3 },
+    { .shape = MCOR_SECTION_DISC, .points = disc, .point_count = 2, .radius = 3 }
+  };
+  const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
+  mcor_fluxes found;
+  const mcor_status status = mcor_flux(context, input, &options, sections, 2, &found);
+  modules_hash hash = { "flux", CORE_HASH_OF_NOTHING };
+  int good = status == MCOR_OK;
+  for (int64_t i = 0; i < found.count; ++i)
+  {
+    const mcor_flux_reading* reading = &found.readings[i];
+    const double numbers[3] = { reading->area, reading->volume_flux, reading->mass_flux };
+    modules_add(&hash, numbers, sizeof numbers);
+    good = good && reading->area > 1;
+  }
+  modules_end(context, &hash, found.count, 0);
+  mcor_free_fluxes(&found);
+  return good;
+}
+
 /* A tank along x in three blocks of spacing 1, 2 and 4, on a layer of solids; the fluid's top slopes and is
  * rough. Particles repeat along y. Without libm, so the bits are the same everywhere. */
 static core_set tank_set(bool flat)
@@ -441,7 +466,8 @@ int main(int argc, char** argv)
 {
   static const modules_run runs[] = { { "adaptive", modules_adaptive },
     { "uniform", modules_uniform }, { "plane", modules_plane }, { "probe", modules_probe },
-    { "derive", modules_derive }, { "gauge", modules_gauge }, { "tank", modules_tank } };
+    { "derive", modules_derive }, { "gauge", modules_gauge }, { "flux", modules_flux },
+    { "tank", modules_tank } };
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {

@@ -726,6 +726,61 @@ extern "C"
   void mcor_free_gauges(mcor_gauges* gauges);
   const char* mcor_gauge_state_name(mcor_gauge_state state); /* "dry", "wet", "full" */
 
+  /* What mcor_section.points are. */
+  typedef enum mcor_section_shape
+  {
+    /* a corner, then the ends of the two edges that begin there; the normal is the cross product of the edges */
+    MCOR_SECTION_RECTANGLE = 0,
+    MCOR_SECTION_DISC = 1, /* the centre, and the normal, of any length */
+    MCOR_SECTION_BOX =
+      2, /* the lowest and the highest corner; the section is its sides, with normals outwards */
+    MCOR_SECTION_TRIANGLES = 3, /* three points each; the normal follows the right-hand rule */
+    /* Two points each, in two dimensions only. The normal points to the right of the way from the first to the second
+     * one, seen with the plane's first axis (x; y where x is constant) to the right and its second one upwards. */
+    MCOR_SECTION_LINES = 4,
+    MCOR_SECTION_SHAPE_COUNT
+  } mcor_section_shape;
+
+  /* Where flow is measured. In two dimensions a section is its line in the plane of the particles, and areas are
+   * lengths: a rectangle needs an edge along the constant axis, a disc a normal in the plane; a box has four sides. */
+  typedef struct mcor_section
+  {
+    mcor_section_shape shape;
+    const double*
+      points; /* [point_count][3], unit L; of a disc the second is a direction; borrowed until return */
+    int64_t point_count;
+    double radius;    /* of a disc, unit L, above 0 */
+    const char* name; /* for messages; may be NULL */
+  } mcor_section;
+
+  /* What flows through the part of a section that is in fluid. A: the area of that part, v and rho: the Shepard means of
+   * velocity and density there, n: the normal. */
+  typedef struct mcor_flux_reading
+  {
+    int outside;        /* 1: no particle's support reaches the section */
+    double area;        /* A, unit L^2 */
+    double volume_flux; /* the integral of v . n */
+    double mass_flux;   /* of rho v . n; NaN without densities */
+    double velocity;    /* volume_flux / area; NaN where the area is 0 */
+  } mcor_flux_reading;
+
+  /* Owned; free with mcor_free_fluxes. */
+  typedef struct mcor_fluxes
+  {
+    int64_t count;               /* of sections */
+    mcor_flux_reading* readings; /* [count] */
+    mcor_statistics statistics;
+  } mcor_fluxes;
+
+  /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3 components; 2 will do
+   * in two dimensions) and, if there are two, the density. Fluid is where the weight sum is at least the level, as for
+   * mcor_gauge. Sections are divided into triangles of 3/4 of the smallest (scaled) smoothing length, which are cut
+   * where the weight sum is the level, and divided further until two divisions agree to 1e-6 of the largest flux that
+   * the section's velocities allow. Options, globals and ranks as for mcor_gauge. *fluxes is overwritten. */
+  mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
+    const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
+  void mcor_free_fluxes(mcor_fluxes* fluxes);
+
   /* Widened smoothing lengths. Owned; free with mcor_free_widening. */
   typedef struct mcor_widening
   {

@@ -103,6 +103,24 @@ static mcor_status gauge(
   return status;
 }
 
+static mcor_status flux(
+  mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
+{
+  static const double points[9] = { -3, -0.5, 0, 3, -0.5, 0, -3, 1, 1 };
+  const mcor_section section = { .points = points, .point_count = 3 };
+  mcor_input moving = *input;
+  const mcor_array velocity = moving.positions;
+  moving.attributes = &velocity;
+  mcor_fluxes found;
+  const mcor_status status = mcor_flux(context, &moving, &s->options, &section, 1, &found);
+  CORE_CHECK(status == MCOR_OK ? found.count == 1 && found.readings[0].area > 1
+                               : !found.readings && found.count == 0,
+    "%s: %d sections", mcor_status_name(status), (int)found.count);
+  *hash = status == MCOR_OK ? hash_numbers(&found.readings[0].area, 2) : 0;
+  mcor_free_fluxes(&found);
+  return status;
+}
+
 /* Of one rank alone. */
 static int callbacks, fail_callback = -1;
 
@@ -337,6 +355,8 @@ static void test_probe_and_derive(void** state)
   s.call = derive;
   sweep_room(*state, &s, 3, 40);
   s.call = gauge;
+  sweep_room(*state, &s, 3, 40);
+  s.call = flux;
   sweep_room(*state, &s, 3, 40);
   core_free_set(&set);
   free(points);

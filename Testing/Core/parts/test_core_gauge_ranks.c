@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges of ranks, in threads: to the last bit what one process reads, whoever owns which part of a line. */
+/* Gauges and fluxes of ranks, in threads: to the last bit what one process reads, whoever owns which part of a line or
+ * section. */
 
 #include "core_fixture.h"
 #include "core_ranks.h"
@@ -12,6 +13,7 @@
 #include <string.h>
 
 #define LINES 90
+#define SECTIONS 4
 
 /* A block of particles in no order, with holes. */
 static core_set make_sparse(void)
@@ -28,10 +30,12 @@ typedef struct gauge_job
 {
   const core_set* set;
   const mcor_gauge_line* lines;
-  int axis, periodic, volumes; /* volumes: computed */
+  const mcor_section* sections; /* NULL: gauges */
+  int axis, periodic, volumes;  /* volumes: computed */
   mcor_globals globals;
   mcor_status status[CORE_MOST_RANKS];
   mcor_gauges gauges[CORE_MOST_RANKS];
+  mcor_fluxes fluxes[CORE_MOST_RANKS];
   char error[CORE_MOST_RANKS][400];
 } gauge_job;
 
@@ -49,12 +53,20 @@ static mcor_options gauge_options(const gauge_job* job)
   return options;
 }
 
-static mcor_input gauge_input(const gauge_job* job, const core_set* set)
+static mcor_input gauge_input(
+  const gauge_job* job, const core_set* set, mcor_array velocity_and_density[2])
 {
   mcor_input input = core_input(set);
   if (job->volumes)
   {
     input.volume = (mcor_array){ 0 };
+  }
+  if (job->sections)
+  {
+    velocity_and_density[0] = core_array(set->position, 3);
+    velocity_and_density[1] = core_array(set->smoothing_length, 1);
+    input.attributes = velocity_and_density;
+    input.attribute_count = 2;
   }
   return input;
 }
@@ -107,12 +119,15 @@ static void gauge_part(core_rank* rank, void* data)
   const double reach = job->globals.measured.support_max * (job->volumes ? 3 : 1) +
     mcor_reach_margin(&options, &job->globals, 0);
   core_set part = take_near(job, sides[0], sides[1], reach);
-  const mcor_input input = gauge_input(job, &part);
+  mcor_array arrays[2];
+  const mcor_input input = gauge_input(job, &part, arrays);
   mcor_context* context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
   if (job->status[r] == MCOR_OK)
   {
-    job->status[r] = mcor_gauge(context, &input, &options, job->lines, LINES, &job->gauges[r]);
+    job->status[r] = job->sections
+      ? mcor_flux(context, &input, &options, job->sections, SECTIONS, &job->fluxes[r])
+      : mcor_gauge(context, &input, &options, job->lines, LINES, &job->gauges[r]);
   }
   snprintf(job->error[r], sizeof job->error[r], "%s", mcor_last_error(context));
   if (job->status[r] != MCOR_OK)
@@ -171,7 +186,8 @@ static void test_same_bits(void** state)
       .periodic = kind >= 3,
       .volumes = kind == 1 || kind == 5 };
     make_lines(lines, job.axis);
-    const mcor_input input = gauge_input(&job, &set);
+    mcor_array arrays[2];
+    const mcor_input input = gauge_input(&job, &set, arrays);
     mcor_options options = gauge_options(&job);
     mcor_gauges alone;
     CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, LINES, &alone));
@@ -195,13 +211,69 @@ static void test_same_bits(void** state)
   core_free_set(&set);
 }
 
+static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
+{
+  int same = a->count == b->count;
+  for (int64_t i = 0; i < a->count && same; ++i)
+  {
+    same = !a->readings[i].outside == !b->readings[i].outside &&
+      memcmp(&a->readings[i].area, &b->readings[i].area, 4 * sizeof(double)) == 0;
+  }
+  return same;
+}
+
+/* Through all boxes, beyond a period, in one box alone, and outside. */
+static void test_same_fluxes(void** state)
+{
+  static const double points[SECTIONS][9] = { { -7, -6.5, 1, 7, -6, 2, -7, 7, -1 },
+    { 0.3, 1, 0.2, 1, 3, -2 }, { -1, -2, -0.5, 9, 5, 1.5 },
+    { 99, 99, 99, 99, 98, 99, 99, 99, 98 } };
+  const mcor_section sections[SECTIONS] = {
+    { .shape = MCOR_SECTION_RECTANGLE, .points = points[0], .point_count = 3 },
+    { .shape = MCOR_SECTION_DISC, .points = points[1], .point_count = 2, .radius = 4.4 },
+    { .shape = MCOR_SECTION_BOX, .points = points[2], .point_count = 2 },
+    { .shape = MCOR_SECTION_TRIANGLES, .points = points[3], .point_count = 3 }
+  };
+  core_set set = make_sparse();
+  for (int kind = 0; kind < 4; ++kind)
+  {
+    gauge_job job = { .set = &set,
+      .sections = sections,
+      .axis = kind % 3,
+      .periodic = kind >= 2,
+      .volumes = kind == 1 };
+    mcor_array arrays[2];
+    const mcor_input input = gauge_input(&job, &set, arrays);
+    mcor_options options = gauge_options(&job);
+    mcor_fluxes alone;
+    CORE_OK(*state, mcor_flux(*state, &input, &options, sections, SECTIONS, &alone));
+    assert_true(alone.readings[0].area > 20 && alone.readings[3].outside);
+    CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
+    for (int count = 1; count <= CORE_MOST_RANKS; count += 1 + count / 3)
+    {
+      core_world world;
+      core_run_ranks(count, gauge_part, &job, &world);
+      for (int r = 0; r < count; ++r)
+      {
+        CORE_CHECK(job.status[r] == MCOR_OK && same_fluxes(&job.fluxes[r], &alone),
+          "case %d: rank %d of %d differs: %s", kind, r, count, job.error[r]);
+        mcor_free_fluxes(&job.fluxes[r]);
+      }
+    }
+    mcor_free_globals(&job.globals);
+    mcor_free_fluxes(&alone);
+  }
+  core_free_set(&set);
+}
+
 /* Cubes so small that a box lacks the particles around it. */
 static void test_small_cubes(void** state)
 {
   core_set set = make_sparse();
   mcor_gauge_line line = { .from = { 0, 0, -7 }, .to = { 0, 0, 7 } };
   gauge_job job = { .set = &set, .lines = &line };
-  const mcor_input input = gauge_input(&job, &set);
+  mcor_array arrays[2];
+  const mcor_input input = gauge_input(&job, &set, arrays);
   mcor_options options = gauge_options(&job);
   options.cube_size = 0.05;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
@@ -217,6 +289,6 @@ static void test_small_cubes(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_same_bits),
-    cmocka_unit_test(test_small_cubes) };
+    cmocka_unit_test(test_same_fluxes), cmocka_unit_test(test_small_cubes) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -45,50 +45,52 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 
 /* ---- the call ---- */
 
-/* Where the field is evaluated: around the lines, or around the box; that is not one of cells. */
-static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const mcor_gauge_job* job)
+/* The box is not one of cells. */
+mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const double* box, double margin, const double low[3],
+  const double high[3])
 {
-  double* sides = context->box.points;
-  if (job->box)
+  MCOR_RETURN_IF(box && margin > mcor_reach_margin(options, options->globals, 0), context,
+    MCOR_INVALID_ARGUMENT,
+    "The cube size %g is too small for gauges and fluxes over ranks: a box would lack particles "
+    "that they need. Leave the cube size at its default.",
+    options->globals->measured.cube);
+  for (int a = 0; a < 3; ++a)
   {
-    const double h = options->globals->measured.h_min;
-    const double margin = MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, h);
-    MCOR_RETURN_IF(margin > mcor_reach_margin(options, options->globals, 0), context,
-      MCOR_INVALID_ARGUMENT,
-      "The cube size %g is too small for gauges over ranks: a box would lack particles that the "
-      "gauges need. Leave the cube size at its default.",
-      options->globals->measured.cube);
-    for (int side = 0; side < 6; ++side)
-    {
-      sides[side] = job->box[side] + (side % 2 ? margin : -margin);
-    }
-  }
-  for (int a = 0; a < 3 && !job->box; ++a)
-  {
-    sides[2 * a] = DBL_MAX;
-    sides[2 * a + 1] = -DBL_MAX;
-    for (int64_t i = 0; i < job->line_count; ++i)
-    {
-      const double from = job->lines[i].from[a], to = job->lines[i].to[a];
-      sides[2 * a] = fmin(sides[2 * a], fmin(from, to));
-      sides[2 * a + 1] = fmax(sides[2 * a + 1], fmax(from, to));
-    }
+    context->box.points[2 * a] = box ? box[2 * a] - margin : low[a];
+    context->box.points[2 * a + 1] = box ? box[2 * a + 1] + margin : high[a];
   }
   context->box.has_points = true;
   /* Another call may take the search grid, unless it is cut. */
-  context->box.of_points = job->box || input->particles_version == 0 || context->run.far;
+  context->box.of_points = box || input->particles_version == 0 || context->run.far;
   return MCOR_OK;
 }
 
-/* With the search grid made. */
-static mcor_status mcor_gauge_on_grid(
-  mcor_context* context, const mcor_input* input, mcor_gauge_job* job)
+static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const mcor_gauge_job* job)
 {
-  for (int64_t i = 0; i < job->line_count; ++i)
+  double low[3], high[3];
+  for (int a = 0; a < 3; ++a)
   {
-    MCOR_TRY(mcor_plan_line(job, i));
+    low[a] = DBL_MAX;
+    high[a] = -DBL_MAX;
+    for (int64_t i = 0; i < job->line_count; ++i)
+    {
+      const double from = job->lines[i].from[a], to = job->lines[i].to[a];
+      low[a] = fmin(low[a], fmin(from, to));
+      high[a] = fmax(high[a], fmax(from, to));
+    }
   }
+  const double margin = job->box
+    ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
+    : 0;
+  return mcor_bound_level(context, input, options, job->box, margin, low, high);
+}
+
+mcor_status mcor_run_points(
+  mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*))
+{
+  mcor_context* context = job->context;
   double* places = malloc(3 * (size_t)MCOR_GAUGE_BATCH * sizeof *places);
   uint8_t* valid = malloc(MCOR_GAUGE_BATCH);
   mcor_samples samples = { .valid = valid };
@@ -99,7 +101,7 @@ static mcor_status mcor_gauge_on_grid(
   job->run = &run;
   mcor_status status = mcor_allocated(context, places && valid);
   status = status == MCOR_OK ? mcor_load_attributes(context, input, 0) : status;
-  status = status == MCOR_OK ? mcor_gauge_all(job) : status;
+  status = status == MCOR_OK ? work(job) : status;
   mcor_release_probe(&run);
   free(places);
   free(valid);
@@ -118,7 +120,11 @@ static mcor_status mcor_gauge_particles(
   }
   MCOR_TRY(mcor_bound_gauges(context, input, options, job));
   MCOR_TRY(mcor_prepare(context, input, options));
-  return context->grid.count > 0 ? mcor_gauge_on_grid(context, input, job) : MCOR_OK;
+  for (int64_t i = 0; i < job->line_count && context->grid.count > 0; ++i)
+  {
+    MCOR_TRY(mcor_plan_line(job, i));
+  }
+  return context->grid.count > 0 ? mcor_run_points(job, input, mcor_gauge_all) : MCOR_OK;
 }
 
 static mcor_status mcor_gauge_input(
@@ -176,7 +182,7 @@ static mcor_status mcor_run_gauge(
     {
       status = mcor_fail(context, MCOR_INVALID_ARGUMENT,
         "Gauge %s leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
-        mcor_label_gauge(line, i).text, 'x' + w, plane->at);
+        mcor_label_gauge(line->name, i).text, 'x' + w, plane->at);
     }
   }
   double box[6];
@@ -195,6 +201,22 @@ static mcor_status mcor_run_gauge(
   return status;
 }
 
+mcor_status mcor_begin_level(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const char* who, mcor_options* own, double* level)
+{
+  *level =
+    options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
+  MCOR_RETURN_IF(options->iso_count > 1 || !(*level > 0) || !isfinite(*level), context,
+    MCOR_INVALID_ARGUMENT,
+    "%s need one iso value above 0, the weight sum at which the fluid ends; 0.5 is usual.", who);
+  *own = *options;
+  mcor_evaluate_without_scalar(input, own);
+  own->ranks = options->globals ? options->ranks : NULL;
+  own->outputs = 0;
+  own->node_threshold = 0;
+  return MCOR_OK;
+}
+
 mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mcor_options* options,
   const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges)
 {
@@ -206,18 +228,10 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
     MCOR_INVALID_ARGUMENT,
     "input, options and lines must not be NULL, and count must not be negative.");
-  const double level =
-    options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
-  MCOR_RETURN_IF(options->iso_count > 1 || !(level > 0) || !isfinite(level), context,
-    MCOR_INVALID_ARGUMENT,
-    "Gauges need one iso value above 0, the weight sum at which the fluid ends; 0.5 is usual.");
-  mcor_options own = *options;
-  own.field = MCOR_WEIGHT_SUM;
+  double level;
+  mcor_options own;
+  MCOR_TRY(mcor_begin_level(context, input, options, "Gauges", &own, &level));
   const bool uses_solids = mcor_uses_solids(input, &own);
-  mcor_evaluate_without_scalar(input, &own);
-  own.ranks = options->globals ? options->ranks : NULL;
-  own.outputs = 0;
-  own.node_threshold = 0;
   mcor_input without = *input;
   without.attributes = NULL;
   without.attribute_count = 0;

@@ -3,7 +3,8 @@
 #ifndef mcor_gauge_h
 #define mcor_gauge_h
 
-/* Lines on which the level's crossings are sought. Places on a line are numbers from 0 to 1. */
+/* Lines on which the level's crossings are sought. Places on a line are numbers from 0 to 1. Fluxes, see mcor_flux.h,
+ * seek them on the edges of a section's triangles. */
 
 #include "mcor_probe.h"
 
@@ -48,6 +49,9 @@ typedef struct mcor_gauge_job
   const double* box; /* [6], of the samples that this call owns; NULL: all */
   mcor_gauges* gauges;
   mcor_probe_run* run;         /* which evaluates */
+  /* Lines are in parameters, of which this makes points; NULL: they are in points. */
+  void (*map)(const void* data, const double parameters[3], double point[3]);
+  const void* map_data;
   mcor_gauge_samples* samples; /* [sample_room], sample_count of them in use */
   int64_t sample_count, sample_room;
   mcor_gauge_record* records; /* [record_room] */
@@ -59,14 +63,29 @@ typedef struct mcor_gauge_job
 /* Points on the device at a time. */
 #define MCOR_GAUGE_BATCH (1 << 18)
 
-/* How messages call a gauge: by its name in quotes, or its number. */
+/* How messages call a gauge or a section: by its name in quotes, or its number. */
 typedef struct mcor_gauge_label
 {
   char text[80];
 } mcor_gauge_label;
 
+/* mcor_gauge.c. What gauges and fluxes share. The options of a call for the level, which it checks; who: names what
+ * needs it. */
+mcor_status mcor_begin_level(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const char* who, mcor_options* own, double* level);
+/* Where the field is evaluated: from low to high, or, if ranks share the work, `margin` around the box. */
+mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const double* box, double margin, const double low[3],
+  const double high[3]);
+/* Does the work with the job's run ready for MCOR_GAUGE_BATCH points at a time, the attributes on the device. */
+mcor_status mcor_run_points(
+  mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*));
+
 /* mcor_gauge_line.c */
-mcor_gauge_label mcor_label_gauge(const mcor_gauge_line* line, int64_t number);
+mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
+/* The cells of a box, along x, y, z; whether a point is in one of them. */
+void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2]);
+bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2]);
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
 /* How far apart samples are at most, L. */
 double mcor_gauge_step(double h_scale, double smoothing_length_min);
@@ -78,6 +97,11 @@ mcor_status mcor_read_lines(
 
 /* mcor_gauge_solve.c. Evaluates samples [first, last) of the job's, and appends what is found to its records. */
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);
+/* Makes the job's changed parts so short that their crossings are known. one: each has one alone; else, in the first
+ * round, as many as show. */
+mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one);
+/* Where on such a part the weight sum is the level. */
+double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part);
 void mcor_free_gauge_parts(mcor_gauge_job* job);
 
 #endif

@@ -40,12 +40,12 @@ static double mcor_gauge_length(const mcor_gauge_line* line)
   return ldexp(sqrt(sum), exponent);
 }
 
-mcor_gauge_label mcor_label_gauge(const mcor_gauge_line* line, int64_t number)
+mcor_gauge_label mcor_label_gauge(const char* name, int64_t number)
 {
   mcor_gauge_label label;
-  if (line->name)
+  if (name)
   {
-    snprintf(label.text, sizeof label.text, "'%.70s'", line->name);
+    snprintf(label.text, sizeof label.text, "'%.70s'", name);
   }
   else
   {
@@ -56,7 +56,7 @@ mcor_gauge_label mcor_label_gauge(const mcor_gauge_line* line, int64_t number)
 
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number)
 {
-  const mcor_gauge_label label = mcor_label_gauge(line, number);
+  const mcor_gauge_label label = mcor_label_gauge(line->name, number);
   const char* which = label.text;
   for (int a = 0; a < 3; ++a)
   {
@@ -123,15 +123,24 @@ static mcor_status mcor_append_samples(
   return MCOR_OK;
 }
 
-/* Whether a place of the line is in one of the cells along the axes. */
-static bool mcor_is_owned(
-  const mcor_context* context, const mcor_gauge_line* line, double place, double cells[3][2])
+void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2])
 {
   const mcor_lattice* lattice = &context->lattice;
   for (int a = 0; a < 3; ++a)
   {
-    const double at = line->from[a] + place * (line->to[a] - line->from[a]);
-    double cell = floor(at / lattice->edge[a] - (double)lattice->origin[a]);
+    const bool periodic = lattice->period[a] > 0;
+    cells[a][0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
+    cells[a][1] = periodic ? cells[a][0] + lattice->period[a] : (double)lattice->last[a];
+    mcor_place_sides(lattice, a, box, cells[a]);
+  }
+}
+
+bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2])
+{
+  const mcor_lattice* lattice = &context->lattice;
+  for (int a = 0; a < 3; ++a)
+  {
+    double cell = floor(point[a] / lattice->edge[a] - (double)lattice->origin[a]);
     if (lattice->period[a] > 0)
     {
       cell -= floor((cell - lattice->period_first[a]) / lattice->period[a]) * lattice->period[a];
@@ -150,22 +159,18 @@ static bool mcor_is_owned(
 
 static mcor_status mcor_append_owned(mcor_gauge_job* job, const mcor_gauge_samples* whole)
 {
-  const mcor_context* context = job->context;
-  const mcor_lattice* lattice = &context->lattice;
-  double cells[3][2];
-  for (int a = 0; a < 3; ++a)
-  {
-    const bool periodic = lattice->period[a] > 0;
-    cells[a][0] = periodic ? lattice->period_first[a] : (double)lattice->first[a];
-    cells[a][1] = periodic ? cells[a][0] + lattice->period[a] : (double)lattice->last[a];
-    mcor_place_sides(lattice, a, job->box, cells[a]);
-  }
+  double cells[3][2], point[3];
+  mcor_own_cells(job->context, job->box, cells);
   const mcor_gauge_line* line = &job->lines[whole->line];
   int64_t begin = -1;
   for (int64_t i = whole->first; i <= whole->last + 1; ++i)
   {
-    const bool owned =
-      i <= whole->last && mcor_is_owned(context, line, (double)i / (double)whole->steps, cells);
+    const double place = (double)i / (double)whole->steps;
+    for (int a = 0; a < 3; ++a)
+    {
+      point[a] = line->from[a] + place * (line->to[a] - line->from[a]);
+    }
+    const bool owned = i <= whole->last && mcor_owns_point(job->context, point, cells);
     if (owned && begin < 0)
     {
       begin = i;
@@ -198,7 +203,7 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
     MCOR_OUT_OF_CAPACITY,
     "Gauge %s needs %.3g sample points, one every quarter of the smallest smoothing "
     "length %g; the limit is %.3g. Shorten the gauge.",
-    mcor_label_gauge(line, number).text, (whole_is_countable ? last - first : steps) + 1,
+    mcor_label_gauge(line->name, number).text, (whole_is_countable ? last - first : steps) + 1,
     context->measure.h_min, whole_is_countable ? (double)MCOR_GAUGE_MOST : 4e15);
   mcor_gauge_samples whole = {
     .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last

@@ -49,6 +49,12 @@ static mcor_status mcor_gauge_weights(
       const int a = i % 3;
       points[i] = l->from[a] + place[first + i / 3] * (l->to[a] - l->from[a]);
     }
+    for (int i = 0; i < n && job->map; ++i)
+    {
+      double at[3];
+      memcpy(at, points + 3 * i, sizeof at);
+      job->map(job->map_data, at, points + 3 * i);
+    }
     run->samples->weight_sum = weight + first;
     MCOR_TRY(mcor_report_launch(job->context));
     MCOR_TRY(mcor_probe_batch(run, 0, n));
@@ -272,12 +278,21 @@ static mcor_status mcor_scan_samples(
   return MCOR_OK;
 }
 
-/* Where on the last, short part of the line the weight sum is the level. */
-static double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part)
+double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part)
 {
   const double rise = part->high_weight - part->low_weight;
   const double share = rise != 0 ? (job->level - part->low_weight) / rise : 0.5;
   return part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
+}
+
+/* Parts may have several crossings in the first round; later, that would be rounding. */
+mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one)
+{
+  for (int round = 0; round < rounds && job->changed.count > 0; ++round)
+  {
+    MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, one || round > 0));
+  }
+  return MCOR_OK;
 }
 
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last)
@@ -292,11 +307,7 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
   {
     MCOR_TRY(mcor_look_closer(job, &job->suspects, MCOR_GAUGE_FINER, false));
   }
-  /* Parts may have several crossings in the first round; later, that would be rounding. */
-  for (int round = 0; round < MCOR_GAUGE_SOLVE_ROUNDS && job->changed.count > 0; ++round)
-  {
-    MCOR_TRY(mcor_look_closer(job, &job->changed, MCOR_GAUGE_SECTIONS, round > 0));
-  }
+  MCOR_TRY(mcor_solve_crossings(job, MCOR_GAUGE_SOLVE_ROUNDS, false));
   for (int64_t p = 0; p < job->changed.count; ++p)
   {
     const mcor_gauge_part* part = &job->changed.parts[p];

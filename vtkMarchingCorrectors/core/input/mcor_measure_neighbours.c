@@ -10,13 +10,13 @@
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
+#include "mcor_vector.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_PI 3.14159265358979323846
 #define MCOR_WATCHED 32 /* fluid particles, bits of a mask */
 #define MCOR_WATCH_CELLS                                                                           \
   64 /* at most, along each axis of a coarse grid, which has a bit of a row for each */
@@ -120,19 +120,6 @@ static void mcor_watch_particle(mcor_watch* watch, int slice, uint32_t reached, 
 /* In smoothing lengths: the greatest extent along the normal, the least one in the plane. */
 #define MCOR_THIN 0.1
 #define MCOR_BROAD 8
-
-static void mcor_cross(const double a[3], const double b[3], double cross[3])
-{
-  for (int i = 0; i < 3; ++i)
-  {
-    cross[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-  }
-}
-
-static double mcor_dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* Finds the normal of the plane through the first watched particle, the one farthest from it,
  * and the one farthest from the line between these. */

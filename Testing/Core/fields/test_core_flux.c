@@ -1,0 +1,550 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Fluxes: of uniform flow by hand, of others against integrals of what mcor_probe and mcor_gauge find. */
+
+#include "core_fixture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* A pool of spacing 1 from 0 to 24, 16 and 12 along x, y and z; its top slopes. */
+static core_set make_pool(double jitter)
+{
+  core_set set = core_make_set(24 * 16 * 14);
+  uint64_t seed = 5;
+  int64_t n = 0;
+  for (int i = 0; i < 24 * 16 * 14; ++i)
+  {
+    const double x[3] = { i % 24 + 0.5, i / 24 % 16 + 0.5, i / (24 * 16) + 0.5 };
+    if (x[2] < 10 + 0.15 * x[0])
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        set.position[3 * n + a] = x[a] + jitter * (random_unit(&seed) - 0.5);
+      }
+      set.smoothing_length[n] = 1.3;
+      set.volume[n++] = 1;
+    }
+  }
+  set.count = n;
+  return set;
+}
+
+/* Its middle in a plane of constant x, y or z, of the other coordinates in their order. */
+static core_set make_slice(int axis)
+{
+  core_set set = core_make_set(24 * 14);
+  int64_t n = 0;
+  for (int i = 0; i < 24 * 14; ++i)
+  {
+    const double u = i % 24 + 0.5, v = i / 24 + 0.5;
+    if (v < 10 + 0.15 * u)
+    {
+      set.position[3 * n + axis] = 8;
+      set.position[3 * n + (axis == 0 ? 1 : 0)] = u;
+      set.position[3 * n + (axis == 2 ? 1 : 2)] = v;
+      set.smoothing_length[n] = 1.3;
+      set.volume[n++] = 1;
+    }
+  }
+  set.count = n;
+  return set;
+}
+
+/* Particles with velocities and densities. */
+typedef struct fluid
+{
+  core_set set;
+  double *velocity, *density;
+  mcor_array attributes[2];
+} fluid;
+
+typedef void motion(const double x[3], double velocity[3], double* density);
+
+static void move_uniform(const double x[3], double velocity[3], double* density)
+{
+  (void)x;
+  memcpy(velocity, (double[3]){ 1, -2, 3 }, 3 * sizeof *velocity);
+  *density = 1000;
+}
+
+static void move_around(const double x[3], double velocity[3], double* density)
+{
+  memcpy(velocity, (double[3]){ 6 - x[1], x[0] - 11, 0 }, 3 * sizeof *velocity);
+  *density = 1;
+}
+
+static void move_anyhow(const double x[3], double velocity[3], double* density)
+{
+  velocity[0] = sin(0.7 * x[1]) + 0.2 * x[0];
+  velocity[1] = cos(0.9 * x[2]) * x[0] / 10;
+  velocity[2] = sin(0.5 * x[0] + 0.3 * x[1]) - 0.1 * x[2];
+  *density = 1000 + 50 * sin(0.4 * x[2] + x[0]);
+}
+
+static fluid make_fluid(core_set set, motion* move)
+{
+  fluid made = { .set = set,
+    .velocity = malloc(3 * (size_t)set.count * sizeof(double)),
+    .density = malloc((size_t)set.count * sizeof(double)) };
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    move(set.position + 3 * i, made.velocity + 3 * i, made.density + i);
+  }
+  made.attributes[0] = core_array(made.velocity, 3);
+  made.attributes[1] = core_array(made.density, 1);
+  return made;
+}
+
+static void free_fluid(fluid* made)
+{
+  core_free_set(&made->set);
+  free(made->velocity);
+  free(made->density);
+}
+
+static mcor_input fluid_input(const fluid* made)
+{
+  mcor_input input = core_input(&made->set);
+  input.attributes = made->attributes;
+  input.attribute_count = 2;
+  return input;
+}
+
+static mcor_options flux_options(mcor_type precision)
+{
+  mcor_options options = core_options(NULL);
+  options.iso_count = 0;
+  options.precision = precision;
+  return options;
+}
+
+typedef struct shape
+{
+  mcor_section_shape kind;
+  int count;
+  double points[27], radius;
+} shape;
+
+static mcor_section section_of(const shape* of)
+{
+  return (mcor_section){
+    .shape = of->kind, .points = of->points, .point_count = of->count, .radius = of->radius
+  };
+}
+
+static mcor_flux_reading flux_of(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, const shape* of)
+{
+  const mcor_section section = section_of(of);
+  mcor_fluxes found;
+  CORE_OK(context, mcor_flux(context, input, options, &section, 1, &found));
+  assert_int_equal(found.count, 1);
+  const mcor_flux_reading reading = found.readings[0];
+  mcor_free_fluxes(&found);
+  return reading;
+}
+
+/* Within 1e-6 of rho v A. */
+static void check_reading(
+  const mcor_flux_reading* r, double area, double flux, const char* what, size_t number)
+{
+  const double scale = area * sqrt(14);
+  CORE_CHECK(!r->outside && fabs(r->area - area) <= 1e-6 * area, "%s %zu: area %.9g, not %.9g",
+    what, number, r->area, area);
+  CORE_CHECK(
+    fabs(r->volume_flux - flux) <= 1e-6 * scale && fabs(r->mass_flux - 1000 * flux) <= 1e-3 * scale,
+    "%s %zu: fluxes %.9g, %.9g, not %.9g", what, number, r->volume_flux, r->mass_flux, flux);
+  assert_true(fabs(r->velocity - r->volume_flux / r->area) < 1e-12);
+}
+
+/* v = (1, -2, 3), rho = 1000, in fluid. */
+static void test_uniform(void** state)
+{
+  const struct
+  {
+    shape section;
+    double area, flux;
+  } cases[] = {
+    { { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 3, 5, 9, 3, 5, 3, 8 }, 0 }, 30, 30 },
+    { { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 3, 5, 3, 8, 5, 9, 3 }, 0 }, 30, -30 },
+    { { MCOR_SECTION_RECTANGLE, 3, { 4, 4, 4, 5.5, 4, 4, 4, 7, 6 }, 0 }, sqrt(29.25), 19.5 },
+    { { MCOR_SECTION_DISC, 2, { 10, 8, 5, 0, 0, -7 }, 2.5 }, PI * 6.25, -3 * PI * 6.25 },
+    { { MCOR_SECTION_DISC, 2, { 10, 8, 5, 1, 1, 1 }, 0.2 }, PI * 0.04, 2 / sqrt(3) * PI * 0.04 },
+    { { MCOR_SECTION_BOX, 2, { 3, 3, 3, 9.3, 5, 7.1 }, 0 }, 2 * (12.6 + 8.2 + 25.83), 0 },
+    { { MCOR_SECTION_TRIANGLES, 9,
+        { 6, 6, 3, 11, 6, 3, 6, 10.2, 3, 6, 6, 3, 6, 6, 3, 7, 7, 7, 11, 6, 3, 11, 10.2, 3, 6, 10.2,
+          3 },
+        0 },
+      21, 63 },
+  };
+  fluid made = make_fluid(make_pool(0.2), move_uniform);
+  mcor_input input = fluid_input(&made);
+  const mcor_options options = flux_options(MCOR_FLOAT32);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    const mcor_flux_reading r = flux_of(*state, &input, &options, &cases[i].section);
+    check_reading(&r, cases[i].area, cases[i].flux, "case", i);
+  }
+  input.attribute_count = 1;
+  const mcor_flux_reading r = flux_of(*state, &input, &options, &cases[0].section);
+  assert_true(isnan(r.mass_flux) && fabs(r.volume_flux - 30) < 1e-4);
+  free_fluid(&made);
+}
+
+/* In a plane a section is its line there. The axes that are not constant, in their order, are u and v. */
+static void test_uniform_in_a_plane(void** state)
+{
+  const struct
+  {
+    shape section; /* in the plane of constant z */
+    double area, flux;
+  } cases[] = {
+    { { MCOR_SECTION_LINES, 2, { 5, 3, 8, 5, 7, 8 }, 0 }, 4, 4 }, /* to the right of upwards */
+    { { MCOR_SECTION_LINES, 4, { 5, 3, 8, 9, 3, 8, 9, 3, 8, 9, 7, 8 }, 0 }, 8,
+      8 + 4 }, /* -v is 2 */
+    { { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 7, 5, 7, 7, 5, 3, 9 }, 0 }, 4, 4 },
+    { { MCOR_SECTION_DISC, 2, { 7, 6, 8, 1, 0, 0 }, 2 }, 4, 4 },
+    { { MCOR_SECTION_DISC, 2, { 7, 6, 9.2, 0, -3, 0 }, 2 }, 3.2, 6.4 },
+    { { MCOR_SECTION_BOX, 2, { 5, 3, 8, 9, 6, 8 }, 0 }, 14, 0 },
+  };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int to[3] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2, axis };
+    fluid made = make_fluid(make_slice(axis), move_uniform);
+    for (int64_t i = 0; i < made.set.count; ++i)
+    {
+      made.velocity[3 * i + to[0]] = 1;
+      made.velocity[3 * i + to[1]] = -2;
+      made.velocity[3 * i + to[2]] = 99;
+    }
+    mcor_input input = fluid_input(&made);
+    const mcor_options options = flux_options(MCOR_FLOAT32);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+    {
+      shape turned = cases[i].section;
+      for (int p = 0; p < 3 * turned.count; ++p)
+      {
+        turned.points[p / 3 * 3 + to[p % 3]] = cases[i].section.points[p];
+      }
+      /* Of a rectangle the cross product turns with odd orders of axes. */
+      const double sign = turned.kind == MCOR_SECTION_RECTANGLE && axis == 1 ? -1 : 1;
+      mcor_flux_reading r = flux_of(*state, &input, &options, &turned);
+      check_reading(
+        &r, cases[i].area, sign * cases[i].flux, "1 of 3 axes, case", 10 * (size_t)axis + i);
+    }
+    /* Velocities of two components will do. */
+    for (int64_t i = 0; i < made.set.count; ++i)
+    {
+      memcpy(made.velocity + 2 * i, (double[2]){ 1, -2 }, 2 * sizeof(double));
+    }
+    made.attributes[0].components = 2;
+    shape line = { MCOR_SECTION_LINES, 2, { 0 }, 0 };
+    for (int p = 0; p < 6; ++p)
+    {
+      line.points[p / 3 * 3 + to[p % 3]] = cases[0].section.points[p];
+    }
+    mcor_flux_reading r = flux_of(*state, &input, &options, &line);
+    check_reading(&r, 4, 4, "two components, axis", (size_t)axis);
+    free_fluid(&made);
+  }
+}
+
+/* Around an axis in a perfect lattice's plane of symmetry, of which means are exact there: nothing flows through a disc
+ * all around, and as through a rigid body through half of it. */
+static void test_vortex(void** state)
+{
+  const shape across = { MCOR_SECTION_DISC, 2, { 11, 6, 5, 0, 0, 1 }, 3 };
+  const shape beside = { MCOR_SECTION_DISC, 2, { 11, 6, 5, 0, 1, 0 }, 3 };
+  const shape half = { MCOR_SECTION_RECTANGLE, 3, { 11, 6, 3, 11, 6, 7, 14, 6, 3 }, 0 };
+  fluid made = make_fluid(make_pool(0), move_around);
+  const mcor_input input = fluid_input(&made);
+  const mcor_options options = flux_options(MCOR_FLOAT32);
+  const double area = 9 * PI;
+  mcor_flux_reading r = flux_of(*state, &input, &options, &across);
+  CORE_CHECK(fabs(r.area - area) < 1e-6 * area && r.volume_flux == 0, "%g", r.volume_flux);
+  r = flux_of(*state, &input, &options, &beside);
+  CORE_CHECK(fabs(r.volume_flux) < 1e-6 * area, "%g", r.volume_flux);
+  r = flux_of(*state, &input, &options, &half);
+  CORE_CHECK(fabs(r.volume_flux - 18) < 1e-6 * 18, "%.9g", r.volume_flux);
+  free_fluid(&made);
+}
+
+/* ---- integrals of samples ---- */
+
+/* Gauss's points and shares on [-1, 1]. */
+static const double gauss_at[3] = { -0.7745966692414834, 0, 0.7745966692414834 };
+static const double gauss_share[3] = { 5 / 18.0, 8 / 18.0, 5 / 18.0 };
+
+/* Point i of n, three in each of n / 3 parts of [low, high], and its share of the length. */
+static double gauss_point(double low, double high, int i, int n, double* share)
+{
+  const double part = (high - low) / (n / 3);
+  *share = part * gauss_share[i % 3];
+  return low + part * (i / 3 + 0.5 + 0.5 * gauss_at[i % 3]);
+}
+
+/* The integral of div(rho v) over a box. */
+static double divergence_in(
+  mcor_context* context, const mcor_input* input, const double* low, const double* high)
+{
+  int n[3];
+  int64_t count = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    n[a] = high[a] > low[a] ? 3 * (int)ceil((high[a] - low[a]) / 0.15) : 1;
+    count *= n[a];
+  }
+  double* points = malloc(3 * (size_t)count * sizeof(double));
+  double* share = malloc((size_t)count * sizeof(double));
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const int64_t at[3] = { i % n[0], i / n[0] % n[1], i / n[0] / n[1] };
+    share[i] = 1;
+    for (int a = 0; a < 3; ++a)
+    {
+      double part = 1;
+      points[3 * i + a] = n[a] > 1 ? gauss_point(low[a], high[a], (int)at[a], n[a], &part) : low[a];
+      share[i] *= part;
+    }
+  }
+  mcor_options options = flux_options(MCOR_FLOAT64);
+  options.outputs = MCOR_OUT_GRADIENTS;
+  mcor_samples samples;
+  const mcor_array where = core_array(points, 3);
+  CORE_OK(context, mcor_probe(context, input, &options, &where, count, &samples));
+  double sum = 0;
+  for (int64_t i = 0; i < count; ++i)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      sum += share[i] *
+        (samples.values[1][i] * samples.gradients[0][9 * i + 4 * a] +
+          samples.gradients[1][3 * i + a] * samples.values[0][3 * i + a]);
+    }
+  }
+  mcor_free_samples(&samples);
+  free(points);
+  free(share);
+  return sum;
+}
+
+/* Through closed sides flows what the divergence has inside. */
+static void test_sides_of_boxes(void** state)
+{
+  static const shape boxes[] = { { MCOR_SECTION_BOX, 2, { 3, 3, 3, 6.3, 5, 7.1 }, 0 },
+    { MCOR_SECTION_BOX, 2, { 12.2, 7.1, 2.3, 13, 8.5, 4 }, 0 } };
+  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  fluid slice = make_fluid(make_slice(1), move_anyhow);
+  const mcor_input input = fluid_input(&made), plane = fluid_input(&slice);
+  for (int precision = 0; precision < 2; ++precision)
+  {
+    const mcor_options options = flux_options((mcor_type)precision);
+    for (size_t i = 0; i < 2; ++i)
+    {
+      const double expected = divergence_in(*state, &input, boxes[i].points, boxes[i].points + 3);
+      const mcor_flux_reading r = flux_of(*state, &input, &options, &boxes[i]);
+      CORE_CHECK(fabs(r.mass_flux - expected) < 1e-5 * fabs(expected),
+        "box %zu: %.9g, expected %.9g", i, r.mass_flux, expected);
+    }
+    const shape flat = { MCOR_SECTION_BOX, 2, { 3, 8, 3, 6.3, 8, 7.1 }, 0 };
+    const double expected = divergence_in(*state, &plane, flat.points, flat.points + 3);
+    const mcor_flux_reading r = flux_of(*state, &plane, &options, &flat);
+    CORE_CHECK(fabs(r.mass_flux - expected) < 1e-5 * fabs(expected), "plane: %.9g, expected %.9g",
+      r.mass_flux, expected);
+  }
+  free_fluid(&made);
+  free_fluid(&slice);
+}
+
+#define COLUMNS 360
+#define ROWS 120
+
+/* A wall across the pool, from below the top to above it: against columns of samples up to where gauges find the top. */
+static void test_half_out_of_the_water(void** state)
+{
+  const double x = 8.2, low = 5, y0 = 2, y1 = 14;
+  const shape wall = { MCOR_SECTION_RECTANGLE, 3, { x, y0, low, x, y1, low, x, y0, 14 }, 0 };
+  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  const mcor_input input = fluid_input(&made);
+  const mcor_options options = flux_options(MCOR_FLOAT64);
+  mcor_gauge_line* lines = calloc(COLUMNS, sizeof *lines);
+  double* points = malloc(3 * COLUMNS * ROWS * sizeof(double));
+  double* share = malloc(COLUMNS * ROWS * sizeof(double));
+  double width[COLUMNS], area = 0, flux = 0;
+  for (int i = 0; i < COLUMNS; ++i)
+  {
+    const double y = gauss_point(y0, y1, i, COLUMNS, &width[i]);
+    lines[i] = (mcor_gauge_line){ .from = { x, y, low }, .to = { x, y, 14 } };
+  }
+  mcor_gauges gauges;
+  CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, COLUMNS, &gauges));
+  for (int i = 0; i < COLUMNS; ++i)
+  {
+    assert_int_equal(gauges.readings[i].crossing_count, 1);
+    area += width[i] * gauges.readings[i].depth;
+    for (int j = 0; j < ROWS; ++j)
+    {
+      double part, *to = points + 3 * (i * ROWS + j);
+      memcpy(to, lines[i].from, 3 * sizeof(double));
+      to[2] = gauss_point(low, low + gauges.readings[i].depth, j, ROWS, &part);
+      share[i * ROWS + j] = width[i] * part;
+    }
+  }
+  mcor_samples samples;
+  const mcor_array where = core_array(points, 3);
+  CORE_OK(*state, mcor_probe(*state, &input, &options, &where, COLUMNS * ROWS, &samples));
+  for (int i = 0; i < COLUMNS * ROWS; ++i)
+  {
+    flux += share[i] * samples.values[0][3 * i] * samples.values[1][i];
+  }
+  const mcor_flux_reading r = flux_of(*state, &input, &options, &wall);
+  CORE_CHECK(area > 60 && area < 84 && fabs(r.area - area) < 1e-6 * area,
+    "area %.9g, expected %.9g", r.area, area);
+  CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), "mass flux %.9g, expected %.9g",
+    r.mass_flux, flux);
+  mcor_free_samples(&samples);
+  mcor_free_gauges(&gauges);
+  free_fluid(&made);
+  free(lines);
+  free(points);
+  free(share);
+}
+
+/* Alone and among others, from particles that stay on the device or do not, from any threads. */
+static void test_same_bits(void** state)
+{
+  static const shape shapes[] = { { MCOR_SECTION_RECTANGLE, 3,
+                                    { 8.2, 2, 5, 8.2, 19, 5, 8.2, 2, 14 }, 0 },
+    { MCOR_SECTION_DISC, 2, { 10, 8, 10, 1, 2, -1 }, 5 },
+    { MCOR_SECTION_BOX, 2, { -3, 3, 3, 9.3, 5, 17.1 }, 0 } };
+  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  mcor_input input = fluid_input(&made);
+  const mcor_options options = flux_options(MCOR_FLOAT32);
+  const mcor_section sections[3] = { section_of(&shapes[0]), section_of(&shapes[1]),
+    section_of(&shapes[2]) };
+  mcor_fluxes all;
+  CORE_OK(*state, mcor_flux(*state, &input, &options, sections, 3, &all));
+  for (int i = 0; i < 3; ++i)
+  {
+    input.particles_version = input.attributes_version = (uint64_t)i % 2;
+    const mcor_flux_reading one = flux_of(*state, &input, &options, &shapes[i]);
+    assert_true(one.area == all.readings[i].area && one.mass_flux == all.readings[i].mass_flux &&
+      one.volume_flux == all.readings[i].volume_flux && one.area > 1);
+  }
+  mcor_free_fluxes(&all);
+  free_fluid(&made);
+}
+
+/* Beyond a period's side there is its image. */
+static void test_period(void** state)
+{
+  shape wall = { MCOR_SECTION_RECTANGLE, 3, { 22.25, 2, 5, 22.25, 9, 5, 26.25, 2, 9 }, 0 };
+  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  const mcor_input input = fluid_input(&made);
+  mcor_options options = flux_options(MCOR_FLOAT32);
+  options.periodic[1] = 24;
+  const mcor_flux_reading here = flux_of(*state, &input, &options, &wall);
+  for (int p = 0; p < 9; p += 3)
+  {
+    wall.points[p] -= 48;
+  }
+  const mcor_flux_reading there = flux_of(*state, &input, &options, &wall);
+  CORE_CHECK(fabs(here.area - 7 * sqrt(32)) < 1e-4 && here.mass_flux == there.mass_flux,
+    "%g, %.17g, %.17g", here.area, here.mass_flux, there.mass_flux);
+  free_fluid(&made);
+}
+
+/* Fails with a sentence that has these words. */
+static void refuse(mcor_context* context, const mcor_input* input, const mcor_options* options,
+  const mcor_section* section, const char* words)
+{
+  mcor_fluxes fluxes;
+  CORE_CHECK(mcor_flux(context, input, options, section, 1, &fluxes) != MCOR_OK, "%s", words);
+  CORE_CHECK(strstr(mcor_last_error(context), words), "%s", mcor_last_error(context));
+  assert_true(fluxes.count == 0 && !fluxes.readings);
+}
+
+static void test_weird(void** state)
+{
+  static const struct
+  {
+    shape section;
+    const char* words;
+  } cases[] = {
+    { { MCOR_SECTION_RECTANGLE, 3, { 1, 2, 3, 1, 2, 5, 1, 2, 9 }, 0 }, "number 0 has no area" },
+    { { MCOR_SECTION_RECTANGLE, 2, { 1, 2, 3, 1, 2, 5 }, 0 }, "has 2 points, which its shape" },
+    { { MCOR_SECTION_RECTANGLE, 3, { 1, NAN, 3, 1, 2, 5, 4, 4, 4 }, 0 }, "not finite" },
+    { { MCOR_SECTION_RECTANGLE, 3, { 1, 2, 3, 1e200, 2, 5, 4, 1e200, 4 }, 0 }, "is too large" },
+    { { MCOR_SECTION_RECTANGLE, 3, { 1, 2, 3, 1e30, 2, 5, 4, 1e30, 4 }, 0 },
+      "cells along an edge" },
+    { { MCOR_SECTION_DISC, 2, { 1, 2, 3, 0, 0, 0 }, 1 }, "has no area" },
+    { { MCOR_SECTION_DISC, 2, { 1, 2, 3, 0, 0, 1 }, 0 }, "has no area" },
+    { { MCOR_SECTION_BOX, 2, { 1, 2, 3, 1, 5, 5 }, 0 }, "has no area" },
+    { { MCOR_SECTION_TRIANGLES, 3, { 1, 2, 3, 1, 2, 3, 5, 6, 7 }, 0 }, "has no area" },
+    { { MCOR_SECTION_TRIANGLES, 4, { 0 }, 0 }, "has 4 points" },
+    { { MCOR_SECTION_LINES, 2, { 1, 2, 3, 4, 5, 6 }, 0 }, "is a line" },
+    { { (mcor_section_shape)9, 2, { 0 }, 0 }, "which its shape" },
+  };
+  fluid made = make_fluid(make_pool(0), move_uniform);
+  mcor_input input = fluid_input(&made);
+  mcor_options options = flux_options(MCOR_FLOAT32);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  {
+    const mcor_section section = section_of(&cases[i].section);
+    refuse(*state, &input, &options, &section, cases[i].words);
+  }
+  const shape good = { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 3, 5, 9, 3, 5, 3, 8 }, 0 };
+  const shape far = { MCOR_SECTION_RECTANGLE, 3, { 105, 3, 3, 105, 9, 3, 105, 3, 8 }, 0 };
+  const mcor_section section = section_of(&good);
+  const double zero = 0;
+  options.iso_values = &zero;
+  options.iso_count = 1;
+  refuse(*state, &input, &options, &section, "Fluxes need one iso value above 0");
+  options.iso_count = 0;
+  made.density[7] = NAN;
+  refuse(*state, &input, &options, &section, "The density is NaN or infinite at particle 7.");
+  made.density[7] = 1000;
+  made.attributes[0].components = 1;
+  refuse(*state, &input, &options, &section, "The velocity has 1 components");
+  made.attributes[0].components = 3;
+  input.attribute_count = 0;
+  refuse(*state, &input, &options, &section, "fluxes need the velocity");
+  input.attribute_count = 2;
+  mcor_flux_reading r = flux_of(*state, &input, &options, &far);
+  assert_true(
+    r.outside && r.area == 0 && r.volume_flux == 0 && r.mass_flux == 0 && isnan(r.velocity));
+  input.count = 0;
+  r = flux_of(*state, &input, &options, &good);
+  assert_true(r.outside && r.area == 0);
+  mcor_fluxes fluxes;
+  CORE_OK(*state, mcor_flux(*state, &input, &options, NULL, 0, &fluxes));
+  assert_int_equal(fluxes.count, 0);
+  mcor_free_fluxes(&fluxes);
+  free_fluid(&made);
+  fluid slice = make_fluid(make_slice(1), move_uniform);
+  input = fluid_input(&slice);
+  const shape off[3] = { { MCOR_SECTION_LINES, 2, { 5, 3, 3, 5, 3, 8 }, 0 },
+    { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 3, 5, 9, 4, 5, 3, 8 }, 0 },
+    { MCOR_SECTION_DISC, 2, { 5, 3, 3, 0, 1, 1 }, 2 } };
+  for (int i = 0; i < 3; ++i)
+  {
+    const mcor_section section_off = section_of(&off[i]);
+    refuse(
+      *state, &input, &options, &section_off, "is not a line in the plane y = 8 of the particles");
+  }
+  free_fluid(&slice);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_uniform),
+    cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_vortex),
+    cmocka_unit_test(test_sides_of_boxes), cmocka_unit_test(test_half_out_of_the_water),
+    cmocka_unit_test(test_same_bits), cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

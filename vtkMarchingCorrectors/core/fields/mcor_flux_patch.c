@@ -1,0 +1,472 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Sections of fluxes as patches, and patches as cells. */
+
+#include "mcor_flux.h"
+#include "mcor_plane.h"
+#include "mcor_vector.h"
+
+#include <string.h>
+
+/* Cells of all sections near particles at most; and of one along an edge, wherever. */
+#define MCOR_FLUX_MOST (1 << 24)
+#define MCOR_FLUX_MOST_ALONG 4e15
+
+/* ---- sections ---- */
+
+static mcor_gauge_label mcor_label_section(const mcor_flux_job* job, int64_t number)
+{
+  return mcor_label_gauge(job->sections[number].name, number);
+}
+
+/* Appends a patch, given in the caller's coordinates. normal: of length 1. */
+static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch_shape shape,
+  const double corner[3], const double along[3], const double across[3], const double normal[3])
+{
+  mcor_context* context = job->edges.context;
+  const mcor_plane* plane = &context->plane;
+  mcor_patch patch = { .shape = shape, .section = number };
+  double product[3];
+  mcor_cross(along, across, product);
+  patch.measure =
+    sqrt(shape == MCOR_PATCH_LINE ? mcor_dot(along, along) : mcor_dot(product, product));
+  const double share = shape == MCOR_PATCH_TRIANGLE ? 0.5
+    : shape == MCOR_PATCH_QUARTER                   ? MCOR_PI / 4
+                                                    : 1;
+  job->found[number].area += share * patch.measure;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int axis = mcor_plane_axis(plane, a);
+    patch.corner[a] = corner[axis] - (a == 2 ? plane->at : 0);
+    patch.along[a] = along[axis];
+    patch.across[a] = across[axis];
+    const double ends[2] = { along[axis], across[axis] };
+    job->low[a] = fmin(job->low[a], patch.corner[a] + fmin(ends[0], 0) + fmin(ends[1], 0));
+    job->high[a] = fmax(job->high[a], patch.corner[a] + fmax(ends[0], 0) + fmax(ends[1], 0));
+  }
+  for (int c = 0, axis = 0; axis < 3; ++axis)
+  {
+    /* Velocities of two components lack that of the constant axis. */
+    if (job->velocity_components == 3 || axis != mcor_plane_axis(plane, 2))
+    {
+      patch.normal[c++] = normal[axis];
+    }
+  }
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&job->patches, job->patch_count, &job->patch_room, sizeof *job->patches));
+  job->patches[job->patch_count++] = patch;
+  return MCOR_OK;
+}
+
+static mcor_status mcor_leaves_plane(const mcor_flux_job* job, int64_t number)
+{
+  const mcor_plane* plane = &job->edges.context->plane;
+  return mcor_fail(job->edges.context, MCOR_INVALID_ARGUMENT,
+    "Section %s is not a line in the plane %c = %.9g of the particles. Give it two points there.",
+    mcor_label_section(job, number).text, 'x' + mcor_plane_axis(plane, 2), plane->at);
+}
+
+static mcor_status mcor_add_line(mcor_flux_job* job, int64_t number, const double corner[3],
+  const double along[3], const double normal[3])
+{
+  static const double none[3] = { 0 };
+  return mcor_add_patch(job, number, MCOR_PATCH_LINE, corner, along, none, normal);
+}
+
+/* In two dimensions its line, where it goes through the plane. */
+static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const double corner[3],
+  const double edges[2][3], const double normal[3])
+{
+  const mcor_plane* plane = &job->edges.context->plane;
+  if (!job->is_plane)
+  {
+    return mcor_add_patch(job, number, MCOR_PATCH_RECTANGLE, corner, edges[0], edges[1], normal);
+  }
+  const int u = mcor_plane_axis(plane, 0), v = mcor_plane_axis(plane, 1),
+            w = mcor_plane_axis(plane, 2);
+  for (int e = 0; e < 2; ++e)
+  {
+    const double *line = edges[e], *through = edges[1 - e];
+    if (line[w] == 0 && through[u] == 0 && through[v] == 0 && (line[u] != 0 || line[v] != 0))
+    {
+      const double low = corner[w] + fmin(through[w], 0), high = corner[w] + fmax(through[w], 0);
+      double begin[3] = { corner[0], corner[1], corner[2] };
+      begin[w] = plane->at;
+      return low <= plane->at && plane->at <= high ? mcor_add_line(job, number, begin, line, normal)
+                                                   : MCOR_OK;
+    }
+  }
+  return mcor_leaves_plane(job, number);
+}
+
+static mcor_status mcor_add_box(mcor_flux_job* job, int64_t number, const double* low)
+{
+  const double* high = low + 3;
+  const int w = mcor_plane_axis(&job->edges.context->plane, 2);
+  for (int side = 0; side < 6; ++side)
+  {
+    const int a = side / 2, is_high = side % 2;
+    double corner[3] = { low[0], low[1], low[2] }, edges[2][3] = { { 0 } }, normal[3] = { 0 };
+    corner[a] = is_high ? high[a] : low[a];
+    normal[a] = is_high ? 1 : -1;
+    for (int e = 1; e < 3; ++e)
+    {
+      const int along = (a + e) % 3;
+      edges[is_high ? e - 1 : 2 - e][along] = high[along] - low[along];
+    }
+    MCOR_TRY(job->is_plane && a == w
+        ? MCOR_OK
+        : mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, normal));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_add_disc(
+  mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
+{
+  const mcor_plane* plane = &job->edges.context->plane;
+  double axes[2][3], axis[3] = { 0 };
+  if (job->is_plane)
+  {
+    const int w = mcor_plane_axis(plane, 2);
+    const double off = plane->at - centre[w], half = sqrt(fmax(radius * radius - off * off, 0));
+    double corner[3] = { 0 };
+    axis[w] = 1;
+    mcor_cross(axis, normal, axes[0]);
+    for (int a = 0; a < 3; ++a)
+    {
+      corner[a] = a == w ? plane->at : centre[a] - half * axes[0][a];
+      axes[0][a] *= 2 * half;
+    }
+    return normal[w] != 0 ? mcor_leaves_plane(job, number)
+      : half > 0          ? mcor_add_line(job, number, corner, axes[0], normal)
+                          : MCOR_OK;
+  }
+  const int least = fabs(normal[0]) <= fabs(normal[1])
+    ? (fabs(normal[0]) <= fabs(normal[2]) ? 0 : 2)
+    : (fabs(normal[1]) <= fabs(normal[2]) ? 1 : 2);
+  axis[least] = 1;
+  mcor_cross(normal, axis, axes[0]);
+  mcor_normalise(axes[0]);
+  mcor_cross(normal, axes[0], axes[1]);
+  for (int quarter = 0; quarter < 4; ++quarter)
+  {
+    double along[3], across[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      along[a] = (quarter / 2 ? -radius : radius) * axes[quarter % 2][a];
+      across[a] = ((quarter + 1) / 2 % 2 ? -radius : radius) * axes[1 - quarter % 2][a];
+    }
+    MCOR_TRY(mcor_add_patch(job, number, MCOR_PATCH_QUARTER, centre, along, across, normal));
+  }
+  return MCOR_OK;
+}
+
+/* Triangles without area are left out. */
+static mcor_status mcor_add_triangles(mcor_flux_job* job, int64_t number)
+{
+  const mcor_section* section = &job->sections[number];
+  for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 9)
+  {
+    double edges[2][3], normal[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      edges[0][a] = x[3 + a] - x[a];
+      edges[1][a] = x[6 + a] - x[a];
+    }
+    mcor_cross(edges[0], edges[1], normal);
+    MCOR_TRY(job->is_plane ? mcor_leaves_plane(job, number)
+        : mcor_normalise(normal) > 0
+        ? mcor_add_patch(job, number, MCOR_PATCH_TRIANGLE, x, edges[0], edges[1], normal)
+        : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
+{
+  const mcor_section* section = &job->sections[number];
+  const mcor_plane* plane = &job->edges.context->plane;
+  const int w = mcor_plane_axis(plane, 2), first = w == 0 ? 1 : 0, second = w == 2 ? 1 : 2;
+  MCOR_RETURN_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
+    "Section %s is a line, through which only particles in a plane flow. Give it an area, by a "
+    "corner and two ends.",
+    mcor_label_section(job, number).text);
+  for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 6)
+  {
+    double along[3], normal[3] = { 0 };
+    for (int a = 0; a < 3; ++a)
+    {
+      along[a] = x[3 + a] - x[a];
+    }
+    normal[first] = along[second];
+    normal[second] = -along[first];
+    MCOR_TRY(x[w] != plane->at || x[3 + w] != plane->at ? mcor_leaves_plane(job, number)
+        : mcor_normalise(normal) > 0 ? mcor_add_line(job, number, x, along, normal)
+                                     : MCOR_OK);
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
+{
+  const mcor_section* section = &job->sections[number];
+  const double* x = section->points;
+  double normal[3], edges[2][3];
+  switch (section->shape)
+  {
+    case MCOR_SECTION_RECTANGLE:
+      for (int a = 0; a < 3; ++a)
+      {
+        edges[0][a] = x[3 + a] - x[a];
+        edges[1][a] = x[6 + a] - x[a];
+      }
+      mcor_cross(edges[0], edges[1], normal);
+      return mcor_normalise(normal) > 0
+        ? mcor_add_rectangle(job, number, x, (const double(*)[3])edges, normal)
+        : MCOR_OK;
+    case MCOR_SECTION_DISC:
+      memcpy(normal, x + 3, sizeof normal);
+      return mcor_normalise(normal) > 0 && section->radius > 0
+        ? mcor_add_disc(job, number, x, normal, section->radius)
+        : MCOR_OK;
+    case MCOR_SECTION_BOX:
+      return mcor_add_box(job, number, x);
+    case MCOR_SECTION_TRIANGLES:
+      return mcor_add_triangles(job, number);
+    default:
+      return mcor_add_lines(job, number);
+  }
+}
+
+/* Whether it has some size, were it not for the plane of the particles. */
+static bool mcor_has_size(const mcor_flux_job* job, int64_t number)
+{
+  const mcor_section* section = &job->sections[number];
+  const double* x = section->points;
+  if (section->shape == MCOR_SECTION_DISC)
+  {
+    return section->radius > 0 && mcor_dot(x + 3, x + 3) > 0;
+  }
+  for (int a = 0; a < 3 && section->shape == MCOR_SECTION_BOX; ++a)
+  {
+    const bool flat = job->is_plane && a == mcor_plane_axis(&job->edges.context->plane, 2);
+    if (flat ? x[a] > x[3 + a] : x[a] >= x[3 + a])
+    {
+      return false;
+    }
+  }
+  return section->shape == MCOR_SECTION_BOX || job->found[number].area > 0 || job->is_plane;
+}
+
+mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
+{
+  static const int points[MCOR_SECTION_SHAPE_COUNT] = { 3, 2, 2, 3, 2 };
+  mcor_context* context = job->edges.context;
+  const mcor_section* section = &job->sections[number];
+  const mcor_gauge_label label = mcor_label_section(job, number);
+  const int64_t n = section->point_count;
+  const bool is_known = (unsigned)section->shape < MCOR_SECTION_SHAPE_COUNT;
+  const bool is_list =
+    section->shape == MCOR_SECTION_TRIANGLES || section->shape == MCOR_SECTION_LINES;
+  MCOR_RETURN_IF(!is_known || !section->points || n <= 0 ||
+      (is_list ? n % points[section->shape] != 0 : n != points[section->shape]),
+    context, MCOR_INVALID_ARGUMENT,
+    "Section %s has %lld points, which its shape cannot have. See mcor_section_shape.", label.text,
+    (long long)n);
+  for (int64_t i = 0; i < n; ++i)
+  {
+    const double* x = section->points + 3 * i;
+    MCOR_RETURN_IF(!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]), context,
+      MCOR_INVALID_ARGUMENT,
+      "Section %s has a point that is not finite, (%g, %g, %g). Give it numbers.", label.text, x[0],
+      x[1], x[2]);
+  }
+  MCOR_TRY(mcor_add_shape(job, number));
+  MCOR_RETURN_IF(!mcor_has_size(job, number), context, MCOR_INVALID_ARGUMENT,
+    "Section %s has no area. Give it edges of some length that are not parallel, a radius above 0, "
+    "or a box whose first sides are the lower ones.",
+    label.text);
+  MCOR_RETURN_IF(!isfinite(job->found[number].area), context, MCOR_INVALID_ARGUMENT,
+    "Section %s is too large for its area to be a number. Make it smaller.", label.text);
+  return MCOR_OK;
+}
+
+/* ---- places ---- */
+
+void mcor_map_patch(const void* data, const double parameters[3], double point[3])
+{
+  const mcor_flux_job* job = data;
+  const mcor_patch* patch = &job->patches[(int64_t)parameters[2]];
+  double along = parameters[0], across = parameters[1];
+  if (patch->shape == MCOR_PATCH_QUARTER)
+  {
+    /* (1 - v^2, 2 v) / (1 + v^2) are on the circle, and have the same bits everywhere, unlike sine and cosine. */
+    const double v = parameters[1], radius = parameters[0] / (1 + v * v);
+    along = radius * (1 - v * v);
+    across = radius * (2 * v);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    point[a] = patch->corner[a] + along * patch->along[a] + across * patch->across[a];
+  }
+}
+
+double mcor_patch_measure(const mcor_patch* patch, const double uv[2])
+{
+  return patch->shape == MCOR_PATCH_QUARTER ? patch->measure * (2 * uv[0] / (1 + uv[1] * uv[1]))
+                                            : patch->measure;
+}
+
+/* ---- cells ---- */
+
+/* Cells [first, last) along u and v of a patch. */
+typedef struct mcor_flux_block
+{
+  int64_t patch, first[2], last[2];
+} mcor_flux_block;
+
+typedef struct mcor_flux_reach
+{
+  double low[3], high[3];
+  double (*owned)[2]; /* cells of the box that this call owns; NULL: all */
+} mcor_flux_reach;
+
+/* Whether a block comes near the reach. */
+static bool mcor_is_near(
+  const mcor_flux_job* job, const mcor_flux_reach* reach, const mcor_flux_block* block)
+{
+  const mcor_patch* patch = &job->patches[block->patch];
+  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    const double at[3] = { (double)(corner % 2 ? block->last[0] : block->first[0]) /
+        patch->counts[0],
+      (double)(corner / 2 ? block->last[1] : block->first[1]) / patch->counts[1],
+      (double)block->patch };
+    double point[3];
+    mcor_map_patch(job, at, point);
+    for (int a = 0; a < 3; ++a)
+    {
+      low[a] = fmin(low[a], point[a]);
+      high[a] = fmax(high[a], point[a]);
+    }
+  }
+  /* How far an arc leaves its chord. */
+  const double turn = (double)(block->last[1] - block->first[1]) / patch->counts[1];
+  const double bulge =
+    patch->shape == MCOR_PATCH_QUARTER ? 0.5 * sqrt(patch->measure) * turn * turn : 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (high[a] + bulge < reach->low[a] || low[a] - bulge > reach->high[a])
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+static mcor_status mcor_list_block(
+  mcor_flux_job* job, const mcor_flux_reach* reach, const mcor_flux_block* block)
+{
+  const mcor_patch* patch = &job->patches[block->patch];
+  const int64_t counts[2] = { block->last[0] - block->first[0], block->last[1] - block->first[1] };
+  if (!mcor_is_near(job, reach, block) ||
+    (patch->shape == MCOR_PATCH_TRIANGLE &&
+      (double)(block->first[0] + block->first[1]) >= patch->counts[0]))
+  {
+    return MCOR_OK;
+  }
+  if (counts[0] > 1 || counts[1] > 1)
+  {
+    const int longer = counts[1] > counts[0];
+    mcor_flux_block halves[2] = { *block, *block };
+    halves[0].last[longer] = halves[1].first[longer] = block->first[longer] + counts[longer] / 2;
+    MCOR_TRY(mcor_list_block(job, reach, &halves[0]));
+    return mcor_list_block(job, reach, &halves[1]);
+  }
+  const double middle[3] = { ((double)block->first[0] + 0.5) / patch->counts[0],
+    ((double)block->first[1] + 0.5) / patch->counts[1], (double)block->patch };
+  double point[3];
+  mcor_map_patch(job, middle, point);
+  if (reach->owned && !mcor_owns_point(job->edges.context, point, reach->owned))
+  {
+    return MCOR_OK;
+  }
+  mcor_context* context = job->edges.context;
+  MCOR_RETURN_IF(job->cell_count >= MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
+    "Section %s has, with those before it, more than %d cells of %g, 3/4 of the smallest smoothing "
+    "length, near particles. Make it smaller.",
+    mcor_label_section(job, patch->section).text, MCOR_FLUX_MOST,
+    MCOR_FLUX_CELL * job->smoothing_length);
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&job->cells, job->cell_count, &job->cell_room, sizeof *job->cells));
+  job->cells[job->cell_count++] =
+    (mcor_flux_cell){ block->patch, block->first[0], block->first[1] };
+  return MCOR_OK;
+}
+
+/* How many cells a patch has along its parameters. */
+static void mcor_count_cells_of(mcor_patch* patch, double step)
+{
+  double third[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    third[a] = patch->across[a] - patch->along[a];
+  }
+  double lengths[2] = { sqrt(mcor_dot(patch->along, patch->along)),
+    sqrt(mcor_dot(patch->across, patch->across)) };
+  if (patch->shape == MCOR_PATCH_TRIANGLE)
+  {
+    lengths[0] = lengths[1] = fmax(fmax(lengths[0], lengths[1]), sqrt(mcor_dot(third, third)));
+  }
+  lengths[1] *=
+    patch->shape == MCOR_PATCH_QUARTER ? 2 : 1; /* its arc at most, were it as fast all along */
+  for (int p = 0; p < 2; ++p)
+  {
+    patch->counts[p] = fmax(ceil(lengths[p] / step), 1);
+  }
+}
+
+mcor_status mcor_list_flux_cells(mcor_flux_job* job)
+{
+  mcor_context* context = job->edges.context;
+  const mcor_lattice* lattice = &context->lattice;
+  job->smoothing_length = context->run.options->h_scale * context->measure.h_min;
+  const double step = MCOR_FLUX_CELL * job->smoothing_length;
+  const double* box = job->edges.box;
+  double owned[3][2];
+  mcor_flux_reach reach = { .owned = box ? owned : NULL };
+  if (box)
+  {
+    mcor_own_cells(context, box, owned);
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool periodic = lattice->period[a] > 0; /* along periods particles are everywhere */
+    reach.low[a] = periodic ? -INFINITY : context->measure.low[a] - lattice->cube;
+    reach.high[a] = periodic ? INFINITY : context->measure.high[a] + lattice->cube;
+    if (box && !periodic)
+    {
+      reach.low[a] = fmax(reach.low[a], box[2 * a] - 2 * step);
+      reach.high[a] = fmin(reach.high[a], box[2 * a + 1] + 2 * step);
+    }
+  }
+  for (int64_t p = 0; p < job->patch_count; ++p)
+  {
+    mcor_patch* patch = &job->patches[p];
+    mcor_count_cells_of(patch, step);
+    MCOR_RETURN_IF(
+      !(patch->counts[0] <= MCOR_FLUX_MOST_ALONG) || !(patch->counts[1] <= MCOR_FLUX_MOST_ALONG),
+      context, MCOR_INVALID_ARGUMENT,
+      "Section %s needs %g cells along an edge with the smallest smoothing length %g; the limit is "
+      "%g. Make it smaller.",
+      mcor_label_section(job, patch->section).text, fmax(patch->counts[0], patch->counts[1]),
+      context->measure.h_min, MCOR_FLUX_MOST_ALONG);
+    const mcor_flux_block whole = { .patch = p,
+      .last = { (int64_t)patch->counts[0], (int64_t)patch->counts[1] } };
+    MCOR_TRY(mcor_list_block(job, &reach, &whole));
+  }
+  return MCOR_OK;
+}

@@ -1,0 +1,677 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Integrals over pieces of cells. One between corners that are in fluid is a quadrature exact for cubic functions,
+ * whose points are corners, middles of edges, and the middle. One with corners on both sides is cut where its edges
+ * cross the level; of a triangle, the level is a parabola through these crossings and one between them. A piece is
+ * divided until its parts have together what it has itself. */
+
+#include "mcor_flux.h"
+#include "mcor_ranks.h"
+#include "mcor_vector.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Cells that are looked at together. */
+#define MCOR_FLUX_TOGETHER 4096
+/* What a piece and its parts may differ by, of its area times the speeds of its section; where it is small beside the
+ * section, of more, as errors of many pieces make up for each other. */
+#define MCOR_FLUX_TOLERANCE 2.5e-7
+#define MCOR_FLUX_SMALL 0.125
+/* Parabolas are that much nearer to the level than their chords. */
+#define MCOR_FLUX_BULGE 64
+/* How often a piece is divided at most; and one whose sides are unclear. */
+#define MCOR_FLUX_DEPTH 12
+#define MCOR_FLUX_UNCLEAR_DEPTH 6
+/* A parabola through the ends and the middle of an edge leaves them by an eighth of its bend at most: where the level
+ * is nearer than four times that, it may cross the edge twice. */
+#define MCOR_FLUX_NEAR 0.5
+/* Weights bend by 4 / h^2 or so, from which they deviate from a line between two samples by an eighth of the square of
+ * the way. */
+#define MCOR_FLUX_BEND 0.125
+/* Rounds of mcor_solve_crossings: an edge's crossing is then known to 1e-7 of it. */
+#define MCOR_FLUX_SOLVE_ROUNDS 3
+
+#define MCOR_FLUX_POINTS 7 /* of a triangle; of a line 3 */
+
+/* Samples of one batch. */
+typedef struct mcor_flux_field
+{
+  double (*at)[3]; /* [MCOR_GAUGE_BATCH], parameters and patch */
+  double *weight, *velocity, *density;
+  double* values[2]; /* of the attributes: the last two */
+} mcor_flux_field;
+
+static int mcor_piece_points(const mcor_flux_job* job)
+{
+  return job->is_plane ? 3 : MCOR_FLUX_POINTS;
+}
+
+static int mcor_piece_corners(const mcor_flux_job* job)
+{
+  return job->is_plane ? 2 : 3;
+}
+
+/* Evaluates samples at places [0, count) of the field. */
+static mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int count)
+{
+  mcor_probe_run* run = job->edges.run;
+  double* points = (double*)run->points->data;
+  for (int i = 0; i < count; ++i)
+  {
+    mcor_map_patch(job, field->at[i], points + 3 * i);
+  }
+  memset(field->weight, 0, (size_t)count * sizeof(double));
+  memset(field->velocity, 0, (size_t)count * (size_t)job->velocity_components * sizeof(double));
+  memset(field->density, 0, (size_t)count * sizeof(double));
+  run->samples->weight_sum = field->weight;
+  run->samples->values = field->values;
+  MCOR_TRY(mcor_report_launch(job->edges.context));
+  return mcor_probe_batch(run, 0, count);
+}
+
+static double mcor_speed_along(
+  const mcor_flux_job* job, const mcor_flux_field* field, int64_t sample, const double direction[3])
+{
+  double sum = 0;
+  for (int c = 0; c < job->velocity_components; ++c)
+  {
+    sum += field->velocity[sample * job->velocity_components + c] * direction[c];
+  }
+  return sum;
+}
+
+/* ---- speeds ---- */
+
+/* The greatest over all ranks. */
+mcor_status mcor_scale_sections(mcor_flux_job* job)
+{
+  mcor_context* context = job->edges.context;
+  for (int64_t s = 0; s < job->section_count; ++s)
+  {
+    mcor_flux_section* found = &job->found[s];
+    double seen[2] = { found->speed, found->density };
+    MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, seen, 2));
+    found->speed = fmax(seen[0], job->speed_floor);
+    found->density = fmax(seen[1], job->density_floor);
+    MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &found->reached));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_find_speeds(mcor_flux_job* job, mcor_flux_field* field)
+{
+  for (int64_t first = 0; first < job->cell_count; first += MCOR_GAUGE_BATCH)
+  {
+    const int64_t rest = job->cell_count - first;
+    const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_flux_cell* cell = &job->cells[first + i];
+      const double* counts = job->patches[cell->patch].counts;
+      field->at[i][0] = ((double)cell->u + 0.5) / counts[0];
+      field->at[i][1] = job->is_plane ? 0 : ((double)cell->v + 0.5) / counts[1];
+      field->at[i][2] = (double)cell->patch;
+    }
+    MCOR_TRY(mcor_sample_flux(job, field, count));
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_patch* patch = &job->patches[job->cells[first + i].patch];
+      mcor_flux_section* found = &job->found[patch->section];
+      found->reached = found->reached || field->weight[i] != 0;
+      if (field->weight[i] >= job->edges.level)
+      {
+        const double* velocity = field->velocity + (int64_t)i * job->velocity_components;
+        found->speed = fmax(found->speed, sqrt(mcor_speed_along(job, field, i, velocity)));
+        found->density = fmax(found->density, fabs(field->density[i]));
+      }
+    }
+  }
+  return mcor_scale_sections(job);
+}
+
+/* ---- pieces ---- */
+
+/* Point k of a piece: its corners, the middles of its edges, its middle. */
+static void mcor_place_point(
+  const mcor_flux_job* job, const mcor_flux_piece* piece, int k, double at[3])
+{
+  const int corners = mcor_piece_corners(job);
+  const double(*c)[2] = piece->corner;
+  for (int p = 0; p < 2; ++p)
+  {
+    at[p] = k < corners ? c[k][p]
+      : k == 6          ? (c[0][p] + c[1][p] + c[2][p]) / 3
+                        : 0.5 * (c[k - corners][p] + c[(k - corners + 1) % corners][p]);
+  }
+  at[2] = (double)piece->patch;
+}
+
+/* Adds the integrals of a piece whose samples begin at number `first`. */
+static void mcor_integrate_piece(const mcor_flux_job* job, const mcor_flux_field* field,
+  const mcor_flux_piece* piece, int64_t first, double sum[MCOR_FLUX_SUMS])
+{
+  static const double triangle[MCOR_FLUX_POINTS] = { 1 / 20.0, 1 / 20.0, 1 / 20.0, 2 / 15.0,
+    2 / 15.0, 2 / 15.0, 9 / 20.0 };
+  static const double line[3] = { 1 / 6.0, 1 / 6.0, 2 / 3.0 };
+  const double* share = job->is_plane ? line : triangle;
+  const mcor_patch* patch = &job->patches[piece->patch];
+  const double(*c)[2] = piece->corner;
+  const double size = piece->factor *
+    (job->is_plane ? fabs(c[1][0] - c[0][0])
+                   : 0.5 *
+          fabs(
+            (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1])));
+  for (int k = 0; k < mcor_piece_points(job); ++k)
+  {
+    const double area = share[k] * size * mcor_patch_measure(patch, field->at[first + k]);
+    const double flux = area * mcor_speed_along(job, field, first + k, patch->normal);
+    sum[0] += area;
+    sum[1] += flux;
+    sum[2] += field->density[first + k] * flux;
+  }
+}
+
+/* A piece that is to be cut. */
+typedef struct mcor_flux_cut
+{
+  int64_t piece;
+  int sides;        /* corners in fluid, as bits */
+  double weight[3]; /* at corners */
+  double crossing
+    [2][2]; /* of a triangle: on the edges from its lone corner to the next, and to the last one */
+  double places[2]; /* of these, from that corner */
+} mcor_flux_cut;
+
+typedef struct mcor_flux_cuts
+{
+  mcor_flux_cut* cuts; /* [room] */
+  int64_t count, room;
+  mcor_gauge_line* lines; /* [line_room]: what the level crosses, in parameters */
+  int64_t line_count, line_room;
+} mcor_flux_cuts;
+
+/* A line, in parameters, that the level crosses. */
+static mcor_status mcor_append_crossed(mcor_flux_job* job, mcor_flux_cuts* cuts,
+  const double from[3], const double to[3], double from_weight, double to_weight)
+{
+  mcor_gauge_parts* parts = &job->edges.changed;
+  mcor_gauge_line line = { .name = NULL };
+  memcpy(line.from, from, sizeof line.from);
+  memcpy(line.to, to, sizeof line.to);
+  MCOR_TRY(mcor_make_room(job->edges.context, (void**)&cuts->lines, cuts->line_count,
+    &cuts->line_room, sizeof *cuts->lines));
+  MCOR_TRY(mcor_make_room(job->edges.context, (void**)&parts->parts, parts->count, &parts->capacity,
+    sizeof *parts->parts));
+  parts->parts[parts->count++] =
+    (mcor_gauge_part){ cuts->line_count, 0, 1, from_weight, to_weight };
+  cuts->lines[cuts->line_count++] = line;
+  return MCOR_OK;
+}
+
+/* Crosses the lines so far. Their parts of the job stay. */
+static mcor_status mcor_solve_cuts(mcor_flux_job* job, const mcor_flux_cuts* cuts)
+{
+  mcor_context* context = job->edges.context;
+  const int arrays = context->attributes.count;
+  job->edges.lines = cuts->lines;
+  context->attributes.count = 0; /* crossings are those of weights */
+  const mcor_status status = mcor_solve_crossings(&job->edges, MCOR_FLUX_SOLVE_ROUNDS, true);
+  context->attributes.count = arrays;
+  return status;
+}
+
+/* Where line number i is crossed: from 0 to 1, and its parameters. */
+static double mcor_crossing_at(
+  const mcor_flux_job* job, const mcor_flux_cuts* cuts, int64_t i, double at[2])
+{
+  const mcor_gauge_line* line = &cuts->lines[i];
+  const double place = mcor_crossing_of(&job->edges, &job->edges.changed.parts[i]);
+  at[0] = line->from[0] + place * (line->to[0] - line->from[0]);
+  at[1] = line->from[1] + place * (line->to[1] - line->from[1]);
+  return place;
+}
+
+/* The corner of a triangle that is alone on its side. */
+static int mcor_lone_corner(int sides)
+{
+  static const int lone[8] = { 0, 0, 1, 2, 2, 1, 0, 0 };
+  return lone[sides];
+}
+
+/* Whether the level, which an edge's ends are on one side of, may be crossed between them. */
+static bool mcor_may_cross(const mcor_flux_job* job, const mcor_flux_piece* piece, int from, int to,
+  const double* weight, double middle)
+{
+  const double level = job->edges.level;
+  const double ends[2] = { weight[from] - level, weight[to] - level };
+  const double nearest = fmin(fabs(middle - level), fmin(fabs(ends[0]), fabs(ends[1])));
+  double at[3], points[2][3], way[3];
+  mcor_place_point(job, piece, from, at);
+  mcor_map_patch(job, at, points[0]);
+  mcor_place_point(job, piece, to, at);
+  mcor_map_patch(job, at, points[1]);
+  for (int a = 0; a < 3; ++a)
+  {
+    way[a] = (points[1][a] - points[0][a]) / job->smoothing_length;
+  }
+  return (middle >= level) != (ends[0] >= 0) || nearest < MCOR_FLUX_BEND * mcor_dot(way, way) ||
+    nearest < MCOR_FLUX_NEAR * fabs(ends[0] + ends[1] - 2 * (middle - level));
+}
+
+/* What its samples tell of a piece. */
+static mcor_status mcor_take_piece(mcor_flux_job* job, const mcor_flux_field* field,
+  mcor_flux_pieces* pieces, int64_t number, int64_t first, mcor_flux_cuts* cuts)
+{
+  mcor_flux_piece* piece = &pieces->pieces[number];
+  const double* weight = field->weight + first;
+  const int corners = mcor_piece_corners(job), count = mcor_piece_points(job);
+  const int all = (1 << corners) - 1;
+  bool in[MCOR_FLUX_POINTS];
+  int sides = 0;
+  for (int k = 0; k < count; ++k)
+  {
+    in[k] = weight[k] >= job->edges.level;
+    sides |= k < corners && in[k] ? 1 << k : 0;
+  }
+  piece->unclear = !job->is_plane && (sides == 0 || sides == all) && in[6] != in[0];
+  for (int e = 0; e < count - corners && e < corners; ++e)
+  {
+    const int next = (e + 1) % corners;
+    piece->unclear = piece->unclear ||
+      (in[e] == in[next] && mcor_may_cross(job, piece, e, next, weight, weight[corners + e]));
+  }
+  memset(piece->sum, 0, sizeof piece->sum);
+  piece->bulge = 0;
+  if (sides == all)
+  {
+    mcor_integrate_piece(job, field, piece, first, piece->sum);
+  }
+  if (sides == 0 || sides == all)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_make_room(
+    job->edges.context, (void**)&cuts->cuts, cuts->count, &cuts->room, sizeof *cuts->cuts));
+  mcor_flux_cut* cut = &cuts->cuts[cuts->count++];
+  *cut = (mcor_flux_cut){ .piece = number, .sides = sides };
+  memcpy(cut->weight, weight, (size_t)corners * sizeof *weight);
+  const int lone = job->is_plane ? 0 : mcor_lone_corner(sides);
+  for (int other = 1; other < corners; ++other)
+  {
+    const int to = (lone + other) % corners;
+    double from_at[3], to_at[3];
+    mcor_place_point(job, piece, lone, from_at);
+    mcor_place_point(job, piece, to, to_at);
+    MCOR_TRY(mcor_append_crossed(job, cuts, from_at, to_at, weight[lone], weight[to]));
+  }
+  return MCOR_OK;
+}
+
+/* Samples all pieces. cuts: NULL: they lie in fluid, and add to whose[i]'s sums. */
+static mcor_status mcor_sample_pieces(mcor_flux_job* job, mcor_flux_field* field,
+  mcor_flux_pieces* pieces, mcor_flux_cuts* cuts, mcor_flux_pieces* owners, const int64_t* whose)
+{
+  const int points = mcor_piece_points(job), most = MCOR_GAUGE_BATCH / points;
+  for (int64_t first = 0; first < pieces->count; first += most)
+  {
+    const int64_t rest = pieces->count - first;
+    const int count = rest < most ? (int)rest : most;
+    for (int i = 0; i < count * points; ++i)
+    {
+      mcor_place_point(job, &pieces->pieces[first + i / points], i % points, field->at[i]);
+    }
+    MCOR_TRY(mcor_sample_flux(job, field, count * points));
+    for (int i = 0; i < count; ++i)
+    {
+      const int64_t number = first + i, sample = (int64_t)i * points;
+      if (cuts)
+      {
+        MCOR_TRY(mcor_take_piece(job, field, pieces, number, sample, cuts));
+        continue;
+      }
+      mcor_integrate_piece(
+        job, field, &pieces->pieces[number], sample, owners->pieces[whose[number]].sum);
+    }
+  }
+  return MCOR_OK;
+}
+
+/* The parts of pieces that lie in fluid, and whose they are. */
+typedef struct mcor_flux_parts
+{
+  mcor_flux_pieces pieces; /* with room for three of each cut */
+  int64_t* whose;
+} mcor_flux_parts;
+
+static void mcor_append_part(mcor_flux_parts* parts, const mcor_flux_pieces* pieces, int64_t whose,
+  const double* a, const double* b, const double* c, double factor)
+{
+  mcor_flux_piece* part = &parts->pieces.pieces[parts->pieces.count];
+  *part = (mcor_flux_piece){ .patch = pieces->pieces[whose].patch, .factor = factor };
+  memcpy(part->corner[0], a, sizeof part->corner[0]);
+  memcpy(part->corner[1], b, sizeof part->corner[1]);
+  memcpy(part->corner[2], c, sizeof part->corner[2]);
+  parts->whose[parts->pieces.count++] = whose;
+}
+
+/* A triangle's part up to the chord between its crossings; a line's up to its crossing. */
+static void mcor_append_chord(const mcor_flux_job* job, const mcor_flux_pieces* pieces,
+  const mcor_flux_cut* cut, mcor_flux_parts* parts)
+{
+  const mcor_flux_piece* piece = &pieces->pieces[cut->piece];
+  const int lone = mcor_lone_corner(cut->sides);
+  const double *p = cut->crossing[0], *q = cut->crossing[1];
+  const double *here = piece->corner[lone], *next = piece->corner[(lone + 1) % 3],
+               *last = piece->corner[(lone + 2) % 3];
+  if (job->is_plane)
+  {
+    mcor_append_part(parts, pieces, cut->piece, piece->corner[cut->sides == 1 ? 0 : 1], p, p, 1);
+  }
+  else if (cut->sides >> lone & 1)
+  {
+    mcor_append_part(parts, pieces, cut->piece, here, p, q, 1);
+  }
+  else
+  {
+    mcor_append_part(parts, pieces, cut->piece, p, next, last, 1);
+    mcor_append_part(parts, pieces, cut->piece, p, last, q, 1);
+  }
+}
+
+/* The line through the middle of the chord, from the lone corner to the edge beyond. */
+static void mcor_place_between(
+  const mcor_flux_piece* piece, const mcor_flux_cut* cut, double from[3], double to[3])
+{
+  const int lone = mcor_lone_corner(cut->sides);
+  const double share = cut->places[0] / (cut->places[0] + cut->places[1]);
+  from[2] = to[2] = (double)piece->patch;
+  for (int c = 0; c < 2; ++c)
+  {
+    from[c] = piece->corner[lone][c];
+    to[c] =
+      share * piece->corner[(lone + 1) % 3][c] + (1 - share) * piece->corner[(lone + 2) % 3][c];
+  }
+}
+
+/* Between its crossings the level leaves the chord: what a parabola and the chord enclose is 4/3 of the triangle with
+ * the crossing of the line between them. */
+static void mcor_append_bulge(mcor_flux_job* job, mcor_flux_pieces* pieces,
+  const mcor_flux_cut* cut, const mcor_flux_cuts* between, int64_t line, mcor_flux_parts* parts)
+{
+  mcor_flux_piece* piece = &pieces->pieces[cut->piece];
+  const double *p = cut->crossing[0], *q = cut->crossing[1];
+  double m[2];
+  const bool lone_in = cut->sides >> mcor_lone_corner(cut->sides) & 1;
+  const bool beyond =
+    mcor_crossing_at(job, between, line, m) > 0.5 * (cut->places[0] + cut->places[1]);
+  mcor_append_part(parts, pieces, cut->piece, p, m, q, (lone_in == beyond ? 4 : -4) / 3.0);
+  piece->bulge = 2 / 3.0 * mcor_patch_measure(&job->patches[piece->patch], m) *
+    fabs((m[0] - p[0]) * (q[1] - p[1]) - (q[0] - p[0]) * (m[1] - p[1]));
+}
+
+/* Adds the bulges of triangles. Where the level does not cross the line between crossings, the piece is unclear. */
+static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_field* field,
+  mcor_flux_pieces* pieces, const mcor_flux_cuts* cuts, mcor_flux_cuts* between,
+  mcor_flux_parts* parts)
+{
+  int64_t* of = malloc((size_t)cuts->count * sizeof *of); /* each line's cut */
+  mcor_status status = mcor_allocated(job->edges.context, of);
+  job->edges.changed.count = 0;
+  for (int64_t first = 0; first < cuts->count && status == MCOR_OK; first += MCOR_GAUGE_BATCH)
+  {
+    const int64_t rest = cuts->count - first;
+    const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
+    double from[3];
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_flux_cut* cut = &cuts->cuts[first + i];
+      mcor_place_between(&pieces->pieces[cut->piece], cut, from, field->at[i]);
+    }
+    status = mcor_sample_flux(job, field, count);
+    for (int i = 0; i < count && status == MCOR_OK; ++i)
+    {
+      const mcor_flux_cut* cut = &cuts->cuts[first + i];
+      mcor_flux_piece* piece = &pieces->pieces[cut->piece];
+      const int lone = mcor_lone_corner(cut->sides);
+      double to[3];
+      piece->unclear =
+        piece->unclear || (field->weight[i] >= job->edges.level) == (cut->sides >> lone & 1);
+      if ((field->weight[i] >= job->edges.level) != (cut->sides >> lone & 1))
+      {
+        mcor_place_between(piece, cut, from, to);
+        of[between->line_count] = first + i;
+        status = mcor_append_crossed(job, between, from, to, cut->weight[lone], field->weight[i]);
+      }
+    }
+  }
+  status = status == MCOR_OK ? mcor_solve_cuts(job, between) : status;
+  for (int64_t i = 0; i < between->line_count && status == MCOR_OK; ++i)
+  {
+    mcor_append_bulge(job, pieces, &cuts->cuts[of[i]], between, i, parts);
+  }
+  free(of);
+  return status;
+}
+
+/* Adds to pieces what they have behind their cuts. */
+static mcor_status mcor_add_cuts(
+  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_cuts* cuts)
+{
+  mcor_context* context = job->edges.context;
+  const int crossings = job->is_plane ? 1 : 2;
+  MCOR_TRY(mcor_solve_cuts(job, cuts));
+  for (int64_t i = 0; i < crossings * cuts->count; ++i)
+  {
+    mcor_flux_cut* cut = &cuts->cuts[i / crossings];
+    cut->places[i % crossings] = mcor_crossing_at(job, cuts, i, cut->crossing[i % crossings]);
+  }
+  mcor_flux_parts parts = { .whose = malloc(3 * (size_t)cuts->count * sizeof *parts.whose),
+    .pieces.pieces = malloc(3 * (size_t)cuts->count * sizeof *parts.pieces.pieces) };
+  mcor_flux_cuts between = { .lines = NULL };
+  mcor_status status = mcor_allocated(context, parts.whose && parts.pieces.pieces);
+  for (int64_t c = 0; c < cuts->count && status == MCOR_OK; ++c)
+  {
+    mcor_append_chord(job, pieces, &cuts->cuts[c], &parts);
+  }
+  status = status == MCOR_OK && !job->is_plane
+    ? mcor_append_bulges(job, field, pieces, cuts, &between, &parts)
+    : status;
+  status = status == MCOR_OK
+    ? mcor_sample_pieces(job, field, &parts.pieces, NULL, pieces, parts.whose)
+    : status;
+  free(parts.whose);
+  free(parts.pieces.pieces);
+  free(between.lines);
+  return status;
+}
+
+/* Finds the integrals of pieces. */
+static mcor_status mcor_measure_pieces(
+  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces)
+{
+  mcor_flux_cuts cuts = { 0 };
+  job->edges.changed.count = 0;
+  mcor_status status = mcor_sample_pieces(job, field, pieces, &cuts, NULL, NULL);
+  status = status == MCOR_OK && cuts.count > 0 ? mcor_add_cuts(job, field, pieces, &cuts) : status;
+  free(cuts.cuts);
+  free(cuts.lines);
+  return status;
+}
+
+/* ---- division ---- */
+
+static mcor_status mcor_append_piece(
+  mcor_context* context, mcor_flux_pieces* pieces, const mcor_flux_piece* piece)
+{
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&pieces->pieces, pieces->count, &pieces->room, sizeof *pieces->pieces));
+  pieces->pieces[pieces->count++] = *piece;
+  return MCOR_OK;
+}
+
+/* The pieces of cells [first, last). */
+static mcor_status mcor_begin_pieces(
+  mcor_flux_job* job, int64_t first, int64_t last, mcor_flux_pieces* pieces)
+{
+  pieces->count = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    const mcor_flux_cell* cell = &job->cells[i];
+    const mcor_patch* patch = &job->patches[cell->patch];
+    const double u[2] = { (double)cell->u / patch->counts[0],
+      (double)(cell->u + 1) / patch->counts[0] };
+    const double v[2] = { (double)cell->v / patch->counts[1],
+      (double)(cell->v + 1) / patch->counts[1] };
+    const double middle[2] = { 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]) };
+    const double size = job->is_plane ? u[1] - u[0] : 0.5 * (u[1] - u[0]) * (v[1] - v[0]);
+    mcor_flux_piece piece = { .patch = cell->patch,
+      .factor = 1,
+      .corner = { { u[0], job->is_plane ? 0 : v[0] }, { u[1], job->is_plane ? 0 : v[0] },
+        { u[0], v[1] } },
+      .area = size * mcor_patch_measure(patch, middle) };
+    MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
+    /* Beyond the diagonal of a triangle there is none. */
+    if (!job->is_plane &&
+      (patch->shape != MCOR_PATCH_TRIANGLE || (double)(cell->u + cell->v + 2) <= patch->counts[0]))
+    {
+      memcpy(piece.corner[0], (double[2]){ u[1], v[1] }, sizeof piece.corner[0]);
+      memcpy(piece.corner[1], (double[2]){ u[0], v[1] }, sizeof piece.corner[1]);
+      memcpy(piece.corner[2], (double[2]){ u[1], v[0] }, sizeof piece.corner[2]);
+      MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Two halves of a line, four quarters of a triangle. */
+static mcor_status mcor_divide_pieces(
+  const mcor_flux_job* job, const mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
+{
+  static const int triangle[4][3] = { { 0, 3, 5 }, { 3, 1, 4 }, { 5, 4, 2 }, { 3, 4, 5 } };
+  static const int line[2][3] = { { 0, 2, 2 }, { 2, 1, 1 } };
+  const int(*points)[3] = job->is_plane ? line : triangle;
+  parts->count = 0;
+  for (int64_t i = 0; i < pieces->count; ++i)
+  {
+    for (int part = 0; part < (job->is_plane ? 2 : 4); ++part)
+    {
+      mcor_flux_piece piece = pieces->pieces[i];
+      ++piece.depth;
+      for (int c = 0; c < 3; ++c)
+      {
+        double at[3];
+        mcor_place_point(job, &pieces->pieces[i], points[part][c], at);
+        memcpy(piece.corner[c], at, sizeof piece.corner[c]);
+      }
+      MCOR_TRY(mcor_append_piece(job->edges.context, parts, &piece));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Whether the parts of a piece may take its place in the sum; `sum` becomes theirs. */
+static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
+  const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
+{
+  const mcor_flux_section* section = &job->found[job->patches[piece->patch].section];
+  const double tolerance = MCOR_FLUX_TOLERANCE *
+    fmax(piece->area, MCOR_FLUX_SMALL * sqrt(piece->area) * sqrt(section->area));
+  const double scale[MCOR_FLUX_SUMS] = { 1, section->speed, section->speed * section->density };
+  double bulge = 0;
+  bool settled = true;
+  memset(sum, 0, MCOR_FLUX_SUMS * sizeof *sum);
+  for (int part = 0; part < (job->is_plane ? 2 : 4); ++part)
+  {
+    settled = settled && !(parts[part].unclear && parts[part].depth < MCOR_FLUX_UNCLEAR_DEPTH);
+    bulge += parts[part].bulge;
+    for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+    {
+      sum[s] += parts[part].sum[s];
+    }
+  }
+  settled = settled && bulge <= MCOR_FLUX_BULGE * tolerance;
+  for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+  {
+    settled = settled && fabs(sum[s] - piece->sum[s]) <= tolerance * scale[s];
+  }
+  return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
+}
+
+/* Adds pieces to their sections. */
+static mcor_status mcor_settle_pieces(
+  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
+{
+  const int divided = job->is_plane ? 2 : 4;
+  while (pieces->count > 0)
+  {
+    MCOR_TRY(mcor_divide_pieces(job, pieces, parts));
+    MCOR_TRY(mcor_measure_pieces(job, field, parts));
+    const int64_t count = pieces->count;
+    int64_t left = 0;
+    for (int64_t i = 0; i < count; ++i)
+    {
+      const mcor_flux_piece* piece = &pieces->pieces[i];
+      mcor_flux_section* found = &job->found[job->patches[piece->patch].section];
+      double sum[MCOR_FLUX_SUMS];
+      if (mcor_is_settled(job, piece, &parts->pieces[divided * i], sum))
+      {
+        for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+        {
+          found->sum[s] += llrint(fmin(fmax(sum[s] / found->unit[s], -0x1p62), 0x1p62));
+        }
+        continue;
+      }
+      memmove(
+        &parts->pieces[left], &parts->pieces[divided * i], (size_t)divided * sizeof *parts->pieces);
+      left += divided;
+    }
+    const mcor_flux_pieces settled = *pieces;
+    *pieces = *parts;
+    pieces->count = left;
+    *parts = settled;
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_add_cells(mcor_flux_job* job, mcor_flux_field* field)
+{
+  mcor_flux_pieces pieces = { 0 }, parts = { 0 };
+  mcor_status status = MCOR_OK;
+  for (int64_t first = 0, last; first < job->cell_count && status == MCOR_OK; first = last)
+  {
+    const double count = (double)job->cell_count;
+    last =
+      first + MCOR_FLUX_TOGETHER < job->cell_count ? first + MCOR_FLUX_TOGETHER : job->cell_count;
+    status = mcor_report(job->edges.context, "flux", 0.2 + 0.8 * (double)first / count,
+      0.2 + 0.8 * (double)last / count);
+    status = status == MCOR_OK ? mcor_begin_pieces(job, first, last, &pieces) : status;
+    status = status == MCOR_OK ? mcor_measure_pieces(job, field, &pieces) : status;
+    status = status == MCOR_OK ? mcor_settle_pieces(job, field, &pieces, &parts) : status;
+  }
+  free(pieces.pieces);
+  free(parts.pieces);
+  return status;
+}
+
+mcor_status mcor_add_fluxes(mcor_gauge_job* edges)
+{
+  mcor_flux_job* job = (mcor_flux_job*)edges;
+  const size_t n = MCOR_GAUGE_BATCH;
+  mcor_flux_field field = { .at = malloc(n * sizeof *field.at),
+    .weight = malloc(n * sizeof(double)),
+    .velocity = malloc(3 * n * sizeof(double)),
+    .density = malloc(n * sizeof(double)) };
+  field.values[0] = field.velocity;
+  field.values[1] = field.density;
+  mcor_status status =
+    mcor_allocated(job->edges.context, field.at && field.weight && field.velocity && field.density);
+  status = status == MCOR_OK ? mcor_find_speeds(job, &field) : status;
+  status = status == MCOR_OK ? mcor_add_cells(job, &field) : status;
+  free(field.at);
+  free(field.weight);
+  free(field.velocity);
+  free(field.density);
+  return status;
+}

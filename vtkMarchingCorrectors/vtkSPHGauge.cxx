@@ -9,55 +9,24 @@
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointSet.h"
-#include "vtkSPHArrays.h"
-#include "vtkSPHParticles.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkSPHMeterColumn.h"
 #include "vtkStringArray.h"
-#include "vtkTable.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
-#include <set>
 
 VTK_ABI_NAMESPACE_BEGIN
-namespace
-{
-using Pipeline = vtkStreamingDemandDrivenPipeline;
-
-template <typename ArrayT>
-ArrayT* AddColumn(vtkTable* table, const char* name, vtkIdType rows)
-{
-  vtkNew<ArrayT> column;
-  column->SetName(name);
-  column->SetNumberOfTuples(rows);
-  table->AddColumn(column);
-  return column;
-}
-}
-
 vtkStandardNewMacro(vtkSPHGauge);
 
-vtkSPHGauge::vtkSPHGauge()
-{
-  this->SetNumberOfInputPorts(2);
-}
+vtkSPHGauge::vtkSPHGauge() = default;
 
 vtkSPHGauge::~vtkSPHGauge() = default;
-
-vtkTable* vtkSPHGauge::GetOutput()
-{
-  return vtkTable::SafeDownCast(this->GetOutputDataObject(0));
-}
 
 void vtkSPHGauge::AddGauge(
   const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
 {
-  this->Gauges.push_back({ name ? name : "", { x0, y0, z0, x1, y1, z1 } });
+  this->Gauges.push_back({ name ? name : "", 0, { x0, y0, z0, x1, y1, z1 } });
   this->Modified();
 }
 
@@ -72,60 +41,7 @@ int vtkSPHGauge::GetNumberOfGauges() const
   return static_cast<int>(this->Gauges.size());
 }
 
-int vtkSPHGauge::FillInputPortInformation(int port, vtkInformation* info)
-{
-  if (port == 0)
-  {
-    return this->Superclass::FillInputPortInformation(port, info);
-  }
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
-
-int vtkSPHGauge::FillOutputPortInformation(int, vtkInformation* info)
-{
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkTable");
-  return 1;
-}
-
-const char* vtkSPHGauge::GetOutputClassName(const char*)
-{
-  return "vtkTable";
-}
-
-// All of both, whatever piece of the table is wanted; of processes that share a run, all of the lines.
-int vtkSPHGauge::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
-{
-  for (int port = 0; port < 2; ++port)
-  {
-    vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    if (info && (port == 1 || !this->IsShared()))
-    {
-      AskForAll(info);
-    }
-  }
-  return 1;
-}
-
-int vtkSPHGauge::RequestData(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  vtkInformation* asked = outputVector->GetInformationObject(0);
-  vtkInformation* known = input ? input->GetInformation() : nullptr;
-  this->Lines = vtkDataObject::GetData(inputVector[1]);
-  this->InputTime = known && known->Has(vtkDataObject::DATA_TIME_STEP())
-    ? known->Get(vtkDataObject::DATA_TIME_STEP())
-    : asked->Has(Pipeline::UPDATE_TIME_STEP()) ? asked->Get(Pipeline::UPDATE_TIME_STEP())
-                                               : this->Time;
-  const int done = this->Superclass::RequestData(request, inputVector, outputVector);
-  this->Lines = nullptr;
-  return done;
-}
-
-void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const
+void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Place>& gauges)
 {
   vtkAbstractArray* names = lines->GetCellData()->GetAbstractArray("Name");
   for (vtkIdType i = 0; i < lines->GetNumberOfCells(); ++i)
@@ -135,160 +51,114 @@ void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const
     {
       continue;
     }
-    Gauge gauge;
+    Place gauge;
     gauge.Name = names ? names->GetVariantValue(i * names->GetNumberOfComponents()).ToString()
                        : "line " + std::to_string(i);
-    lines->GetPoint(cell->GetPointId(0), gauge.Ends.data());
+    gauge.Numbers.resize(6);
+    lines->GetPoint(cell->GetPointId(0), gauge.Numbers.data());
     lines->GetPoint(
-      cell->GetPointId(static_cast<int>(cell->GetNumberOfPoints()) - 1), gauge.Ends.data() + 3);
+      cell->GetPointId(static_cast<int>(cell->GetNumberOfPoints()) - 1), gauge.Numbers.data() + 3);
     gauges.push_back(gauge);
   }
 }
 
-std::vector<vtkSPHGauge::Gauge> vtkSPHGauge::ListGauges() const
+std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
 {
-  std::vector<Gauge> gauges = this->Gauges;
-  if (auto* lines = vtkDataSet::SafeDownCast(this->Lines))
+  std::vector<Place> gauges = this->Gauges;
+  if (auto* lines = vtkDataSet::SafeDownCast(more))
   {
-    this->AddLines(lines, gauges);
+    AddLines(lines, gauges);
   }
-  if (gauges.empty() && !this->Lines)
+  if (gauges.empty() && !more)
   {
     const double *a = this->Point1, *b = this->Point2;
-    gauges.push_back({ "gauge", { a[0], a[1], a[2], b[0], b[1], b[2] } });
+    gauges.push_back({ "gauge", 0, { a[0], a[1], a[2], b[0], b[1], b[2] } });
   }
   return gauges;
 }
 
-// False, and reported, where two have one name.
-bool vtkSPHGauge::CheckNames(const std::vector<Gauge>& gauges)
+void vtkSPHGauge::AddBounds(const Place& place, double low[3], double high[3]) const
 {
-  std::set<std::string> names;
-  for (const Gauge& gauge : gauges)
+  for (int a = 0; a < 3; ++a)
   {
-    if (!names.insert(gauge.Name).second)
+    const double from = place.Numbers[static_cast<size_t>(a)],
+                 to = place.Numbers[static_cast<size_t>(a) + 3];
+    low[a] = std::min({ low[a], from, to });
+    high[a] = std::max({ high[a], from, to });
+  }
+}
+
+std::unique_ptr<vtkSPHMeter::Found> vtkSPHGauge::MakeFound() const
+{
+  class Readings : public Found
+  {
+  public:
+    ~Readings() override { mcor_free_gauges(&this->Gauges); }
+
+    const mcor_statistics& GetStatistics() const override { return this->Gauges.statistics; }
+
+    bool IsOutside(vtkIdType place) const override
     {
-      this->Fail("Two gauges have the name '" + gauge.Name + "'. Give each a name of its own.");
-      return false;
+      return this->Gauges.readings[place].outside != 0;
     }
-  }
-  return true;
-}
 
-void vtkSPHGauge::Process(vtkDataObject* data, vtkDataObject* output)
-{
-  auto* particles = vtkPointSet::SafeDownCast(data);
-  auto* table = vtkTable::SafeDownCast(output);
-  this->SetUsedNames(nullptr);
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->ProcessDistributed(particles, table);
-    return;
-  }
-#endif
-  const std::vector<Gauge> gauges = this->ListGauges();
-  if (!particles || this->IsAborted() || !this->CheckNames(gauges))
-  {
-    return;
-  }
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, particles);
-  vtkSPHParticles input(choice, particles);
-  if (particles->GetNumberOfPoints() == 0 ||
-    this->Accept(input, input.CollectParticles(), "all gauges are dry"))
-  {
-    this->Measure(input, particles, gauges, table);
-  }
-}
-
-std::vector<mcor_gauge_line> vtkSPHGauge::ListLines(const std::vector<Gauge>& gauges)
-{
-  std::vector<mcor_gauge_line> lines;
-  for (const Gauge& gauge : gauges)
-  {
-    mcor_gauge_line line = {};
-    std::copy_n(gauge.Ends.data(), 3, line.from);
-    std::copy_n(gauge.Ends.data() + 3, 3, line.to);
-    line.name = gauge.Name.c_str();
-    lines.push_back(line);
-  }
-  return lines;
-}
-
-void vtkSPHGauge::Measure(vtkSPHParticles& input, vtkPointSet* particles,
-  const std::vector<Gauge>& gauges, vtkTable* output)
-{
-  const std::vector<mcor_gauge_line> lines = ListLines(gauges);
-  mcor_options options;
-  this->FillOptions(options);
-  if (!this->SetPeriod(particles, options))
-  {
-    return;
-  }
-  options.iso_values = &this->Level;
-  options.iso_count = 1;
-  mcor_gauges found = {};
-  const auto count = static_cast<int64_t>(lines.size());
-  if (!this->CallCore(input, options,
-        [&](mcor_context* context)
-        { return mcor_gauge(context, &input.Core, &options, lines.data(), count, &found); }))
-  {
-    return;
-  }
-  vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
-  this->WarnOfParticles(input.Core, options, found.statistics);
-  this->Fill(output, gauges, found, input.FluidCount > 0);
-  mcor_free_gauges(&found);
-}
-
-void vtkSPHGauge::Fill(
-  vtkTable* output, const std::vector<Gauge>& gauges, const mcor_gauges& found, bool hasFluid)
-{
-  const auto count = static_cast<vtkIdType>(found.count);
-  auto* times = AddColumn<vtkDoubleArray>(output, "time", count);
-  auto* names = AddColumn<vtkStringArray>(output, "gauge", count);
-  auto* states = AddColumn<vtkStringArray>(output, "state", count);
-  auto* first = AddColumn<vtkDoubleArray>(output, "first", count);
-  auto* last = AddColumn<vtkDoubleArray>(output, "last", count);
-  auto* depth = AddColumn<vtkDoubleArray>(output, "depth", count);
-  auto* crossings = AddColumn<vtkIdTypeArray>(output, "crossings", count);
-  vtkDoubleArray* place[3] = { AddColumn<vtkDoubleArray>(output, "x", count),
-    AddColumn<vtkDoubleArray>(output, "y", count), AddColumn<vtkDoubleArray>(output, "z", count) };
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const mcor_gauge_reading& reading = found.readings[i];
-    const std::string& name = gauges[static_cast<size_t>(i)].Name;
-    times->SetValue(i, this->InputTime);
-    names->SetValue(i, name);
-    states->SetValue(i, mcor_gauge_state_name(reading.state));
-    first->SetValue(i, reading.first);
-    last->SetValue(i, reading.last);
-    depth->SetValue(i, reading.depth);
-    crossings->SetValue(i, reading.crossing_count);
-    for (int a = 0; a < 3; ++a)
+    int Call(mcor_context* context, const mcor_input& input, const mcor_options& options,
+      const std::vector<Place>& places) override
     {
-      place[a]->SetValue(i, reading.place[a]);
+      std::vector<mcor_gauge_line> lines;
+      for (const Place& place : places)
+      {
+        mcor_gauge_line line = {};
+        std::copy_n(place.Numbers.data(), 3, line.from);
+        std::copy_n(place.Numbers.data() + 3, 3, line.to);
+        line.name = place.Name.c_str();
+        lines.push_back(line);
+      }
+      mcor_free_gauges(&this->Gauges);
+      return mcor_gauge(
+        context, &input, &options, lines.data(), static_cast<int64_t>(lines.size()), &this->Gauges);
     }
-    if (reading.outside && hasFluid)
+
+    void Fill(vtkTable* table) const override
     {
-      this->Warn("Gauge '" + name +
-        "' is outside of all fluid: no particle reaches its line. If this is so at all times, "
-        "check its ends.");
+      const auto count = static_cast<vtkIdType>(this->Gauges.count);
+      auto* states = vtkSPHAddColumn<vtkStringArray>(table, "state", count);
+      auto* first = vtkSPHAddColumn<vtkDoubleArray>(table, "first", count);
+      auto* last = vtkSPHAddColumn<vtkDoubleArray>(table, "last", count);
+      auto* depth = vtkSPHAddColumn<vtkDoubleArray>(table, "depth", count);
+      auto* crossings = vtkSPHAddColumn<vtkIdTypeArray>(table, "crossings", count);
+      vtkDoubleArray* place[3] = { vtkSPHAddColumn<vtkDoubleArray>(table, "x", count),
+        vtkSPHAddColumn<vtkDoubleArray>(table, "y", count),
+        vtkSPHAddColumn<vtkDoubleArray>(table, "z", count) };
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        const mcor_gauge_reading& reading = this->Gauges.readings[i];
+        states->SetValue(i, mcor_gauge_state_name(reading.state));
+        first->SetValue(i, reading.first);
+        last->SetValue(i, reading.last);
+        depth->SetValue(i, reading.depth);
+        crossings->SetValue(i, reading.crossing_count);
+        for (int a = 0; a < 3; ++a)
+        {
+          place[a]->SetValue(i, reading.place[a]);
+        }
+      }
     }
-  }
+
+  private:
+    mcor_gauges Gauges = {};
+  };
+  return std::unique_ptr<Found>(new Readings);
 }
 
 void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Level: " << this->Level << "\n";
-  os << indent << "Time: " << this->Time << "\n";
   PrintNumbers(os, indent, "Point1", this->Point1, 3);
   PrintNumbers(os, indent, "Point2", this->Point2, 3);
-  for (const Gauge& gauge : this->Gauges)
+  for (const Place& gauge : this->Gauges)
   {
-    PrintNumbers(os, indent, ("Gauge " + gauge.Name).c_str(), gauge.Ends.data(), 6);
+    PrintNumbers(os, indent, ("Gauge " + gauge.Name).c_str(), gauge.Numbers.data(), 6);
   }
 }
 VTK_ABI_NAMESPACE_END

@@ -5,9 +5,8 @@
  * @brief   where lines cross the free surface of SPH particles: water levels
  *
  * vtkSPHGauge measures the free surface of SPH particles along straight lines, as a wave gauge in a tank
- * does. Fluid is where the sum of the fluid particles' weights is Level or more, as for the free surface
- * of vtkMarchingCorrectors; every crossing of that level is found and solved for, see mcor_gauge in
- * mcor.h. Solids do not count, and do not end the fluid.
+ * does. Every crossing of the level at which fluid ends is found and solved for, see mcor_gauge in mcor.h.
+ * vtkSPHMeter says what is fluid, and how processes share the work.
  *
  * The lines are those of AddGauge() and the line cells of the second input, each from its first point to its
  * last. If there are none, it is the line from Point1 to Point2. Gauges of the second input have the names of
@@ -27,49 +26,25 @@
  * For a dry gauge, first, last, x, y and z are NaN, and depth and crossings are 0. Lengths have the unit of the
  * positions.
  *
- * Blocks of composite data are one set of particles, always.
- *
- * If the controller has several processes, they share the work: each has some of the particles, and the lines
- * of all processes are measured. The first process gets the table, the same to the last bit as from one process;
- * the others get one without rows.
- *
  * @sa
- * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHProbe
+ * vtkSPHMeter vtkSPHFlux vtkMarchingCorrectors
  */
 
 #ifndef vtkSPHGauge_h
 #define vtkSPHGauge_h
 
 #include "vtkMarchingCorrectorsModule.h" // For export macro
-#include "vtkSPHAlgorithm.h"
-
-#include <array>  // For gauges
-#include <string> // For gauges
-#include <vector> // For gauges
-
-struct mcor_gauge_line;
-struct mcor_gauges;
+#include "vtkSPHMeter.h"
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkDataSet;
-class vtkTable;
 
-class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHGauge : public vtkSPHAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHGauge : public vtkSPHMeter
 {
 public:
   static vtkSPHGauge* New();
-  vtkTypeMacro(vtkSPHGauge, vtkSPHAlgorithm);
+  vtkTypeMacro(vtkSPHGauge, vtkSPHMeter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  /**
-   * Also leave solid particles out when volumes are computed from positions. Off by default.
-   */
-  vtkSPHFlagMacro(IgnoreSolids);
-
-  /**
-   * The table.
-   */
-  vtkTable* GetOutput();
 
   /**
    * More lines; may be nullptr.
@@ -97,62 +72,26 @@ public:
   vtkGetVector3Macro(Point2, double);
   ///@}
 
-  /**
-   * The weight sum at which the fluid ends, above 0. 0.5 by default.
-   */
-  vtkSPHValueMacro(Level, double);
-
-  /**
-   * The time in the table if the input has none. 0 by default.
-   */
-  vtkSPHValueMacro(Time, double);
-
 protected:
   vtkSPHGauge();
   ~vtkSPHGauge() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int FillOutputPortInformation(int port, vtkInformation* info) override;
-  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  const char* GetOutputClassName(const char* inputClassName) override;
-  void Process(vtkDataObject* input, vtkDataObject* output) override;
-  bool TakesTogether() const override { return true; }
+  const char* GetNoun() const override { return "gauge"; }
+  const char* GetConsequence() const override { return "all gauges are dry"; }
+  std::vector<Place> ListPlaces(vtkDataObject* more) override;
+  void AddBounds(const Place& place, double low[3], double high[3]) const override;
+  std::unique_ptr<Found> MakeFound() const override;
 
   double Point1[3] = { 0.0, 0.0, 0.0 };
   double Point2[3] = { 0.0, 0.0, 1.0 };
-  double Level = 0.5;
-  double Time = 0.0;
 
 private:
   vtkSPHGauge(const vtkSPHGauge&) = delete;
   void operator=(const vtkSPHGauge&) = delete;
 
-  struct Gauge
-  {
-    std::string Name;
-    std::array<double, 6> Ends; // x, y, z of the one, then of the other
-  };
-  std::vector<Gauge> ListGauges() const;
-  bool CheckNames(const std::vector<Gauge>& gauges);
-  void AddLines(vtkDataSet* lines, std::vector<Gauge>& gauges) const;
-  static std::vector<mcor_gauge_line> ListLines(const std::vector<Gauge>& gauges);
-  void Measure(vtkSPHParticles& input, vtkPointSet* particles, const std::vector<Gauge>& gauges,
-    vtkTable* output);
-  void Fill(
-    vtkTable* output, const std::vector<Gauge>& gauges, const mcor_gauges& found, bool hasFluid);
+  static void AddLines(vtkDataSet* lines, std::vector<Place>& gauges);
 
-  // For many processes together.
-  void ProcessDistributed(vtkPointSet* particles, vtkTable* output);
-  void GaugeDistributed(
-    vtkSPHRanksRun& run, vtkSPHParticles& mine, const std::vector<Gauge>& gauges, vtkTable* output);
-  static std::vector<Gauge> Merge(vtkSPHRanks& ranks, const std::vector<Gauge>& mine);
-
-  std::vector<Gauge> Gauges;
-  vtkDataObject* Lines = nullptr; // while a run lasts
-  double InputTime = 0.0;
+  std::vector<Place> Gauges; // x, y, z of the one end, then of the other
 };
 VTK_ABI_NAMESPACE_END
 

@@ -8,6 +8,7 @@
 #include "DataSetFile.h"
 #include "Ending.h"
 #include "Film.h"
+#include "FluxRun.h"
 #include "GaugeRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
@@ -182,6 +183,10 @@ bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
   {
     return MakeGaugeTable(job, messages, sharing);
   }
+  if (job.IsFlux())
+  {
+    return MakeFluxTable(job, messages, sharing);
+  }
   if (job.IsFilm())
   {
     return MakeFilm(job, messages, sharing);
@@ -201,8 +206,9 @@ bool MakeOnRanks(Job& job, MessageCapture* messages)
       {
         if (!job.Picture.File.empty() || job.Repeat > 1)
         {
-          throw std::runtime_error("several processes share a surface, a film, a probe or gauges, "
-                                   "but no --screenshot or --repeat; run these without mpirun");
+          throw std::runtime_error(
+            "several processes share a surface, a film, a probe, gauges or fluxes, "
+            "but no --screenshot or --repeat; run these without mpirun");
         }
       });
     return Make(job, messages, session);

@@ -12,6 +12,7 @@ from pkgutil import extend_path as _extend_path
 from typing import TYPE_CHECKING, Any, List
 
 from ._context import Context
+from ._flux import Fluxes, flux
 from ._functions import derivatives, flow, free_surface, isosurface, probe, widening
 from ._gauge import Gauges, gauge
 from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
@@ -28,14 +29,15 @@ if TYPE_CHECKING:
     vtkMarchingCorrectors: Any
     vtkSPHComponents: Any
     vtkSPHDerivatives: Any
+    vtkSPHFlux: Any
     vtkSPHGauge: Any
     vtkSPHProbe: Any
     vtkSPHResample: Any
     vtkSPHTemporalInterpolator: Any
 
-__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Gauges", "InputWarning", "InvalidArgument",
+__all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Fluxes", "Gauges", "InputWarning", "InvalidArgument",
            "InvalidData", "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow",
-           "free_surface", "gauge", "isosurface", "probe", "read_pyvista", "widening"]
+           "flux", "free_surface", "gauge", "isosurface", "probe", "read_pyvista", "widening"]
 
 # The C++ filter lies in a folder of the same name, where CMake installed it.
 __path__ = _extend_path(__path__, __name__)

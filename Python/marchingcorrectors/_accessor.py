@@ -11,7 +11,7 @@ import numpy as np
 import pyvista
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from . import _functions, _gauge
+from . import _flux, _functions, _gauge
 from ._arrays import choose
 from ._context import Context
 from ._library import InvalidArgument
@@ -104,6 +104,15 @@ def _take_vertices(data: pyvista.DataSet) -> pyvista.DataSet:
     particles.point_data.update(found.arrays)
     particles.field_data.update(data.field_data)
     return particles
+
+
+def _triangles_in(sections):
+    """The sections, with triangles in place of surfaces."""
+    if isinstance(sections, pyvista.PolyData):
+        return sections.points[sections.triangulate().faces.reshape(-1, 4)[:, 1:]].astype(np.float64)
+    if isinstance(sections, Mapping):
+        return {name: _triangles_in(section) for name, section in sections.items()}
+    return sections
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
@@ -228,6 +237,29 @@ class SphAccessor:
         words = self._words({**options, "attributes": []})
         del words["attributes"]
         return _gauge.gauge(self._particles.points, lines, iso, **words)
+
+    @_method(GAUGE)
+    def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
+             **options: Unpack[Particles]) -> _flux.Fluxes:
+        """What flows through sections.
+
+        Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
+
+        Returns Fluxes, as marchingcorrectors.flux() does.
+
+        sections: as in marchingcorrectors.flux(); a section may also be a pyvista.PolyData of triangles.
+        velocity: the name of a point array, or an array; by default the point array with a usual name.
+        iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+        """
+        check_names(SphAccessor.flux, options, GAUGE + OWN)
+        words = self._words({**options, "attributes": []})
+        del words["attributes"]
+        if velocity is None:
+            found = detect(self._particles.GetPointData(), self._particles.n_points, "velocity", 3)
+            velocity = "Velocity" if found is None else name_of(found)
+        if words.get("density") is None:
+            self._detect(words, "density")
+        return _flux.flux(self._particles.points, self._array(velocity), _triangles_in(sections), iso, **words)
 
     def _array(self, thing):
         if not isinstance(thing, str):

@@ -65,16 +65,16 @@ def to_numpy(array):
     return vtk_to_numpy(array)
 
 
-def rank(data, quantity, count=None):
-    """Point arrays of one component with usual names for a quantity, the most usual first. The core has the names."""
+def rank(data, quantity, count=None, components=1):
+    """Point arrays of so many components with usual names for a quantity, the most usual first. The core has the names."""
     number = c.ENUMS["mcor_quantity"]["MCOR_" + quantity.upper()]
     ranks = [(lib.mcor_name_priority(number, name_of(array).encode(errors="replace")), array) for array in arrays_of(data)
-             if array.GetNumberOfComponents() == 1 and count in (None, array.GetNumberOfTuples())]
+             if array.GetNumberOfComponents() == components and count in (None, array.GetNumberOfTuples())]
     return [array for place, array in sorted(ranks, key=lambda pair: pair[0]) if place >= 0]
 
 
-def detect(data, count, quantity):
-    return next(iter(rank(data, quantity, count)), None)
+def detect(data, count, quantity, components=1):
+    return next(iter(rank(data, quantity, count, components)), None)
 
 
 def join_velocity(data, count):

@@ -734,7 +734,8 @@ extern "C"
     MCOR_SECTION_DISC = 1, /* the centre, and the normal, of any length */
     MCOR_SECTION_BOX =
       2, /* the lowest and the highest corner; the section is its sides, with normals outwards */
-    MCOR_SECTION_TRIANGLES = 3, /* three points each; the normal follows the right-hand rule */
+    /* three points each; the normal follows the right-hand rule, but points outwards if they are a closed surface */
+    MCOR_SECTION_TRIANGLES = 3,
     /* Two points each, in two dimensions only. The normal points to the right of the way from the first to the second
      * one, seen with the plane's first axis (x; y where x is constant) to the right and its second one upwards. */
     MCOR_SECTION_LINES = 4,

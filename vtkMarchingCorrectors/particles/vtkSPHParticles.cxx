@@ -359,6 +359,72 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
   return array != nullptr;
 }
 
+bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
+{
+  const std::string name = RealName(velocityName);
+  vtkSmartPointer<vtkDataArray> velocity;
+  if (name.empty())
+  {
+    const vtkSmartPointer<vtkDataArray> joined = this->JoinVelocity();
+    vtkDataArray* inSpace = vtkSPHDetect(this->Points, MCOR_VELOCITY, 3);
+    velocity = inSpace ? inSpace
+      : joined         ? joined.Get()
+                       : vtkSPHDetect(this->Points, MCOR_VELOCITY, 2);
+  }
+  else
+  {
+    vtkAbstractArray* named = this->Points->GetPointData()->GetAbstractArray(name.c_str());
+    const vtkSmartPointer<vtkDataArray> joined =
+      name == "Velocity" && !named ? this->JoinVelocity() : nullptr;
+    velocity = joined ? joined.Get() : this->Check("velocity", name, named);
+  }
+  if (!velocity)
+  {
+    this->Error = !this->Error.empty()
+      ? this->Error
+      : "The particles have no velocity: no point array has one of its usual names (Velocity, vel, "
+        "v, ...). Choose Velocity Array. " +
+        this->ListPointArrays();
+    return false;
+  }
+  this->Interpolate(velocity);
+  mcor_array density = this->Core.density;
+  if (!this->Density && this->Description.Density == 0.0 &&
+    !this->CollectQuantity(
+      "density", this->Description.DensityArrayName, 0.0, MCOR_DENSITY, this->Density, density))
+  {
+    return false;
+  }
+  if (this->Density)
+  {
+    this->Interpolate(this->Density);
+  }
+  else if (this->Description.Density != 0.0)
+  {
+    density.constant = this->Description.Density;
+    this->Attributes.push_back(density);
+  }
+  else if (mcor_is_given(&this->Core.volume) &&
+    this->CollectQuantity("mass", this->Description.MassArrayName, this->Description.Mass,
+      MCOR_MASS, this->Mass, this->Core.mass) &&
+    mcor_is_given(&this->Core.mass))
+  {
+    vtkNew<vtkDoubleArray> divided;
+    divided->SetName("Density");
+    divided->SetNumberOfValues(this->Points->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < divided->GetNumberOfValues(); ++i)
+    {
+      const double mass = this->Mass ? this->Mass->GetComponent(i, 0) : this->Core.mass.constant;
+      divided->SetValue(
+        i, mass / (this->Volume ? this->Volume->GetComponent(i, 0) : this->Core.volume.constant));
+    }
+    this->Interpolate(divided);
+  }
+  this->Core.attributes = this->Attributes.data();
+  this->Core.attribute_count = static_cast<int>(this->Attributes.size());
+  return this->Error.empty();
+}
+
 // The data set's own time is part of it: users change arrays in place and tell the data set.
 void vtkSPHParticles::Sign()
 {

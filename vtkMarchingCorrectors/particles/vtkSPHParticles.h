@@ -74,6 +74,13 @@ public:
   bool CollectArray(const vtkSPHRequest& request);
 
   /**
+   * Makes velocity and, where it is known, density the core's attributes, after CollectParticles(). The velocity is the
+   * array of this name; empty: found by its usual names. The density is an array, one value, or mass / volume, if both
+   * are given. False if there is no velocity; Error then says so.
+   */
+  bool CollectFlow(const std::string& velocity);
+
+  /**
    * One sentence for each array that the core left out: notFinite[i] is the particle at which number
    * i of the interpolated ones is not finite, or negative. `place`: what it was left out of.
    */

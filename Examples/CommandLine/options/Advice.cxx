@@ -18,6 +18,7 @@ const Advice All[] = {
   { "Name its array, give a constant, or have it estimated.",
     "Give --smoothing-length NAME, VALUE or estimate.", "--smoothing-length" },
   { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh.", "--dp" },
+  { "Choose Velocity Array", "Give --velocity NAME", "--velocity" },
   { "Name the array of ids", "Name the array of ids (--ids NAME)", "--ids" },
   { "arger cube size", "arger cube size (--cube-size)", "--cube-size" },
   { "maller cube size", "maller cube size (--cube-size)", "--cube-size" },
@@ -57,7 +58,6 @@ const Advice All[] = {
   { "by a range of positions", "by a range of positions (--within)", "--within" },
   { "Set the periodic bounds", "Set the periodic bounds (--periodic)", "--periodic" },
 };
-
 }
 
 std::string Reworded(

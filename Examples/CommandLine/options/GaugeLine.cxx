@@ -11,11 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace
-{
-
-/// Numbers of a text that has so many of them.
-bool Numbers(const std::string& option, const std::string& text, std::size_t count, double* numbers)
+bool ParseNumbers(
+  const std::string& option, const std::string& text, std::size_t count, double* numbers)
 {
   std::vector<double> found;
   try
@@ -30,32 +27,19 @@ bool Numbers(const std::string& option, const std::string& text, std::size_t cou
   return found.size() == count;
 }
 
-}
-
-GaugeLine ToGauge(const std::string& option, const std::string& text)
+std::string ToRowName(const std::string& option, const std::string& noun, const std::string& text)
 {
-  const std::size_t equals = text.rfind('='), colon = text.rfind(':');
-  GaugeLine gauge;
-  Need(equals != std::string::npos && equals > 0 && colon != std::string::npos && colon > equals &&
-      Numbers(option, text.substr(equals + 1, colon - equals - 1), 3, gauge.Ends.data()) &&
-      Numbers(option, text.substr(colon + 1), 3, gauge.Ends.data() + 3),
-    option, "a name and two places, NAME=X,Y,Z:X,Y,Z", text);
-  gauge.Name = Printable(text.substr(0, equals));
-  if (std::string("=+-@").find(gauge.Name[0]) != std::string::npos)
+  const std::string name = Printable(text);
+  if (std::string("=+-@").find(name[0]) != std::string::npos)
   {
-    throw UsageError(option + ": the name of gauge '" + gauge.Name + "' begins with '" +
-      gauge.Name[0] +
+    throw UsageError(option + ": the name of " + noun + " '" + name + "' begins with '" + name[0] +
       "', so that spreadsheets would take it for a formula; begin it with a letter");
   }
-  if (std::equal(gauge.Ends.begin(), gauge.Ends.begin() + 3, gauge.Ends.begin() + 3))
-  {
-    throw UsageError(option + ": gauge '" + gauge.Name +
-      "' has no length, because both its ends are the same; give it two");
-  }
-  return gauge;
+  return name;
 }
 
-std::vector<GaugeLine> ReadGauges(const std::string& file)
+std::vector<std::string> ReadRows(const std::string& option, const std::string& file,
+  const std::string& nouns, const std::string& form)
 {
   const std::size_t most = std::size_t(64) << 20; // a device has no end
   std::ifstream source(file, std::ios::binary);
@@ -67,12 +51,12 @@ std::vector<GaugeLine> ReadGauges(const std::string& file)
   }
   if (!source.eof()) // a folder opens, but does not read
   {
-    throw std::runtime_error("the gauges' file " + file +
-      (text.size() > most ? " is larger than 64 MiB; give one of fewer gauges"
+    throw std::runtime_error("the " + nouns + "' file " + file +
+      (text.size() > most ? " is larger than 64 MiB; give one of fewer " + nouns
                           : " cannot be read"));
   }
   std::istringstream stream(text);
-  std::vector<GaugeLine> gauges;
+  std::vector<std::string> rows;
   for (std::string line; std::getline(stream, line);)
   {
     const std::size_t first = line.find_first_not_of(" \t\r");
@@ -81,13 +65,30 @@ std::vector<GaugeLine> ReadGauges(const std::string& file)
       continue;
     }
     const std::size_t last = line.find_last_not_of(" \t\r");
-    gauges.push_back(ToGauge("--gauges " + file, line.substr(first, last + 1 - first)));
+    rows.push_back(line.substr(first, last + 1 - first));
   }
-  if (gauges.empty())
+  if (rows.empty())
   {
-    throw UsageError("--gauges " + file + " has no gauges; it needs lines NAME=X,Y,Z:X,Y,Z");
+    throw UsageError(option + " " + file + " has no " + nouns + "; it needs lines " + form);
   }
-  return gauges;
+  return rows;
+}
+
+GaugeLine ToGauge(const std::string& option, const std::string& text)
+{
+  const std::size_t equals = text.rfind('='), colon = text.rfind(':');
+  GaugeLine gauge;
+  Need(equals != std::string::npos && equals > 0 && colon != std::string::npos && colon > equals &&
+      ParseNumbers(option, text.substr(equals + 1, colon - equals - 1), 3, gauge.Ends.data()) &&
+      ParseNumbers(option, text.substr(colon + 1), 3, gauge.Ends.data() + 3),
+    option, "a name and two places, NAME=X,Y,Z:X,Y,Z", text);
+  gauge.Name = ToRowName(option, "gauge", text.substr(0, equals));
+  if (std::equal(gauge.Ends.begin(), gauge.Ends.begin() + 3, gauge.Ends.begin() + 3))
+  {
+    throw UsageError(option + ": gauge '" + gauge.Name +
+      "' has no length, because both its ends are the same; give it two");
+  }
+  return gauge;
 }
 
 GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
@@ -96,8 +97,9 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text)
   GaugeGrid grid;
   double counts[2];
   double* b = grid.Bounds.data();
-  Need(colon != std::string::npos && Numbers(option, text.substr(0, colon), 2, counts) &&
-      Numbers(option, text.substr(colon + 1), 6, b) && b[0] <= b[1] && b[2] <= b[3] && b[4] < b[5],
+  Need(colon != std::string::npos && ParseNumbers(option, text.substr(0, colon), 2, counts) &&
+      ParseNumbers(option, text.substr(colon + 1), 6, b) && b[0] <= b[1] && b[2] <= b[3] &&
+      b[4] < b[5],
     option, "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
   for (int a = 0; a < 2; ++a)
   {
@@ -135,15 +137,15 @@ std::vector<GaugeLine> LinesOf(const GaugeGrid& grid)
   return lines;
 }
 
-void CheckNames(const std::vector<GaugeLine>& gauges)
+void CheckNames(const std::vector<std::string>& names, const std::string& nouns)
 {
-  std::set<std::string> names;
-  for (const GaugeLine& gauge : gauges)
+  std::set<std::string> known;
+  for (const std::string& name : names)
   {
-    if (!names.insert(gauge.Name).second)
+    if (!known.insert(name).second)
     {
       throw UsageError(
-        "two gauges have the name '" + gauge.Name + "'; give each a name of its own");
+        "two " + nouns + " have the name '" + name + "'; give each a name of its own");
     }
   }
 }

@@ -21,12 +21,20 @@ struct GaugeGrid
   std::array<double, 6> Bounds = {};
 };
 
+/// True, and the numbers, if the text has exactly so many.
+bool ParseNumbers(
+  const std::string& option, const std::string& text, std::size_t count, double* numbers);
+
+/// A name for a row of a table. noun: what has it. Throws UsageError.
+std::string ToRowName(const std::string& option, const std::string& noun, const std::string& text);
+
+/// The lines of a file of "gauges", say, that are not empty and do not begin with #. form: of such a line. Throws UsageError
+/// where there are none, or std::runtime_error where it cannot be read.
+std::vector<std::string> ReadRows(const std::string& option, const std::string& file,
+  const std::string& nouns, const std::string& form);
+
 /// NAME=x0,y0,z0:x1,y1,z1. Throws UsageError.
 GaugeLine ToGauge(const std::string& option, const std::string& text);
-
-/// A line of the file each; empty ones, and those that begin with #, are left out. Throws UsageError, or
-/// std::runtime_error where it cannot be read.
-std::vector<GaugeLine> ReadGauges(const std::string& file);
 
 /// nx,ny:x0,x1,y0,y1,z0,z1. Throws UsageError.
 GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
@@ -34,7 +42,7 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
 /// Its lines, from z0 to z1, x fastest.
 std::vector<GaugeLine> LinesOf(const GaugeGrid& grid);
 
-/// Throws UsageError where two have one name.
-void CheckNames(const std::vector<GaugeLine>& gauges);
+/// Throws UsageError where two have one name. nouns: what they are.
+void CheckNames(const std::vector<std::string>& names, const std::string& nouns);
 
 #endif

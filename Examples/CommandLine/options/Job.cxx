@@ -62,7 +62,21 @@ const std::vector<Rule> OfGauges = {
     "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
 };
 
-/// For all but gauges.
+const std::vector<Rule> OfFluxes = {
+  { IsAny, "{mode} makes no surface",
+    { "--scalar", "--stats", "--repeat", "--components", "--screenshot", "--probe", "--slice",
+      "--line", "--box", "--numbers" } },
+  { IsAny, "{mode} writes a table of its own", { "--gauge", "--gauges", "--gauge-grid" } },
+  { IF(j.Surface->GetNumberOfContours() > 1),
+    "{mode} makes no surface; leave out all but one --iso value" },
+  { IF(j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL),
+    "fluxes do not end at walls; leave out --solids wall" },
+  { IF(!IsTo(j, ".csv")), "the output of {mode} is a .csv file, not '{output}'" },
+  { IF(!(j.Flux->GetLevel() > 0.0)),
+    "fluxes need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
+};
+
+/// For all but tables.
 const std::vector<Rule> OfOthers = {
   { IF(!j.Has("--screenshot")), "without --screenshot there is no picture", { "--view", "--up" } },
   { IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
@@ -201,9 +215,9 @@ void Check(const Job& job)
     return;
   }
   Enforce(OfAll, job);
-  if (job.IsGauge())
+  if (job.IsTable())
   {
-    Enforce(OfGauges, job);
+    Enforce(job.IsFlux() ? OfFluxes : OfGauges, job);
     return;
   }
   for (const std::string& walls : job.Walls)
@@ -211,7 +225,7 @@ void Check(const Job& job)
     if (!job.IsFilm() && (IsCollectionFile(walls) || HasStepNumber(walls)))
     {
       throw UsageError("--walls " + walls +
-        " has walls for each step, which only films and gauges can use; give one file");
+        " has walls for each step, which only films, gauges and fluxes can use; give one file");
     }
   }
   Enforce(OfOthers, job);
@@ -319,14 +333,18 @@ std::vector<std::string> Job::InputFiles() const
 {
   std::vector<std::string> files = this->Inputs;
   files.insert(files.end(), this->Walls.begin(), this->Walls.end());
-  files.insert(files.end(), { this->ProbeFile, this->GaugeFile });
+  files.insert(files.end(), { this->ProbeFile, this->GaugeFile, this->FluxFile });
+  for (const FluxSection& section : this->Fluxes)
+  {
+    files.push_back(section.File);
+  }
   return files;
 }
 
 const char* Job::Mode() const
 {
   for (const char* option :
-    { "--gauge-grid", "--gauge", "--gauges", "--probe", "--slice", "--line" })
+    { "--flux", "--fluxes", "--gauge-grid", "--gauge", "--gauges", "--probe", "--slice", "--line" })
   {
     if (this->Has(option))
     {
@@ -338,7 +356,7 @@ const char* Job::Mode() const
 
 bool Job::IsFilm() const
 {
-  return !this->IsProbe() && !this->IsGauge() &&
+  return !this->IsProbe() && !this->IsTable() &&
     (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
       (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
 }
@@ -349,7 +367,8 @@ std::string CommandLineHelp()
   help << "usage: marching-correctors INPUT OUTPUT [options]\n"
           "       marching-correctors INPUT... OUTPUT.pvd [options]\n"
           "       marching-correctors INPUT.pvd OUTPUT.pvd [options]\n"
-          "       marching-correctors INPUT... OUTPUT.csv --gauge NAME=X,Y,Z:X,Y,Z [options]\n\n"
+          "       marching-correctors INPUT... OUTPUT.csv --gauge NAME=X,Y,Z:X,Y,Z [options]\n"
+          "       marching-correctors INPUT... OUTPUT.csv --flux NAME=SECTION [options]\n\n"
           "Extracts an isosurface from SPH particles. INPUT is a "
        << ParticleFileEndings() << " file,\nOUTPUT a " << SurfaceFileEndings()
        << " file. OUTPUT.pvd makes a film: one surface per step,\n"

@@ -3,11 +3,13 @@
 #ifndef Job_h
 #define Job_h
 
+#include "FluxSection.h"
 #include "GaugeLine.h"
 
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
 #include "vtkSPHDerivatives.h"
+#include "vtkSPHFlux.h"
 #include "vtkSPHGauge.h"
 #include "vtkSPHProbe.h"
 
@@ -43,24 +45,28 @@ struct Job
   vtkNew<vtkSPHDerivatives> Derivatives; ///< where Derive is not empty
   vtkNew<vtkSPHProbe> Probe;             ///< where IsProbe()
   vtkNew<vtkSPHGauge> Gauge;             ///< where HasGauges()
+  vtkNew<vtkSPHFlux> Flux;               ///< where IsFlux()
 
   /// For settings that all of them have.
-  std::array<vtkSPHAlgorithm*, 4> All() const
+  std::array<vtkSPHAlgorithm*, 5> All() const
   {
-    return { this->Surface, this->Derivatives, this->Probe, this->Gauge };
+    return { this->Surface, this->Derivatives, this->Probe, this->Gauge, this->Flux };
   }
   bool IsProbe() const
   {
     return !this->ProbeFile.empty() || this->Slice.Axis >= 0 || !this->Slice.Line.empty();
   }
   bool IsGauge() const { return this->HasGauges() && this->NumbersFile.empty(); }
+  bool IsFlux() const { return !this->Fluxes.empty() || !this->FluxFile.empty(); }
+  /// Whether OUTPUT is a table of one row a step and place.
+  bool IsTable() const { return this->IsGauge() || this->IsFlux(); }
   bool HasGauges() const
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
   /// All files that are read, but for those that they list.
   std::vector<std::string> InputFiles() const;
-  /// The first option that asks for gauges, or for a probe.
+  /// The first option that asks for gauges, fluxes, or a probe.
   const char* Mode() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
@@ -73,7 +79,7 @@ struct Job
   std::vector<std::string>
     Walls; ///< files whose particles are walls, at all times; or of each step: .pvd, %04d
   std::string Output;
-  std::vector<double> Times; ///< of a film or gauges, ascending; empty: all that are stored
+  std::vector<double> Times; ///< of a film or table, ascending; empty: all that are stored
   double TimeStep = 1.0;     ///< between the steps of a film of particle files
   std::string IdArray;       ///< that particles are matched by between steps; empty: found
   std::string ProbeFile;
@@ -81,6 +87,8 @@ struct Job
   std::vector<GaugeLine> Gauges;
   std::string GaugeFile; ///< more of them
   GaugeGrid Grid;        ///< no others then
+  std::vector<FluxSection> Fluxes;
+  std::string FluxFile;  ///< more of them
   std::string Derive;    ///< array whose gradient, and what is made of it, the particles get
 
   std::string Scalar;

@@ -92,6 +92,7 @@ void SetSolids(Job& job, Text option, Text text)
   job.Derivatives->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Probe->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Gauge->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
+  job.Flux->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Surface->SetSolids(solids);
 }
 
@@ -107,6 +108,7 @@ void SetIsoValues(Job& job, Text option, Text text)
     job.Surface->SetFreeSurfaceValue(static_cast<int>(i), values[i]);
   }
   job.Gauge->SetLevel(values.front());
+  job.Flux->SetLevel(values.front());
 }
 
 Choices ListKernels()
@@ -191,6 +193,18 @@ const std::vector<Option> Table = {
   { "--gauge-grid", "NX,NY:BOUNDS",
     "NX by NY vertical lines in x0,x1,y0,y1,z0,z1; OUTPUT is an image of levels (.vti)",
     DO(j.Grid = ToGaugeGrid(n, v)) },
+
+  { "", "", "Fluxes: what flows through sections, in place of a surface; OUTPUT is a .csv table",
+    {} },
+  { "--flux", "NAME=SECTION",
+    "a rectangle X,Y,Z:X,Y,Z:X,Y,Z (corner, two ends), disc:X,Y,Z:NX,NY,NZ:R, the sides of "
+    "box:X0,X1,Y0,Y1,Z0,Z1, a file of triangles, or in two dimensions a line X,Y,Z:X,Y,Z; may be "
+    "given more than once",
+    DO(j.Fluxes.push_back(ToFlux(n, v))), true },
+  { "--fluxes", "FILE", "all sections of this file, one NAME=SECTION in each row",
+    DO(j.FluxFile = v) },
+  { "--velocity", "NAME", "array of velocities for --flux (default: found by its usual names)",
+    DO(j.Flux->SetVelocityArrayName(Printable(v).c_str())) },
 
   { "", "", "The particles (arrays are found by their usual names unless they are given)", {} },
   { "--smoothing-length", "NAME|VALUE|estimate|neighbours[=ETA]",
@@ -344,7 +358,8 @@ const std::vector<Option> Table = {
   { "--numbers", "TABLE.csv",
     "for a film: write a row for each step: area, volume, pieces, and readings of --gauge",
     DO(j.NumbersFile = v) },
-  { "--times", "T[,T...]", "for a film or gauges: at these times, which may lie between two steps",
+  { "--times", "T[,T...]",
+    "for a film, gauges or fluxes: at these times, which may lie between two steps",
     DO(const std::vector<double> times = ToNumbers(n, v);
        const std::set<double> sorted(times.begin(), times.end());
        j.Times.assign(sorted.begin(), sorted.end())) },
@@ -390,7 +405,6 @@ const std::vector<Option> Table = {
   { "--help", "", "print this text (also -h)", DO() },
   { "--version", "", "print the version", DO() },
 };
-
 }
 
 const std::vector<Option>& AllOptions()

@@ -21,12 +21,15 @@
 #include "vtkHDFReader.h"
 #endif
 #include "vtkNew.h"
+#include "vtkOBJReader.h"
 #include "vtkObjectFactory.h"
+#include "vtkPLYReader.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHVertices.h"
+#include "vtkSTLReader.h"
 #include "vtkVersion.h"
 #include "vtkVersionMacros.h"
 #include "vtkXMLDataParser.h"
@@ -171,6 +174,15 @@ vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
   return ReadXml(reader, file);
 }
 
+template <typename ReaderT>
+vtkSmartPointer<vtkDataObject> ReadSurfaceWith(const std::string& file)
+{
+  vtkNew<ReaderT> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutputDataObject(0);
+}
+
 /// Every format that is read; all that is known of one stands here. Without a function: a list of
 /// files that hold parts of the particles.
 using Reader =
@@ -209,6 +221,9 @@ const std::vector<FileFormat<Reader>> DataFormats = {
   { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
   { ".vtk", ReadOne<ReadLegacy> },
   { ".csv", ReadOne<ReadCsv> },
+  { ".stl", ReadOne<ReadSurfaceWith<vtkSTLReader>> },
+  { ".ply", ReadOne<ReadSurfaceWith<vtkPLYReader>> },
+  { ".obj", ReadOne<ReadSurfaceWith<vtkOBJReader>> },
 };
 
 /// What numbers of points and particles are counted in.

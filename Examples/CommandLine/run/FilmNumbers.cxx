@@ -5,6 +5,7 @@
 #include "GaugeRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
+#include "MeterRun.h"
 #include "SurfaceRun.h"
 #include "TableText.h"
 
@@ -64,7 +65,8 @@ void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* me
   }
   if (this->Options.Gauge->GetNumberOfGauges() > 0)
   {
-    vtkTable* gauges = MeasureGauges(this->Options, particles, time, messages, "");
+    vtkTable* gauges =
+      MeasureWith(this->Options.Gauge, this->Options, particles, time, messages, "");
     const std::vector<std::string> more = messages->GetWarnings();
     warnings.insert(warnings.end(), more.begin(), more.end());
     for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)

@@ -9,8 +9,6 @@
 
 class MessageCapture;
 class Sharing;
-class vtkPointSet;
-class vtkTable;
 struct Job;
 
 /// Gauges of the options, in their order. Throws UsageError or std::runtime_error with one sentence.
@@ -18,10 +16,6 @@ std::vector<GaugeLine> ListGauges(const Job& job);
 
 /// To the job's filter.
 void AddGauges(const Job& job, const std::vector<GaugeLine>& gauges);
-
-/// The table of the job's gauges; shows its progress behind the words `progress`. Throws std::runtime_error.
-vtkTable* MeasureGauges(const Job& job, vtkPointSet* particles, double time,
-  MessageCapture* messages, const std::string& progress);
 
 /// Measures the free surface along lines at each time of the input, and writes the table, or, of a grid
 /// of lines, an image. False if a step failed, of which all was said; the table has the others. Throws

@@ -88,6 +88,9 @@ typedef struct mcor_flux_job
 
 /* mcor_flux_patch.c. Checks a section, and appends its patches. */
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
+/* mcor_flux_closed.c. -1 if the triangles are a closed surface with normals inwards; else 1. */
+mcor_status mcor_orient_triangles(
+  mcor_context* context, const double* points, int64_t point_count, double* sign);
 /* The point that parameters are of; its patch is the third of them. */
 void mcor_map_patch(const void* job, const double parameters[3], double point[3]);
 /* Area for a unit of parameters there. */

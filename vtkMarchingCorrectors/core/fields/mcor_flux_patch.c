@@ -167,6 +167,8 @@ static mcor_status mcor_add_disc(
 static mcor_status mcor_add_triangles(mcor_flux_job* job, int64_t number)
 {
   const mcor_section* section = &job->sections[number];
+  double sign = 1;
+  MCOR_TRY(mcor_orient_triangles(job->edges.context, section->points, section->point_count, &sign));
   for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 9)
   {
     double edges[2][3], normal[3];
@@ -176,6 +178,10 @@ static mcor_status mcor_add_triangles(mcor_flux_job* job, int64_t number)
       edges[1][a] = x[6 + a] - x[a];
     }
     mcor_cross(edges[0], edges[1], normal);
+    for (int a = 0; a < 3; ++a)
+    {
+      normal[a] *= sign;
+    }
     MCOR_TRY(job->is_plane ? mcor_leaves_plane(job, number)
         : mcor_normalise(normal) > 0
         ? mcor_add_patch(job, number, MCOR_PATCH_TRIANGLE, x, edges[0], edges[1], normal)

@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""flux: what flows through sections."""
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping
+from dataclasses import dataclass, field as dataclass_field
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
+
+import numpy as np
+
+from . import _structs as c
+from ._arrays import as_bytes, contiguous, statistics
+from ._context import Context
+from ._functions import called, of_files, prepare
+from ._library import InvalidArgument, lib
+from ._options import GAUGE, check_names, with_options
+from ._surface import Result
+from ._units import Units
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Unpack
+
+    from ._functions import Only, Positions, Progress
+    from ._options import Options
+
+FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, radius); '
+         '("box", (x0, x1, y0, y1, z0, z1)); (n, 3, 3): triangles; (2, 3) or (n, 2, 3): lines in two dimensions')
+
+
+@dataclass(eq=False, repr=False)
+class Fluxes(Result):
+    """What flows through the part of each section that is in fluid; units of positions (L), velocities and densities."""
+
+    names: List[str]  #: of the sections; "0", "1", ... where none were given
+    area: np.ndarray  #: (sections,) float64: of that part, L^2; in two dimensions a length
+    volume_flux: np.ndarray  #: (sections,) float64: the integral of v . n
+    mass_flux: np.ndarray  #: (sections,) float64: of rho v . n; NaN without densities
+    velocity: np.ndarray  #: (sections,) float64: volume_flux / area; NaN where the area is 0
+    outside: np.ndarray  #: (sections,) bool: no particle reaches the section
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    def __repr__(self):
+        return f"<Fluxes: {len(self.names)} sections, {int((self.area > 0).sum())} in fluid>"
+
+
+def _numbers(values, shape, name, units):
+    array = contiguous(units.lengths(values, "section"), "section").astype(np.float64)
+    if array.shape != shape:
+        raise InvalidArgument(f"Section '{name}' has an array of the shape {array.shape} where it is {shape}. A section is "
+                              f"{FORMS}.")
+    return array
+
+
+def _as_section(section, name, units):
+    """Shape, points (n, 3) and radius."""
+    kinds = c.ENUMS["mcor_section_shape"]
+    if len(section) and isinstance(section[0], str):
+        if section[0] == "disc" and len(section) == 4:
+            points = [_numbers(section[1], (3,), name, units), np.asarray(section[2], np.float64).reshape(3)]
+            return kinds["MCOR_SECTION_DISC"], np.stack(points), float(_numbers(section[3], (1,), name, units)[0])
+        if section[0] == "box" and len(section) == 2:
+            return kinds["MCOR_SECTION_BOX"], np.ascontiguousarray(_numbers(section[1], (6,), name, units).reshape(3, 2).T), 0.0
+        raise InvalidArgument(f"Section '{name}' begins with '{section[0]}'. A section is {FORMS}.")
+    array = contiguous(units.lengths(section, "section"), "section").astype(np.float64)
+    shape = {(3, 3): "RECTANGLE", (2, 3): "LINES"}.get(array.shape)
+    if array.ndim == 3 and array.shape[1:] in ((3, 3), (2, 3)):
+        shape = "TRIANGLES" if array.shape[1] == 3 else "LINES"
+    if shape is None:
+        raise InvalidArgument(f"Section '{name}' has the shape {array.shape}. A section is {FORMS}.")
+    return kinds["MCOR_SECTION_" + shape], array.reshape(-1, 3), 0.0
+
+
+def _as_sections(sections, units):
+    """Names, and structures, which must stay as long as what is kept."""
+    is_one = isinstance(sections, np.ndarray) or (
+        isinstance(sections, (tuple, list)) and len(sections) > 0 and (isinstance(sections[0], str) or np.ndim(sections) == 2))
+    given = [sections] if is_one else list(sections.values()) if isinstance(sections, Mapping) else list(sections)
+    names = [str(name) for name in sections] if isinstance(sections, Mapping) else [str(i) for i in range(len(given))]
+    made, kept = (c.mcor_section * max(len(given), 1))(), []
+    for structure, section, name in zip(made, given, names):
+        structure.shape, points, structure.radius = _as_section(section, name, units)
+        kept.append(points)
+        structure.points = points.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        structure.point_count, structure.name = len(points), as_bytes(name)
+    return names, made, kept
+
+
+def _density(given, count):
+    """Of each particle, or None; and the quantities that tell volumes."""
+    volume, mass, density = (given[name] for name in ("volume", "mass", "density"))
+    known = volume is not None and not isinstance(volume, str)
+    words = {"mass": None, "density": None} if known else {} if mass is not None else {"density": None}
+    if density is None and known and mass is not None:
+        density = np.asarray(mass) / np.asarray(volume)
+    if density is not None and np.ndim(density) == 0:
+        density = np.full(count, density)
+    return density, {**given, **words}
+
+
+@of_files
+@with_options(GAUGE)
+def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, *,
+         smoothing_length: Optional[ArrayLike] = None,
+         volume: Optional[ArrayLike] = None,
+         mass: Optional[ArrayLike] = None,
+         density: Optional[ArrayLike] = None,
+         solid: Optional[ArrayLike] = None,
+         within: Optional[ArrayLike] = None,
+         only: Optional[Only] = None,
+         context: Optional[Context] = None,
+         device: Union[None, str, int] = None,
+         progress: Optional[Progress] = None,
+         **options: Unpack[Options]) -> Fluxes:
+    """What flows through sections, to 1e-6 of the largest flux that the velocities there allow.
+
+    Example: flux(x, v, {"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}, smoothing_length=h, mass=m, density=rho).mass_flux
+
+    Returns Fluxes: area, volume_flux, mass_flux and velocity of each section.
+
+    velocity: (particles, 3), L per unit of time; in two dimensions (particles, 2) will do.
+    sections: one, a list of them, or {name: section}. A section is (3, 3): a rectangle's corner and two
+        ends, whose cross product is the normal; ("disc", centre, normal, radius); ("box", (x0, x1, y0, y1,
+        z0, z1)): its sides, with normals outwards; (n, 3, 3): triangles, with normals by the right-hand rule,
+        or outwards if they are a closed surface; in two dimensions (2, 3) or (n, 2, 3): lines, with normals
+        to their right.
+    iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
+    density: (particles,) or one value, for mass fluxes; or mass and volume, which give it.
+
+    Solids do not count. The other arguments are those of isosurface().
+
+    {options}
+    """
+    check_names(flux, options, GAUGE)
+    given, units = locals(), Units(positions)
+    densities, given = _density(given, len(positions))
+    attributes = {"velocity": velocity} if densities is None else {"velocity": velocity, "density": densities}
+    arguments, _ = prepare(units, attributes, given, options)
+    names, array, _kept = _as_sections(sections, units)
+    arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
+    with called(lib.mcor_flux, c.mcor_fluxes, arguments, given, array, len(names)) as found:
+        readings = [found.readings[i] for i in range(found.count)]
+        columns = {name: np.array([getattr(reading, name) for reading in readings], np.float64)
+                   for name in ("area", "volume_flux", "mass_flux", "velocity")}
+        return Fluxes(names=names, outside=np.array([reading.outside for reading in readings], bool), **columns,
+                      statistics=statistics(found.statistics))

@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHFlux.h"
+
+#include "mcor.h"
+#include "vtkAbstractArray.h"
+#include "vtkCell.h"
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkSPHMeterColumn.h"
+#include "vtkSPHParticles.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <utility>
+
+VTK_ABI_NAMESPACE_BEGIN
+namespace
+{
+/** Triangles of polygons, and lines. */
+struct Shapes
+{
+  std::string Name;
+  std::vector<double> Triangles;
+  std::vector<double> Lines;
+
+  void Add(vtkCell* cell)
+  {
+    std::vector<double>& to = cell->GetCellDimension() == 1 ? this->Lines : this->Triangles;
+    vtkNew<vtkIdList> ids;
+    vtkNew<vtkPoints> points;
+    cell->Triangulate(0, ids, points);
+    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+    {
+      double at[3];
+      points->GetPoint(i, at);
+      to.insert(to.end(), at, at + 3);
+    }
+  }
+};
+
+/** Of the cells with one name each, in the order in which names come. */
+std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
+{
+  vtkAbstractArray* names = data->GetCellData()->GetAbstractArray("Name");
+  std::vector<Shapes> all;
+  for (vtkIdType i = 0; i < data->GetNumberOfCells(); ++i)
+  {
+    vtkCell* cell = data->GetCell(i);
+    const int dimension = cell->GetCellDimension();
+    if (dimension != 1 && dimension != 2)
+    {
+      continue;
+    }
+    const std::string name = names
+      ? std::string(names->GetVariantValue(i * names->GetNumberOfComponents()).ToString())
+      : usual;
+    const auto known =
+      std::find_if(all.begin(), all.end(), [&name](const Shapes& s) { return s.Name == name; });
+    if (known != all.end())
+    {
+      known->Add(cell);
+      continue;
+    }
+    all.push_back({ name, {}, {} });
+    all.back().Add(cell);
+  }
+  return all;
+}
+}
+
+vtkStandardNewMacro(vtkSPHFlux);
+
+vtkSPHFlux::vtkSPHFlux() = default;
+
+vtkSPHFlux::~vtkSPHFlux() = default;
+
+void vtkSPHFlux::AddSection(const char* name, int shape, std::vector<double> numbers)
+{
+  this->Sections.push_back({ name ? name : "", shape, std::move(numbers) });
+  this->Modified();
+}
+
+void vtkSPHFlux::AddRectangle(
+  const char* name, const double corner[3], const double end1[3], const double end2[3])
+{
+  std::vector<double> points(corner, corner + 3);
+  points.insert(points.end(), end1, end1 + 3);
+  points.insert(points.end(), end2, end2 + 3);
+  this->AddSection(name, MCOR_SECTION_RECTANGLE, points);
+}
+
+void vtkSPHFlux::AddDisc(
+  const char* name, const double center[3], const double normal[3], double radius)
+{
+  this->AddSection(name, MCOR_SECTION_DISC,
+    { center[0], center[1], center[2], normal[0], normal[1], normal[2], radius });
+}
+
+void vtkSPHFlux::AddBox(const char* name, const double b[6])
+{
+  this->AddSection(name, MCOR_SECTION_BOX, { b[0], b[2], b[4], b[1], b[3], b[5] });
+}
+
+void vtkSPHFlux::AddLine(const char* name, const double point1[3], const double point2[3])
+{
+  this->AddSection(
+    name, MCOR_SECTION_LINES, { point1[0], point1[1], point1[2], point2[0], point2[1], point2[2] });
+}
+
+void vtkSPHFlux::AddSurface(const char* name, vtkDataSet* surface)
+{
+  Shapes all;
+  for (const Shapes& shapes : ListShapes(surface, ""))
+  {
+    all.Triangles.insert(all.Triangles.end(), shapes.Triangles.begin(), shapes.Triangles.end());
+    all.Lines.insert(all.Lines.end(), shapes.Lines.begin(), shapes.Lines.end());
+  }
+  all.Triangles.empty() ? this->AddSection(name, MCOR_SECTION_LINES, all.Lines)
+                        : this->AddSection(name, MCOR_SECTION_TRIANGLES, all.Triangles);
+}
+
+void vtkSPHFlux::ClearSections()
+{
+  this->Sections.clear();
+  this->Modified();
+}
+
+int vtkSPHFlux::GetNumberOfSections() const
+{
+  return static_cast<int>(this->Sections.size());
+}
+
+std::vector<vtkSPHMeter::Place> vtkSPHFlux::ListPlaces(vtkDataObject* more)
+{
+  std::vector<Place> sections = this->Sections;
+  if (auto* data = vtkDataSet::SafeDownCast(more))
+  {
+    for (const Shapes& shapes : ListShapes(data, "section"))
+    {
+      const bool isLine = shapes.Triangles.empty();
+      sections.push_back({ shapes.Name, isLine ? MCOR_SECTION_LINES : MCOR_SECTION_TRIANGLES,
+        isLine ? shapes.Lines : shapes.Triangles });
+    }
+  }
+  if (sections.empty() && !more)
+  {
+    const double *o = this->Origin, *n = this->Normal;
+    sections.push_back(
+      { "section", MCOR_SECTION_DISC, { o[0], o[1], o[2], n[0], n[1], n[2], this->Radius } });
+  }
+  return sections;
+}
+
+void vtkSPHFlux::AddBounds(const Place& place, double low[3], double high[3]) const
+{
+  const bool isDisc = place.Shape == MCOR_SECTION_DISC;
+  const double margin = isDisc ? place.Numbers[6] : 0.0;
+  for (size_t i = 0; i < (isDisc ? 3 : place.Numbers.size()); ++i)
+  {
+    low[i % 3] = std::min(low[i % 3], place.Numbers[i] - margin);
+    high[i % 3] = std::max(high[i % 3], place.Numbers[i] + margin);
+  }
+}
+
+bool vtkSPHFlux::Collect(vtkSPHParticles& particles)
+{
+  return this->Superclass::Collect(particles) && particles.CollectFlow(this->VelocityArrayName);
+}
+
+std::unique_ptr<vtkSPHMeter::Found> vtkSPHFlux::MakeFound() const
+{
+  class Readings : public Found
+  {
+  public:
+    ~Readings() override { mcor_free_fluxes(&this->Fluxes); }
+
+    const mcor_statistics& GetStatistics() const override { return this->Fluxes.statistics; }
+
+    bool IsOutside(vtkIdType place) const override
+    {
+      return this->Fluxes.readings[place].outside != 0;
+    }
+
+    int Call(mcor_context* context, const mcor_input& particles, const mcor_options& options,
+      const std::vector<Place>& places) override
+    {
+      std::vector<mcor_section> sections;
+      for (const Place& place : places)
+      {
+        mcor_section section = {};
+        section.shape = static_cast<mcor_section_shape>(place.Shape);
+        section.points = place.Numbers.data();
+        section.point_count = static_cast<int64_t>(place.Numbers.size() / 3);
+        section.radius = place.Shape == MCOR_SECTION_DISC ? place.Numbers.back() : 0.0;
+        section.name = place.Name.c_str();
+        sections.push_back(section);
+      }
+      mcor_input input = particles;
+      mcor_array still = {};
+      still.components = 3;
+      if (input.count == 0 && input.attribute_count == 0) // nothing is asked of no particles
+      {
+        input.attributes = &still;
+        input.attribute_count = 1;
+      }
+      mcor_free_fluxes(&this->Fluxes);
+      return mcor_flux(context, &input, &options, sections.data(),
+        static_cast<int64_t>(sections.size()), &this->Fluxes);
+    }
+
+    void Fill(vtkTable* table) const override
+    {
+      const auto count = static_cast<vtkIdType>(this->Fluxes.count);
+      auto* area = vtkSPHAddColumn<vtkDoubleArray>(table, "area", count);
+      auto* volume = vtkSPHAddColumn<vtkDoubleArray>(table, "volume_flux", count);
+      auto* mass = vtkSPHAddColumn<vtkDoubleArray>(table, "mass_flux", count);
+      auto* velocity = vtkSPHAddColumn<vtkDoubleArray>(table, "velocity", count);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        const mcor_flux_reading& reading = this->Fluxes.readings[i];
+        area->SetValue(i, reading.area);
+        volume->SetValue(i, reading.volume_flux);
+        mass->SetValue(i, reading.mass_flux);
+        velocity->SetValue(i, reading.velocity);
+      }
+    }
+
+  private:
+    mcor_fluxes Fluxes = {};
+  };
+  return std::unique_ptr<Found>(new Readings);
+}
+
+void vtkSPHFlux::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  PrintNumbers(os, indent, "Origin", this->Origin, 3);
+  PrintNumbers(os, indent, "Normal", this->Normal, 3);
+  os << indent << "Radius: " << this->Radius << "\n";
+  os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
+  for (const Place& section : this->Sections)
+  {
+    os << indent << "Section " << section.Name << ": shape " << section.Shape << ", "
+       << section.Numbers.size() / 3 << " points\n";
+  }
+}
+VTK_ABI_NAMESPACE_END

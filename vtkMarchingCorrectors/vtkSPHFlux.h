@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHFlux
+ * @brief   what flows through sections of SPH particles
+ *
+ * vtkSPHFlux measures how much fluid flows through sections: it integrates the Shepard means of velocity and density
+ * over the part of a section that is in fluid, to 1e-6 of the largest flux that the velocities there allow; see mcor_flux
+ * in mcor.h. vtkSPHMeter says what is fluid, and how processes share the work.
+ *
+ * Sections are those of the Add...() methods and the cells of the second input: polygons, with normals by the
+ * right-hand rule, or outwards if they are a closed surface; lines, if particles lie in a plane. Cells with the same
+ * entry in the cell array "Name" are one section; without such an array all cells are. If there are no sections, it is the disc
+ * of Origin, Normal and Radius.
+ *
+ * In two dimensions a section is its line in the plane of the particles, and areas are lengths.
+ *
+ * The output is a vtkTable with a row for each section:
+ *
+ *     time         of the particles
+ *     section      the name
+ *     area         of the part of the section in fluid, A
+ *     volume_flux  the integral of v . n over it, n being the normal
+ *     mass_flux    of rho v . n; NaN without densities
+ *     velocity     volume_flux / area; NaN where the area is 0
+ *
+ * Units are those of positions, velocities and densities. The density is its array, Density, or mass / volume if both
+ * are given.
+ *
+ * @sa
+ * vtkSPHMeter vtkSPHGauge vtkMarchingCorrectors
+ */
+
+#ifndef vtkSPHFlux_h
+#define vtkSPHFlux_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHMeter.h"
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkDataSet;
+
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHFlux : public vtkSPHMeter
+{
+public:
+  static vtkSPHFlux* New();
+  vtkTypeMacro(vtkSPHFlux, vtkSPHMeter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * More sections; may be nullptr.
+   */
+  void SetSectionsConnection(vtkAlgorithmOutput* sections)
+  {
+    this->SetInputConnection(1, sections);
+  }
+  void SetSectionsData(vtkDataObject* sections) { this->SetInputData(1, sections); }
+
+  ///@{
+  /**
+   * Sections by name. Names must differ. A rectangle has a corner and the ends of the two edges that begin there, whose
+   * cross product is the normal. A disc has a centre, a normal of any length, and a radius. A box, x0, x1, y0, y1, z0, z1,
+   * has its sides, with normals outwards. A line is for two dimensions; its normal points to its right, seen with the plane's
+   * first axis to the right and its second one upwards. A surface has the polygons, or lines, of a data set.
+   */
+  void AddRectangle(
+    const char* name, const double corner[3], const double end1[3], const double end2[3]);
+  void AddDisc(const char* name, const double center[3], const double normal[3], double radius);
+  void AddBox(const char* name, const double bounds[6]);
+  void AddLine(const char* name, const double point1[3], const double point2[3]);
+  void AddSurface(const char* name, vtkDataSet* surface);
+  void ClearSections();
+  int GetNumberOfSections() const;
+  ///@}
+
+  ///@{
+  /**
+   * The disc that is used if there are no other sections: centre, normal, radius. (0, 0, 0), (1, 0, 0) and 1 by default.
+   */
+  vtkSetVector3Macro(Origin, double);
+  vtkGetVector3Macro(Origin, double);
+  vtkSetVector3Macro(Normal, double);
+  vtkGetVector3Macro(Normal, double);
+  vtkSPHValueMacro(Radius, double);
+  ///@}
+
+  /**
+   * The point array of velocities. Empty (the default): found by name (Velocity, vel, v, ...), also as vx, vy and vz.
+   */
+  vtkSPHTextMacro(VelocityArrayName);
+
+protected:
+  vtkSPHFlux();
+  ~vtkSPHFlux() override;
+
+  const char* GetNoun() const override { return "section"; }
+  const char* GetConsequence() const override { return "nothing flows"; }
+  std::vector<Place> ListPlaces(vtkDataObject* more) override;
+  void AddBounds(const Place& place, double low[3], double high[3]) const override;
+  bool Collect(vtkSPHParticles& particles) override;
+  std::unique_ptr<Found> MakeFound() const override;
+
+  double Origin[3] = { 0.0, 0.0, 0.0 };
+  double Normal[3] = { 1.0, 0.0, 0.0 };
+  double Radius = 1.0;
+  std::string VelocityArrayName;
+
+private:
+  vtkSPHFlux(const vtkSPHFlux&) = delete;
+  void operator=(const vtkSPHFlux&) = delete;
+
+  void AddSection(const char* name, int shape, std::vector<double> numbers);
+
+  std::vector<Place> Sections; // points, of a disc also the radius
+};
+VTK_ABI_NAMESPACE_END
+
+#endif

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHMeter
+ * @brief   superclass of the filters that measure the fluid at places with names
+ *
+ * The output is a vtkTable with a row for each place, the same whatever part of it is asked for. Fluid is where
+ * the sum of the fluid particles' weights is Level or more, as for the free surface of vtkMarchingCorrectors.
+ * Solids do not count, and do not end the fluid.
+ *
+ * Blocks of composite data are one set of particles, always.
+ *
+ * If the controller has several processes, they share the work: each has some of the particles, and the places
+ * of all processes are measured. The first process gets the table, the same to the last bit as from one process;
+ * the others get one without rows.
+ *
+ * @sa
+ * vtkSPHGauge vtkSPHFlux
+ */
+
+#ifndef vtkSPHMeter_h
+#define vtkSPHMeter_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHAlgorithm.h"
+
+#include <memory> // For what is found
+#include <string> // For places
+#include <vector> // For places
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkTable;
+
+class VTKMARCHINGCORRECTORS_EXPORT vtkSPHMeter : public vtkSPHAlgorithm
+{
+public:
+  vtkAbstractTypeMacro(vtkSPHMeter, vtkSPHAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /**
+   * Also leave solid particles out when volumes are computed from positions. Off by default.
+   */
+  vtkSPHFlagMacro(IgnoreSolids);
+
+  /**
+   * The table.
+   */
+  vtkTable* GetOutput();
+
+  /**
+   * The weight sum at which the fluid ends, above 0. 0.5 by default.
+   */
+  vtkSPHValueMacro(Level, double);
+
+  /**
+   * The time in the table if the input has none. 0 by default.
+   */
+  vtkSPHValueMacro(Time, double);
+
+protected:
+  vtkSPHMeter();
+  ~vtkSPHMeter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  const char* GetOutputClassName(const char* inputClassName) override;
+  void Process(vtkDataObject* input, vtkDataObject* output) override;
+  bool TakesTogether() const override { return true; }
+
+  /** What is measured; the numbers are the filter's own business. */
+  struct Place
+  {
+    std::string Name;
+    int Shape = 0;
+    std::vector<double> Numbers;
+  };
+
+  ///@{
+  /**
+   * What filters differ in: the word for one place ("gauge"); what holds without fluid; the places of this process,
+   * whose second input is `more`, or null; the bounds of one; which particle arrays are needed.
+   */
+  virtual const char* GetNoun() const = 0;
+  virtual const char* GetConsequence() const = 0;
+  virtual std::vector<Place> ListPlaces(vtkDataObject* more) = 0;
+  virtual void AddBounds(const Place& place, double low[3], double high[3]) const = 0;
+  virtual bool Collect(vtkSPHParticles& particles);
+  ///@}
+
+  /** What the core has found; deleted before the next run. */
+  class Found
+  {
+  public:
+    virtual ~Found() = default;
+    virtual const mcor_statistics& GetStatistics() const = 0;
+    /** Adds the columns behind those of time and name. */
+    virtual void Fill(vtkTable* table) const = 0;
+    /** Whether no particle reaches the place. */
+    virtual bool IsOutside(vtkIdType place) const = 0;
+    /** A status of the core. */
+    virtual int Call(mcor_context* context, const mcor_input& input, const mcor_options& options,
+      const std::vector<Place>& places) = 0;
+  };
+  virtual std::unique_ptr<Found> MakeFound() const = 0;
+
+  double Level = 0.5;
+  double Time = 0.0;
+
+private:
+  vtkSPHMeter(const vtkSPHMeter&) = delete;
+  void operator=(const vtkSPHMeter&) = delete;
+
+  bool CheckNames(const std::vector<Place>& places);
+  void Measure(vtkSPHParticles& input, vtkPointSet* particles, const std::vector<Place>& places,
+    vtkTable* output);
+  void Fill(vtkTable* output, const std::vector<Place>& places, const Found& found, bool hasFluid);
+
+  // For many processes together.
+  void ProcessDistributed(vtkPointSet* particles, vtkTable* output);
+  void MeasureTogether(
+    vtkSPHRanksRun& run, vtkSPHParticles& mine, const std::vector<Place>& places, vtkTable* output);
+  static std::vector<Place> Merge(vtkSPHRanks& ranks, const std::vector<Place>& mine);
+
+  vtkDataObject* More = nullptr; // the second input, while a run lasts
+  double InputTime = 0.0;
+};
+VTK_ABI_NAMESPACE_END
+
+#endif

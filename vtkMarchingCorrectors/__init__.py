@@ -5,8 +5,8 @@
 import vtkmodules.vtkCommonExecutionModel  # noqa: F401
 
 from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHComponents,
-                                    vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe, vtkSPHResample,
-                                    vtkSPHTemporalInterpolator)
+                                    vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge, vtkSPHMeter, vtkSPHProbe,
+                                    vtkSPHResample, vtkSPHTemporalInterpolator)
 
-__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHComponents", "vtkSPHDerivatives", "vtkSPHGauge",
-           "vtkSPHProbe", "vtkSPHResample", "vtkSPHTemporalInterpolator"]
+__all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHComponents", "vtkSPHDerivatives", "vtkSPHFlux",
+           "vtkSPHGauge", "vtkSPHMeter", "vtkSPHProbe", "vtkSPHResample", "vtkSPHTemporalInterpolator"]

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Run by mpirun: gauges, and the pieces of surfaces, that ranks measure together are bit for bit those of rank 0
+// Run by mpirun: gauges, fluxes, and the pieces of surfaces, that ranks measure together are bit for bit those of rank 0
 // alone, however particles are strewn over the ranks.
 //
 //   TestRankNumbers FOLDER OF DATA [some]     some: of each case one partition, all of them in turn
@@ -16,6 +16,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHComponents.h"
+#include "vtkSPHFlux.h"
 #include "vtkSPHGauge.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -64,6 +65,24 @@ Result Measure(vtkSPHGauge* gauge, vtkPolyData* particles, const double b[6],
   return { gauge->GetOutput(), nullptr };
 }
 
+/// Of each shape, some through all of the particles, one outside.
+Result MeasureFlux(vtkSPHFlux* flux, vtkPolyData* particles, const double b[6],
+  vtkMultiProcessController* controller)
+{
+  flux->SetController(controller);
+  flux->SetInputData(particles);
+  const double corner[3] = { b[0] - 0.1, 0.2 * b[3], b[4] }, end1[3] = { b[1], 0.3 * b[3], b[4] },
+               end2[3] = { b[0], 0.1 * b[3], b[5] + 0.1 },
+               center[3] = { 0.5 * (b[0] + b[1]), b[2], 0.5 * (b[4] + b[5]) },
+               normal[3] = { 1, 0.2, 0.1 }, far[3] = { 100, 100, 100 };
+  flux->AddRectangle("wall", corner, end1, end2);
+  flux->AddDisc("disc", center, normal, 0.6);
+  flux->AddDisc("far", far, normal, 1);
+  flux->AddBox("box", b);
+  flux->Update();
+  return { flux->GetOutput(), nullptr };
+}
+
 Result Split(vtkMarchingCorrectors* filter, vtkSPHComponents* split, vtkPolyData* particles,
   vtkMultiProcessController* controller)
 {
@@ -110,6 +129,20 @@ const std::vector<Case> Cases = {
       gauge->SetFluidArrayName("ParticleType");
       gauge->SetLevel(0.3);
       return Measure(gauge, particles, Large, controller);
+    } },
+  { "fluxes", "double_dam_break_small",
+    [](vtkPolyData* particles, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHFlux> flux;
+      return MeasureFlux(flux, particles, Small, controller);
+    } },
+  { "fluxes, solids, a period", "dam_break_45k",
+    [](vtkPolyData* particles, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHFlux> flux;
+      flux->SetFluidArrayName("ParticleType");
+      flux->SetPeriodicBounds(0.0, 0.0, 0.0, 0.0, -0.5, 0.5);
+      return MeasureFlux(flux, particles, Large, controller);
     } },
   { "pieces of a free surface, some left out", "dam_break_45k",
     [](vtkPolyData* particles, vtkMultiProcessController* controller)

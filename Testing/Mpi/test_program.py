@@ -319,7 +319,7 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
     def test_gauges(self):
-        """Two steps, one of them in pieces: the table, and an image of levels, are those of one process, byte for byte."""
+        """Two steps, one of them in pieces: the tables, of fluxes, too, and an image of levels, are those of one process, byte for byte."""
         pieces = write_pieces(PARTICLES, self.folder.name, 5)
         how = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1", "--periodic", "0,0,3.1"]
         alone = self.good(self.run_alone(PARTICLES, PARTICLES, self.path("alone.csv"), *how))
@@ -330,6 +330,10 @@ class Program(unittest.TestCase):
         self.assertEqual(len(rows), 5)
         self.assertIn(",wet,", rows[1])
         self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
+        how = ["--flux", "a=box:-1,0.1,-0.1,0.2,-1,0.5", "--flux", "b=disc:0,0.1,0:1,0.2,0:1.4", "--periodic", "0,0,3.1"]
+        self.good(self.run_alone(PARTICLES, PARTICLES, self.path("alone_flux.csv"), *how))
+        self.good(self.run_ranks(pieces, PARTICLES, self.path("ranks_flux.csv"), *how))
+        self.assertTrue(filecmp.cmp(self.path("alone_flux.csv"), self.path("ranks_flux.csv"), shallow=False))
         how = ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]
         self.good(self.run_alone(PARTICLES, self.path("alone.vti"), *how))
         self.good(self.run_ranks(pieces, self.path("ranks.vti"), *how))

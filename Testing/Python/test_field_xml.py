@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The XML of SPH Derivatives, SPH Gauge, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
+"""The XML of SPH Derivatives, SPH Flux, SPH Gauge, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
 import os
 import pathlib
 import unittest
 import xml.etree.ElementTree
 
-from marchingcorrectors import (vtkSPHAlgorithm, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe,
-                                vtkSPHResample)
+from marchingcorrectors import (vtkSPHAlgorithm, vtkSPHComponents, vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge,
+                                vtkSPHMeter, vtkSPHProbe, vtkSPHResample)
 
 PLUGIN = pathlib.Path(os.environ["MCOR_PLUGIN_XML"])
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
 NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory",
-                       "SetOrigin", "SetNormal", "SetPoint1", "SetPoint2", "SetBounds", "SetDimensions"}
+                       "SetOrigin", "SetNormal", "SetRadius", "SetPoint1", "SetPoint2", "SetBounds", "SetDimensions"}
 # Setters without a property: (automatic) in the panel's lists stands for the first. A probe's particles are one set.
 NOT_IN_XML = {"SetController", "SetDetectArrays"}
 PROBES = NOT_IN_XML | {"SetBlocks"}
@@ -23,7 +23,7 @@ DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
 
 class TestFieldXml(unittest.TestCase):
     def for_each(self, check):
-        for filter_class in (vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe, vtkSPHResample):
+        for filter_class in (vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge, vtkSPHProbe, vtkSPHResample):
             name = filter_class.__name__[3:]
             proxy = xml.etree.ElementTree.parse(PLUGIN / f"{name}.xml").find(".//SourceProxy")
             self.assertEqual((proxy.get("name"), proxy.get("class")), (name, filter_class.__name__))
@@ -51,7 +51,8 @@ class TestFieldXml(unittest.TestCase):
     def test_setters_have_properties(self):
         def check(filter_class, proxy, elements):
             own = {**vars(vtkSPHAlgorithm), **vars(filter_class),
-                   **(vars(vtkSPHProbe) if filter_class is vtkSPHResample else {})}
+                   **(vars(vtkSPHProbe) if filter_class is vtkSPHResample else {}),
+                   **(vars(vtkSPHMeter) if issubclass(filter_class, vtkSPHMeter) else {})}
             setters = {name for name in own if name.startswith("Set") and "G" + name[1:] in own}
             self.assertEqual(setters - {e.get("command") for e in elements},
                              NOT_IN_XML if filter_class is vtkSPHDerivatives else PROBES)
@@ -115,7 +116,7 @@ class TestFieldXml(unittest.TestCase):
                 if element.find("BoundsDomain") is not None:
                     self.assertEqual(element.get("default_values"), "none", element.get("name"))
                     found += 1
-        self.assertEqual(found, 7)
+        self.assertEqual(found, 9)
 
     def test_shapes(self):
         """SPH Slice, SPH Line and SPH Volume: the same filter with its shape chosen, where the panel says."""

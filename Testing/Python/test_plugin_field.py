@@ -152,6 +152,17 @@ def check_gauge(reader):
     Delete(gauge)
 
 
+def check_flux(reader):
+    """One Apply: through the middle of a body that turns, nothing flows in sum."""
+    flux = SPHFlux(Particles=reader)  # noqa: F821
+    flux.UpdatePipeline()
+    assert numpy.allclose(flux.Origin, 0, atol=1e-6) and abs(flux.Radius - (SIDE - 1) * SPACING) < 1e-6, (flux.Origin, flux.Radius)
+    rows = flux.GetDataInformation().GetRowDataInformation()
+    value = {name: rows.GetArrayInformation(name).GetComponentRange(0)[0] for name in ("area", "volume_flux", "velocity")}
+    assert abs(value["area"] - (SIDE * SPACING) ** 2) < 0.02 * value["area"] and abs(value["volume_flux"]) < 1e-3, value
+    Delete(flux)
+
+
 def check_derivatives(reader):
     derive = SPHDerivatives(Input=reader)  # noqa: F821
     assert strings_offered(derive, "SelectInputArray") >= {"Velocity", "Height"}
@@ -273,6 +284,7 @@ def main():
         check_probe(reader, plane)
         check_slices(reader)
         check_gauge(reader)
+        check_flux(reader)
         check_derivatives(reader)
         check_interpolator(reader)
         state = os.path.join(folder, "state.pvsm")

@@ -144,6 +144,7 @@ def main():
     for name in ("SPHSlice", "SPHLine", "SPHVolume"):
         check(name, lambda own, made=globals()[name]: made(registrationName=own, Input=reader))
     check("SPHDerivatives", lambda name: SPHDerivatives(registrationName=name, Input=reader))  # noqa: F821
+    check("SPHFlux", lambda name: SPHFlux(registrationName=name, Particles=reader))  # noqa: F821
     check("SPHGauge", lambda name: SPHGauge(registrationName=name, Particles=reader))  # noqa: F821
     check("SPHPieces", lambda name: SPHPieces(registrationName=name, Surface=plane, Particles=reader))  # noqa: F821
     check("SPHTemporalInterpolator",

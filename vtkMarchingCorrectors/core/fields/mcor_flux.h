@@ -98,7 +98,38 @@ double mcor_patch_measure(const mcor_patch* patch, const double uv[2]);
 /* Lists the cells that particles may reach, of those that this call owns; the lattice is known. */
 mcor_status mcor_list_flux_cells(mcor_flux_job* job);
 
-/* mcor_flux_piece.c. Adds up all cells; a rank without any scales the sections alone, as all do. */
+#define MCOR_FLUX_POINTS 7 /* of a triangle; of a line 3 */
+
+/* Samples of one batch. */
+typedef struct mcor_flux_field
+{
+  double (*at)[3]; /* [MCOR_GAUGE_BATCH], parameters and patch */
+  double *weight, *velocity, *density;
+  double* values[2]; /* of the attributes: the last two */
+} mcor_flux_field;
+
+/* Points of a piece at which it is sampled; the first of them are its corners. */
+static inline int mcor_piece_points(const mcor_flux_job* job)
+{
+  return job->is_plane ? 3 : MCOR_FLUX_POINTS;
+}
+
+static inline int mcor_piece_corners(const mcor_flux_job* job)
+{
+  return job->is_plane ? 2 : 3;
+}
+
+/* mcor_flux_piece.c. Evaluates samples at places [0, count) of the field. */
+mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int count);
+double mcor_speed_along(const mcor_flux_job* job, const mcor_flux_field* field, int64_t sample,
+  const double direction[3]);
+/* Point k of a piece: its corners, the middles of its edges, its middle. */
+void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, int k, double at[3]);
+/* Finds the integrals of pieces. */
+mcor_status mcor_measure_pieces(
+  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces);
+
+/* mcor_flux_divide.c. Adds up all cells; a rank without any scales the sections alone, as all do. */
 mcor_status mcor_add_fluxes(mcor_gauge_job* job);
 mcor_status mcor_scale_sections(mcor_flux_job* job);
 

@@ -1,0 +1,247 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Sums over the cells of sections. A piece is divided until its parts have together what it has itself. */
+
+#include "mcor_flux.h"
+#include "mcor_ranks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Cells that are looked at together. */
+#define MCOR_FLUX_TOGETHER 4096
+/* What a piece and its parts may differ by, of its area times the speeds of its section; where it is small beside the
+ * section, of more, as errors of many pieces make up for each other. */
+#define MCOR_FLUX_TOLERANCE 2.5e-7
+#define MCOR_FLUX_SMALL 0.125
+/* Parabolas are that much nearer to the level than their chords. */
+#define MCOR_FLUX_BULGE 64
+/* How often a piece is divided at most; and one whose sides are unclear. */
+#define MCOR_FLUX_DEPTH 12
+#define MCOR_FLUX_UNCLEAR_DEPTH 6
+
+/* ---- speeds ---- */
+
+/* The greatest over all ranks. */
+mcor_status mcor_scale_sections(mcor_flux_job* job)
+{
+  mcor_context* context = job->edges.context;
+  for (int64_t s = 0; s < job->section_count; ++s)
+  {
+    mcor_flux_section* found = &job->found[s];
+    double seen[2] = { found->speed, found->density };
+    MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, seen, 2));
+    found->speed = fmax(seen[0], job->speed_floor);
+    found->density = fmax(seen[1], job->density_floor);
+    MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &found->reached));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_find_speeds(mcor_flux_job* job, mcor_flux_field* field)
+{
+  for (int64_t first = 0; first < job->cell_count; first += MCOR_GAUGE_BATCH)
+  {
+    const int64_t rest = job->cell_count - first;
+    const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_flux_cell* cell = &job->cells[first + i];
+      const double* counts = job->patches[cell->patch].counts;
+      field->at[i][0] = ((double)cell->u + 0.5) / counts[0];
+      field->at[i][1] = job->is_plane ? 0 : ((double)cell->v + 0.5) / counts[1];
+      field->at[i][2] = (double)cell->patch;
+    }
+    MCOR_TRY(mcor_sample_flux(job, field, count));
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_patch* patch = &job->patches[job->cells[first + i].patch];
+      mcor_flux_section* found = &job->found[patch->section];
+      found->reached = found->reached || field->weight[i] != 0;
+      if (field->weight[i] >= job->edges.level)
+      {
+        const double* velocity = field->velocity + (int64_t)i * job->velocity_components;
+        found->speed = fmax(found->speed, sqrt(mcor_speed_along(job, field, i, velocity)));
+        found->density = fmax(found->density, fabs(field->density[i]));
+      }
+    }
+  }
+  return mcor_scale_sections(job);
+}
+
+/* ---- division ---- */
+
+static mcor_status mcor_append_piece(
+  mcor_context* context, mcor_flux_pieces* pieces, const mcor_flux_piece* piece)
+{
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&pieces->pieces, pieces->count, &pieces->room, sizeof *pieces->pieces));
+  pieces->pieces[pieces->count++] = *piece;
+  return MCOR_OK;
+}
+
+/* The pieces of cells [first, last). */
+static mcor_status mcor_begin_pieces(
+  mcor_flux_job* job, int64_t first, int64_t last, mcor_flux_pieces* pieces)
+{
+  pieces->count = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    const mcor_flux_cell* cell = &job->cells[i];
+    const mcor_patch* patch = &job->patches[cell->patch];
+    const double u[2] = { (double)cell->u / patch->counts[0],
+      (double)(cell->u + 1) / patch->counts[0] };
+    const double v[2] = { (double)cell->v / patch->counts[1],
+      (double)(cell->v + 1) / patch->counts[1] };
+    const double middle[2] = { 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]) };
+    const double size = job->is_plane ? u[1] - u[0] : 0.5 * (u[1] - u[0]) * (v[1] - v[0]);
+    mcor_flux_piece piece = { .patch = cell->patch,
+      .factor = 1,
+      .corner = { { u[0], job->is_plane ? 0 : v[0] }, { u[1], job->is_plane ? 0 : v[0] },
+        { u[0], v[1] } },
+      .area = size * mcor_patch_measure(patch, middle) };
+    MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
+    /* Beyond the diagonal of a triangle there is none. */
+    if (!job->is_plane &&
+      (patch->shape != MCOR_PATCH_TRIANGLE || (double)(cell->u + cell->v + 2) <= patch->counts[0]))
+    {
+      memcpy(piece.corner[0], (double[2]){ u[1], v[1] }, sizeof piece.corner[0]);
+      memcpy(piece.corner[1], (double[2]){ u[0], v[1] }, sizeof piece.corner[1]);
+      memcpy(piece.corner[2], (double[2]){ u[1], v[0] }, sizeof piece.corner[2]);
+      MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Two halves of a line, four quarters of a triangle. */
+static mcor_status mcor_divide_pieces(
+  const mcor_flux_job* job, const mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
+{
+  static const int triangle[4][3] = { { 0, 3, 5 }, { 3, 1, 4 }, { 5, 4, 2 }, { 3, 4, 5 } };
+  static const int line[2][3] = { { 0, 2, 2 }, { 2, 1, 1 } };
+  const int(*points)[3] = job->is_plane ? line : triangle;
+  parts->count = 0;
+  for (int64_t i = 0; i < pieces->count; ++i)
+  {
+    for (int part = 0; part < (job->is_plane ? 2 : 4); ++part)
+    {
+      mcor_flux_piece piece = pieces->pieces[i];
+      ++piece.depth;
+      for (int c = 0; c < 3; ++c)
+      {
+        double at[3];
+        mcor_place_point(job, &pieces->pieces[i], points[part][c], at);
+        memcpy(piece.corner[c], at, sizeof piece.corner[c]);
+      }
+      MCOR_TRY(mcor_append_piece(job->edges.context, parts, &piece));
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Whether the parts of a piece may take its place in the sum; `sum` becomes theirs. */
+static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
+  const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
+{
+  const mcor_flux_section* section = &job->found[job->patches[piece->patch].section];
+  const double tolerance = MCOR_FLUX_TOLERANCE *
+    fmax(piece->area, MCOR_FLUX_SMALL * sqrt(piece->area) * sqrt(section->area));
+  const double scale[MCOR_FLUX_SUMS] = { 1, section->speed, section->speed * section->density };
+  double bulge = 0;
+  bool settled = true;
+  memset(sum, 0, MCOR_FLUX_SUMS * sizeof *sum);
+  for (int part = 0; part < (job->is_plane ? 2 : 4); ++part)
+  {
+    settled = settled && !(parts[part].unclear && parts[part].depth < MCOR_FLUX_UNCLEAR_DEPTH);
+    bulge += parts[part].bulge;
+    for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+    {
+      sum[s] += parts[part].sum[s];
+    }
+  }
+  settled = settled && bulge <= MCOR_FLUX_BULGE * tolerance;
+  for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+  {
+    settled = settled && fabs(sum[s] - piece->sum[s]) <= tolerance * scale[s];
+  }
+  return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
+}
+
+/* Adds pieces to their sections. */
+static mcor_status mcor_settle_pieces(
+  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
+{
+  const int divided = job->is_plane ? 2 : 4;
+  while (pieces->count > 0)
+  {
+    MCOR_TRY(mcor_divide_pieces(job, pieces, parts));
+    MCOR_TRY(mcor_measure_pieces(job, field, parts));
+    const int64_t count = pieces->count;
+    int64_t left = 0;
+    for (int64_t i = 0; i < count; ++i)
+    {
+      const mcor_flux_piece* piece = &pieces->pieces[i];
+      mcor_flux_section* found = &job->found[job->patches[piece->patch].section];
+      double sum[MCOR_FLUX_SUMS];
+      if (mcor_is_settled(job, piece, &parts->pieces[divided * i], sum))
+      {
+        for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+        {
+          found->sum[s] += llrint(fmin(fmax(sum[s] / found->unit[s], -0x1p62), 0x1p62));
+        }
+        continue;
+      }
+      memmove(
+        &parts->pieces[left], &parts->pieces[divided * i], (size_t)divided * sizeof *parts->pieces);
+      left += divided;
+    }
+    const mcor_flux_pieces settled = *pieces;
+    *pieces = *parts;
+    pieces->count = left;
+    *parts = settled;
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_add_cells(mcor_flux_job* job, mcor_flux_field* field)
+{
+  mcor_flux_pieces pieces = { 0 }, parts = { 0 };
+  mcor_status status = MCOR_OK;
+  for (int64_t first = 0, last; first < job->cell_count && status == MCOR_OK; first = last)
+  {
+    const double count = (double)job->cell_count;
+    last =
+      first + MCOR_FLUX_TOGETHER < job->cell_count ? first + MCOR_FLUX_TOGETHER : job->cell_count;
+    status = mcor_report(job->edges.context, "flux", 0.2 + 0.8 * (double)first / count,
+      0.2 + 0.8 * (double)last / count);
+    status = status == MCOR_OK ? mcor_begin_pieces(job, first, last, &pieces) : status;
+    status = status == MCOR_OK ? mcor_measure_pieces(job, field, &pieces) : status;
+    status = status == MCOR_OK ? mcor_settle_pieces(job, field, &pieces, &parts) : status;
+  }
+  free(pieces.pieces);
+  free(parts.pieces);
+  return status;
+}
+
+mcor_status mcor_add_fluxes(mcor_gauge_job* edges)
+{
+  mcor_flux_job* job = (mcor_flux_job*)edges;
+  const size_t n = MCOR_GAUGE_BATCH;
+  mcor_flux_field field = { .at = malloc(n * sizeof *field.at),
+    .weight = malloc(n * sizeof(double)),
+    .velocity = malloc(3 * n * sizeof(double)),
+    .density = malloc(n * sizeof(double)) };
+  field.values[0] = field.velocity;
+  field.values[1] = field.density;
+  mcor_status status =
+    mcor_allocated(job->edges.context, field.at && field.weight && field.velocity && field.density);
+  status = status == MCOR_OK ? mcor_find_speeds(job, &field) : status;
+  status = status == MCOR_OK ? mcor_add_cells(job, &field) : status;
+  free(field.at);
+  free(field.weight);
+  free(field.velocity);
+  free(field.density);
+  return status;
+}

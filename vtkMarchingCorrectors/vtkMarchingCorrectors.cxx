@@ -347,9 +347,10 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
   this->FillOptions(options);
   this->Next = {};
   const bool together = this->TakesTogether();
-  const vtkSmartPointer<vtkPointSet> all = together ? this->TakeParticles(data) : nullptr;
+  const vtkSmartPointer<vtkDataObject> taken = data ? this->TakeVertices(data) : nullptr;
+  const vtkSmartPointer<vtkPointSet> all = together ? this->JoinParticles(taken) : nullptr;
   for (vtkPointSet* particles :
-    vtkSPHListPointSets(together ? static_cast<vtkDataObject*>(all) : data))
+    vtkSPHListPointSets(together ? static_cast<vtkDataObject*>(all) : taken.Get()))
   {
     this->LookAhead(particles, options);
   }

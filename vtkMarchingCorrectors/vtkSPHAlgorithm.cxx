@@ -208,7 +208,13 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   {
     int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
     request.Array = this->GetInputAbstractArrayToProcess(index, particles, association);
+    // Arrays of cells may be those of the particles now, see TakeVertices().
     request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    if (!request.Array && association == vtkDataObject::FIELD_ASSOCIATION_CELLS)
+    {
+      request.Array = particles->GetPointData()->GetAbstractArray(request.Name.c_str());
+      request.OnPoints = request.Array != nullptr;
+    }
   }
   return request;
 }
@@ -317,7 +323,12 @@ int vtkSPHAlgorithm::RequestData(
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->Internals->BeginRun();
   this->IsPart = this->IsShared();
-  auto* tree = vtkDataObjectTree::GetData(inputVector[0]);
+  vtkDataObject* all = vtkDataObject::GetData(inputVector[this->GetParticlesPort()]);
+  vtkDataObject* particles = this->TakeVertices(all);
+  this->WarnOfMesh(all, particles);
+  vtkDataObject* input =
+    this->GetParticlesPort() == 0 ? particles : vtkDataObject::GetData(inputVector[0]);
+  auto* tree = vtkDataObjectTree::SafeDownCast(input);
   vtkDataObjectTree* apart = this->TakesTogether() ? nullptr : tree;
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
   if (this->IsShared() && !this->AgreeOnBlocks(apart))
@@ -335,7 +346,7 @@ int vtkSPHAlgorithm::RequestData(
   }
   else
   {
-    this->Process(vtkDataObject::GetData(inputVector[0]), output);
+    this->Process(input, output);
   }
   this->Internals->EndRun();
   return 1;

@@ -483,10 +483,20 @@ protected:
   virtual bool KeepsBlocks() const { return false; }
 
   /**
+   * An input, or what of it are particles, see vtkSPHTakeVertices(), kept as long as it is the same. Collective where
+   * processes share a run.
+   */
+  vtkDataObject* TakeVertices(vtkDataObject* data);
+  /** Says how many points of the data are no particles. Collective likewise. */
+  void WarnOfMesh(vtkDataObject* data, vtkDataObject* taken);
+
+  /**
    * Particles that are one set: a point set itself, or all blocks of composite data, put together once
    * and kept as long as they are the same. Null for others.
    */
   vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
+  /** The same of what TakeVertices() has left. */
+  vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);
 
   /**
    * Reports an error, naming the block, and keeps its sentence.

@@ -9,6 +9,7 @@
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -19,6 +20,7 @@
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHReals.h"
+#include "vtkSPHVertices.h"
 #if MCOR_HAS_RANKS
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
@@ -28,6 +30,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numeric>
 #include <vector>
@@ -55,6 +58,16 @@ struct Lowest
     }
   }
 };
+
+vtkIdType CountPoints(vtkDataObject* data)
+{
+  vtkIdType count = 0;
+  for (vtkPointSet* set : vtkSPHListPointSets(data))
+  {
+    count += set->GetNumberOfPoints();
+  }
+  return count;
+}
 }
 
 // Each block is a run that all processes take part in.
@@ -105,7 +118,53 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   }
 }
 
+void vtkSPHAlgorithm::WarnOfMesh(vtkDataObject* data, vtkDataObject* taken)
+{
+  std::int64_t counts[2] = { CountPoints(data), CountPoints(taken) };
+  bool isFirst = true;
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    vtkSPHRanks(this->Controller).Reduce(vtkSPHRanks::SUM, counts, 2);
+    isFirst = this->Controller->GetLocalProcessId() == 0;
+  }
+#endif
+  if (isFirst && counts[1] < counts[0])
+  {
+    this->Warn(std::to_string(counts[0] - counts[1]) + " of " + std::to_string(counts[0]) +
+      " points are nodes of a mesh and no particles, as no vertex cell uses them.");
+  }
+}
+
+// Ranks that have a mesh alone, or nothing, look for vertices on all.
+vtkDataObject* vtkSPHAlgorithm::TakeVertices(vtkDataObject* data)
+{
+  vtkInternals& kept = *this->Internals;
+  std::int64_t haveVertices = vtkSPHHaveVertices(data) ? 1 : 0;
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    vtkSPHRanks(this->Controller).Reduce(vtkSPHRanks::GREATEST, &haveVertices, 1);
+  }
+#endif
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  if (!data || kept.TakenFrom.GetPointer() != data || kept.TakenAmong != haveVertices ||
+    (tree ? vtkSPHTimeOfBlocks(tree) : data->GetMTime()) > kept.TakenTime.GetMTime())
+  {
+    kept.Taken = vtkSPHTakeVertices(data, haveVertices > 0);
+    kept.TakenFrom = data;
+    kept.TakenAmong = haveVertices;
+    kept.TakenTime.Modified();
+  }
+  return kept.Taken;
+}
+
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
+{
+  return this->JoinParticles(this->TakeVertices(data));
+}
+
+vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::JoinParticles(vtkDataObject* data)
 {
   vtkInternals& kept = *this->Internals;
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
@@ -156,7 +215,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakePresent(vtkPointSet* particles
 
 void vtkSPHAlgorithm::ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output)
 {
-  const vtkSmartPointer<vtkPointSet> particles = this->TakeParticles(input);
+  const vtkSmartPointer<vtkPointSet> particles = this->JoinParticles(input);
   auto* tree = vtkDataObjectTree::SafeDownCast(output);
   if (!tree)
   {
@@ -277,7 +336,9 @@ double* vtkSPHAlgorithm::GetNextBounds()
 
 int vtkSPHAlgorithm::GetNextEstimate()
 {
-  const std::vector<vtkPointSet*> sets = vtkSPHListPointSets(this->GetParticles());
+  vtkDataObject* data = this->GetParticles();
+  const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(data, vtkSPHHaveVertices(data));
+  const std::vector<vtkPointSet*> sets = vtkSPHListPointSets(taken);
   vtkSPHParticlesChoice choice(*this);
   choice.EstimateSmoothingLength = 0;
   return !sets.empty() && !vtkSPHParticles(choice, sets.front()).CollectSmoothingLength();

@@ -45,6 +45,10 @@ public:
   void EndRun();
 
   mcor_context* Context = nullptr;
+  vtkSmartPointer<vtkDataObject> Taken; // what of an input are particles
+  vtkWeakPointer<vtkDataObject> TakenFrom;
+  std::int64_t TakenAmong = 0; // whether there were vertices on any rank
+  vtkTimeStamp TakenTime;
   vtkSmartPointer<vtkPointSet> Joined; // blocks that are one set of particles
   vtkWeakPointer<vtkDataObject> JoinedFrom;
   std::string JoinedFluid; // the fluid array, which may be a block

@@ -23,11 +23,16 @@
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHPieces.h"
+#include "vtkSPHVertices.h"
 #include "vtkTable.h"
+#if MCOR_HAS_RANKS
+#include "vtkSPHRanks.h"
+#endif
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -367,8 +372,19 @@ int vtkSPHComponents::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkPolyData* mesh = vtkPolyData::GetData(inputVector[0]);
-  vtkSmartPointer<vtkPointSet> particles = vtkPointSet::GetData(inputVector[1]);
-  if (auto* blocks = vtkDataObjectTree::GetData(inputVector[1]))
+  vtkDataObject* data = vtkDataObject::GetData(inputVector[1]);
+  std::int64_t haveVertices = vtkSPHHaveVertices(data) ? 1 : 0;
+#if MCOR_HAS_RANKS
+  const bool isShared = this->Controller && this->Controller->IsA("vtkMPIController") &&
+    this->Controller->GetNumberOfProcesses() > 1;
+  if (isShared)
+  {
+    vtkSPHRanks(this->Controller).Reduce(vtkSPHRanks::GREATEST, &haveVertices, 1);
+  }
+#endif
+  const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(data, haveVertices > 0);
+  vtkSmartPointer<vtkPointSet> particles = vtkPointSet::SafeDownCast(taken);
+  if (auto* blocks = vtkDataObjectTree::SafeDownCast(taken))
   {
     particles = vtkSPHJoinBlocks(blocks, this->FluidArrayName);
   }
@@ -376,8 +392,7 @@ int vtkSPHComponents::RequestData(
   vtkTable* table = vtkTable::GetData(outputVector, 1);
   std::string problem;
 #if MCOR_HAS_RANKS
-  if (this->Controller && this->Controller->IsA("vtkMPIController") &&
-    this->Controller->GetNumberOfProcesses() > 1)
+  if (isShared)
   {
     problem = this->SplitDistributed(mesh, particles, output, table);
   }

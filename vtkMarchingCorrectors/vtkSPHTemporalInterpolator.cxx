@@ -14,6 +14,7 @@
 #include "vtkPolyData.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHTemporalPair.h"
+#include "vtkSPHVertices.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -37,8 +38,9 @@ public:
   void Keep(double time, vtkDataObject* data)
   {
     vtkSmartPointer<vtkDataObject>& kept = this->Kept[time];
-    kept.TakeReference(data->NewInstance());
-    kept->ShallowCopy(data);
+    const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(data, vtkSPHHaveVertices(data));
+    kept.TakeReference(taken->NewInstance());
+    kept->ShallowCopy(taken);
   }
 
   /** The first step that is asked for and not kept; nullptr if there is none. */
@@ -271,7 +273,10 @@ void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformati
     return;
   }
   const bool isTimed = !steps.Times.empty();
-  vtkDataObject* first = isTimed ? steps.Find(steps.Times.front()) : vtkDataObject::GetData(input);
+  vtkDataObject* given = vtkDataObject::GetData(input);
+  const vtkSmartPointer<vtkDataObject> taken =
+    isTimed ? nullptr : vtkSPHTakeVertices(given, vtkSPHHaveVertices(given));
+  vtkDataObject* first = isTimed ? steps.Find(steps.Times.front()) : taken.Get();
   vtkDataObject* second = isTimed ? steps.Find(steps.Times.back()) : first;
   vtkDataObject* to = vtkDataObject::GetData(output);
   auto* blocks = vtkDataObjectTree::SafeDownCast(to);

@@ -35,7 +35,8 @@ from marchingcorrectors._functions import called, take_surface
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._library import lib
 from marchingcorrectors._options import OUTPUTS
-from marchingcorrectors._vtk_blocks import find_walls, join_blocks, list_all, name_blocks
+from marchingcorrectors._vtk_blocks import (describe_mesh, find_walls, join_blocks, list_all, name_blocks, sets_of,
+                                             take_vertices)
 from marchingcorrectors._vtk_particles import (NO_PERIOD, Particles, Request, Unusable, choose_array, describe_unused_types,
                                                find_fittest, find_period, is_single, name_of, varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
@@ -136,7 +137,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
-        self._joined = None, None, 0
+        self._joined = self._taken = None, None, 0
         self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
@@ -268,10 +269,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             return self._ahead
         self._ahead = {"ScalarRange": (0.0, 0.0), "IsoValue": float("nan"), "Components": 0, "Cells": 0.0, "Dimension": 0,
                        "Fluid": "", "Array": ""}
-        data = self._take_particles(data)
-        for each in list_all(data) if isinstance(data, vtkDataObjectTree) else [data]:
-            if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0:
-                self._look_at(each, self._ahead)
+        for each in sets_of(self._join(self._take_vertices(data))):
+            self._look_at(each, self._ahead)
         self._look_time.Modified()
         return self._ahead
 
@@ -311,16 +310,25 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)
         self.ErrorMessage, self.BlockName, self._warned = "", "", set()
         self.RunStatistics = vtkFieldData()
-        if isinstance(data, vtkDataObjectTree) and self.Blocks == self.APART:
-            self._process_blocks(data, output)
+        taken = self._take_vertices(data)
+        self._warn_once("mesh", describe_mesh(data, taken))
+        if isinstance(taken, vtkDataObjectTree) and self.Blocks == self.APART:
+            self._process_blocks(taken, output)
             return 1
-        particles = self._take_particles(data)
+        particles = self._join(taken)
         if particles is not data:
             output.GetFieldData().PassData(particles.GetFieldData())
         self._process(particles, output)
         return 1
 
-    def _take_particles(self, data):
+    def _take_vertices(self, data):
+        """What of the data are particles, kept as long as it is the same."""
+        times = [each.GetMTime() for each in (list_all(data) if isinstance(data, vtkDataObjectTree) else [data]) if each]
+        if self._taken[:2] != (data, times):
+            self._taken = data, times, take_vertices(data)
+        return self._taken[2]
+
+    def _join(self, data):
         """The data, or all blocks together, which are kept as long as they are the same."""
         if not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART:
             return data

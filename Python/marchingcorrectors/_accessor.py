@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, T
 
 import numpy as np
 import pyvista
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import _flux, _functions, _gauge
 from ._arrays import choose
@@ -17,12 +16,10 @@ from ._context import Context
 from ._library import InvalidArgument
 from ._options import (DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, Function, Options, check_names,
                        did_you_mean, with_options)
-from ._vtk_blocks import join_blocks
+from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
 from ._vtk_particles import (GHOSTS, NO_PERIOD, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect,
                              find_period, join_velocity, name_of)
 from ._warnings import warn
-from .io._cells import VERTICES, take_vertices
-from .io._particles import Body
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -83,29 +80,6 @@ def _method(names: Sequence[str]) -> Callable[[Function], Function]:
     return decorate
 
 
-def _take_vertices(data: pyvista.DataSet) -> pyvista.DataSet:
-    """The data set, or as poly data the points of its vertices, where io.read() takes these."""
-    if not isinstance(data, (pyvista.PolyData, pyvista.UnstructuredGrid)) or data.n_cells == 0:
-        return data
-    if isinstance(data, pyvista.PolyData):
-        lists, types = data.GetVerts(), np.repeat([VERTICES[0], 0], [data.n_verts, data.n_cells - data.n_verts])
-    else:
-        lists, types = data.GetCells(), data.celltypes
-    if not np.isin(types, VERTICES).any() or np.isin(types, VERTICES).all() and not data.cell_data.keys():
-        return data
-    offsets = vtk_to_numpy(lists.GetOffsetsArray())
-    offsets = np.append(offsets, np.full(data.n_cells + 1 - len(offsets), offsets[-1]))
-    body = Body(data.points, {name: np.asarray(data.point_data[name]) for name in data.point_data.keys()})
-    found = take_vertices("The data set", body, types, offsets, vtk_to_numpy(lists.GetConnectivityArray()),
-                          {name: np.asarray(data.cell_data[name]) for name in data.cell_data.keys()})
-    if found is body:
-        return data
-    particles = pyvista.PolyData(found.points)
-    particles.point_data.update(found.arrays)
-    particles.field_data.update(data.field_data)
-    return particles
-
-
 def _triangles_in(sections):
     """The sections, with triangles in place of surfaces."""
     if isinstance(sections, pyvista.PolyData):
@@ -128,7 +102,11 @@ class SphAccessor:
         """The data set, or the vertices in it, which are kept as long as it is the same."""
         time = self._data.GetMTime()
         if self._taken[0] != time:
-            self._taken = time, _take_vertices(self._data)
+            taken = take_vertices(self._data)
+            said = describe_mesh(self._data, taken)
+            if said:
+                warn(said)
+            self._taken = time, pyvista.wrap(taken)
         return self._taken[1]
 
     def __repr__(self):
@@ -348,7 +326,7 @@ class BlocksAccessor:
         self._blocks = blocks
 
     def __getattr__(self, name):
-        return getattr(SphAccessor(pyvista.wrap(join_blocks(self._blocks))), name)
+        return getattr(SphAccessor(pyvista.wrap(join_blocks(take_vertices(self._blocks)))), name)
 
     def __dir__(self):
         return dir(SphAccessor)

@@ -1,12 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Blocks of composite data: what to call them, and all their particles as one set."""
-from vtkmodules.vtkCommonCore import vtkPoints, vtkUnsignedCharArray
-from vtkmodules.vtkCommonDataModel import vtkDataObjectTree, vtkPartitionedDataSet, vtkPointSet, vtkPolyData
+"""What of a data set, or of its blocks, are particles; what to call blocks, and all their particles as one set."""
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints, vtkUnsignedCharArray
+from vtkmodules.vtkCommonDataModel import (vtkDataObjectTree, vtkPartitionedDataSet, vtkPointSet, vtkPolyData,
+                                           vtkUnstructuredGrid)
 
 from . import _structs as c
 from ._library import lib
 from ._vtk_particles import WALL_BLOCK, name_of
+from .io._cells import VERTICES, find_vertices
 
 WALL_WORDS = ("wall", "bound", "solid", "obstacle", "rigid")
 
@@ -26,6 +30,99 @@ def walk(tree, empty=False):
             whole, last = own or "", index + data.GetNumberOfPartitions()
         yield data, own or (whole if index <= last else ""), data is None or not data.IsA("vtkCompositeDataSet"), index
         iterator.GoToNextItem()
+
+
+def sets_of(data):
+    """The data set itself, or the blocks, that are point sets with points."""
+    return [each for each in (list_all(data) if isinstance(data, vtkDataObjectTree) else [data])
+            if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0]
+
+
+def cells_of(points):
+    """The cells that begin with all vertices, and the types of all."""
+    if isinstance(points, vtkPolyData):
+        vertices = points.GetNumberOfVerts()
+        return points.GetVerts(), np.repeat([VERTICES[0], 0], [vertices, points.GetNumberOfCells() - vertices])
+    if isinstance(points, vtkUnstructuredGrid) and points.GetNumberOfCells() > 0:
+        try:
+            return points.GetCells(), vtk_to_numpy(points.GetCellTypes())
+        except TypeError:  # before VTK 9.6
+            return points.GetCells(), vtk_to_numpy(points.GetCellTypesArray())
+    return None, np.zeros(points.GetNumberOfCells(), int)
+
+
+def have_vertices(data):
+    return any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
+
+
+def add_values(data, count, chosen, made):
+    """These of the arrays that have `count` values, unless there is one of that name."""
+    for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
+        if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
+            values = array.NewInstance()
+            values.SetName(name_of(array))
+            values.SetNumberOfComponents(array.GetNumberOfComponents())
+            values.CopyComponentNames(array)
+            values.SetNumberOfTuples(chosen.GetNumberOfIds())
+            array.GetTuples(chosen, values)
+            at, attribute = made.AddArray(values), data.IsArrayAnAttribute(i)
+            if attribute >= 0 and made.GetAbstractAttribute(attribute) is None:
+                made.SetActiveAttribute(at, attribute)
+
+
+def take_vertices(data, have=None):
+    """As vtkSPHTakeVertices() in C++: the particles of a data set, or of each of its blocks; the data set itself where
+    all of its points are."""
+    have = have_vertices(data) if have is None else have
+    if isinstance(data, vtkDataObjectTree):
+        made, iterator = None, data.NewTreeIterator()
+        iterator.InitTraversal()
+        while not iterator.IsDoneWithTraversal():
+            block = iterator.GetCurrentDataObject()
+            taken = take_vertices(block, have)
+            if taken is not block:
+                if made is None:
+                    made = data.NewInstance()
+                    made.ShallowCopy(data)
+                made.SetDataSet(iterator, taken)
+            iterator.GoToNextItem()
+        return data if made is None else made
+    count = data.GetNumberOfPoints() if isinstance(data, vtkPointSet) else 0
+    if count == 0 or data.GetNumberOfCells() == 0:
+        return data
+    (cells, types), found = cells_of(data), np.full(count, -1)
+    is_vertex = np.isin(types, VERTICES)
+    is_mesh = have and not is_vertex.all()
+    if not is_mesh and not (is_vertex.any() and data.GetCellData().GetNumberOfArrays()):
+        return data
+    if is_vertex.any():
+        offsets = vtk_to_numpy(cells.GetOffsetsArray())
+        offsets = np.append(offsets, np.full(len(types) + 1 - len(offsets), offsets[-1]))
+        found = find_vertices(types, offsets, vtk_to_numpy(cells.GetConnectivityArray()), count)
+    chosen = np.flatnonzero(found >= 0)
+    if not is_mesh and len(chosen) < count:
+        return data
+    lists = vtkIdList(), vtkIdList()  # of points, and of vertices whose values are theirs
+    for ids, numbers in zip(lists, (chosen, found[chosen])):
+        ids.SetNumberOfIds(len(numbers))
+        for i, number in enumerate(numbers.tolist()):
+            ids.SetId(i, number)
+    particles, points = vtkPolyData(), vtkPoints()
+    points.SetDataType(data.GetPoints().GetDataType())
+    points.SetNumberOfPoints(len(chosen))
+    data.GetPoints().GetPoints(lists[0], points)
+    particles.SetPoints(points)
+    add_values(data.GetPointData(), count, lists[0], particles.GetPointData())
+    add_values(data.GetCellData(), len(types), lists[1], particles.GetPointData())
+    particles.SetFieldData(data.GetFieldData())
+    return particles
+
+
+def describe_mesh(data, taken):
+    """A sentence where points of the data are no particles; else ""."""
+    left, count = (sum(points.GetNumberOfPoints() for points in sets_of(each)) for each in (taken, data))
+    return (f"{count - left} of {count} points are nodes of a mesh and no particles, as no vertex cell uses them."
+            if left < count else "")
 
 
 def name_blocks(tree):

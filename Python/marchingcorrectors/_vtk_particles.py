@@ -380,6 +380,8 @@ class Request:
         association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
         self.on_points = association in (vtkDataObject.FIELD_ASSOCIATION_POINTS,
                                          vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)
+        # Arrays of cells may be those of the particles now, see take_vertices().
+        self.on_points = self.on_points or bool(self.name and points.GetPointData().HasArray(self.name))
         if self.on_points:
             data = points.GetPointData()
             self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(attribute)

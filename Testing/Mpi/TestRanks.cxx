@@ -8,6 +8,7 @@
 #include "RankParts.h"
 #include "RankSurfaces.h"
 
+#include "vtkCellArray.h"
 #include "vtkCommunicator.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -53,6 +54,7 @@ void ContourDamBreak(vtkMarchingCorrectors* filter)
 
 const char* const TwoSizes = "two sizes"; // no file
 const char* const InPlane = "in a plane"; // double_dam_break_small, moved into z = 0.5
+const char* const BesideMesh = "beside a mesh"; // double_dam_break_small
 
 /// Isolines of particles whose areas, and smoothing lengths, are larger on one side.
 void ContourInPlane(vtkMarchingCorrectors* filter)
@@ -70,6 +72,7 @@ const std::vector<Case> Cases = {
   { "free surface", "double_dam_break_small",
     [](vtkMarchingCorrectors* f) { f->FreeSurfaceOn(); } },
   { "trimmed", "double_dam_break_small", ContourSpeed },
+  { "beside a mesh", BesideMesh, ContourSpeed },
   { "two values, topology of the field, all arrays", "double_dam_break_small",
     [](vtkMarchingCorrectors* f)
     {
@@ -299,6 +302,21 @@ vtkSmartPointer<vtkPolyData> Read(const std::string& file)
   return particles;
 }
 
+/// A rank's share where the last one has a triangle of a mesh, and no vertices.
+vtkSmartPointer<vtkPolyData> TakeBesideMesh(vtkPolyData* particles, int part, int rank, int count)
+{
+  const vtkSmartPointer<vtkPolyData> own = TakePart(particles, part, rank % (count - 1), count - 1);
+  const bool isMesh = rank == count - 1;
+  vtkNew<vtkCellArray> cells;
+  for (vtkIdType i = 0; i + (isMesh ? 2 : 0) < own->GetNumberOfPoints(); ++i)
+  {
+    const vtkIdType corners[3] = { i, i + 1, i + 2 };
+    cells->InsertNextCell(isMesh ? 3 : 1, corners);
+  }
+  isMesh ? own->SetPolys(cells) : own->SetVerts(cells);
+  return own;
+}
+
 void MoveIntoPlane(vtkPolyData* particles)
 {
   vtkNew<vtkDoubleArray> lengths, areas;
@@ -369,10 +387,10 @@ bool SayTheSame(vtkMultiProcessController* controller, const Extracted& own, Ext
 /// Returns how many partitions give another surface.
 int Check(const Case& tried, const std::string& folder, vtkMPIController* controller)
 {
-  const bool isInPlane = tried.File == InPlane;
+  const bool isInPlane = tried.File == InPlane, isMesh = tried.File == BesideMesh;
   const vtkSmartPointer<vtkPolyData> particles = tried.File == TwoSizes
     ? MakeTwoSizes()
-    : Read(folder + "/" + (isInPlane ? "double_dam_break_small" : tried.File) + ".vtp");
+    : Read(folder + "/" + (isInPlane || isMesh ? "double_dam_break_small" : tried.File) + ".vtp");
   if (isInPlane)
   {
     MoveIntoPlane(particles);
@@ -382,7 +400,7 @@ int Check(const Case& tried, const std::string& folder, vtkMPIController* contro
   int failures = 0;
   for (int part = 0; part < PartCount; ++part)
   {
-    const vtkSmartPointer<vtkPolyData> own = TakePart(
+    const vtkSmartPointer<vtkPolyData> own = (isMesh ? TakeBesideMesh : TakePart)(
       particles, part, controller->GetLocalProcessId(), controller->GetNumberOfProcesses());
     const Extracted made = Extract(tried.SetUp, own, controller);
     std::string problem = CompareWithWhole(controller, made.Surface, whole.Surface);

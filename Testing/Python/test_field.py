@@ -11,7 +11,8 @@ import unittest
 
 import numpy
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkObject, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import (VTK_TRIANGLE, VTK_VERTEX, vtkDataObject, vtkImageData, vtkPolyData,
+                                           vtkUnstructuredGrid)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersGeneral import vtkImageDataToPointSet
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
@@ -323,6 +324,29 @@ class TestProbe(unittest.TestCase):
         vtkObject.GlobalWarningDisplayOn()
         self.assertIn("'Nonsense'", probe.GetErrorMessage())
         self.assertEqual(probe.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_particles_among_meshes(self):
+        """Vertices beside other cells are the particles; derivatives come with these, in the class of the input."""
+        particles, mesh = make_vortex(8), vtkUnstructuredGrid()
+        count = particles.GetNumberOfPoints()
+        mesh.SetPoints(particles.GetPoints())
+        mesh.GetPointData().ShallowCopy(particles.GetPointData())
+        mesh.Allocate(count + 1)
+        mesh.InsertNextCell(VTK_TRIANGLE, 3, [0, 1, 2])
+        for i in range(3, count):
+            mesh.InsertNextCell(VTK_VERTEX, 1, [i])
+        without = vtkPolyData()
+        without.SetPoints(vtkPoints())
+        without.GetPointData().CopyAllocate(particles.GetPointData())
+        for i in range(3, count):
+            without.GetPointData().CopyData(particles.GetPointData(), i,
+                                            without.GetPoints().InsertNextPoint(particles.GetPoint(i)))
+        expected = derive(without)
+        vtkObject.GlobalWarningDisplayOff()
+        found = derive(mesh)
+        vtkObject.GlobalWarningDisplayOn()
+        self.assertEqual((found.GetClassName(), found.GetNumberOfCells()), ("vtkUnstructuredGrid", count - 3))
+        self.assertEqual(bytes_of(found), bytes_of(expected))
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ import re
 import unittest
 
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints, vtkObject
-from vtkmodules.vtkCommonDataModel import (vtkCompositeDataSet, vtkDataObject,
-                                           vtkMultiBlockDataSet, vtkPolyData)
+from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, VTK_VERTEX, vtkCompositeDataSet, vtkDataObject,
+                                           vtkMultiBlockDataSet, vtkPolyData, vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersCore import vtkMassProperties
 from vtkmodules.vtkFiltersGeneral import vtkTableToPolyData
 from vtkmodules.vtkIOInfovis import vtkDelimitedTextReader
@@ -246,6 +246,55 @@ class TestFilter(unittest.TestCase):
         self.assertEqual((together.GetErrorMessage(), together.GetUsedFluid()), ("", "WallBlock = 0"))
         self.assertGreater(together.GetOutput().GetNumberOfCells(), 100)
         self.assertFalse(together.GetOutput().GetPointData().HasArray("WallBlock"))
+
+    def make_mesh(self, particles, arrays):
+        """Hexahedra, between points of their own, before the particles' vertices, if there are any; with the particles'
+        arrays for all cells, or all points."""
+        grid, points = vtkUnstructuredGrid(), vtkPoints()
+        grid.SetPoints(points)
+        corners = [points.InsertNextPoint(i & 1, i >> 1 & 1, i >> 2) for i in (0, 1, 3, 2, 4, 5, 7, 6)]
+        for _ in range(2):
+            grid.InsertNextCell(VTK_HEXAHEDRON, 8, corners)
+        count = particles.GetNumberOfPoints() if particles else 0
+        for i in range(count):
+            grid.InsertNextCell(VTK_VERTEX, 1, [points.InsertNextPoint(particles.GetPoint(i))])
+        for array in (particles.GetPointData().GetArray(i) for i in range(2 if count else 0)):
+            values = vtkDoubleArray()
+            values.SetName(array.GetName())
+            for _ in range(2 if arrays == "cells" else 8):
+                values.InsertNextValue(-1.0)  # which no smoothing length may be
+            for i in range(count):
+                values.InsertNextValue(array.GetValue(i))
+            (grid.GetCellData() if arrays == "cells" else grid.GetPointData()).AddArray(values)
+        return grid
+
+    def test_particles_among_meshes(self):
+        """Vertices beside other cells are the particles; so they are where blocks have either."""
+        particles = make_particles()
+        expected = make_filter(particles)
+        expected.Update()
+        mesh = self.make_mesh(None, "points")
+        for arrays in ("points", "cells"):
+            grid = self.make_mesh(particles, arrays)
+            blocks = vtkMultiBlockDataSet()
+            blocks.SetBlock(0, mesh)
+            blocks.SetBlock(1, grid)
+            for data in (grid, blocks):
+                extract, warnings = make_filter(data), []
+                if arrays == "cells":
+                    extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "Radius")
+                extract.AddObserver("WarningEvent", lambda *_, w=warnings: w.append(1))
+                extract.Update()
+                self.assertEqual((extract.GetErrorMessage(), len(warnings)), ("", 1))
+                self.assertEqual(extract.GetOutput().GetNumberOfPoints(), expected.GetOutput().GetNumberOfPoints())
+                self.assertEqual(extract.GetOutput().GetBounds(), expected.GetOutput().GetBounds())
+                first = extract.GetOutput().GetPointData().GetArray("hsml").GetValue(0)
+                self.assertAlmostEqual(first, 0.13)
+        bare = make_filter(mesh)  # no vertices at all: all points are particles
+        bare.EstimateSmoothingLengthOn()
+        bare.FreeSurfaceOn()
+        bare.Update()
+        self.assertGreater(bare.GetOutput().GetNumberOfCells(), 0)
 
     def test_trim(self):
         """Off, the surface goes on beyond the weight sum 0.5, up to the node threshold."""

@@ -2,87 +2,205 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHVertices.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
+#include "vtkCellTypes.h"
+#include "vtkDataObjectTree.h"
+#include "vtkDataObjectTreeIterator.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHBlocks.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkSmartPointer<vtkPointSet> vtkSPHTakeVertices(vtkPointSet* data)
+namespace
 {
-  const vtkIdType points = data->GetNumberOfPoints(), cells = data->GetNumberOfCells();
-  std::vector<vtkIdType> cellOf(static_cast<std::size_t>(points), -1); // the first vertex that uses a point
-  vtkIdType vertices = 0;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < cells; ++cell)
+bool IsVertex(int type)
+{
+  return type == VTK_VERTEX || type == VTK_POLY_VERTEX;
+}
+
+/** The cells among which the vertices of a data set are; its first cells. */
+struct Cells
+{
+  vtkCellArray* List = nullptr;
+  vtkUnsignedCharArray* Types = nullptr; ///< null: all are vertices
+  bool HasVertices = false, HasOthers = false;
+
+  explicit Cells(vtkPointSet* data)
   {
-    const int type = data->GetCellType(cell);
-    if (type != VTK_VERTEX && type != VTK_POLY_VERTEX)
+    auto* grid = vtkUnstructuredGrid::SafeDownCast(data);
+    auto* poly = vtkPolyData::SafeDownCast(data);
+    if (poly)
     {
-      continue;
+      this->List = poly->GetVerts();
+      this->HasVertices = poly->GetNumberOfVerts() > 0;
+      this->HasOthers = poly->GetNumberOfCells() > poly->GetNumberOfVerts();
+      return;
     }
-    ++vertices;
-    data->GetCellPoints(cell, ids);
-    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+    this->HasOthers = !grid && data->GetNumberOfCells() > 0;
+    if (grid && grid->GetNumberOfCells() > 0)
     {
-      const vtkIdType point = ids->GetId(i);
-      if (point >= 0 && point < points && cellOf[static_cast<std::size_t>(point)] < 0)
+      this->List = grid->GetCells();
+      this->Types = grid->GetCellTypesArray();
+      vtkNew<vtkCellTypes> kinds;
+      grid->GetCellTypes(kinds);
+      for (vtkIdType i = 0; i < kinds->GetNumberOfTypes(); ++i)
       {
-        cellOf[static_cast<std::size_t>(point)] = cell;
+        (IsVertex(kinds->GetCellType(i)) ? this->HasVertices : this->HasOthers) = true;
       }
     }
   }
-  const auto used = points - std::count(cellOf.begin(), cellOf.end(), -1);
-  vtkCellData* ofCells = data->GetCellData();
-  const bool isMesh = vertices > 0 && vertices < cells;
-  if (!isMesh && (used < points || ofCells->GetNumberOfArrays() == 0))
+};
+
+/** For each point the first vertex that uses it, or -1. */
+std::vector<vtkIdType> FindVertices(const Cells& cells, vtkIdType points)
+{
+  std::vector<vtkIdType> found(static_cast<std::size_t>(points), -1);
+  for (vtkIdType cell = 0; cell < cells.List->GetNumberOfCells(); ++cell)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    if (!cells.Types || IsVertex(cells.Types->GetValue(cell)))
+    {
+      cells.List->GetCellAtId(cell, count, ids);
+    }
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      if (ids[i] >= 0 && ids[i] < points && found[static_cast<std::size_t>(ids[i])] < 0)
+      {
+        found[static_cast<std::size_t>(ids[i])] = cell;
+      }
+    }
+  }
+  return found;
+}
+
+/** Adds these values of arrays that have `count`, unless there is one of that name. */
+void AddValues(vtkDataSetAttributes* from, vtkIdType count, vtkIdList* ids, vtkPointData* to)
+{
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = from->GetAbstractArray(i);
+    if (!array->GetName() || to->HasArray(array->GetName()) || array->GetNumberOfTuples() != count)
+    {
+      continue;
+    }
+    auto values = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+    values->SetName(array->GetName());
+    values->SetNumberOfComponents(array->GetNumberOfComponents());
+    values->CopyComponentNames(array);
+    values->SetNumberOfTuples(ids->GetNumberOfIds());
+    array->GetTuples(ids, values);
+    const int at = to->AddArray(values), attribute = from->IsArrayAnAttribute(i);
+    if (attribute >= 0 && !to->GetAbstractAttribute(attribute))
+    {
+      to->SetActiveAttribute(at, attribute);
+    }
+  }
+}
+
+vtkSmartPointer<vtkDataObject> TakeOfSet(vtkPointSet* data, bool haveVertices)
+{
+  const vtkIdType count = data->GetNumberOfPoints();
+  const Cells cells(data);
+  const bool isMesh = haveVertices && cells.HasOthers;
+  const bool haveArrays = cells.HasVertices && data->GetCellData()->GetNumberOfArrays() > 0;
+  if (count == 0 || !(isMesh || haveArrays))
   {
     return data;
   }
   vtkNew<vtkIdList> taken, from; // points, and the vertices whose values are theirs
-  for (vtkIdType point = 0; point < points; ++point)
+  const std::vector<vtkIdType> vertexOf =
+    cells.HasVertices ? FindVertices(cells, count) : std::vector<vtkIdType>();
+  for (std::size_t point = 0; point < vertexOf.size(); ++point)
   {
-    if (cellOf[static_cast<std::size_t>(point)] >= 0)
+    if (vertexOf[point] >= 0)
     {
-      taken->InsertNextId(point);
-      from->InsertNextId(cellOf[static_cast<std::size_t>(point)]);
+      taken->InsertNextId(static_cast<vtkIdType>(point));
+      from->InsertNextId(vertexOf[point]);
     }
   }
-  auto particles = vtkSmartPointer<vtkPolyData>::New();
+  if (!isMesh && taken->GetNumberOfIds() < count)
+  {
+    return data;
+  }
+  auto particles = vtkSmartPointer<vtkPointSet>::Take(data->NewInstance());
   vtkNew<vtkPoints> places;
   places->SetDataType(data->GetPoints()->GetDataType());
+  places->SetNumberOfPoints(taken->GetNumberOfIds());
   data->GetPoints()->GetPoints(taken, places);
   particles->SetPoints(places);
-  vtkPointData* arrays = particles->GetPointData();
-  const auto add = [arrays](vtkFieldData* source, vtkIdList* list)
-  {
-    for (int i = 0; i < source->GetNumberOfArrays(); ++i)
-    {
-      vtkAbstractArray* array = source->GetAbstractArray(i);
-      if (!array->GetName() || arrays->HasArray(array->GetName()))
-      {
-        continue;
-      }
-      auto values = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
-      values->SetName(array->GetName());
-      values->SetNumberOfComponents(array->GetNumberOfComponents());
-      values->CopyComponentNames(array);
-      values->SetNumberOfTuples(list->GetNumberOfIds());
-      array->GetTuples(list, values);
-      arrays->AddArray(values);
-    }
-  };
-  add(data->GetPointData(), taken);
-  add(ofCells, from);
+  AddValues(data->GetPointData(), count, taken, particles->GetPointData());
+  AddValues(data->GetCellData(), data->GetNumberOfCells(), from, particles->GetPointData());
   particles->SetFieldData(data->GetFieldData());
+  vtkNew<vtkCellArray> vertices;
+  for (vtkIdType i = 0; i < taken->GetNumberOfIds(); ++i)
+  {
+    vertices->InsertNextCell(1, &i);
+  }
+  if (auto* poly = vtkPolyData::SafeDownCast(particles))
+  {
+    poly->SetVerts(vertices);
+  }
+  else if (auto* grid = vtkUnstructuredGrid::SafeDownCast(particles))
+  {
+    grid->SetCells(VTK_VERTEX, vertices);
+  }
   return particles;
+}
+}
+
+bool vtkSPHHaveVertices(vtkDataObject* data)
+{
+  for (vtkPointSet* set : vtkSPHListPointSets(data))
+  {
+    if (Cells(set).HasVertices)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+vtkSmartPointer<vtkDataObject> vtkSPHTakeVertices(vtkDataObject* data, bool haveVertices)
+{
+  if (auto* set = vtkPointSet::SafeDownCast(data))
+  {
+    return TakeOfSet(set, haveVertices);
+  }
+  auto* tree = vtkDataObjectTree::SafeDownCast(data);
+  vtkSmartPointer<vtkDataObjectTree> made;
+  vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
+  if (tree)
+  {
+    iterator.TakeReference(tree->NewTreeIterator());
+    iterator->InitTraversal();
+  }
+  for (; iterator && !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    vtkDataObject* block = iterator->GetCurrentDataObject();
+    const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(block, haveVertices);
+    if (taken == block)
+    {
+      continue;
+    }
+    if (!made)
+    {
+      made = vtkSmartPointer<vtkDataObjectTree>::Take(tree->NewInstance());
+      made->ShallowCopy(tree);
+    }
+    made->SetDataSet(iterator, taken);
+  }
+  return made ? made.Get() : data;
 }
 VTK_ABI_NAMESPACE_END

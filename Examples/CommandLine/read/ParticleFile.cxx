@@ -311,7 +311,8 @@ vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet*
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   CheckArrays(file, all->GetPointData(), all->GetNumberOfPoints(), " points");
   CheckArrays(file, all->GetCellData(), all->GetNumberOfCells(), " cells");
-  const vtkSmartPointer<vtkPointSet> data = vtkSPHTakeVertices(all);
+  const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, vtkSPHHaveVertices(all));
+  auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
   static bool isSaid = false; // of a film's steps once
   if (others > 0 && !isSaid)

@@ -23,19 +23,25 @@ def offsets_of(cells, count):
     return begins - np.arange(count + 1), np.delete(cells, begins[:-1])
 
 
+def find_vertices(types, offsets, points, count):
+    """For each of the points the first vertex that uses it, or -1."""
+    cells = np.repeat(np.arange(len(types)), np.diff(offsets))
+    used = np.isin(types, VERTICES)[cells] & (points >= 0) & (points < count)
+    found = np.full(count, -1)
+    found[points[used][::-1]] = cells[used][::-1]  # of several the first
+    return found
+
+
 def take_vertices(file, body, types, offsets, points, cell_arrays):
     """Where there are vertices and other cells, the points of the vertices: other points are a mesh's. Arrays of cells are
     then those of the vertices' points, unless these have one of that name; also where each point has a vertex."""
     is_vertex, count = np.isin(types, VERTICES), len(body.points)
-    cells = np.repeat(np.arange(len(types)), np.diff(offsets))
-    used = is_vertex[cells] & (points >= 0) & (points < count)
-    cell_of = np.full(count, -1)
-    cell_of[points[used][::-1]] = cells[used][::-1]  # of several the first
+    cell_of = find_vertices(types, offsets, points, count)
     if not is_vertex.any() or is_vertex.all() and (not cell_arrays or (cell_of < 0).any()):
         return body
     if not is_vertex.all():
-        warn(f"{file} has vertices and other cells: {count - np.count_nonzero(cell_of >= 0)} points without a vertex are "
-             "a mesh's, and no particles.")
+        warn(f"{count - np.count_nonzero(cell_of >= 0)} of {count} points of {file} are nodes of a mesh and no particles, as no "
+             "vertex cell uses them.")
     taken = np.flatnonzero(cell_of >= 0)
     of_cells = {name: array[cell_of[taken]] for name, array in cell_arrays.items() if len(array) == len(types)}
     return body._replace(points=body.points[taken],

@@ -12,6 +12,7 @@ import warnings
 import numpy as np
 
 from . import io
+from ._arrays import choose
 from ._functions import free_surface, isosurface, probe
 from ._gauge import gauge
 from ._library import InvalidArgument
@@ -48,13 +49,23 @@ def named_value(text):
     return name, float(value)
 
 
+def named_range(text):
+    """NAME=VALUE[:VALUE]"""
+    name, _, ends = text.rpartition("=")
+    ends = [float(end) for end in ends.split(":")]
+    if not name or len(ends) > 2:
+        raise ValueError(text)
+    return name, (ends[0], ends[-1])
+
+
 def plane(text):
     """AXIS=PLACE"""
     axis, _, place = text.partition("=")
     return "xyz".index(axis), float(place)
 
 
-named_line.__name__, named_value.__name__, plane.__name__ = "NAME=X,Y,Z:X,Y,Z", "NAME=VALUE", "AXIS=PLACE"
+for function in (named_line, named_value, named_range, plane):
+    function.__name__ = function.__doc__  # which argparse names where a value is wrong
 
 # The program's word for an option of the functions, and what its value is: None for a flag, a list for other words.
 OPTIONS = {
@@ -95,6 +106,11 @@ def make_parser(command):
     for name in ("mass", "density"):
         add("--" + name, metavar="NAME|VALUE", type=quantity, help="an array, or one value")
     add("--fluid", metavar="NAME=VALUE", type=named_value, help="where this array has another value, particles are solid")
+    add("--within", metavar="X0,X1,Y0,Y1,Z0,Z1", type=numbers,
+        help="leave out particles that are not in these bounds, whose sides may be inf or -inf")
+    add("--only", metavar="NAME=VALUE[:VALUE]", action="append", default=[], type=named_range, help="leave out particles whose "
+        "value in this array is another one, or not in this range; of several ranges of one array any counts, of several "
+        "arrays all do")
     add("--walls", metavar="FILE", action="append", default=[], help="the particles of this file are walls, too")
     if command == "surface":
         add("--scalar", metavar="NAME", help="array to contour")
@@ -158,6 +174,13 @@ def find_words(given, names, particles):
                                          for name in ("mass", "density")):
             words = {name: value for name, value in words.items() if name not in ("mass", "density")}
             words["volume"] = given.dp ** dimension
+    if given.within is not None:
+        words["within"] = given.within
+    chosen = {}
+    for name, ends in given.only:
+        chosen[name] = choose({name: ends}, particles.array) | chosen.get(name, False)
+    if chosen:
+        words["only"] = np.all(list(chosen.values()), axis=0)
     if given.fluid is not None:
         words["solid"] = particles.array(given.fluid[0]) != given.fluid[1]
     if getattr(given, "cubes", None) == "uniform":
@@ -259,7 +282,7 @@ def run(arguments):
     """arguments: the command's name, and what follows it."""
     joined = []
     for word in arguments[1:]:  # argparse takes a list that begins with a negative number for an option
-        if joined and joined[-1].startswith("--") and re.match(r"-[\d.]", word):
+        if joined and joined[-1].startswith("--") and re.match(r"-(inf|[\d.])", word):
             joined[-1] += "=" + word
         else:
             joined.append(word)

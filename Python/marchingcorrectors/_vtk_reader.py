@@ -10,10 +10,11 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
 from . import io
+from .io.bodies import LISTS
 from .io.convert import to_vtk
 
 # VTK's own files have readers there; ParaView's of tables and molecules make no particles: it asks which one to take.
-ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk")] + ["gadget"]
+ENDINGS = [ending[1:] for ending in io.ENDINGS if ending not in (".vtp", ".vtu", ".vtk", *LISTS)] + ["gadget"]
 
 
 @smproxy.reader(name="SPHParticleReader", label="SPH Particle Reader", extensions=ENDINGS,

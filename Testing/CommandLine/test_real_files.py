@@ -78,7 +78,7 @@ class RealFiles(CommandLineTest):
         self.refuse(self.extract(*FREE, *H, source=file), 1, "far away from the rest")
         self.assertEqual(self.volume(file, *H, "--box", "-1,2,-1,2,-1,0.5"), in_box)
         self.assertEqual(self.volume(file, *H, "--within=-1,2,-1,2,-1,2"), expected)
-        self.assertEqual(self.volume(file, *H, "--within=-inf,2,-inf,inf,-inf,inf"), expected)
+        self.assertEqual(self.volume(file, *H, "--within", "-inf,2,-inf,inf,-inf,inf"), expected)
 
     def test_choice(self):
         near = block((10, 10, 10))

@@ -40,6 +40,14 @@ class Command(unittest.TestCase):
             self.assertEqual((mine.points.tobytes(), mine.faces.tolist()), (its.points.tobytes(), its.faces.tolist()))
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
+    def test_left_out(self):
+        """Of several ranges of one array any counts, of several arrays, and the bounds, all."""
+        words = ["--within", "-inf,2,0.05,inf,-inf,inf", "--only", "Density=0:990", "--only", "Density=1000:2000", "--only",
+                 "ParticleType=0"]
+        mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"]))
+        self.assertGreater(mine.n_cells, 100)
+        self.assertEqual(mine.points.tobytes(), its.points.tobytes())
+
     def test_particle_distance(self):
         """h, and volumes, of DualSPHysics' particles without mass and density."""
         line = np.arange(16) * 0.02

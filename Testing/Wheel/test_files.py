@@ -517,7 +517,7 @@ class Layouts(Case):
         body["Velocity"], body.cell_data["rho"] = grid.points * 2, np.append(DENSITY[order], 0)
         for name, data in (("grid.vtu", grid), ("body.vtp", body), ("body.vtk", body), ("old.vtk", grid), ("new.vtk", grid)):
             data = data.copy()
-            with self.assertWarnsRegex(mc.InputWarning, "64 points without a vertex"):  # PyVista's, too
+            with self.assertWarnsRegex(mc.InputWarning, "64 of 3033 points are nodes of a mesh"):  # PyVista's, too
                 taken = data.sph._particles
             self.assertTrue(np.array_equal(taken.points, X) and np.array_equal(taken["Velocity"], X * 2))
             self.assertTrue(np.array_equal(taken["rho"], DENSITY))
@@ -530,7 +530,7 @@ class Layouts(Case):
                 writer.Write()
             else:
                 data.save(self.at(name))
-            with self.assertWarnsRegex(mc.InputWarning, f"{name} has vertices and other cells: 64 points without a vertex"):
+            with self.assertWarnsRegex(mc.InputWarning, f"64 of 3033 points of {name} are nodes of a mesh"):
                 particles = io.read(self.at(name))
             self.assertTrue(np.array_equal(particles.positions, X), name)
             self.assertTrue(np.array_equal(particles.arrays["Velocity"], X * 2), name)
@@ -552,6 +552,44 @@ class Layouts(Case):
         self.assertEqual({name: array.tolist() for name, array in particles.arrays.items()}, {"h": [1, 2, 3]})
         self.at("one.vtp").write_text('<VTKFile type="PolyData"><PolyData>' + piece([3], more) + "</PolyData></VTKFile>")
         self.assertEqual(sorted(io.read(self.at("one.vtp")).arrays), ["a < b", "h"])
+
+    def test_lists(self):
+        """Pieces are one set, without each other's copies; of times, a repeated part takes the place of the earlier one."""
+        def write(name, numbers, ghosts=()):
+            text = " ".join(map(str, numbers))
+            self.at(name).write_text(
+                f'<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="{len(numbers)}"><PointData>'
+                f'<DataArray type="Int32" Name="n" format="ascii">{text}</DataArray><DataArray type="UInt8" Name="vtkGhostType" '
+                f'format="ascii">{" ".join(str(int(n in ghosts)) for n in numbers)}</DataArray></PointData><Points><DataArray '
+                f'type="Float32" NumberOfComponents="3">{" ".join(f"{n} 0 0" for n in numbers)}</DataArray></Points></Piece>'
+                '</PolyData></VTKFile>')
+
+        def write_list(name, kind, entries):
+            self.at(name).write_text(f'<VTKFile type="{kind}"><{kind}>{"".join(f"<{entry}/>" for entry in entries)}</{kind}></VTKFile>')
+
+        write("a.vtp", [1, 2, 3], ghosts=[3])
+        write("b.vtp", [3, 4], ghosts=[])
+        write("none.vtp", [])
+        write_list("all.pvtp", "PPolyData", ['Piece Source="a.vtp"', 'Piece Source="none.vtp"', 'Piece Source="b.vtp"'])
+        self.assertEqual(io.read(self.at("all.pvtp"))["n"].tolist(), [1, 2, 3, 4])
+        entry = 'DataSet timestep="{}" part="{}" file="{}"'.format
+        write_list("run.pvd", "Collection", [entry(0.5, 0, "b.vtp"), entry(0.5, 1, "all.pvtp"), entry(0, 0, "a.vtp"),
+                                             entry(0, 0, "b.vtp"), entry(2, 0, "none.vtp")])
+        with self.assertWarnsRegex(mc.InputWarning, "run.pvd lists 1 file of a time and a part .* at time 0; the later"):
+            first = io.read(self.at("run.pvd"))
+        self.assertEqual((first["n"].tolist(), first.time, first.times), ([3, 4], 0, [0, 0.5, 2]))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.assertEqual(io.read(self.at("run.pvd"), step=1)["n"].tolist(), [3, 4, 1, 2, 3, 4])
+            self.assertEqual(len(io.read(self.at("run.pvd"), step=-1)), 0)
+        for kind, tag, sentence in (
+                ("x.pvtp", "a", "lists no pieces"), ("x.pvtp", 'Piece Source="all.pvtp"', "is no .vtp file"),
+                ("x.pvd", "a", "lists no files"), ("x.pvd", entry("late", 0, "a.vtp"), "time 'late' is no number"),
+                ("x.pvd", entry(0, 0, "run.pvd"), "lists run.pvd, which is no file"),
+                ("x.pvtp", 'Piece Source="gone.vtp"', "there is no such file")):
+            write_list(kind, "PPolyData" if kind == "x.pvtp" else "Collection", [tag])
+            with self.assertRaisesRegex(io.FileError, sentence):
+                io.read(self.at(kind))
 
     def test_quantities(self):
         """What is given takes the place of what the file has, and nothing else; names are those of the core."""

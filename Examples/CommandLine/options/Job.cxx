@@ -249,11 +249,11 @@ const Option& FindOption(const std::string& name)
   return *option;
 }
 
-/// Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, or axes, -z.
+/// Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, -inf, or axes, -z.
 bool LooksLikeOption(const std::string& word)
 {
   return word == "-h" ||
-    (word.size() > 2 && word[0] == '-' &&
+    (word.size() > 2 && word[0] == '-' && word.compare(0, 4, "-inf") != 0 &&
       std::string("0123456789.").find(word[1]) == std::string::npos);
 }
 

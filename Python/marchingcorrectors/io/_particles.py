@@ -23,7 +23,8 @@ KERNELS = {"cubic": "cubic", "quartic": "quartic", "quintic": "quintic", "sinc6"
 # Names of bodies and of sets that tell of walls; rb_particle_data is SPlisHSPlasH's rigid bodies.
 WALL = re.compile(r"wall|bound|solid|obstacle|rigid|rb_particle|container|tank", re.I)
 
-TIMES = ("TimeValue", "TIME", "time")  # arrays of field data, in VTK's files
+GHOSTS = "vtkGhostType"
+TIMES = ("TimeValue", "TIME", "Time", "time")  # arrays of field data, in VTK's files
 
 
 class FileError(Error, ValueError):
@@ -222,6 +223,20 @@ class Body(NamedTuple):
     time: Optional[float] = None
     period: Optional[Sequence[float]] = None
     times: Optional[Sequence[float]] = None
+
+
+def join_bodies(bodies):
+    """Several as one, with the arrays that all have that have points; without points that are another's (vtkGhostType)."""
+    parts = [body for body in bodies if len(body.points)] or list(bodies[:1])
+    if len(parts) > 1 or GHOSTS in parts[0].arrays:
+        own = [np.flatnonzero(np.asarray(body.arrays.get(GHOSTS, np.zeros(len(body.points), int))).astype(int) & 1 == 0)
+               for body in parts]
+        first = parts[0].arrays
+        names = [name for name in first if name != GHOSTS and all(
+            name in body.arrays and body.arrays[name].shape[1:] == first[name].shape[1:] for body in parts)]
+        arrays = {name: np.concatenate([body.arrays[name][mine] for body, mine in zip(parts, own)]) for name in names}
+        return parts[0]._replace(points=np.concatenate([body.points[mine] for body, mine in zip(parts, own)]), arrays=arrays)
+    return parts[0]
 
 
 def choose_step(file, step, times):

@@ -3,11 +3,12 @@
 """VTK's files, of SPHinXsys, PartVTK, SPlisHSPlasH, and tables: several bodies as one set, walls marked."""
 import numpy as np
 
-from ._particles import WALL, FileError, Particles, choose_step, join, usual
+from ._particles import WALL, FileError, Particles, choose_step, join, join_bodies, usual
 
 TABLES = (".csv", ".tsv", ".txt", ".dat", ".asc", ".ascii")
 XYZ = (".xyz", ".extxyz", ".exyz")
-ENDINGS = (".vtp", ".vtu", ".vtk", ".vtkhdf", *TABLES, *XYZ, ".dump", ".lammpstrj")
+LISTS = (".pvtp", ".pvtu", ".pvd")
+ENDINGS = (".vtp", ".vtu", ".vtk", ".vtkhdf", *LISTS, *TABLES, *XYZ, ".dump", ".lammpstrj")
 
 
 def is_dump(path):
@@ -16,7 +17,16 @@ def is_dump(path):
 
 
 def may_hold_steps(path):
-    return path.suffix.lower() in (".vtkhdf", *XYZ) or path.is_file() and is_dump(path)
+    return path.suffix.lower() in (".vtkhdf", ".pvd", *XYZ) or path.is_file() and is_dump(path)
+
+
+def check_parts(path, parts):
+    for part in parts:
+        if part.suffix.lower() == ".pvd" or part.suffix.lower() not in ENDINGS:
+            raise FileError(f"{path.name} lists {part.name}, which is no file of particles that are bodies.")
+        if not part.is_file():
+            raise FileError(f"{path.name} lists '{part}', and there is no such file.")
+    return parts
 
 
 def load(path, step):
@@ -30,7 +40,16 @@ def load(path, step):
     if ending == ".vtkhdf":
         from .vtkhdf import read_vtkhdf
         return read_vtkhdf(path, step)
+    if ending == ".pvd":
+        from .vtk_xml import list_times
+        times = list_times(path)
+        time = list(times)[choose_step(path.name, step, times)]
+        body = join_bodies([load(each, 0) for each in check_parts(path, times[time])])
+        return body._replace(time=time, times=list(times))
     choose_step(path.name, step, [0.0])
+    if ending in LISTS:
+        from .vtk_xml import list_pieces, read_xml
+        return join_bodies([read_xml(piece) for piece in check_parts(path, list_pieces(path))])
     if ending == ".vtk":
         from .legacy import read_legacy
         return read_legacy(path)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's XML files (.vtp, .vtu): points and their arrays, of all pieces. VTK's own reader believes what a damaged file
+"""VTK's XML files (.vtp, .vtu, and lists of them: .pvtp, .pvtu, .pvd): points and their arrays, of all pieces. VTK's own reader believes what a damaged file
 claims, and ends Python; here all lengths are compared with what is there. Arrays: text, or
 base64 in the file, or base64 or bytes behind an underscore in <AppendedData>, at their offset. Of these bytes the first
 are their number; of packed ones: number of blocks, bytes of a block, bytes of the last one if it is shorter (else 0),
@@ -14,8 +14,9 @@ from xml.parsers import expat
 
 import numpy as np
 
+from .._warnings import warn
 from ._cells import VERTICES, take_vertices
-from ._particles import TIMES, Body, FileError, by_name, check_claim
+from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies
 from ._text import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
@@ -201,19 +202,67 @@ class XmlFile:
 
 
 def read_xml(path):
+    """It may have no points."""
     try:
         file = XmlFile(path)
-        pieces = [piece for piece in file.pieces if piece["count"]]
-        if not pieces:
-            raise FileError(f"{path.name} has no points.")
-        bodies = [file.body(path.name, piece) for piece in pieces]
-        points, first = np.concatenate([body.points for body in bodies]), bodies[0].arrays
-        names = [name for name in first
-                 if all(name in body.arrays and body.arrays[name].shape[1:] == first[name].shape[1:] for body in bodies)]
-        arrays = {name: np.concatenate([body.arrays[name] for body in bodies]) for name in names}
+        bodies = [file.body(path.name, piece) for piece in file.pieces if piece["count"]]
         time = next((file.values(array).ravel() for array in file.field if array.name in TIMES), ())
+        body = join_bodies(bodies or [Body(np.empty((0, 3)), {})])
     except (FileError, ImportError, MemoryError):
         raise
     except Exception as error:
         raise FileError(f"{path.name} has no points, ends too early, or is damaged: {error}.") from None
-    return Body(points, arrays, float(time[0]) if len(time) else None)
+    return body._replace(time=float(time[0]) if len(time) else None)
+
+
+def elements(path, tag):
+    """The attributes of all elements of this name."""
+    found, parser = [], expat.ParserCreate()
+
+    def take(name, attributes):
+        if name == tag:
+            found.append(attributes)
+
+    parser.StartDoctypeDeclHandler, parser.StartElementHandler = XmlFile.refuse, take
+    try:
+        parser.Parse(path.read_bytes(), True)
+    except (expat.ExpatError, ValueError) as error:
+        raise FileError(f"{path.name} is no XML, or damaged: {error}.") from None
+    return found
+
+
+def list_pieces(path):
+    """.pvtp and .pvtu: a list of files whose points are one set."""
+    names = [piece["Source"] for piece in elements(path, "Piece") if piece.get("Source")]
+    wanted = path.suffix[:1] + path.suffix[2:]
+    odd = next((name for name in names if not name.lower().endswith(wanted.lower())), None)
+    if not names or odd is not None:
+        raise FileError(f"{path.name} lists no pieces." if odd is None else f"The piece {odd} of {path.name} is no {wanted} file.")
+    return [path.parent / name for name in names]
+
+
+def list_times(path):
+    """.pvd: {time: files}, in their order. A run that was repeated into the same folder adds its steps: the last count."""
+    entries, again = {}, []
+    for entry in elements(path, "DataSet"):
+        try:
+            time = float(entry.get("timestep") or 0)
+        except ValueError:
+            raise FileError(f"{path.name}: the time '{entry['timestep']}' is no number.") from None
+        if not entry.get("file"):
+            raise FileError(f"{path.name} has an entry that names no file.")
+        part = (entry.get("group", ""), entry["part"]) if entry.get("part") else None
+        same = next((key for key in entries if key[0] == time and (entries[key] == entry["file"] or (part and key[1] == part))),
+                    None)
+        if same:
+            again.append(time)
+        entries[same or (time, part or entry["file"])] = entry["file"]
+    if again:
+        warn(f"{path.name} lists {len(again)} file{'s' * (len(again) > 1)} of a time and a part that it had before, the first at "
+             f"time {min(again):g}; the later ones were taken.")
+    times = {}
+    for (time, _), file in sorted(entries.items(), key=lambda pair: pair[0][0]):
+        times.setdefault(time, []).append(path.parent / file)
+    if not times:
+        raise FileError(f"{path.name} lists no files.")
+    return times

@@ -16,6 +16,9 @@
 #include "vtkSPHParticles.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
+#if MCOR_HAS_RANKS
+#include "vtkSPHRanks.h"
+#endif
 
 #include <algorithm>
 #include <cstring>
@@ -322,7 +325,18 @@ int vtkSPHAlgorithm::RequestData(
   this->Warned.clear();
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->Internals->BeginRun();
-  this->IsPart = this->IsShared();
+  this->Gather = nullptr;
+#if MCOR_HAS_RANKS
+  if (this->IsShared())
+  {
+    this->Gather = [this](const std::vector<double>& mine)
+    {
+      auto all = vtkSPHRanks(this->Controller).Gather(mine);
+      all.erase(all.begin() + this->Controller->GetLocalProcessId());
+      return all;
+    };
+  }
+#endif
   vtkDataObject* all = vtkDataObject::GetData(inputVector[this->GetParticlesPort()]);
   vtkDataObject* particles = this->TakeVertices(all);
   this->WarnOfMesh(all, particles);

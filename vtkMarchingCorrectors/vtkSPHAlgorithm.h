@@ -29,11 +29,14 @@
 #ifndef vtkSPHAlgorithm_h
 #define vtkSPHAlgorithm_h
 
+#include "vtkDataArray.h"                // For members
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h" // For members
 
+#include <cstdint>    // For members
 #include <functional> // For the call of the core
+#include <map>        // For members
 #include <memory>     // For the device state
 #include <set>
 #include <string> // For members
@@ -81,6 +84,14 @@ struct vtkSPHOnly
   double Low, High;
 };
 
+/** What each process that shares a run gives, but this one; empty: there is no other. */
+using vtkSPHGather =
+  std::function<std::vector<std::vector<double>>(const std::vector<double>& mine)>;
+
+/** Arrays that were made of neighbours, by name, with what they were made of. */
+using vtkSPHMade =
+  std::map<std::string, std::pair<std::vector<std::uint64_t>, vtkSmartPointer<vtkDataArray>>>;
+
 /**
  * How particles are described, see the setters of vtkSPHAlgorithm. A run has a copy: an observer may change
  * the filter meanwhile.
@@ -107,7 +118,8 @@ struct vtkSPHParticlesChoice
   int Dimension = 0;
   double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   vtkTypeBool DetectPeriod = 0;
-  bool IsPart = false; ///< of particles that several processes share
+  vtkSPHGather Gather;
+  std::shared_ptr<vtkSPHMade> Made = std::make_shared<vtkSPHMade>();
   std::vector<std::string> ExcludedArrays;
   double Within[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   std::vector<vtkSPHOnly> Only;

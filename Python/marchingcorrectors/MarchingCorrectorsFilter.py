@@ -138,6 +138,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
         self._joined = self._taken = None, None, 0
+        self._made = {}  # arrays of sums over neighbours
         self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
@@ -372,8 +373,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
                 options.periodic[:] = period
             particles.collect((Request(self, 0, data), Request(self, 1, data)),
-                              [camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"])
-        except Unusable as sentence:
+                              [camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"], options)
+            particles.estimate_by_neighbours(options)
+        except (Unusable, Error) as sentence:
             self._fail(str(sentence))
             return
         finally:
@@ -386,8 +388,6 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                       "no surface.", "Warning")
             return
         try:
-            if choice.EstimateSmoothingLength and choice.SmoothingLengthEstimate:
-                particles.estimate_by_neighbours(options)
             self._extract(particles, options, output)
         except Cancelled:
             pass
@@ -395,7 +395,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._fail(str(sentence))
 
     def _choice(self):
-        return SimpleNamespace(ExcludedArrays=list(self.ExcludedArrays), Only=list(self.Only), Box=self.Box,
+        return SimpleNamespace(Made=self._made, ExcludedArrays=list(self.ExcludedArrays), Only=list(self.Only), Box=self.Box,
                                PeriodicBounds=self.PeriodicBounds, Within=self.Within,
                                IgnoreSolids=int(self.Solids == self.SOLIDS_IGNORE),
                                **{name: getattr(self, name) for name in PROPERTIES})

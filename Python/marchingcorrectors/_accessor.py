@@ -11,7 +11,7 @@ import numpy as np
 import pyvista
 
 from . import _flux, _functions, _gauge
-from ._arrays import choose
+from ._arrays import SUMMED, choose
 from ._context import Context
 from ._library import InvalidArgument
 from ._options import (DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, Function, Options, check_names,
@@ -122,14 +122,15 @@ class SphAccessor:
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
 
-        scalar: the name of a point array, or an array.
+        scalar: the name of a point array, or an array. "Density", where there is no such array, is summed from masses.
         iso: the value of the scalar on the surface, or a list of values.
         scalar_dot: a second vector; the scalar is then the dot product.
         """
         check_names(SphAccessor.isosurface, options, ISOSURFACE + OWN)
         words = self._words(options)
         dot = None if scalar_dot is None else self._array(scalar_dot)
-        return _functions.isosurface(self._particles.points, self._array(scalar), iso, scalar_dot=dot,
+        is_summed = isinstance(scalar, str) and scalar == SUMMED and SUMMED not in self._particles.point_data
+        return _functions.isosurface(self._particles.points, scalar if is_summed else self._array(scalar), iso, scalar_dot=dot,
                                      **words).to_pyvista()
 
     @_method(FREE_SURFACE)

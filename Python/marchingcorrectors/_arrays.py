@@ -83,6 +83,9 @@ def as_named(attributes):
             for name, array in attributes.items()}
 
 
+SUMMED = "Density"  # of isosurface(), where there is no such array
+
+
 def choose(only, array_of):
     """Which particles have the values of `only`, {name: value or (low, high)}. array_of(name): an array."""
     present = True
@@ -221,7 +224,7 @@ class Arguments:
     def per_neighbours(self, function, *more):
         """Numbers of (particles,) that a function of the core sums over their neighbours."""
         values, why = np.empty(self.count), ctypes.c_void_p()
-        status = function(ctypes.byref(self.input), ctypes.byref(self.options), *more,
+        status = function(ctypes.byref(self.input), ctypes.byref(self.options), *more, self.count,
                           values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), ctypes.byref(why))
         sentence = take_text(why.value)
         if status:
@@ -238,6 +241,15 @@ class Arguments:
         lengths = self.per_neighbours(lib.mcor_find_smoothing_lengths, ratio)
         self.input.smoothing_length = self.view(lengths, "smoothing length")
         self.input.estimate_smoothing_length = self.input.smoothing_length_is_support_radius = 0
+
+    def sum_densities(self, name):
+        """The scalar "Density": from masses. Volumes follow from it, too, where no density is given."""
+        if name != SUMMED:
+            raise InvalidArgument(f"The scalar is '{name}'; it must be an array of numbers, or \"{SUMMED}\", summed from masses.")
+        densities = self.per_neighbours(lib.mcor_sum_densities)
+        if not lib.mcor_is_given(ctypes.byref(self.input.density)):
+            self.input.density = self.view(densities, SUMMED)
+        return densities
 
     def bounds_of_period(self, period):
         """Six bounds, also of three lengths: where the particles lie in them."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Sequence, Tuple
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (Arguments, as_bytes, as_named, as_points, choose, contiguous, is_real, left_out, number, statistics,
+from ._arrays import (SUMMED, Arguments, as_bytes, as_named, as_points, choose, contiguous, is_real, left_out, number, statistics,
                       take, take_all, take_each, take_lines)
 from ._context import Context, default_context
 from ._library import ERRORS, InvalidArgument, InvalidData, lib
@@ -156,10 +156,15 @@ def of_files(function: Function) -> Function:
             return function(positions, *arguments, **words)
         if function.__name__ == "derivatives" and arguments:
             words["attributes"], arguments = arguments[0], arguments[1:]
-        given = [positions.array(thing) if isinstance(thing, str) else thing for thing in arguments]
-        for name in ("scalar", "scalar_dot", "solid", *QUANTITIES):
-            if isinstance(words.get(name), str) and (name, words[name]) != ("volume", "computed"):
-                words[name] = positions.array(words[name])
+
+        def array_of(name, thing):
+            stays = not isinstance(thing, str) or (name, thing) == ("volume", "computed") or (
+                (name, thing) == ("scalar", SUMMED) and SUMMED not in positions)
+            return thing if stays else positions.array(thing)
+
+        given = [array_of("scalar", thing) for thing in arguments]
+        words = {name: array_of(name, thing) if name in ("scalar", "scalar_dot", "solid", *QUANTITIES) else thing
+                 for name, thing in words.items()}
         words, only = positions.words(words), words.get("only")
         if isinstance(only, Mapping):
             words["only"] = choose(only, positions.array)
@@ -267,6 +272,8 @@ def _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted):
         return
     if scalar is None:
         raise InvalidArgument('Give the scalar to contour, or call free_surface().')
+    if isinstance(scalar, str):
+        scalar = arguments.sum_densities(scalar)
     arguments.input.scalar = arguments.per_particle(scalar, "scalar")
     arguments.input.scalar.name = None  # the core then says "the scalar"
     if arguments.input.scalar.components == 1:

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _structs as c
-from ._arrays import Arguments, camel, place_period
+from ._arrays import SUMMED, Arguments, camel, place_period
 from ._library import lib
 from ._warnings import describe_unused_type
 
@@ -176,11 +176,17 @@ class Particles:
         self.interpolated, self.from_nearest = [], []
         self.solid = self.present = None
 
-    def collect(self, requests, taken):
-        if not self.choice.FreeSurface:
+    def collect(self, requests, taken, options=None):
+        """options: the core's, by which densities are summed where there is no array of them."""
+        wanted = requests[0]
+        is_summed = options and not self.choice.FreeSurface and wanted.name == SUMMED and wanted.array is None
+        if not self.choice.FreeSurface and not is_summed:
             self.collect_scalar(*requests)
         self.collect_quantities()
         self.collect_solids()
+        if is_summed:
+            wanted.array = self.sum_densities(options)
+            self.collect_scalar(*requests)
         self.name_scalar(taken)
         if self.choice.InterpolateAttributes:
             self.collect_attributes(taken + [self.iso_value_name] * bool(self.choice.ComputeScalars))
@@ -324,13 +330,31 @@ class Particles:
         return result
 
     def estimate_by_neighbours(self, options):
-        """Smoothing lengths as an array, in place of the estimate of one."""
+        """Smoothing lengths as an array, in place of the estimate of one, where that is asked for."""
+        if self.choice.EstimateSmoothingLength and self.choice.SmoothingLengthEstimate:
+            self.values["smoothing_length"] = self.per_neighbours(
+                options, "SmoothingLength", lib.mcor_find_smoothing_lengths, self.choice.NeighborRatio)
+            self.choice.EstimateSmoothingLength = self.choice.SmoothingLengthIsSupportRadius = 0
+
+    def sum_densities(self, options):
+        """As an array; volumes follow from it, too, where there is none."""
+        self.estimate_by_neighbours(options)
+        array = self.per_neighbours(options, SUMMED, lib.mcor_sum_densities)
+        if "mass" in self.values:
+            self.values.setdefault("density", array)
+        return array
+
+    def per_neighbours(self, options, name, function, *more):
+        """An array of this name; that of the last run of the same particles, if there is one."""
         given = self.arguments()
         given.options = options
-        array = numpy_to_vtk(given.per_neighbours(lib.mcor_find_smoothing_lengths, self.choice.NeighborRatio), deep=True)
-        array.SetName("SmoothingLength")
-        self.values["smoothing_length"] = array
-        self.choice.EstimateSmoothingLength = self.choice.SmoothingLengthIsSupportRadius = 0
+        key = (*self.signatures()[0], options.sph_kernel, options.dimension, *options.periodic, *more)
+        made = self.choice.Made.get(name, (None, None))
+        if made[0] != key:
+            array = numpy_to_vtk(given.per_neighbours(function, *more), deep=True)
+            array.SetName(name)
+            made = self.choice.Made[name] = key, array
+        return made[1]
 
     @staticmethod
     def estimate_cells(arguments, options):
@@ -347,7 +371,8 @@ class Particles:
         choice = self.choice
         particles = [sign(thing) for thing in (self.points, self.positions, self.fluid, *self.used.values())]
         particles += [choice.FluidValue, choice.SmoothingLength, choice.Mass, choice.Density, choice.Kernel,
-                      choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids]
+                      choice.SmoothingLengthIsSupportRadius, choice.EstimateSmoothingLength, choice.IgnoreSolids,
+                      tuple(choice.Within), *choice.Only]
         return particles, [sign(self.scalar), sign(self.dot), choice.ScalarComponent]
 
     def describe_fluid(self):

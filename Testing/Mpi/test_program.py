@@ -83,6 +83,21 @@ class Program(unittest.TestCase):
             self.assertIn("rank_particles", stream.read())
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
 
+    def test_by_neighbours(self):
+        """Smoothing lengths and densities, which are sums over neighbours wherever these are."""
+        particles = read(PARTICLES)
+        particles.GetPointData().RemoveArray("Density")
+        write(particles, self.path("in.vtp"))
+        pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
+        for how in (["--free-surface"], ["--scalar", "Density", "--iso", "600"], ["--free-surface", "--periodic", "0,0,5"]):
+            words = [*how, "--smoothing-length", "neighbours"]
+            self.good(self.run_alone(self.path("in.vtp"), self.path("alone.vtp"), *words))
+            self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *words))
+            alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
+            self.assertGreater(alone.GetNumberOfPolys(), 1000)
+            np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
+            self.check_point_data(alone, ranks)
+
     def write_plane(self):
         """The particles, moved into the plane z = 0.5; with smoothing lengths of 1 to 4."""
         plane = read(PARTICLES)

@@ -296,6 +296,27 @@ class TestFilter(unittest.TestCase):
         bare.Update()
         self.assertGreater(bare.GetOutput().GetNumberOfCells(), 0)
 
+    def test_by_neighbours(self):
+        """Sums over neighbours that are kept for the next run are made anew for other particles."""
+        particles = make_particles(7)
+        extract = make_filter(particles, "Density", 0.5)
+        extract.EstimateSmoothingLengthOn()
+        extract.SetSmoothingLengthEstimate(1)
+        extract.SetMass(1e-3)
+        found = []
+        for iso in (0.5, 0.6, 0.5):
+            extract.SetValue(0, iso)
+            extract.Update()
+            self.assertEqual(extract.GetErrorMessage(), "")
+            found.append((extract.GetOutput().GetNumberOfPoints(), extract.GetOutput().GetBounds()))
+        self.assertGreater(found[0][0], 50)
+        self.assertEqual(found[0], found[2])
+        self.assertNotEqual(found[0], found[1])
+        particles.GetPoints().SetPoint(0, -3.0, 0.0, 0.0)
+        particles.GetPoints().Modified()
+        extract.Update()
+        self.assertNotEqual(extract.GetOutput().GetNumberOfPoints(), found[0][0])
+
     def test_trim(self):
         """Off, the surface goes on beyond the weight sum 0.5, up to the node threshold."""
         extract = make_filter(make_particles(), iso=0.52)

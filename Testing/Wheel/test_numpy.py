@@ -353,6 +353,29 @@ class Inputs(unittest.TestCase):
 class Neighbours(unittest.TestCase):
     """Smoothing lengths that are estimated for each particle."""
 
+    def test_densities(self):
+        """Summed from masses where "Density" is asked for and not there; what is left out plays no part in either."""
+        x = np.random.default_rng(3).normal(size=(200, 3))
+        mass, apart = 1 + np.arange(200) % 3, np.linalg.norm(x[:, None] - x, axis=2)
+        more = np.concatenate([x, [[np.nan, 0, 0], [50, 0, 0]]])
+        h = 0.5 + 0.1 * np.arange(200) % 3
+
+        def cubic(q):
+            return np.where(q < 1, 1 - 1.5 * q ** 2 + 0.75 * q ** 3, 0.25 * np.maximum(2 - q, 0) ** 3) / np.pi
+
+        expected = (mass * cubic(apart / h[:, None])).sum(axis=1) / h ** 3
+        words = dict(field="sum", node_threshold=0, vertex_threshold=0)
+        found = quietly(mc.isosurface, x, "Density", expected.mean(), mass=mass, smoothing_length=h, **words)
+        for name, value in (("scalar_min", expected.min()), ("scalar_max", expected.max())):
+            self.assertAlmostEqual(found.statistics[name] / value, 1, delta=1e-12)
+        same = quietly(mc.isosurface, x, expected, expected.mean(), mass=mass, density=expected, smoothing_length=h, **words)
+        np.testing.assert_allclose(found.points, same.points, atol=1e-6)
+        words.update(estimate_smoothing_length="neighbours", mass=1.0)
+        first = quietly(mc.isosurface, x, "Density", 0.5, **words)
+        again = quietly(mc.isosurface, more, "Density", 0.5, only=np.arange(202) < 200, **words)
+        self.assertGreater(len(first.points), 100)
+        self.assertEqual(first.points.tobytes(), again.points.tobytes())
+
     def test_words(self):
         ranges = {}
         for word in ("neighbours", "neighbors", "neighbours=1.3", "neighbours=1.1"):
@@ -362,6 +385,8 @@ class Neighbours(unittest.TestCase):
         self.assertAlmostEqual(ranges["neighbours"][0], H, delta=0.05 * H)  # inside
         self.assertGreater(ranges["neighbours"][1], 1.2 * H)  # at corners
         self.assertLess(ranges["neighbours=1.1"][0], 0.9 * ranges["neighbours"][0])
+        with self.assertRaisesRegex(mc.InvalidArgument, "The scalar is 'Speed'; it must be an array"):
+            mc.isosurface(POSITIONS, "Speed", 1)
         for word, sentence in (("nearest", "it must be True, \"neighbours\""), ("neighbours=x", "not a number"),
                                ("neighbours=0.5", "ETA is 0.5; it must be above 0.683")):
             with self.assertRaisesRegex(mc.InvalidArgument, sentence):

@@ -586,17 +586,18 @@ extern "C"
 #define MCOR_USUAL_ETA 1.3
 
   /* Smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the h_i, unit L, that solve
-   * h_i^d sum_j W(x_i - x_j, h_i) = eta^d over all particles, fluid and solid, j = i included, to 1e-6 of h_i; d is
-   * the dimension. None is longer than the extent of all. Reads the positions and solids of the input, and of the
-   * options sph_kernel, dimension and periodic. Not with M'4, whose sum does not grow with h. *why: NULL, or why
-   * it failed, in a sentence; free it with free(). */
-  mcor_status mcor_find_smoothing_lengths(
-    const mcor_input* input, const mcor_options* options, double eta, double* lengths, char** why);
+   * h_i^d sum_j W(x_i - x_j, h_i) = eta^d over all particles that play a part, fluid and solid, j = i included, to
+   * 1e-6 of h_i; d is the dimension. `count`: of so many particles, the first ones; others are neighbours only, as
+   * those of other ranks are. 0 for particles that play no part. None is longer than the extent of all. Reads the
+   * positions and solids of the input, and of the options sph_kernel, dimension and periodic. Not with M'4, whose sum
+   * does not grow with h. *why: NULL, or why it failed, in a sentence; free it with free(). */
+  mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
+    double eta, int64_t count, double* lengths, char** why);
 
-  /* Densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over all particles, fluid and solid, unit of
-   * mass / L^d. Reads positions, smoothing lengths and masses of the input, and the same options. */
-  mcor_status mcor_sum_densities(
-    const mcor_input* input, const mcor_options* options, double* densities, char** why);
+  /* Densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over the same particles, unit of mass / L^d. Reads
+   * positions, masses, solids, and smoothing lengths [count] of the input, and the same options. */
+  mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
+    int64_t count, double* densities, char** why);
 
   /* The least smoothing length of the fluid, as the input has it; 1 with estimate_smoothing_length, infinite
    * without fluid. */

@@ -27,6 +27,8 @@ const void* OrEmpty(const void* values)
   return values ? values : &none;
 }
 
+const char* const MadeName = "vtkSPHMade:";
+
 std::uint64_t BitsOf(double value)
 {
   std::uint64_t bits;
@@ -76,7 +78,7 @@ bool vtkSPHParticles::CollectParticles()
   {
     return false;
   }
-  this->Sign();
+  this->ParticlesSignature = this->Sign();
   return true;
 }
 
@@ -99,8 +101,10 @@ bool vtkSPHParticles::CollectSmoothingLength()
     if (!this->SmoothingLength) // not from SumDensities()
     {
       this->SmoothingLength = this->Compute("SmoothingLength",
-        [this, &f](const mcor_options& options, double* values, char** why) {
-          return mcor_find_smoothing_lengths(&this->Core, &options, f.NeighborRatio, values, why);
+        [this, &f](const mcor_input& all, const mcor_options& options, double* values, char** why)
+        {
+          return mcor_find_smoothing_lengths(
+            &all, &options, f.NeighborRatio, this->Core.count, values, why);
         });
     }
     this->Core.estimate_smoothing_length = this->Core.smoothing_length_is_support_radius = 0;
@@ -170,14 +174,25 @@ mcor_options vtkSPHParticles::OwnOptions() const
   return options;
 }
 
-vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(
-  const char* name, const std::function<int(const mcor_options&, double*, char**)>& call)
+bool vtkSPHParticles::IsMade(const char* name)
 {
-  if (this->Description.IsPart)
+  return name && std::strncmp(name, MadeName, std::strlen(MadeName)) == 0;
+}
+
+// Neighbours may be other processes' particles: all get all. Particles that were sent have theirs.
+vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
+  const std::function<int(const mcor_input&, const mcor_options&, double*, char**)>& call)
+{
+  vtkPointData* arrays = this->Points->GetPointData();
+  vtkNew<vtkDoubleArray> array;
+  if (vtkDataArray* sent = arrays->GetArray((MadeName + std::string(name)).c_str()))
   {
-    this->Error = std::string(name) +
-      " is made of all particles' neighbours, and so in one process only. Run one process, or "
-      "store it beforehand.";
+    array->ShallowCopy(sent);
+    array->SetName(name);
+    return array.GetPointer();
+  }
+  if (!this->CollectSolids())
+  {
     return nullptr;
   }
   if (!this->Core.positions.data)
@@ -185,17 +200,74 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(
     this->Core.positions = this->View(this->Points->GetPoints()->GetData());
     this->Core.positions.name = nullptr;
   }
-  vtkNew<vtkDoubleArray> array;
+  mcor_options options = this->OwnOptions();
+  mcor_input all = this->Core;
+  std::vector<double> positions, masses;
+  std::vector<std::uint8_t> solid;
+  if (this->Description.Gather)
+  {
+    const double* p = options.periodic;
+    std::vector<double> mine = { p[1] - p[0], p[3] - p[2], p[5] - p[4] };
+    for (vtkIdType i = 0; i < this->Core.count; ++i)
+    {
+      double x[3];
+      this->Points->GetPoint(i, x);
+      mine.insert(mine.end(), x, x + 3);
+      mine.push_back(this->Mass ? this->Mass->GetComponent(i, 0) : 0.0);
+      mine.push_back(this->Core.solid ? this->Core.solid[i] : 0);
+    }
+    std::vector<std::vector<double>> ranks = this->Description.Gather(mine);
+    ranks.insert(ranks.begin(), std::move(mine)); // one's own first
+    for (const std::vector<double>& rank : ranks)
+    {
+      for (size_t a = 0; a < 3; ++a) // one rank may have the field data that tell of it
+      {
+        options.periodic[2 * a + 1] =
+          std::max(options.periodic[2 * a + 1], options.periodic[2 * a] + rank[a]);
+      }
+      for (size_t i = 3; i + 4 < rank.size(); i += 5)
+      {
+        positions.insert(positions.end(), &rank[i], &rank[i] + 3);
+        masses.push_back(rank[i + 3]);
+        solid.push_back(static_cast<std::uint8_t>(rank[i + 4]));
+      }
+    }
+    all.count = static_cast<int64_t>(masses.size());
+    all.positions = { OrEmpty(positions.data()), MCOR_FLOAT64, 3, 0.0, nullptr };
+    all.mass =
+      this->Mass ? mcor_array{ OrEmpty(masses.data()), MCOR_FLOAT64, 1, 0.0, nullptr } : all.mass;
+    all.solid = solid.empty() ? nullptr : solid.data();
+  }
+  std::vector<std::uint64_t> signature = this->Sign();
+  for (const double number : { this->Description.NeighborRatio, 1.0 * options.dimension,
+         options.periodic[0], options.periodic[1], options.periodic[2], options.periodic[3],
+         options.periodic[4], options.periodic[5] })
+  {
+    signature.push_back(BitsOf(number));
+  }
+  auto& made = (*this->Description.Made)[name];
+  if (made.first == signature && !this->Description.Gather)
+  {
+    return made.second;
+  }
   array->SetName(name);
   array->SetNumberOfValues(this->Points->GetNumberOfPoints());
   char* why = nullptr;
-  if (call(this->OwnOptions(), array->GetPointer(0), &why) != MCOR_OK)
+  if (call(all, options, array->GetPointer(0), &why) != MCOR_OK)
   {
     const std::string sentence = vtkSPHTakeText(why);
     this->Error = sentence.empty() ? "Host memory ran out." : sentence;
     return nullptr;
   }
-  return array.GetPointer();
+  made = { signature, array.GetPointer() };
+  if (this->Description.Gather)
+  {
+    vtkNew<vtkDoubleArray> sent;
+    sent->ShallowCopy(array);
+    sent->SetName((MadeName + std::string(name)).c_str());
+    arrays->AddArray(sent);
+  }
+  return made.second;
 }
 
 vtkDataArray* vtkSPHParticles::SumDensities()
@@ -205,8 +277,8 @@ vtkDataArray* vtkSPHParticles::SumDensities()
     return nullptr;
   }
   this->Summed = this->Compute("Density",
-    [this](const mcor_options& options, double* values, char** why)
-    { return mcor_sum_densities(&this->Core, &options, values, why); });
+    [this](const mcor_input& all, const mcor_options& options, double* values, char** why)
+    { return mcor_sum_densities(&all, &options, this->Core.count, values, why); });
   return this->Summed;
 }
 
@@ -291,7 +363,7 @@ bool vtkSPHParticles::IsCarried(
   const std::string name = NameOf(array);
   return !name.empty() && !Contains(taken, name) &&
     name != vtkDataSetAttributes::GhostArrayName() && name != MCOR_WALL_BLOCK &&
-    !Contains(this->Description.ExcludedArrays, name) &&
+    !IsMade(name.c_str()) && !Contains(this->Description.ExcludedArrays, name) &&
     array->GetNumberOfTuples() == this->Core.count;
 }
 
@@ -426,9 +498,9 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
 }
 
 // The data set's own time is part of it: users change arrays in place and tell the data set.
-void vtkSPHParticles::Sign()
+std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
-  std::vector<std::uint64_t>& particles = this->ParticlesSignature;
+  std::vector<std::uint64_t> particles;
   SignObject(particles, this->Points);
   SignObject(particles, this->Points->GetPoints()->GetData());
   SignObject(particles, this->SmoothingLength);
@@ -455,6 +527,7 @@ void vtkSPHParticles::Sign()
   {
     particles.push_back(static_cast<std::uint64_t>(flag));
   }
+  return particles;
 }
 
 // float and double arrays are used where they lie, all others as a copy in double.

@@ -53,6 +53,9 @@ public:
    */
   bool CollectParticles();
 
+  /** Whether this is the name under which what was made of neighbours goes to other processes with the particles. */
+  static bool IsMade(const char* name);
+
   /** The part of it that is about smoothing lengths. */
   bool CollectSmoothingLength();
 
@@ -170,13 +173,14 @@ protected:
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
-  /** Fills an array of this name by the core's function; null, and Error, where it fails. */
-  vtkSmartPointer<vtkDataArray> Compute(
-    const char* name, const std::function<int(const mcor_options&, double*, char**)>& call);
+  /** Fills an array of this name by the core's function, unless there is one of the same particles; null, and Error,
+   * where it fails. */
+  vtkSmartPointer<vtkDataArray> Compute(const char* name,
+    const std::function<int(const mcor_input&, const mcor_options&, double*, char**)>& call);
   vtkSmartPointer<vtkDataArray> Summed; // density
   std::string DescribeSpacing() const;
   bool IsCarried(vtkAbstractArray* array, const std::vector<std::string>& taken) const;
-  void Sign();
+  std::vector<std::uint64_t> Sign() const;
 
   /** The point array of that name and one component; null if there is none. Error then says why. */
   vtkDataArray* Find(const std::string& role, const std::string& name);

@@ -253,7 +253,9 @@ vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHPartic
   to->ShallowCopy(own->GetPointData());
   for (int i = to->GetNumberOfArrays() - 1; i >= 0; --i)
   {
-    if (std::find(arrays.begin(), arrays.end(), to->GetAbstractArray(i)) == arrays.end())
+    vtkAbstractArray* array = to->GetAbstractArray(i);
+    if (std::find(arrays.begin(), arrays.end(), array) == arrays.end() &&
+      !vtkSPHParticles::IsMade(array->GetName()))
     {
       to->RemoveArray(i);
     }

@@ -78,7 +78,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
          *densities = calloc((size_t)count, sizeof *densities),
          *mass = calloc((size_t)count, sizeof *mass), *again = calloc((size_t)count, sizeof *again);
   assert_true(lengths && densities && mass && again);
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, lengths, &why), MCOR_OK);
+  assert_int_equal(
+    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths, &why), MCOR_OK);
   double least = INFINITY, most = 0;
   for (int64_t i = 0; i < count; ++i)
   {
@@ -93,7 +94,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   assert_true(most > 20 * least);
   input.mass = core_array(mass, 1);
   input.smoothing_length = core_array(lengths, 1);
-  assert_int_equal(mcor_sum_densities(&input, &options, densities, &why), MCOR_OK);
+  assert_int_equal(mcor_sum_densities(&input, &options, input.count, densities, &why), MCOR_OK);
   for (int64_t i = 0; i < count; ++i)
   {
     const double expected =
@@ -109,11 +110,43 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
     memcpy(other.position + 3 * i, set.position + 3 * order[i], 3 * sizeof(double));
   }
   input = core_input(&other);
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, again, &why), MCOR_OK);
+  assert_int_equal(
+    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, again, &why), MCOR_OK);
   for (int64_t i = 0; i < count; ++i)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
+  /* Those of a part, whose neighbours are all; as if particles that play no part were not there. */
+  input = core_input(&set);
+  uint8_t* marks = calloc((size_t)count, 1);
+  double* some = calloc((size_t)count, sizeof *some);
+  assert_true(marks && some);
+  const int64_t part = count / 3;
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, part, some, &why), MCOR_OK);
+  assert_memory_equal(some, lengths, (size_t)part * sizeof *some);
+  assert_true(some[part] == 0);
+  for (int64_t i = part; i < count; ++i)
+  {
+    marks[i] = MCOR_ABSENT;
+    set.position[3 * i] = NAN;
+  }
+  other.count = part;
+  memcpy(other.position, set.position, 3 * (size_t)part * sizeof(double));
+  input = core_input(&other);
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, part, again, &why), MCOR_OK);
+  input = core_input(&set);
+  input.solid = marks;
+  input.mass = core_array(mass, 1);
+  mass[part] = NAN;
+  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, count, some, &why), MCOR_OK);
+  assert_memory_equal(some, again, (size_t)part * sizeof *some);
+  assert_true(some[part] == 0);
+  input.smoothing_length = core_array(some, 1);
+  assert_int_equal(mcor_sum_densities(&input, &options, count, again, &why), MCOR_OK);
+  assert_true(again[0] > 0 && again[part] == 0);
+  other.count = count;
+  free(marks);
+  free(some);
   free(order);
   free(lengths);
   free(densities);
@@ -156,12 +189,12 @@ static void test_plummer(void** state)
   }
   mcor_options options = core_options(NULL);
   mcor_input input = core_input(&set);
-  assert_int_equal(
-    mcor_find_smoothing_lengths(&input, &options, MCOR_USUAL_ETA, set.smoothing_length, &why),
+  assert_int_equal(mcor_find_smoothing_lengths(
+                     &input, &options, MCOR_USUAL_ETA, input.count, set.smoothing_length, &why),
     MCOR_OK);
   input.volume = (mcor_array){ 0 };
   input.mass = (mcor_array){ .constant = 1.0 / count };
-  assert_int_equal(mcor_sum_densities(&input, &options, set.scalar, &why), MCOR_OK);
+  assert_int_equal(mcor_sum_densities(&input, &options, input.count, set.scalar, &why), MCOR_OK);
   input.density = core_array(set.scalar, 1);
   for (int k = 0; k < 2; ++k)
   {
@@ -201,31 +234,34 @@ static void test_weird(void** state)
   char* why;
   mcor_options options = core_options(NULL);
   mcor_input input = { .count = 2, .positions = core_array(at, 3) };
-  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_INVALID_DATA,
-    &why, "All particles are at one place");
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why),
+    MCOR_INVALID_DATA, &why, "All particles are at one place");
   at[0] = 2;
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_OK);
+  assert_int_equal(
+    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
   assert_true(out[0] == 1 && out[1] == 1); /* two do not suffice: the domain's extent */
-  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 0.6, out, &why),
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 0.6, input.count, out, &why),
     MCOR_INVALID_ARGUMENT, &why, "ETA is 0.6; it must be above 0.683");
-  expect_refusal(mcor_find_smoothing_lengths(&input, &options, NAN, out, &why),
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, NAN, input.count, out, &why),
     MCOR_INVALID_ARGUMENT, &why, "it must be above");
-  expect_refusal(mcor_sum_densities(&input, &options, out, &why), MCOR_INVALID_ARGUMENT, &why,
-    "There is no mass");
+  expect_refusal(mcor_sum_densities(&input, &options, input.count, out, &why),
+    MCOR_INVALID_ARGUMENT, &why, "There is no mass");
   options.sph_kernel = MCOR_M_PRIME_4;
-  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why),
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why),
     MCOR_INVALID_ARGUMENT, &why, "Choose another kernel");
   options.sph_kernel = MCOR_CUBIC_SPLINE;
   at[4] = NAN;
-  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_INVALID_DATA,
-    &why, "The position of particle 1 is not finite");
+  expect_refusal(mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why),
+    MCOR_INVALID_DATA, &why, "The position of particle 1 is not finite");
   input.count = 0;
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, out, &why), MCOR_OK);
+  assert_int_equal(
+    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, out, &why), MCOR_OK);
   /* More at one place than make a sum: as little as it may be. */
   double many[3 * 100] = { 0 }, lengths[100];
   many[0] = 1;
   input = (mcor_input){ .count = 100, .positions = core_array(many, 3) };
-  assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, lengths, &why), MCOR_OK);
+  assert_int_equal(
+    mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths, &why), MCOR_OK);
   assert_true(lengths[99] > 0 && lengths[99] < 1e-6);
 }
 

@@ -35,11 +35,12 @@ typedef struct mcor_neighbour_job
   double period[3];      /* 0: open */
   double extent;         /* the greatest, of a period, too */
   double norm, eta;      /* eta: to the power of the dimension */
-  int64_t count;
+  int64_t count,
+    wanted; /* particles that are present; as many of the input, the first ones, are asked for */
   mcor_neighbour* sorted; /* [count] */
   double (
     *box)[6];  /* [2 * leaves]: low and high of x, y, z; of node n the children are 2 n, 2 n + 1 */
-  double* out; /* [count], in input order */
+  double* out; /* [wanted], in input order */
   bool failed[MCOR_SLICES];
 } mcor_neighbour_job;
 
@@ -322,6 +323,10 @@ static void mcor_solve_lengths(void* data, int slice, int64_t first, int64_t las
   mcor_neighbour_list list = { 0 };
   for (int64_t i = first; i < last && !job->failed[slice]; ++i)
   {
+    if (job->sorted[i].source >= job->wanted)
+    {
+      continue;
+    }
     const double* box = job->box[job->leaves + i / MCOR_LEAF];
     const double size = fmax(fmax(box[3] - box[0], box[4] - box[1]), box[5] - box[2]);
     const double guess = size > 1e-6 * job->extent ? 0.5 * size : 1e-3 * job->extent;
@@ -344,6 +349,10 @@ static void mcor_sum_slice(void* data, int slice, int64_t first, int64_t last)
   for (int64_t i = first; i < last && !job->failed[slice]; ++i)
   {
     const int64_t source = job->sorted[i].source;
+    if (source >= job->wanted)
+    {
+      continue;
+    }
     const double h = mcor_array_at(&input->smoothing_length, source, 0) * scale;
     job->failed[slice] = !mcor_list_neighbours(job, job->sorted[i].x, support * h, &list);
     job->out[source] =
@@ -366,15 +375,23 @@ static mcor_status mcor_load_neighbours(
     const double length = options->periodic[2 * a + 1] - options->periodic[2 * a];
     job->period[a] = length > 0 ? length : 0;
   }
-  for (job->leaves = 1; job->leaves < (job->count + MCOR_LEAF - 1) / MCOR_LEAF; job->leaves *= 2)
+  for (job->leaves = 1; job->leaves < (input->count + MCOR_LEAF - 1) / MCOR_LEAF; job->leaves *= 2)
   {
   }
-  job->sorted = malloc((size_t)job->count * sizeof *job->sorted);
+  job->sorted = malloc((size_t)input->count * sizeof *job->sorted);
   job->box = malloc(2 * (size_t)job->leaves * sizeof *job->box);
   MCOR_TRY(mcor_allocated(context, job->sorted && job->box));
-  for (int64_t i = 0; i < job->count; ++i)
+  for (int64_t i = 0; i < input->count; ++i)
   {
-    mcor_neighbour* p = &job->sorted[i];
+    if (!mcor_is_present(input, i))
+    {
+      if (i < job->wanted)
+      {
+        job->out[i] = 0;
+      }
+      continue;
+    }
+    mcor_neighbour* p = &job->sorted[job->count++];
     *p = (mcor_neighbour){ .source = i,
       .mass = mcor_is_given(&input->mass) ? mcor_array_at(&input->mass, i, 0) : 1 };
     for (int a = 0; a < 3; ++a)
@@ -393,7 +410,7 @@ static mcor_status mcor_run_neighbours(
   mcor_context* context, const mcor_options* options, mcor_neighbour_job* job, mcor_slice_body body)
 {
   mcor_status status = mcor_load_neighbours(context, options, job);
-  if (status == MCOR_OK && body == mcor_solve_lengths && !(job->extent > 0))
+  if (status == MCOR_OK && job->count > 0 && body == mcor_solve_lengths && !(job->extent > 0))
   {
     status = mcor_fail(context, MCOR_INVALID_DATA,
       "All particles are at one place, so that neighbours tell no smoothing length. Give one "
@@ -411,6 +428,11 @@ static mcor_status mcor_run_neighbours(
   return status;
 }
 
+static mcor_skip mcor_skip_of(const mcor_input* input)
+{
+  return input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT;
+}
+
 /* Positions, and whatever else must be above 0. */
 static mcor_status mcor_check_neighbours(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
@@ -424,18 +446,20 @@ static mcor_status mcor_check_neighbours(
     MCOR_INVALID_ARGUMENT, "There are no particle positions.");
   mcor_array positions = input->positions;
   positions.components = 3;
-  const int64_t i = mcor_find_not_finite(NULL, &positions, NULL, input->count);
+  int c = 0;
+  const int64_t i =
+    mcor_find_illegal(NULL, &positions, input->solid, mcor_skip_of(input), input->count, false, &c);
   MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
     "The position of particle %lld is not finite. Remove such particles.", (long long)i);
   return MCOR_OK;
 }
 
 static mcor_status mcor_begin_lengths(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, double eta, double* lengths)
+  const mcor_options* options, double eta, int64_t count, double* lengths)
 {
   MCOR_TRY(mcor_check_neighbours(context, input, options));
   mcor_neighbour_job job = {
-    .input = input, .kernel = options->sph_kernel, .count = input->count, .out = lengths
+    .input = input, .kernel = options->sph_kernel, .wanted = count, .out = lengths
   };
   const bool plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
   job.eta = plane ? eta * eta : eta * eta * eta;
@@ -444,11 +468,12 @@ static mcor_status mcor_begin_lengths(mcor_context* context, const mcor_input* i
   MCOR_RETURN_IF(!(isfinite(job.eta) && eta > 0 && job.eta > own), context, MCOR_INVALID_ARGUMENT,
     "ETA is %g; it must be above %.3g, which a particle without neighbours has. Usual is %g.", eta,
     pow(own, plane ? 0.5 : 1.0 / 3), MCOR_USUAL_ETA);
-  return job.count > 0 ? mcor_run_neighbours(context, options, &job, mcor_solve_lengths) : MCOR_OK;
+  return input->count > 0 ? mcor_run_neighbours(context, options, &job, mcor_solve_lengths)
+                          : MCOR_OK;
 }
 
-static mcor_status mcor_begin_densities(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, double* densities)
+static mcor_status mcor_begin_densities(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, int64_t count, double* densities)
 {
   MCOR_TRY(mcor_check_neighbours(context, input, options));
   const mcor_array* arrays[] = { &input->mass, &input->smoothing_length };
@@ -459,15 +484,16 @@ static mcor_status mcor_begin_densities(
     MCOR_RETURN_IF(!mcor_is_given(arrays[k]), context, MCOR_INVALID_ARGUMENT,
       "There is no %s, from which densities are summed. Name its array, or give one value.",
       names[k]);
-    const int64_t i = mcor_find_illegal(NULL, arrays[k], NULL, MCOR_SKIP_SOLIDS, input->count, true, &c);
+    const int64_t i = mcor_find_illegal(
+      NULL, arrays[k], input->solid, mcor_skip_of(input), k == 0 ? input->count : count, true, &c);
     MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
       "The %s of particle %lld is not a number above 0. Remove such particles.", names[k],
       (long long)i);
   }
   mcor_neighbour_job job = {
-    .input = input, .kernel = options->sph_kernel, .count = input->count, .out = densities
+    .input = input, .kernel = options->sph_kernel, .wanted = count, .out = densities
   };
-  return job.count > 0 ? mcor_run_neighbours(context, options, &job, mcor_sum_slice) : MCOR_OK;
+  return input->count > 0 ? mcor_run_neighbours(context, options, &job, mcor_sum_slice) : MCOR_OK;
 }
 
 /* A context that opens no device: it has the sentence. */
@@ -482,22 +508,22 @@ static mcor_status mcor_tell_why(mcor_context* context, mcor_status status, char
   return status;
 }
 
-mcor_status mcor_find_smoothing_lengths(
-  const mcor_input* input, const mcor_options* options, double eta, double* lengths, char** why)
+mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
+  double eta, int64_t count, double* lengths, char** why)
 {
   mcor_context* context = calloc(1, sizeof *context);
   *why = NULL;
   return context
-    ? mcor_tell_why(context, mcor_begin_lengths(context, input, options, eta, lengths), why)
+    ? mcor_tell_why(context, mcor_begin_lengths(context, input, options, eta, count, lengths), why)
     : MCOR_OUT_OF_CAPACITY;
 }
 
-mcor_status mcor_sum_densities(
-  const mcor_input* input, const mcor_options* options, double* densities, char** why)
+mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options, int64_t count,
+  double* densities, char** why)
 {
   mcor_context* context = calloc(1, sizeof *context);
   *why = NULL;
   return context
-    ? mcor_tell_why(context, mcor_begin_densities(context, input, options, densities), why)
+    ? mcor_tell_why(context, mcor_begin_densities(context, input, options, count, densities), why)
     : MCOR_OUT_OF_CAPACITY;
 }

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf and those that point to other files were made: needs h5py."""
+"""How lattice.vtkhdf (an unstructured grid), lattice_poly.vtkhdf, film.vtkhdf (three steps) and those that point to other files
+were made: needs h5py."""
 import pathlib
 
 import h5py
@@ -38,6 +39,30 @@ def write(path, kind, version, side=3):
 
 write(HERE / "lattice.vtkhdf", b"UnstructuredGrid", (1, 0))
 write(HERE / "lattice_poly.vtkhdf", b"PolyData", (2, 0))
+
+
+def write_film(path):
+    """Lattices of 3, 0 and 2 points along each side, the last one in two parts; Kind is stored once."""
+    sides, parts = (3, 0, 2), ([27], [0], [5, 3])
+    lattices = [files.lattice(side) if side else ([], {}) for side in sides]
+    begins = numpy.cumsum([0, *(len(points) for points, _ in lattices)])
+    with h5py.File(path, "w", libver="earliest") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = numpy.array((2, 0), "i8")
+        root.attrs.create("Type", b"PolyData", dtype=h5py.string_dtype("ascii", 8))
+        root["NumberOfPoints"] = numpy.concatenate(parts)
+        root["Points"] = numpy.concatenate([points for points, _ in lattices if points])
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = 3
+        steps["Values"], steps["PointOffsets"] = numpy.array([0.0, 0.5, 2.0]), begins[:3]
+        steps["PartOffsets"], steps["NumberOfParts"] = numpy.array([0, 1, 2]), numpy.array([1, 1, 2])
+        for name in lattices[0][1]:
+            values = [arrays[name] for _, arrays in lattices if arrays]
+            root[f"PointData/{name}"] = numpy.array(values[0], "u1") if name == "Kind" else numpy.concatenate(values)
+            steps[f"PointDataOffsets/{name}"] = numpy.zeros(3, int) if name == "Kind" else begins[:3]
+
+
+write_film(HERE / "film.vtkhdf")
 
 for name in ("link", "storage", "virtual"):
     write(HERE / f"{name}.vtkhdf", b"UnstructuredGrid", (1, 0), 2)

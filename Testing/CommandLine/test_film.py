@@ -496,10 +496,23 @@ class Formats(CommandLineTest):
         self.assertGreater(set(made(self.input)), {"Points", "Normals", "Velocity", "connectivity"})
         self.assertEqual(made(grid), made(self.input))  # to the last bit
         self.output.unlink()
-        poly = self.extract("--free-surface", source=HERE / "lattice_poly.vtkhdf")
-        if poly.returncode != 0:
-            self.one_sentence(poly, 1, r"lattice_poly.vtkhdf cannot be read: .*\(VTK 9\.[12]\..* only unstructured grids\)")
-            self.assertFalse(self.output.exists())
+        self.assertEqual(made(HERE / "lattice_poly.vtkhdf"), made(self.input))
+        film = self.directory / "film.pvd"
+        result = self.run_program(HERE / "film.vtkhdf", film, "--free-surface")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(re.findall('timestep="(.*?)"', film.read_text()), ["0", "0.5", "2"])
+        for step, side in enumerate((3, 0, 2)):
+            points, arrays = files.lattice(side) if side else ([], {})
+            made_alone = ""
+            if side:
+                files.write_vtp(self.input, points, arrays)
+                self.succeed("--free-surface", source=self.input)
+                made_alone = re.search('Name="Points".*?</DataArray>', self.output.read_text(), re.DOTALL)[0]
+            found = (self.directory / f"film_{step:04d}.vtp").read_text()
+            self.assertIn(made_alone, found)
+            self.assertEqual('NumberOfPoints="0"' in found, side == 0)
+        self.output.unlink()
+        self.refuse(self.extract("--free-surface", source=f"{HERE / 'film.vtkhdf'}#3"), 1, "it has no step 3")
         damaged = self.directory / "damaged.vtkhdf"
         self.output.unlink(missing_ok=True)
         data = grid.read_bytes()

@@ -18,6 +18,7 @@
 #include "vtkGenericDataObjectReader.h"
 #ifdef MCOR_HAS_VTKHDF
 #include "HdfLinks.h"
+#include "HdfSteps.h"
 #include "vtkHDFReader.h"
 #endif
 #include "vtkNew.h"
@@ -30,8 +31,6 @@
 #include "vtkPolyData.h"
 #include "vtkSPHVertices.h"
 #include "vtkSTLReader.h"
-#include "vtkVersion.h"
-#include "vtkVersionMacros.h"
 #include "vtkXMLDataParser.h"
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLPolyDataReader.h"
@@ -137,31 +136,25 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file)
   return reader->GetOutput();
 }
 
-/// What its reader does not say where it cannot read a good file.
-std::string HintFor(const std::string& file)
-{
-  const std::string ending = fs::path(file).extension().string();
-  return ending == ".vtkhdf" && VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 3, 0)
-    ? std::string(" (VTK ") + vtkVersion::GetVTKVersion() + " reads only unstructured grids)"
-    : "";
-}
-
 #ifdef MCOR_HAS_VTKHDF
-vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file)
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step)
 {
   RefuseHdfLinks(file);
+  if (const vtkSmartPointer<vtkDataObject> points = ReadHdfPoints(file, step))
+  {
+    return points;
+  }
   vtkNew<vtkHDFReader> reader;
   reader->SetFileName(file.c_str());
   if (!reader->CanReadFile(file.c_str()))
   {
-    throw std::runtime_error(
-      file + " cannot be read: its reader does not know what it holds" + HintFor(file));
+    throw std::runtime_error(file + " cannot be read: its reader does not know what it holds");
   }
   reader->Update();
   return reader->GetOutputDataObject(0);
 }
 #else
-vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file)
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t)
 {
   throw std::runtime_error(file + " cannot be read: this VTK was built without its reader");
 }
@@ -200,7 +193,7 @@ const std::vector<FileFormat<Reader>> Formats = {
   { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
   { ".pvtp", {} },
   { ".pvtu", {} },
-  { ".vtkhdf", ReadOne<ReadHdf> },
+  { ".vtkhdf", ReadHdf },
   { ".vtk", ReadOne<ReadLegacy> },
   { ".csv", ReadOne<ReadCsv> },
   { ".tsv", ReadOne<ReadCsv> },
@@ -364,8 +357,7 @@ vtkSmartPointer<vtkPointSet> ReadFile(std::string file, MessageCapture* messages
   // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
   if (!messages->GetErrors().empty())
   {
-    throw std::runtime_error(
-      file + " cannot be read: " + messages->GetErrors().front() + HintFor(file));
+    throw std::runtime_error(file + " cannot be read: " + messages->GetErrors().front());
   }
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
   if (!points)
@@ -451,6 +443,15 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
 std::vector<double> ListTimes(const std::string& file)
 {
   const auto ends = [&file](const char* ending) { return EndsWith(file, ending); };
+#ifdef MCOR_HAS_VTKHDF
+  if (ends(".vtkhdf"))
+  {
+    const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
+    const Silence silence;
+    RefuseHdfLinks(file);
+    return ListHdfTimes(file);
+  }
+#endif
   return ends(".xyz") || ends(".extxyz") || ends(".lammpstrj") || ends(".dump") || ends(".txt") ||
       ends(".dat")
     ? ListTimesInText(file)

@@ -57,7 +57,7 @@ bool ToNumber(View text, double& value)
     text.remove_prefix(1);
   }
   auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec == std::errc() && end.ptr != text.data() + text.size() && text.size() < 64)
+  if (end.ec == std::errc() && end.ptr != text.data() + text.size() && text.size() < 512)
   {
     copy = std::string(text);
     std::replace_if(

@@ -36,7 +36,9 @@ def to_number(cell):
 
 
 def split(line, separator):
-    return line.split() if separator is None else [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+    if separator is None:
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=separator != "\t"))]
 
 
 def check_width(file, count):
@@ -147,7 +149,7 @@ def read_table(path):
     if not rows:
         raise FileError(f"{path.name} has no row of values.")
     separator = next((letter for letter in ";\t," if letter in rows[0]), None)
-    if separator == "\t" and path.suffix.lower() != ".csv":
+    if separator == "\t" and path.suffix.lower() not in (".csv", ".tsv"):
         separator = None
     if separator is None:
         rows = [row.partition("#")[0] if "#" in row else row for row in rows]

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HdfSteps.h"
+
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTypeInt64Array.h"
+
+#include "vtk_hdf5.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+namespace
+{
+
+/// Closes an object of HDF5.
+class Handle
+{
+public:
+  explicit Handle(hid_t id)
+    : Id(id)
+  {
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle()
+  {
+    if (this->Id >= 0)
+    {
+      H5Idec_ref(this->Id);
+    }
+  }
+
+  operator hid_t() const { return this->Id; }
+
+private:
+  hid_t Id;
+};
+
+struct Kind
+{
+  int Vtk;
+  hid_t Hdf;
+};
+
+/// Numbers as VTK holds them; VTK_VOID: not numbers.
+Kind KindOf(hid_t data)
+{
+  const Handle type(H5Dget_type(data));
+  const H5T_class_t group = H5Tget_class(type);
+  const std::size_t size = H5Tget_size(type);
+  if (group == H5T_FLOAT)
+  {
+    return size <= 4 ? Kind{ VTK_FLOAT, H5T_NATIVE_FLOAT } : Kind{ VTK_DOUBLE, H5T_NATIVE_DOUBLE };
+  }
+  const bool isSigned = group == H5T_INTEGER && H5Tget_sign(type) != H5T_SGN_NONE;
+  switch (group == H5T_INTEGER ? size : 0)
+  {
+    case 1:
+      return isSigned ? Kind{ VTK_SIGNED_CHAR, H5T_NATIVE_SCHAR }
+                      : Kind{ VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR };
+    case 2:
+      return isSigned ? Kind{ VTK_SHORT, H5T_NATIVE_SHORT }
+                      : Kind{ VTK_UNSIGNED_SHORT, H5T_NATIVE_USHORT };
+    case 4:
+      return isSigned ? Kind{ VTK_INT, H5T_NATIVE_INT } : Kind{ VTK_UNSIGNED_INT, H5T_NATIVE_UINT };
+    case 8:
+      return isSigned ? Kind{ VTK_LONG_LONG, H5T_NATIVE_LLONG }
+                      : Kind{ VTK_UNSIGNED_LONG_LONG, H5T_NATIVE_ULLONG };
+    default:
+      return { VTK_VOID, -1 };
+  }
+}
+
+/// The group VTKHDF of a file.
+class HdfFile
+{
+public:
+  explicit HdfFile(const std::string& name)
+    : Name(name)
+    , File(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT))
+    , Root(this->File < 0 ? -1 : H5Gopen2(this->File, "VTKHDF", H5P_DEFAULT))
+  {
+  }
+
+  [[noreturn]] void Fail(const std::string& why) const
+  {
+    throw std::runtime_error(this->Name + " cannot be read: " + why);
+  }
+
+  bool IsGood() const { return this->Root >= 0; }
+
+  bool Has(const std::string& name) const
+  {
+    const std::size_t slash = name.rfind('/');
+    return (slash == std::string::npos || this->Has(name.substr(0, slash))) &&
+      H5Lexists(this->Root, name.c_str(), H5P_DEFAULT) > 0;
+  }
+
+  std::string Type() const
+  {
+    const Handle attribute(H5Aopen(this->Root, "Type", H5P_DEFAULT));
+    const Handle type(attribute < 0 ? -1 : H5Aget_type(attribute));
+    if (type < 0 || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 ||
+      H5Tget_size(type) > 100)
+    {
+      return "";
+    }
+    std::string text(H5Tget_size(type), '\0');
+    H5Aread(attribute, type, &text[0]);
+    return text.substr(0, text.find('\0'));
+  }
+
+  /// `count` rows from `first` on, all where that is below 0; null where they are no numbers.
+  vtkSmartPointer<vtkDataArray> Read(
+    const std::string& name, long long first = 0, long long count = -1) const
+  {
+    const Handle data(this->Has(name) ? H5Dopen2(this->Root, name.c_str(), H5P_DEFAULT) : -1);
+    if (data < 0)
+    {
+      this->Fail("it has no data set '" + name + "'");
+    }
+    const Kind kind = KindOf(data);
+    const Handle space(H5Dget_space(data));
+    hsize_t extent[2] = { 0, 1 };
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (kind.Vtk == VTK_VOID || rank < 1 || rank > 2 ||
+      H5Sget_simple_extent_dims(space, extent, nullptr) < 0 || extent[1] < 1 || extent[1] > 1000)
+    {
+      return nullptr;
+    }
+    const auto rows = static_cast<long long>(extent[0]);
+    const long long wanted = count < 0 ? rows : count;
+    if (first < 0 || wanted > rows || first > rows - wanted)
+    {
+      this->Fail("'" + name + "' has " + std::to_string(rows) + " values, not " +
+        std::to_string(wanted) + " from " + std::to_string(first) + " on");
+    }
+    // Chunks that were never written cost nothing in a file.
+    const auto size = static_cast<double>(std::filesystem::file_size(this->Name));
+    if (static_cast<double>(wanted) * static_cast<double>(extent[1]) * 8 > 16e6 + 1000 * size)
+    {
+      this->Fail("'" + name + "' is larger than the file can hold; it may be damaged");
+    }
+    auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(kind.Vtk));
+    array->SetNumberOfComponents(static_cast<int>(extent[1]));
+    array->SetNumberOfTuples(wanted);
+    const hsize_t start[2] = { static_cast<hsize_t>(first), 0 },
+                  part[2] = { static_cast<hsize_t>(wanted), extent[1] };
+    const Handle memory(H5Screate_simple(rank, part, nullptr));
+    if (wanted > 0 &&
+      (H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, part, nullptr) < 0 ||
+        H5Dread(data, kind.Hdf, memory, space, H5P_DEFAULT, array->GetVoidPointer(0)) < 0))
+    {
+      this->Fail("'" + name + "' is damaged");
+    }
+    return array;
+  }
+
+  /// Whole numbers.
+  std::vector<long long> Numbers(const std::string& name) const
+  {
+    const vtkSmartPointer<vtkDataArray> read = this->Read(name);
+    if (!read || read->GetDataType() == VTK_FLOAT || read->GetDataType() == VTK_DOUBLE)
+    {
+      this->Fail("'" + name + "' does not hold whole numbers");
+    }
+    vtkNew<vtkTypeInt64Array> values;
+    values->DeepCopy(read);
+    return { values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues() };
+  }
+
+  std::vector<double> Times() const
+  {
+    vtkNew<vtkDoubleArray> values;
+    values->DeepCopy(this->Read("Steps/Values"));
+    return { values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues() };
+  }
+
+  std::vector<std::string> Names(const char* group) const
+  {
+    std::vector<std::string> names;
+    const Handle opened(this->Has(group) ? H5Gopen2(this->Root, group, H5P_DEFAULT) : -1);
+    hsize_t count = 0;
+    if (opened >= 0)
+    {
+      H5Gget_num_objs(opened, &count);
+    }
+    for (hsize_t i = 0; i < count; ++i)
+    {
+      char name[256] = {};
+      const auto length = H5Gget_objname_by_idx(opened, i, name, sizeof(name));
+      if (length > 0 && length < 256 && H5Gget_objtype_by_idx(opened, i) == H5G_DATASET)
+      {
+        names.emplace_back(name);
+      }
+    }
+    return names;
+  }
+
+private:
+  const std::string Name;
+  const Handle File, Root;
+};
+
+}
+
+std::vector<double> ListHdfTimes(const std::string& name)
+{
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const HdfFile file(name);
+  return file.IsGood() && file.Has("Steps/Values") ? file.Times() : std::vector<double>();
+}
+
+vtkSmartPointer<vtkDataObject> ReadHdfPoints(const std::string& name, std::size_t step)
+{
+  const HdfFile file(name);
+  const std::string type = file.IsGood() ? file.Type() : "";
+  const bool hasSteps = file.IsGood() && file.Has("Steps");
+  if ((type != "PolyData" && type != "UnstructuredGrid") ||
+    (type == "UnstructuredGrid" && !hasSteps))
+  {
+    return nullptr;
+  }
+  std::vector<long long> parts = file.Numbers("NumberOfPoints");
+  long long offset = 0;
+  if (hasSteps)
+  {
+    const auto of = [&file, step](const std::string& list)
+    {
+      const std::vector<long long> numbers = file.Numbers(list);
+      if (step >= numbers.size())
+      {
+        file.Fail("it has no step " + std::to_string(step));
+      }
+      return numbers[step];
+    };
+    const long long first = of("Steps/PartOffsets");
+    const long long count = file.Has("Steps/NumberOfParts") ? of("Steps/NumberOfParts") : 1;
+    offset = of("Steps/PointOffsets");
+    const auto all = static_cast<long long>(parts.size());
+    if (first < 0 || count < 0 || count > all || first > all - count)
+    {
+      file.Fail("it has no parts " + std::to_string(first) + " to " +
+        std::to_string(first + count) + " of step " + std::to_string(step));
+    }
+    parts = { parts.begin() + first, parts.begin() + first + count };
+  }
+  long long total = 0;
+  for (const long long count : parts)
+  {
+    total = count < 0 || total > VTK_INT_MAX ? VTK_INT_MAX : total + count;
+  }
+  const vtkSmartPointer<vtkDataArray> places = file.Read("Points", offset, total);
+  if (!places || places->GetNumberOfComponents() != 3)
+  {
+    file.Fail("its 'Points' are no positions");
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(places);
+  data->SetPoints(points);
+  for (const std::string& array : file.Names("PointData"))
+  {
+    const std::string own = "Steps/PointDataOffsets/" + array;
+    const long long begin = hasSteps && file.Has("Steps/PointDataOffsets") && file.Has(own)
+      ? file.Numbers(own).at(step)
+      : offset;
+    if (const vtkSmartPointer<vtkDataArray> values = file.Read("PointData/" + array, begin, total))
+    {
+      values->SetName(array.c_str());
+      data->GetPointData()->AddArray(values);
+    }
+  }
+  return data;
+}

@@ -481,6 +481,49 @@ class Formats(CommandLineTest):
         path.write_text("<VTKFile><PPolyData/></VTKFile>")
         self.refuse(self.extract("--free-surface", source=path), 1, "it lists no pieces")
 
+    def test_gadget(self):
+        """Both binary formats, in both orders of bytes; several files are one snapshot. Gas alone, h half of GADGET's."""
+        points, arrays = files.lattice(4)
+        files.write_vtp(self.input, points, {name: arrays[name] for name in ("SmoothingLength", "Mass", "Density")})
+        self.succeed("--free-surface", "--no-attributes")
+        expected = re.search('Name="Points".*?</DataArray>', self.output.read_text(), re.DOTALL)[0]
+
+        def write(name, chosen, order, named, count):
+            def record(data):
+                return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
+
+            def reals(values):
+                return struct.pack(f"{order}{len(values)}d", *values)
+
+            n, stars = len(chosen), 3
+            header = struct.pack(order + "6i6d2d2i6I2i4d", n, 0, 0, 0, stars, 0, *[0] * 6, 0.25, 3, 0, 0, n, 0, 0, 0, stars, 0, 0,
+                                 count, 8, 0.3, 0.7, 0.7)
+            blocks = [("HEAD", header.ljust(256, b"\0")),
+                      ("POS", reals([x for i in chosen for x in points[i]] + [9.0] * 3 * stars)),
+                      ("VEL", reals([0.0] * 3 * (n + stars))), ("ID", struct.pack(f"{order}{n + stars}I", *range(n + stars))),
+                      ("MASS", reals([arrays["Mass"][i] for i in chosen] + [1.0] * stars)), ("U", reals([1.0] * n)),
+                      ("RHO", reals([arrays["Density"][i] for i in chosen])),
+                      ("HSML", reals([2 * arrays["SmoothingLength"][i] for i in chosen]))]
+            data = b""
+            for label, block in blocks:
+                data += record(label.ljust(4).encode() + struct.pack(order + "I", len(block) + 8)) if named else b""
+                data += record(block)
+            (self.directory / name).write_bytes(data)
+            return self.directory / name
+
+        whole = range(len(points))
+        for order, named in (("<", False), (">", True), ("<", True), (">", False)):
+            single = write("snapshot_003", whole, order, named, 1)
+            write("snapshot_004.1", whole[40:], order, named, 2)
+            for source in (single, write("snapshot_004.0", whole[:40], order, named, 2)):
+                self.succeed("--free-surface", "--no-attributes", source=source)
+                self.assertIn(expected, self.output.read_text())
+        self.output.unlink()
+        data = single.read_bytes()
+        for size in (3, 7, 200, 500, 2000, len(data) - 1):
+            single.write_bytes(data[:size])
+            self.refuse(self.extract("--free-surface", source=single), 1, "snapshot_003")
+
     def test_vtkhdf(self):
         grid = HERE / "lattice.vtkhdf"
         result = self.extract("--free-surface", source=grid)

@@ -169,8 +169,13 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   mcor_flat flat;
   mcor_status status = mcor_flatten(context, input, options, &flat);
   context->run.options = &flat.options;
-  status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
   mcor_far far = { 0 };
+  if (status == MCOR_OK && flat.options.globals && flat.options.globals->measured.far_count > 0)
+  {
+    status = mcor_leave_out_again(context, &flat.input, &flat.options, &far);
+    flat.input.solid = far.solid;
+  }
+  status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
   if (status == MCOR_OUT_OF_CAPACITY && context->run.is_too_long && !options->globals)
   {
     status = mcor_leave_out_far(context, &flat.input, &far);
@@ -182,7 +187,7 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
   {
     mcor_blame_outlier(context, &flat.input);
   }
-  const bool is_all = !context->run.far;
+  const bool is_all = !far.solid;
   mcor_keep_call(context, &flat.input, &flat.options);
   free(flat.positions);
   free(far.solid);

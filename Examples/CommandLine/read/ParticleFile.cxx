@@ -6,6 +6,7 @@
 #include "DeclaredSizes.h"
 #include "Ending.h"
 #include "FileFormat.h"
+#include "GadgetFile.h"
 #include "MessageCapture.h"
 #include "ParticleParts.h"
 #include "ParticleTable.h"
@@ -219,6 +220,15 @@ const std::vector<FileFormat<Reader>> DataFormats = {
   { ".obj", ReadOne<ReadSurfaceWith<vtkOBJReader>> },
 };
 
+const FileFormat<Reader> Gadget = { "", ReadOne<ReadGadget> };
+
+/// By the ending, or, of particles, by how a file begins; nullptr if there is none.
+const FileFormat<Reader>* FormatOf(
+  const std::vector<FileFormat<Reader>>& formats, const std::string& file)
+{
+  return &formats == &Formats && IsGadget(file) ? &Gadget : FindFormat(formats, file);
+}
+
 /// What numbers of points and particles are counted in.
 const vtkIdType MostPoints = VTK_INT_MAX;
 
@@ -239,7 +249,7 @@ void CheckReadable(
   {
     throw std::runtime_error(file + " cannot be read: " + std::strerror(errno));
   }
-  if (!FindFormat(formats, file))
+  if (!FormatOf(formats, file))
   {
     throw std::runtime_error(file + " is not a " + ListEndings(formats) + " file");
   }
@@ -255,7 +265,7 @@ vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file,
   CheckDeclaredSizes(file);
   try
   {
-    return FindFormat(formats, file)->Process(file, step);
+    return FormatOf(formats, file)->Process(file, step);
   }
   catch (const std::bad_alloc&)
   {
@@ -380,7 +390,7 @@ std::vector<std::string> ListParts(const std::string& file, MessageCapture* mess
 {
   if (!IsList(file))
   {
-    return { file };
+    return IsGadget(file) ? ListGadget(file) : std::vector<std::string>{ file };
   }
   CheckReadable(file);
   const std::vector<std::string> parts = ReadPieces(file, messages);
@@ -436,13 +446,17 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   {
     throw std::runtime_error(files.front() + " holds no points");
   }
-  const bool isWhole = files.size() == 1 && !IsList(files.front());
+  const bool isWhole = parts.size() == 1 && files.size() == 1 && !IsList(files.front());
   return isWhole ? parts.front() : JoinParts(parts);
 }
 
 std::vector<double> ListTimes(const std::string& file)
 {
   const auto ends = [&file](const char* ending) { return EndsWith(file, ending); };
+  if (IsGadget(file))
+  {
+    return { TimeOfGadget(file) };
+  }
 #ifdef MCOR_HAS_VTKHDF
   if (ends(".vtkhdf"))
   {
@@ -497,7 +511,7 @@ vtkSmartPointer<vtkPointSet> ReadParticlesPart(
   {
     return vtkSmartPointer<vtkPolyData>::New();
   }
-  return IsList(file) ? JoinParts(parts) : parts.front();
+  return IsList(file) || parts.size() > 1 ? JoinParts(parts) : parts.front();
 }
 
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)

@@ -83,8 +83,8 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
       job->absent[slice] += is_far;
       job->fluid[slice] += !is_far && !was;
       job->first[slice] = is_far && particle < job->first[slice] ? particle : job->first[slice];
-      job->farthest[slice] =
-        is_used && !is_far ? fmax(job->farthest[slice], length[i] * job->reach) : job->farthest[slice];
+      job->farthest[slice] = is_used && !is_far ? fmax(job->farthest[slice], length[i] * job->reach)
+                                                : job->farthest[slice];
     }
   }
 }
@@ -225,6 +225,28 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   }
   context->error[0] = '\0';
   context->kept.grid = context->kept.value = context->kept.nodes = false;
+  return MCOR_OK;
+}
+
+mcor_status mcor_leave_out_again(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far)
+{
+  const mcor_measure* m = &options->globals->measured;
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  far->solid = malloc((size_t)input->count + 1);
+  MCOR_TRY(mcor_allocated(context, far->solid));
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    bool is_far = false;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double x = mcor_array_at(&positions, i, a);
+      const bool is_open = !(options->periodic[2 * a] < options->periodic[2 * a + 1]);
+      is_far = is_far || (is_open && (x < m->low[a] || x > m->high[a]));
+    }
+    far->solid[i] = is_far ? MCOR_ABSENT : input->solid ? input->solid[i] : 0;
+  }
   return MCOR_OK;
 }
 

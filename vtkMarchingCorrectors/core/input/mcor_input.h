@@ -114,6 +114,9 @@ struct mcor_far
   double place[3];
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
+/* The same particles in a call with globals: those beyond the bounds of the others. */
+mcor_status mcor_leave_out_again(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
 /* Of a lattice that is cut, the bounds: `low` and `high` of the positions of all that is used. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 

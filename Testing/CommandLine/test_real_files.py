@@ -255,14 +255,16 @@ class RealFiles(CommandLineTest):
     def test_coarse_coordinates(self):
         import struct
         single = lambda x: struct.unpack("f", struct.pack("f", x))[0]
-        points = [(500000 + x, 5000000 + y, z) for x, y, z in block((10, 10, 10))]
         file = self.directory / "map.vtp"
-        files.write_vtp(file, [tuple(map(single, p)) for p in points], {})
-        self.volume(file, *H, words="positions are too coarse: .* rounds y to steps of 0.5")
-        self.assertNotIn("plane", self.said)
-        self.assertNotIn("neither", self.said)
-        files.write_vtp(file, points, {})
-        self.assertGreater(self.volume(file, *H), 0.9)
+        for (x0, y0, z0), spacing, words in (((500000, 5000000, 0), 0.1, "y to steps of 0.5"), ((0, 0, -3e6), 0.1, "z to steps of 0.25"),
+                                             ((11.5, 48.1, 300), 2e-6, "z to steps of 3.05.*e-05")):
+            points = [(x0 + x, y0 + y, z0 + z) for x, y, z in block((10, 10, 10), spacing)]
+            how = ["--smoothing-length", str(1.3 * spacing)]
+            files.write_vtp(file, [tuple(map(single, p)) for p in points], {})
+            self.volume(file, *how, words="positions are too coarse: .* rounds " + words)
+            self.assertNotRegex(self.said, "plane|neither")
+            files.write_vtp(file, points, {})
+            self.assertGreater(self.volume(file, *how) / (10 * spacing) ** 3, 0.9)
 
     def test_short_period(self):
         file = self.directory / "long.vtp"
@@ -279,19 +281,27 @@ class RealFiles(CommandLineTest):
 
     def test_bodies_in_vacuum(self):
         """The threshold that leaves nothing is named; without it there is the body in thin gas."""
-        near = block((8, 8, 8), origin=(-0.4, -0.4, -0.4))
         gas = [(0.8 * i, 0.8 * j, 0.8 * k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) != (0, 0, 0)]
         file = self.directory / "planet.vtp"
-        files.write_vtp(file, near + gas, {"rho": [1.0] * len(near) + [1e-6] * len(gas), "m": [1e-3] * len(near) + [1e-12] * len(gas),
-                                           "h": [0.13] * len(near) + [0.8] * len(gas)})
-        options = ["--scalar", "rho", "--iso", "0.4"]
+        cube = block((8, 8, 8), origin=(-0.4, -0.4, -0.4))
         result = self.extract("--scalar", "Radius", "--iso", "0.75", "--node-threshold", "0.5")
         self.assertRegex(result.stderr, r"The node threshold 0.5 removed the whole surface of \d+ triangles.*use the sum as the "
                          "field")
-        self.extract_good(*options, "--field", "sum", "--node-threshold", "0", "--vertex-threshold", "0", "--quiet",
-                          "--stats", self.directory / "s.json", source=file)
-        volume = json.loads((self.directory / "s.json").read_text())["statistics"]["volume"]
-        self.assertAlmostEqual(volume / 0.8 ** 3, 1, delta=0.1)
+        bodies = {"one": (cube, 0.512), "two": ([p for p in cube if abs(p[0]) > 0.1], 0.384),
+                  "hollow": ([p for p in cube if max(map(abs, p)) > 0.2], 0.448)}
+        for name, (near, expected) in bodies.items():
+            with self.subTest(name):
+                files.write_vtp(file, near + gas, {
+                    "rho": [1.0] * len(near) + [1e-6] * len(gas), "m": [1e-3] * len(near) + [1e-12] * len(gas),
+                    "h": [0.13] * len(near) + [0.8] * len(gas)})
+                how = ["--scalar", "rho", "--iso", "0.4"]
+                result = self.extract(*how, source=file)
+                self.assertRegex(result.stderr, r"nowhere that the weight sum is above the node threshold 0.1. .*use the sum as "
+                                 r"the field \(--field sum --node-threshold 0 --vertex-threshold 0\)")
+                self.extract_good(*how, "--field", "sum", "--node-threshold", "0", "--vertex-threshold", "0", "--quiet",
+                                  "--stats", self.directory / "s.json", source=file)
+                volume = json.loads((self.directory / "s.json").read_text())["statistics"]["volume"]
+                self.assertAlmostEqual(volume / expected, 1, delta=0.15)
 
     # ---- tables ----
 

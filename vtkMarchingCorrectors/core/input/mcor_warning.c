@@ -292,8 +292,9 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
       "densities, in the same units as the smoothing length?",
       o->node_threshold, n->filled_median);
   }
-  return n->triangles_below_threshold > 0 &&
-    mcor_say(s,
+  if (n->triangles_below_threshold > 0)
+  {
+    return mcor_say(s,
       "The node threshold %g removed the whole surface of %lld %s: all its nodes have a lower "
       "weight sum. If the fluid "
       "ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as the node "
@@ -301,6 +302,21 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
       "threshold; else check the units of volumes, or of masses and densities.",
       o->node_threshold, (long long)n->triangles_below_threshold,
       n->dimension == 2 ? "lines" : "triangles");
+  }
+  /* Whole bricks may lie below the threshold, and are not looked at. */
+  bool is_between = false;
+  for (int i = 0; i < o->iso_count; ++i)
+  {
+    is_between =
+      is_between || (n->scalar_min < o->iso_values[i] && o->iso_values[i] < n->scalar_max);
+  }
+  return is_between && o->field != MCOR_WEIGHT_SUM && !mcor_has_box(o) && o->node_threshold > 0 &&
+    mcor_say(s,
+      "The field reaches the iso value nowhere that the weight sum is above the node threshold %g. "
+      "If the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as "
+      "the "
+      "node threshold and the vertex threshold.",
+      o->node_threshold);
 }
 
 /* Says which threshold may have removed all of an empty surface. */

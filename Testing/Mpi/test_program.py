@@ -84,10 +84,8 @@ class Program(unittest.TestCase):
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
 
     def test_by_neighbours(self):
-        """Smoothing lengths and densities, which are sums over neighbours wherever these are. Of one that is far away the
-        smoothing length reaches all others, and it is left out."""
+        """Smoothing lengths and densities, which are sums over neighbours wherever these are."""
         particles = read(PARTICLES)
-        particles.GetPoints().SetPoint(0, 0.0, 0.0, -1e6)
         particles.GetPointData().RemoveArray("Density")
         write(particles, self.path("in.vtp"))
         pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)

@@ -83,7 +83,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
 {
   const int noise = at->topology == MCOR_TOPOLOGY_FIELD; /* for ambiguous faces */
   const int eigenvalue = at->boundary == MCOR_BOUNDARY_EIGENVALUE;
-  const double small_iso = eigenvalue ? 5 : 6;
+  const double small_iso = eigenvalue && !at->mixed ? 5 : 6;
   const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? small_iso : at->iso;
   core_set set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;

@@ -9,7 +9,6 @@
 #include "mcor_cap.h"
 #include "mcor_compact.h"
 #include "mcor_fill.h"
-#include "mcor_pair.h"
 #include "mcor_plane.h"
 #include "mcor_widen.h"
 

@@ -237,6 +237,10 @@ void mcor_release_trim(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
+/* Ends with the cells that pairs reach in bricks.cells, all of whose nodes are evaluated; bricks.seeds: those that pairs
+ * mark. */
+mcor_status mcor_find_reached(mcor_context* context);
+void mcor_release_pairs(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
@@ -249,7 +253,6 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count);
 mcor_status mcor_evaluate_nodes(mcor_context* context);
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated);
 mcor_status mcor_march(mcor_context* context);
-mcor_status mcor_find_side_flags(mcor_context* context);
 mcor_status mcor_resolve_topology(mcor_context* context);
 mcor_status mcor_correct(mcor_context* context);
 /* Evaluates the boundary eigenvalue at MCOR_ON_EDGES or MCOR_ALL_VERTICES. */

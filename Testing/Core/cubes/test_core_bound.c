@@ -19,7 +19,7 @@ static const char source[] =
   "  if (b >= box_count)\n"
   "    return;\n"
   "  const mcor_grid grid = MCOR_GRID;\n"
-  "  mcor_query query = mcor_seed_query(&grid, boxes[b], boxes[b].w);\n"
+  "  mcor_query query = mcor_seed_query(&grid, boxes[b], boxes[b].w, boxes[b].w);\n"
   "  mcor_bound bound = mcor_bound_start();\n"
   "  mcor_tile tile;\n"
   "  mcor_tile_init(&tile);\n"
@@ -44,7 +44,7 @@ static const char source[] =
   "  const mcor_grid grid = MCOR_GRID;\n"
   "  mcor_tile wide;\n"
   "  mcor_tile_init(&wide);\n"
-  "  inside[b] = mcor_seed_proof(&grid, boxes[b], 0, &wide, iso) == MCOR_ABOVE;\n"
+  "  inside[b] = mcor_seed_proof(&grid, boxes[b], false, &wide, iso) == MCOR_ABOVE;\n"
   "}\n";
 
 /* The particles as they are on the device, lengths in cubes. */

@@ -35,18 +35,6 @@ mcor_status mcor_view_level(mcor_context* context, int level)
     MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
 }
 
-/* Groups the vertices of a level. */
-static mcor_status mcor_group_level(mcor_context* context, bool boundary, int level, int* groups)
-{
-  const mcor_mesh* mesh = &context->mesh;
-  const int begin = boundary ? mesh->march_count : 0;
-  const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with those of caps */
-  const int first = level > 0 ? mesh->level_first[boundary][level] : begin;
-  const int count =
-    (level + 1 < context->lattice.levels ? mesh->level_first[boundary][level + 1] : end) - first;
-  return mcor_make_groups(context, &mesh->node, first, count, groups);
-}
-
 /* Launches a heavy kernel with the search grid, `own` arguments and more. */
 static mcor_status mcor_launch_joined(mcor_context* context, const char* name, size_t items,
   const mcor_arg own[3], const mcor_arg* more, size_t count)
@@ -77,16 +65,22 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count)
 {
+  const mcor_mesh* mesh = &context->mesh;
   for (int i = 0; i < 2 * context->lattice.levels; ++i)
   {
     const int level = i / 2, boundary = i % 2;
+    const int begin = boundary ? mesh->march_count : 0;
+    const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with those of caps */
+    const int* of_levels = mesh->level_first[boundary];
+    const int first = level > 0 ? of_levels[level] : begin;
+    const int last = level + 1 < context->lattice.levels ? of_levels[level + 1] : end;
     int groups;
     if (!(vertices >> boundary & 1))
     {
       continue;
     }
     MCOR_TRY(mcor_view_level(context, level));
-    MCOR_TRY(mcor_group_level(context, boundary, level, &groups));
+    MCOR_TRY(mcor_make_groups(context, &mesh->node, first, last - first, &groups));
     const mcor_arg own[3] = { MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
       MCOR_BUFFER(&context->mesh.node) };
     MCOR_TRY(mcor_launch_joined(context, name, (size_t)groups, own, more, count));

@@ -11,17 +11,6 @@
 
 /* ---- Cells ---- */
 
-/* The cells to examine, of the box and its ring, as `used`. */
-static mcor_status mcor_find_cells(mcor_context* context)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const size_t bytes = (size_t)context->bricks.now.count * sizeof(cl_ulong);
-  MCOR_TRY(mcor_reserve(context, &mesh->used, bytes));
-  MCOR_TRY(mcor_copy(context, &context->bricks.cells, &mesh->used, 0, bytes));
-  MCOR_TRY(mcor_keep_squares(context, &mesh->used));
-  return mcor_clip_used(context);
-}
-
 /* Finds, among the cells that finer ones touch, those that are used, and their edges. */
 static mcor_status mcor_find_hanging(mcor_context* context)
 {
@@ -49,7 +38,7 @@ static mcor_status mcor_read_int(
   return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
 }
 
-/* The used cells. */
+/* The used cells, among those of the box and its ring. */
 static mcor_status mcor_find_used(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -58,6 +47,10 @@ static mcor_status mcor_find_used(mcor_context* context)
   const size_t n = (size_t)bricks->now.count;
   int used, hits;
   cl_int begin = 0, end;
+  MCOR_TRY(mcor_reserve(context, &mesh->used, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_copy(context, &bricks->cells, &mesh->used, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_keep_squares(context, &mesh->used));
+  MCOR_TRY(mcor_clip_used(context));
   MCOR_TRY(mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(context->adaptive.count > 0 ? mcor_find_hanging(context) : MCOR_OK);
@@ -171,7 +164,6 @@ mcor_status mcor_march(mcor_context* context)
     return MCOR_OK;
   }
   MCOR_TRY(mcor_uses_pairs(context) ? MCOR_OK : mcor_find_neighbours(context)); /* growth has */
-  MCOR_TRY(mcor_find_cells(context));
   MCOR_TRY(mcor_find_used(context));
   MCOR_TRY(mcor_is_resolved(context) ? mcor_resolve_topology(context) : MCOR_OK);
   MCOR_TRY(mcor_count_edges(context));

@@ -9,7 +9,6 @@
  *
  * Pairs are for comparisons with the paper: all cubes have one size, and the surface is whole, in one process. */
 
-#include "mcor_pair.h"
 #include "mcor_box.h"
 
 /* Bricks of all blocks: cells are noted by their numbers, as most have no slot. */
@@ -18,23 +17,19 @@ static size_t mcor_count_places(const mcor_context* context)
   return (size_t)context->bricks.block_count * MCOR_BLOCK_BRICKS;
 }
 
-/* Work-items that look for pairs. */
-static size_t mcor_pair_items(const mcor_context* context)
-{
-  const int particles = context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes); /* of one */
-  return (size_t)((context->grid.count + particles - 1) / particles);
-}
-
 /* Marks the cells between pairs. */
 static mcor_status mcor_mark_pairs(mcor_context* context)
 {
   mcor_pairs* pairs = &context->pairs;
   const size_t bytes = mcor_count_places(context) * sizeof(cl_ulong);
+  const int particles =
+    context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes); /* of an item */
   MCOR_TRY(mcor_fill(context, &pairs->reached, 0, bytes));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY, mcor_pair_items(context),
-    MCOR_GRID_ARGS(context), MCOR_BUFFER(&context->grid.side_flags),
-    MCOR_REAL(context->run.iso.relative), MCOR_REAL(context->run.options->h_scale),
-    MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY,
+    (context->grid.count + particles - 1) / particles, MCOR_GRID_ARGS(context),
+    MCOR_BUFFER(&context->grid.side_flags), MCOR_REAL(context->run.iso.relative),
+    MCOR_REAL(context->run.options->h_scale), MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&pairs->reached)));
   MCOR_TRY(mcor_reserve(context, &pairs->marked, bytes));
   MCOR_TRY(mcor_copy(context, &pairs->reached, &pairs->marked, 0, bytes));
   return mcor_fill(context, &pairs->grown, 0, bytes);
@@ -61,16 +56,6 @@ static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* p
   MCOR_TRY(first ? mcor_sign_nodes(context, &bricks->now.known) : MCOR_OK);
   MCOR_TRY(mcor_evaluate_nodes(context));
   return mcor_sign_nodes(context, &bricks->need);
-}
-
-/* Finds what growth needs of slots. It stays where nodes have right values: in the period, whose particles are on the
- * device, and the ring around it. */
-static mcor_status mcor_begin_growth(mcor_context* context)
-{
-  mcor_buffer* domain = &context->pairs.domain;
-  MCOR_TRY(mcor_find_neighbours(context));
-  MCOR_TRY(mcor_fill(context, domain, 0xff, (size_t)context->bricks.now.count * sizeof(cl_ulong)));
-  return mcor_clip_near(context, domain);
 }
 
 /* One round of growth; *grown is false when no cell was added. */
@@ -124,7 +109,15 @@ mcor_status mcor_find_reached(mcor_context* context)
   {
     bool placed;
     MCOR_TRY(mcor_place_reached(context, first, &placed));
-    MCOR_TRY(placed ? mcor_begin_growth(context) : MCOR_OK);
+    if (placed)
+    {
+      /* Growth stays where nodes have right values: in the period, whose particles are on the device, and the ring
+       * around it. */
+      MCOR_TRY(mcor_find_neighbours(context));
+      MCOR_TRY(
+        mcor_fill(context, &pairs->domain, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong)));
+      MCOR_TRY(mcor_clip_near(context, &pairs->domain));
+    }
     for (bool grown = true; grown;)
     {
       MCOR_TRY(mcor_grow_reached(context, &grown));

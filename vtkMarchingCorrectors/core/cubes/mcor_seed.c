@@ -5,8 +5,36 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_pair.h"
 #include "mcor_plane.h"
+
+#include <float.h>
+#include <math.h>
+
+/* How far rounding may move a Shepard mean of values that are all on one side: of n particles that
+ * reach a point, the two sums are off by (n + 3) and (n + 1) unit roundoffs of their absolute terms
+ * at most, the quotient by another one. A point is reached from 27 cells of each level. */
+double mcor_side_margin(const mcor_context* context)
+{
+  const mcor_grid* grid = &context->grid;
+  const double reaching = fmin(27.0 * grid->level_count * grid->most_in_cell, grid->count);
+  const double share =
+    (2 * reaching + 16) * (context->cl.real_size == sizeof(float) ? FLT_EPSILON : DBL_EPSILON) / 2;
+  return share < 0.5 ? share / (1 - share) : 1e30;
+}
+
+/* The sides of the iso value on which particles are, where the field has values at particles. */
+static mcor_status mcor_find_side_flags(mcor_context* context)
+{
+  mcor_grid* grid = &context->grid;
+  const int runs = grid->count / MCOR_SIDE_PARTICLES + 1;
+  MCOR_TRY(mcor_reserve(context, &grid->side_flags, (size_t)runs));
+  return context->run.options->field == MCOR_WEIGHT_SUM
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_seed_side_flags", MCOR_MEDIUM, runs, MCOR_INT(grid->count),
+        MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
+        MCOR_BUFFER(&grid->value), MCOR_REAL(mcor_side_margin(context)),
+        MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags));
+}
 
 /* Requests bricks beside those with `fresh` nodes, which these show to be needed. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
@@ -18,16 +46,6 @@ static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer*
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(fresh), MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
-}
-
-/* Evaluated bricks may show that a brick left out must be evaluated too; see mcor_seed.cl. */
-static mcor_status mcor_grow_bricks(mcor_context* context, bool* grown)
-{
-  cl_int flag;
-  MCOR_TRY(mcor_request_beside(context, &context->bricks.need));
-  MCOR_TRY(mcor_read(context, &context->bricks.found, 0, &flag, sizeof flag));
-  *grown = flag != 0;
-  return *grown ? mcor_place_bricks(context) : MCOR_OK;
 }
 
 /* Regions by level: those listed of a level are from first[l] to before end[l]. */
@@ -63,19 +81,6 @@ static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* li
   return MCOR_OK;
 }
 
-/* Tests, and in a CPU's form evaluates, the bricks of these regions of which nothing is known. */
-static mcor_status mcor_test_bricks(mcor_context* context, const mcor_region_list* listed)
-{
-  mcor_bricks* bricks = &context->bricks;
-  /* One item per region where one gathers for many lanes, else one per brick. */
-  return MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1,
-    listed->first, listed->end, MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context),
-    MCOR_BUFFER(&bricks->regions), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states),
-    MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
-    MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
-    MCOR_BUFFER(&bricks->now.valid));
-}
-
 /* Requests the bricks of which nodes are known. */
 static mcor_status mcor_request_known(mcor_context* context)
 {
@@ -83,16 +88,6 @@ static mcor_status mcor_request_known(mcor_context* context)
   return MCOR_LAUNCH(context, "mcor_block_request_known", MCOR_MEDIUM, bricks->now.count,
     MCOR_BLOCK_ARGS(context), MCOR_INT(bricks->now.count), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
-}
-
-/* Requests the bricks, of one level, whose states show that their nodes must be evaluated. */
-static mcor_status mcor_request_uncertain(mcor_context* context)
-{
-  mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
-    bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
-    MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
-  return mcor_request_beside(context, &bricks->now.known);
 }
 
 /* Counts the seeds, of which those that the surface uses are taken off later. */
@@ -121,21 +116,34 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
-  return mcor_is_plane(context) ? MCOR_OK : mcor_test_bricks(context, &listed);
+  /* One item per region where one gathers for many lanes, and evaluates bricks, else one per brick. */
+  return mcor_is_plane(context)
+    ? MCOR_OK
+    : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1,
+        listed.first, listed.end, MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context),
+        MCOR_BUFFER(&bricks->regions), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->states),
+        MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->now.value),
+        MCOR_BUFFER(&bricks->now.weight), MCOR_BUFFER(&bricks->now.above),
+        MCOR_BUFFER(&bricks->now.valid));
 }
 
-/* Evaluates the bricks of cubes of one size that must be, and those that these show to be needed. */
+/* Evaluates, of cubes of one size, the bricks whose states show that they must be, and those that evaluated ones
+ * show to be needed; see mcor_seed.cl. */
 static mcor_status mcor_complete_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_request_uncertain(context));
-  MCOR_TRY(mcor_place_bricks(context));
-  for (bool grown = true; grown;)
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_seed_request", MCOR_HEAVY,
+    bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BLOCK_ARGS(context),
+    MCOR_BUFFER(&bricks->inactive), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits)));
+  MCOR_TRY(mcor_request_beside(context, &bricks->now.known));
+  for (cl_int grown = 1; grown;)
   {
+    MCOR_TRY(mcor_place_bricks(context));
     MCOR_TRY(mcor_evaluate_nodes(context));
     MCOR_TRY(mcor_sign_nodes(context, &bricks->need));
     ++context->run.statistics->march_rounds;
-    MCOR_TRY(mcor_grow_bricks(context, &grown));
+    MCOR_TRY(mcor_request_beside(context, &bricks->need));
+    MCOR_TRY(mcor_read(context, &bricks->found, 0, &grown, sizeof grown));
   }
   return MCOR_OK;
 }

@@ -27,24 +27,15 @@ static mcor_status mcor_upload_topology_table(mcor_context* context)
   return status;
 }
 
-/* The first sample of a level of adaptive cubes: slots are in the order of their levels. */
-static mcor_status mcor_first_sample(mcor_context* context, int level, int* first)
-{
-  const size_t slot = (size_t)context->bricks.first_slot[level];
-  return mcor_read(
-    context, &context->topology.sample_base, slot * sizeof(cl_int), first, sizeof(cl_int));
-}
-
-/* Evaluates the samples, level by level. */
-static mcor_status mcor_find_sides(mcor_context* context, int sample_count)
+/* Evaluates the samples, level by level, as slots are sorted. */
+static mcor_status mcor_find_sides(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
-  const int top = context->lattice.levels - 1;
   int first = 0, end, groups;
-  for (int l = 0; l <= top; ++l, first = end)
+  for (int l = 0; l < context->lattice.levels; ++l, first = end)
   {
-    end = sample_count;
-    MCOR_TRY(l < top ? mcor_first_sample(context, l + 1, &end) : MCOR_OK);
+    const size_t slot = (size_t)context->bricks.first_slot[l + 1];
+    MCOR_TRY(mcor_read(context, &topology->sample_base, slot * sizeof end, &end, sizeof end));
     MCOR_TRY(mcor_view_level(context, l));
     MCOR_TRY(mcor_make_groups(context, &topology->sample_node, first, end - first, &groups));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups,
@@ -73,7 +64,7 @@ static mcor_status mcor_evaluate_samples(
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&topology->sample_base), MCOR_REAL(context->run.iso.relative),
     MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset)));
-  return mcor_find_sides(context, *sample_count);
+  return mcor_find_sides(context);
 }
 
 static mcor_status mcor_resolve_faces(mcor_context* context)

@@ -5,19 +5,6 @@
 
 #include "mcor_adaptive.h"
 
-static mcor_status mcor_reserve_bricks(mcor_context* context, mcor_brick_data* data, int count)
-{
-  const size_t n = (size_t)count;
-  const size_t values = n * 64 * context->cl.real_size;
-  data->count = count;
-  MCOR_TRY(mcor_reserve(context, &data->bricks, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_fill(context, &data->known, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_fill(context, &data->above, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_fill(context, &data->valid, 0, n * sizeof(cl_ulong)));
-  MCOR_TRY(mcor_reserve(context, &data->value, values));
-  return mcor_reserve(context, &data->weight, values);
-}
-
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data)
 {
   MCOR_RELEASE(
@@ -40,8 +27,16 @@ static mcor_status mcor_fill_bricks(
   mcor_context* context, const mcor_brick_data* last, int count, int words)
 {
   mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(mcor_reserve_bricks(context, &bricks->now, count));
-  MCOR_TRY(mcor_reserve(context, &bricks->seeds, (size_t)count * sizeof(cl_ulong)));
+  mcor_brick_data* now = &bricks->now;
+  const size_t n = (size_t)count, values = n * 64 * context->cl.real_size;
+  now->count = count;
+  MCOR_TRY(mcor_reserve(context, &now->bricks, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_fill(context, &now->known, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &now->above, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_fill(context, &now->valid, 0, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &now->value, values));
+  MCOR_TRY(mcor_reserve(context, &now->weight, values));
+  MCOR_TRY(mcor_reserve(context, &bricks->seeds, n * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_fill", MCOR_MEDIUM, words, MCOR_BRICK_ARGS(context),
     MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->seeds)));

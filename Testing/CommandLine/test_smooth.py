@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Smoother surfaces: --widen and --widening."""
+"""Smoother surfaces: --widen, --widening and --compact."""
 import random
 
 import particle_files as files
@@ -30,7 +30,8 @@ class Smooth(CommandLineTest):
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_refused(self):
-        for options, sentence in ((["--widening", "f.vtp"], "without --widen"),
+        for options, sentence in ((["--compact", "--filled"], "(leave out --filled or --compact)"),
+                                  (["--widening", "f.vtp"], "without --widen"),
                                   (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")):
             with self.subTest(options):
                 self.refuse(self.extract("--free-surface", *options), 2, sentence)

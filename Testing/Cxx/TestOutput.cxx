@@ -387,6 +387,20 @@ void TestMeasures()
 }
 
 // What one run costs, and another one for the same surface may not, is no part of the surface.
+void TestCompact()
+{
+  auto filter = test::MakeSphereFilter(MakeParticles());
+  filter->Update();
+  const vtkIdType triangles = filter->GetOutput()->GetNumberOfPolys();
+  filter->CompactOn();
+  filter->Update();
+  const vtkIdType left = filter->GetOutput()->GetNumberOfPolys();
+  CHECK(left > triangles / 2 && 5 * left < 4 * triangles);
+  std::ostringstream text;
+  filter->Print(text);
+  CHECK(text.str().find("Compact: 1") != std::string::npos);
+}
+
 void TestRunStatistics()
 {
   vtkNew<vtkMarchingCorrectors> idle;
@@ -446,6 +460,7 @@ int TestOutput(int, char*[])
   TestPrecision();
   TestCoarsePoints();
   TestFieldData();
+  TestCompact();
   TestRunStatistics();
   TestMeasures();
   TestState();

@@ -193,6 +193,15 @@ class Results(unittest.TestCase):
             self.assertEqual(wide.points.tobytes(), plain.points.tobytes())
             self.assertEqual((wide.statistics["widening_min"], wide.statistics["widening_max"]), (factors.min(), 2))
 
+    def test_compact(self):
+        """Fewer triangles, closed as before, around as much."""
+        surfaces = [mc.free_surface(POSITIONS, smoothing_length=H, compact=compact) for compact in (False, True)]
+        usual, compact = (surface.statistics for surface in surfaces)
+        self.assertLess(len(surfaces[1].triangles), 0.8 * len(surfaces[0].triangles))
+        self.assertEqual((usual["is_closed"], compact["is_closed"]), (1, 1))
+        self.assertAlmostEqual(compact["volume"] / usual["volume"], 1, delta=0.02)
+        self.assertLessEqual(compact["residual_max"], 1.5 * usual["residual_max"])
+
     def test_lines(self):
         """Of two dimensions: one of a circle, with greater values outside on its left."""
         flat = np.stack(np.meshgrid(np.arange(N) * 0.1, [0.5], np.arange(N) * 0.1, indexing="ij"), -1).reshape(-1, 3)

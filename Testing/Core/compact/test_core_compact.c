@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours: what the mesh was before it is after, with fewer and better triangles and the same residual;
- * boxes make the whole surface. */
+/* Compact contours: what the mesh was before it is after, with fewer and better triangles and the
+ * same residual; boxes make the whole surface. */
 
 #include "core_parts.h"
 #include "core_period.h"
@@ -114,15 +114,15 @@ static const compact_case cases[] = {
   { "in double precision", make_rough, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.6, 0, 0,
     MCOR_TOPOLOGY_TABLE, MCOR_FLOAT64, { 0 }, 0.8, 0.002 },
   { "scalar", make_smooth, MCOR_SHEPARD, { 4, 0 }, 0.4, 0, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32,
-    { 0 }, 0.75, 0.25 },
+    { 0 }, 0.65, 0.2 },
   { "noise", make_noise, MCOR_SHEPARD, { 0.1, 0.1 }, 0.9, 0, 0, MCOR_TOPOLOGY_FIELD, MCOR_FLOAT32,
-    { 0 }, 0.96, 0.42 },
+    { 0 }, 0.85, 0.4 },
   { "sum of noise", make_noise, MCOR_SUM, { 0.3, 0.3 }, 0.7, 0, 0, MCOR_TOPOLOGY_TABLE,
-    MCOR_FLOAT32, { 0 }, 0.96, 0.42 },
+    MCOR_FLOAT32, { 0 }, 0.7, 0.2 },
   { "levels", make_graded, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 4, 0, MCOR_TOPOLOGY_TABLE,
     MCOR_FLOAT32, { 0 }, 0.7, 0.005 },
   { "walls", make_wall, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, MCOR_CAP_PERIOD, MCOR_TOPOLOGY_TABLE,
-    MCOR_FLOAT32, { 0 }, 0.96, 0.42 },
+    MCOR_FLOAT32, { 0 }, 0.9, 0.1 },
   { "period", make_period, MCOR_SHEPARD, { 0.1, 0.1 }, 0.5, 0, MCOR_CAP_PERIOD, MCOR_TOPOLOGY_TABLE,
     MCOR_FLOAT32, { 0, 12, 0, 10, 0, 11 }, 0.85, 0.09 },
   { "lines", make_plane, MCOR_WEIGHT_SUM, { 0.5, 0.5 }, 0.5, 0, 0, MCOR_TOPOLOGY_TABLE,
@@ -147,7 +147,8 @@ static mcor_options options_of(const compact_case* at)
   return options;
 }
 
-/* Of triangles: how many have an angle below 20 degrees, and how many face along the mean of their points' normals. */
+/* Of triangles: how many have an angle below 20 degrees, and how many face along the mean of their
+ * points' normals. */
 static void measure(const mcor_surface* s, int64_t* sharp, int64_t* turned)
 {
   *sharp = *turned = 0;

@@ -442,6 +442,9 @@ static void parts_of_a_band(void** state)
   check_parts(*state, &set, &options, 2, two, 9, 1000);
   check_parts(*state, &set, &options, 3, three, 9, 1000);
   check_parts(*state, &set, &options, 8, eight, 9, 1000);
+  options.compact = 1;
+  check_parts(*state, &set, &options, 3, three, 14, 1000);
+  check_parts(*state, &set, &options, 8, eight, 14, 1000);
   core_free_set(&set);
 }
 
@@ -469,14 +472,15 @@ static void lines_of_parts(void** state)
     options.h_scale = i < 4 ? 1 : 0.8;
     options.vertex_threshold = 0.7;
     options.preview = i == 1;
+    options.compact = i % 2 == 0;
     const mcor_input input = core_input(&set);
     mcor_surface surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.highest_level, i < 2 ? 0 : 2);
     CORE_CHECK(i < 2 || surface.statistics.cells_of_level[1] > 10, "%lld squares of level 1",
       (long long)surface.statistics.cells_of_level[1]);
     mcor_free_surface(&surface);
-    check_parts(*state, &set, &options, 2, two, 40, 100);
-    check_parts(*state, &set, &options, 3, three, 40, 100);
+    check_parts(*state, &set, &options, 2, two, 80, 100);
+    check_parts(*state, &set, &options, 3, three, 80, 100);
   }
   core_free_set(&set);
 }

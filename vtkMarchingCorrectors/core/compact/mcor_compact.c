@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours. Marching leaves slivers where the surface passes close by a node. So vertices of one node that
- * edges join are merged to their mean [Moore and Warren], from where they are moved along the gradient onto the
- * surface. Triangles of which two corners are one go.
+/* Compact contours. Marching leaves slivers where the surface passes close by a node. So vertices
+ * of one node that edges join are merged to their mean [Moore and Warren], from where they are
+ * moved along the gradient onto the surface. Triangles of which two corners are one go.
  *
- * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart again, which the bunches
- * allow at any time. That may turn triangles beside them over, so there are two rounds.
+ * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart
+ * again, which the bunches allow at any time. That may turn triangles beside them over, so there
+ * are two rounds.
  *
- * Vertices stay sorted by node, as keys need them: so they are gathered once more at the end where some were added
- * behind. */
+ * Vertices stay sorted by node, as keys need them: so they are gathered once more at the end where
+ * some were added behind. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -119,7 +120,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   for (int32_t v = 0; v <= bunches->march_count; ++v)
   {
     const bool is_last = v == bunches->march_count;
-    if (!is_last && mcor_is_merged(bunches, bunches->first[v]))
+    if (!is_last && mcor_is_merged(bunches, bunches->first[v]) && !bunches->held[v])
     {
       continue; /* its bunch comes where the node is */
     }
@@ -129,7 +130,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
     {
       if (mcor_is_merged(bunches, merged->first))
       {
-        bunches->order[count++] = merged->first;
+        bunches->order[count++] = -1 - merged->first;
       }
     }
     if (!is_last)
@@ -138,6 +139,17 @@ static int mcor_order_vertices(mcor_bunches* bunches)
     }
   }
   return count;
+}
+
+/* The vertex that an entry of the order is, or the first one of its bunch; and its place. */
+static int32_t mcor_vertex_of(int32_t entry)
+{
+  return entry < 0 ? -1 - entry : entry;
+}
+
+static int32_t* mcor_place_in(const mcor_bunches* bunches, int32_t entry)
+{
+  return (entry < 0 ? bunches->merged_place : bunches->place) + mcor_vertex_of(entry);
 }
 
 /* The mean of a bunch's vertices, from its node, in edges. */
@@ -178,8 +190,8 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
   const mcor_context* context = bunches->context;
   for (int64_t i = first; i < last; ++i)
   {
-    const int32_t v = to->list[i];
-    const bool merged = mcor_is_merged(bunches, v);
+    const int32_t v = mcor_vertex_of(to->list[i]);
+    const bool merged = to->list[i] < 0;
     double start[3] = { 0, 0, 0 };
     memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
     if (merged)
@@ -208,8 +220,9 @@ static void mcor_note_added(mcor_bunches* bunches, const int32_t* list, int coun
   int level = 0;
   for (int i = 0; i < count; ++i)
   {
-    bunches->place[list[i]] = old + i;
-    for (; level <= mcor_marched_node(bunches, list[i])[3] >> MCOR_LEVEL_SHIFT; ++level)
+    const cl_int* node = mcor_marched_node(bunches, mcor_vertex_of(list[i]));
+    *mcor_place_in(bunches, list[i]) = old + i;
+    for (; level <= node[3] >> MCOR_LEVEL_SHIFT; ++level)
     {
       mesh->level_first[1][level] = old + i;
     }
@@ -282,7 +295,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
   {
     if (mcor_is_merged(bunches, bunches->sorted[i].first))
     {
-      bunches->order[count++] = bunches->sorted[i].first;
+      bunches->order[count++] = -1 - bunches->sorted[i].first;
     }
   }
   return mcor_add_vertices(bunches, bunches->order, count);
@@ -294,6 +307,7 @@ typedef struct mcor_facing
 {
   mcor_bunches* bunches;
   int round;
+  double edge[3];
   void *node, *offset, *linear, *gradient;
   atomic_int bad; /* whether any bunch is */
 } mcor_facing;
@@ -316,12 +330,12 @@ static bool mcor_is_turned(const mcor_facing* facing, const int32_t* place, int 
   {
     const int64_t i = place[c];
     const cl_int* node = (const cl_int*)facing->node + 4 * i;
-    const int level = node[3] >> MCOR_LEVEL_SHIFT;
+    const double size = 1u << (node[3] >> MCOR_LEVEL_SHIFT);
     double g[3], length = 0;
     for (int a = 0; a < 3; ++a)
     {
-      at[c][a] = ldexp(node[a] + mcor_get_real(context, facing->offset, 4 * i + a), level) *
-        mcor_edge_of(&context->lattice, a);
+      at[c][a] =
+        (node[a] + mcor_get_real(context, facing->offset, 4 * i + a)) * size * facing->edge[a];
       g[a] = mcor_get_real(context, facing->gradient, 4 * i + a);
       length += g[a] * g[a];
     }
@@ -357,13 +371,13 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
     bool merged = false, fresh = facing->round == 0, missed = false;
     for (int c = 0; c < corners; ++c)
     {
-      const int32_t bunch = bunches->first[corner[c]];
-      of[c] = mcor_stand_in(bunches, corner[c]);
-      place[c] = bunches->place[of[c]];
-      merged = merged || mcor_is_merged(bunches, bunch);
-      fresh = fresh || mcor_state_of(bunches, bunch) == MCOR_BUNCH_FRESH;
+      of[c] = bunches->first[corner[c]];
+      place[c] = mcor_place_of(bunches, corner[c]);
+      merged = merged || mcor_is_merged(bunches, of[c]);
+      fresh = fresh || mcor_state_of(bunches, of[c]) == MCOR_BUNCH_FRESH;
     }
-    const bool is_left = of[0] != of[1] && (corners == 2 || (of[1] != of[2] && of[2] != of[0]));
+    const bool is_left =
+      place[0] != place[1] && (corners == 2 || (place[1] != place[2] && place[2] != place[0]));
     if (!merged || !fresh || !is_left)
     {
       continue;
@@ -397,6 +411,10 @@ static mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
   const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &facing.node },
     { &mesh->offset, 4 * n * real, &facing.offset }, { &mesh->linear, n * real, &facing.linear },
     { &mesh->gradient, 4 * n * real, &facing.gradient } };
+  for (int a = 0; a < 3; ++a)
+  {
+    facing.edge[a] = mcor_edge_of(&context->lattice, a);
+  }
   atomic_init(&facing.bad, 0);
   mcor_status status = mcor_map_all(context, views, 4);
   status = status == MCOR_OK ? mcor_parallel_run(context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
@@ -406,7 +424,8 @@ static mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Takes the bad bunches apart, and those that lean on them; lists their vertices. Returns how many. */
+/* Takes the bad bunches apart, and those that lean on them; lists their vertices. Returns how many.
+ */
 static int mcor_list_fresh(mcor_bunches* bunches, int32_t* fresh)
 {
   int count = 0;
@@ -497,7 +516,8 @@ static mcor_status mcor_gather(
   return status;
 }
 
-/* Notes where vertices are now, and those of each level begin; cuts and caps follow those on edges. */
+/* Notes where vertices are now, and those of each level begin; cuts and caps follow those on edges.
+ */
 static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
 {
   const mcor_context* context = bunches->context;
@@ -505,11 +525,12 @@ static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
   int level = 0;
   for (int i = 0; i < count; ++i)
   {
-    bunches->place[bunches->order[i]] = i;
+    *mcor_place_in(bunches, bunches->order[i]) = i;
   }
   for (int i = 0; i < march_count; ++i)
   {
-    for (; level < mcor_marched_node(bunches, bunches->order[i])[3] >> MCOR_LEVEL_SHIFT; ++level)
+    const cl_int* node = mcor_marched_node(bunches, mcor_vertex_of(bunches->order[i]));
+    for (; level < node[3] >> MCOR_LEVEL_SHIFT; ++level)
     {
       mesh->level_first[0][level + 1] = i;
     }
@@ -563,7 +584,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   MCOR_TRY(mcor_allocated(context, from));
   for (int i = 0; i < count; ++i)
   {
-    from[i] = bunches->place[bunches->order[i]];
+    from[i] = *mcor_place_in(bunches, bunches->order[i]);
   }
   struct
   {
@@ -603,7 +624,7 @@ static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3]
   const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
   for (int c = 0; c < 3; ++c)
   {
-    to[c] = bunches->place[mcor_stand_in(bunches, corner[c])];
+    to[c] = mcor_place_of(bunches, corner[c]);
   }
   return to[0] != to[1] && (bunches->corners == 2 || (to[1] != to[2] && to[2] != to[0]));
 }
@@ -735,11 +756,13 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   b->before = malloc(3 * (size_t)b->triangle_count * sizeof *b->before);
   b->state = calloc(n, sizeof *b->state);
   b->leans = calloc(n, sizeof *b->leans);
-  b->order = malloc(n * sizeof *b->order);
+  b->order = malloc(2 * n * sizeof *b->order);
   b->place = malloc(n * sizeof *b->place);
+  b->merged_place = malloc(n * sizeof *b->merged_place);
+  b->held = calloc(n, sizeof *b->held);
   MCOR_TRY(mcor_allocated(context,
     b->node && b->ends && b->offset && b->key && b->first && b->next && b->star && b->before &&
-      b->state && b->leans && b->order && b->place));
+      b->state && b->leans && b->order && b->place && b->merged_place && b->held));
   for (int l = 0; l < context->lattice.levels; ++l)
   {
     MCOR_TRY(mcor_read(context, &mesh->triangle_base,
@@ -754,7 +777,7 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
 static void mcor_end_bunches(mcor_bunches* b)
 {
   void* const arrays[] = { b->node, b->ends, b->offset, b->key, b->first, b->next, b->star,
-    b->before, b->state, b->leans, b->order, b->place, b->sorted };
+    b->before, b->state, b->leans, b->order, b->place, b->merged_place, b->held, b->sorted };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);

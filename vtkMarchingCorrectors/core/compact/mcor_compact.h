@@ -3,19 +3,21 @@
 #ifndef mcor_compact_h
 #define mcor_compact_h
 
-/* Compact contours: correction of a mesh whose vertices of one lattice node are merged. See mcor_compact.c. */
+/* Compact contours: correction of a mesh whose vertices of one lattice node are merged. See
+ * mcor_compact.c. */
 
 #include "mcor_internal.h"
 
 #include <stdatomic.h>
 
-/* Merges the vertices of the iso value under way, and corrects what is merged. Where the surface is neither trimmed nor
- * capped this takes the place of the correction; elsewhere it comes after caps, whose borders stay as they are. */
+/* Merges the vertices of the iso value under way, and corrects what is merged. Where the surface is
+ * neither trimmed nor capped this takes the place of the correction; elsewhere it comes after caps,
+ * whose borders stay as they are. */
 bool mcor_compacts_late(const mcor_context* context);
 mcor_status mcor_compact(mcor_context* context);
 
-/* A vertex depends on cells so far away, which a box has as its ring: whether it is merged on four, and on two more with
- * each round of taking bunches apart; then there are normals of triangles. */
+/* A vertex depends on cells so far away, which a box has as its ring: whether it is merged on four,
+ * and on two more with each round of taking bunches apart; then there are normals of triangles. */
 #define MCOR_COMPACT_ROUNDS 2
 #define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 5)
 
@@ -35,8 +37,9 @@ enum
   MCOR_BUNCH_BAD      /* is to be taken apart */
 };
 
-/* The mesh as it was, and its bunches: vertices that belong to one lattice node and that edges of triangles join. Most
- * vertices are in one; the first stands for it. A vertex in no bunch counts as one that stays apart. */
+/* The mesh as it was, and its bunches: vertices that belong to one lattice node and that edges of
+ * triangles join. Most vertices are in one; the first stands for it. A vertex in no bunch counts as
+ * one that stays apart. */
 typedef struct mcor_bunches
 {
   mcor_context* context;
@@ -51,14 +54,16 @@ typedef struct mcor_bunches
   void *triangles, *cells; /* their views */
   uint64_t* key;           /* [vertex_count]: the lattice node that a vertex belongs to */
   int32_t *first, *next;   /* [vertex_count]: first vertex of the bunch; next one, or -1 */
-  int32_t *star,
-    *before; /* by bunch, the last of its triangles' corners; [3 triangle_count]: the one before, or -1 */
-  atomic_uchar* state; /* [vertex_count], by bunch */
-  uint8_t* leans;      /* [vertex_count], by bunch: whether one that is not sure can be merged */
+  int32_t *star, *before;  /* by bunch, the last of its triangles' corners; [3 triangle_count]: the
+                              one before, or -1 */
+  atomic_uchar* state;     /* [vertex_count], by bunch */
+  uint8_t* leans; /* [vertex_count], by bunch: whether one that is not sure can be merged */
   struct mcor_sorted_bunch* sorted; /* that were merged at first, as their vertices are sorted */
   int sorted_count;
-  int32_t *order,
-    *place; /* [vertex_count]: what the mesh's vertices stand for; where each of these is */
+  uint8_t* held; /* [vertex_count]: the keys of cuts need the vertex, even where it is merged */
+  /* [2 vertex_count]: the mesh's vertices: v, or -1 - first of a merged bunch; [vertex_count]:
+   * where a vertex is, and, by first vertex, a merged bunch. */
+  int32_t *order, *place, *merged_place;
 } mcor_bunches;
 
 static inline const cl_int* mcor_marched_node(const mcor_bunches* bunches, int32_t v)
@@ -81,13 +86,15 @@ static inline bool mcor_is_merged(const mcor_bunches* bunches, int32_t first)
   return mcor_state_of(bunches, first) >= MCOR_BUNCH_MERGED;
 }
 
-/* The vertex that stands for vertex v in the mesh. */
-static inline int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
+/* Where the mesh has what has become of vertex v. */
+static inline int32_t mcor_place_of(const mcor_bunches* bunches, int32_t v)
 {
-  return mcor_is_merged(bunches, bunches->first[v]) ? bunches->first[v] : v;
+  const int32_t first = bunches->first[v];
+  return mcor_is_merged(bunches, first) ? bunches->merged_place[first] : bunches->place[v];
 }
 
-/* mcor_compact_bunch.c. Finds the bunches; merges those that can be, whatever becomes of the others. */
+/* mcor_compact_bunch.c. Finds the bunches; merges those that can be, whatever becomes of the
+ * others. */
 mcor_status mcor_find_bunches(mcor_bunches* bunches);
 
 #endif

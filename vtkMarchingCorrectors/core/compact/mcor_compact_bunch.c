@@ -3,15 +3,16 @@
 
 /* Bunches of a marched mesh, and which of them may be merged.
  *
- * Merging must leave a manifold with the same pieces. It does if each bunch that is merged can be drawn together to a
- * point, and if two vertices of the mesh are then joined by one edge at most, which becomes of edges beside each other
- * and the triangles between. The latter is asked of pairs: of two bunches, or a bunch and a vertex. So a bunch is
- *   - sure, where the triangles around it are one closed fan of three or more different vertices, both where all
- *     bunches are merged and where no other one is;
- *   - leaning, where they are with the sure ones merged. It goes where a sure one beside it goes. Of two that
- *     may not both be merged the first is.
- * Thus a bunch depends on the cells near it alone, whatever part of the surface a call makes, and may later be taken
- * apart at any time. A closed piece that would be left with fewer than 8 triangles stays as it is. */
+ * Merging must leave a manifold with the same pieces. It does if each bunch that is merged can be
+ * drawn together to a point, and if two vertices of the mesh are then joined by one edge at most,
+ * which becomes of edges beside each other and the triangles between. The latter is asked of pairs:
+ * of two bunches, or a bunch and a vertex. So a bunch is
+ *   - sure, where the triangles around it are one closed fan of three or more different vertices,
+ * both where all bunches are merged and where no other one is;
+ *   - leaning, where they are with the sure ones merged. It goes where a sure one beside it goes.
+ * Of two that may not both be merged the first is. Thus a bunch depends on the cells near it alone,
+ * whatever part of the surface a call makes, and may later be taken apart at any time. A closed
+ * piece that would be left with fewer than 8 triangles stays as it is. */
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"
@@ -78,8 +79,9 @@ static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
   return is;
 }
 
-/* A vertex belongs to the end of its edge that is nearer to where the field is linear; the lower one of two. Beside
- * each other are levels that differ by one, so that the last bit of theirs will do. */
+/* A vertex belongs to the end of its edge that is nearer to where the field is linear; the lower
+ * one of two. Beside each other are levels that differ by one, so that the last bit of theirs will
+ * do. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_frozen* frozen = data;
@@ -98,7 +100,7 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Vertices of cuts and caps stay, and those beside them. */
+/* Vertices of cuts and caps stay, and those beside caps; those beside cuts are held. */
 static mcor_status mcor_freeze_borders(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -119,7 +121,7 @@ static mcor_status mcor_freeze_borders(mcor_bunches* bunches)
   const mcor_status status = mcor_read(context, &mesh->cut_edges, 0, cut, cuts * sizeof *cut);
   for (size_t i = 0; i < cuts && status == MCOR_OK; ++i)
   {
-    bunches->key[cut[i] >> 32] = bunches->key[cut[i] & UINT32_MAX] = MCOR_FROZEN;
+    bunches->held[cut[i] >> 32] = bunches->held[cut[i] & UINT32_MAX] = 1;
   }
   free(cut);
   return status;
@@ -195,8 +197,8 @@ static void mcor_list_stars(mcor_bunches* bunches)
 
 /* ---- Whether they can be merged ---- */
 
-/* The edges opposite to a bunch in its triangles, as these go round. Of lines: one from the vertex before to
- * that behind. */
+/* The edges opposite to a bunch in its triangles, as these go round. Of lines: one from the vertex
+ * before to that behind. */
 typedef struct mcor_fan
 {
   int count;
@@ -273,7 +275,8 @@ static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_
   return size - within == 1 && before == 1 && behind == 1;
 }
 
-/* In place of vertices around a bunch, their bunches, or those of them that are sure; edges within one go. */
+/* In place of vertices around a bunch, their bunches, or those of them that are sure; edges within
+ * one go. */
 static void mcor_merge_fan(
   const mcor_bunches* bunches, bool all, const mcor_fan* from, mcor_fan* to)
 {
@@ -291,7 +294,8 @@ static void mcor_merge_fan(
   }
 }
 
-/* Whether the edges are one closed ring through different vertices; of lines, whether the two ends differ. */
+/* Whether the edges are one closed ring through different vertices; of lines, whether the two ends
+ * differ. */
 static bool mcor_is_ring(const mcor_fan* fan, int corners)
 {
   int steps = 0, at = 0;
@@ -321,8 +325,8 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return at == 0 && steps == fan->count && steps >= 3;
 }
 
-/* Whether the triangles of a bunch and of those around it, where all are merged, are as many as a closed piece must
- * have. */
+/* Whether the triangles of a bunch and of those around it, where all are merged, are as many as a
+ * closed piece must have. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* fan)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);

@@ -19,8 +19,6 @@
 #define MCOR_FAR_SHARE 1000
 #define MCOR_FAR_FEW 8
 
-/* How far from a box a particle matters beyond its support, in cubes of its size: see MCOR_LEVEL_MARGIN. */
-#define MCOR_BOX_SLACK 6.5
 /* The distance from a probe's points. */
 #define MCOR_POINTS_SLACK 0.5
 /* Cubes of the grid around a region. */
@@ -208,7 +206,7 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
     job->input = input;
     job->far = far;
     job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale;
-    job->slack = (has_box ? MCOR_BOX_SLACK : MCOR_POINTS_SLACK) * edge / m->h_min;
+    job->slack = (has_box ? mcor_box_slack(options) : MCOR_POINTS_SLACK) * edge / m->h_min;
     job->half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job->reach * m->h_median;
     for (int a = 0; a < 3; ++a)
     {

@@ -68,6 +68,11 @@ static int mcor_ring_of(const mcor_options* options)
   return options->compact ? MCOR_COMPACT_RING : MCOR_BOX_RING;
 }
 
+double mcor_box_slack(const mcor_options* options)
+{
+  return MCOR_LEVEL_MARGIN(mcor_ring_of(options)) + 0.5;
+}
+
 /* ---- Cells ---- */
 
 /* Further than any cell, in halves of a cube. */

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Correction of a compact contour: of vertices that stay on their edges, as without, and of merged ones, which the
- * axis 3 marks, along the gradient where they start. */
+/* Correction of a compact contour: of vertices that stay on their edges, as without, and of merged
+ * ones, which the axis 3 marks, along the gradient where they start. */
 
 /* How far a merged vertex may move in one step, in cubes; in all it is one cube. */
 #define MCOR_COMPACT_STEP ((real)0.5)
@@ -10,8 +10,8 @@
 /* Most merged vertices move less, in cubes. */
 #define MCOR_COMPACT_SLACK ((real)0.3f)
 
-/* Where vertices begin, and the lines along which they move: edges, or, as soon as the gradient is known, a cube
- * along it. */
+/* Where vertices begin, and the lines along which they move: edges, or, as soon as the gradient is
+ * known, a cube along it. */
 typedef struct
 {
   fixv merged;
@@ -44,8 +44,10 @@ MCOR_ONE_COPY void mcor_compact_load(const mcor_grid* grid, __global const int* 
 void mcor_compact_bound(const mcor_grid* grid, const mcor_compact_lines* lines, realv low,
   realv high, real margin, mcor_points* points, mcor_query* query)
 {
-  const realv x = lines->merged ? (realv)0 : lines->edge.ax, y = lines->merged ? (realv)0 : lines->edge.ay,
-              z = lines->merged ? (realv)0 : lines->edge.az, around = lines->merged ? (realv)margin : (realv)0;
+  const realv x = lines->merged ? (realv)0 : lines->edge.ax,
+              y = lines->merged ? (realv)0 : lines->edge.ay,
+              z = lines->merged ? (realv)0 : lines->edge.az,
+              around = lines->merged ? (realv)margin : (realv)0;
   const realv from[3] = { lines->x + low * x - around, lines->y + low * y - around,
     lines->z + low * z - around };
   const realv to[3] = { lines->x + high * x + around, lines->y + high * y + around,
@@ -110,9 +112,9 @@ void mcor_compact_group(const mcor_grid* grid, mcor_compact_lines* lines, realv 
     const fixv before = e->v0 < 0 ? side < 0 : side >= 0;
     low = before ? *t : low;
     high = before ? high : *t;
-    realv next = i == 0 ? mcor_correct_first(e->v0, e->v1, merged ? (realv)0.5 : *t, at->value, slope)
-                        : mcor_correct_next(
-                            *t, at->value, slope, last_t - *t, last_value, last_slope);
+    realv next = i == 0
+      ? mcor_correct_first(e->v0, e->v1, merged ? (realv)0.5 : *t, at->value, slope)
+      : mcor_correct_next(*t, at->value, slope, last_t - *t, last_value, last_slope);
     const realv newton = i == 0 ? -mcor_correct_ratio(at->value, slope) : next;
     next = merged ? fmin(fmax(newton, *t - MCOR_COMPACT_STEP), *t + MCOR_COMPACT_STEP) : next;
     last_t = *t;
@@ -132,9 +134,9 @@ void mcor_compact_group(const mcor_grid* grid, mcor_compact_lines* lines, realv 
   }
 }
 
-/* One work-item = one group of vertices. Reads and writes what mcor_correct_vertices does; reads where merged vertices
- * begin in `offset`. Writes to `linear` how far these have moved, in cubes, as a number below 0, and 1 where they did
- * not reach the surface. */
+/* One work-item = one group of vertices. Reads and writes what mcor_correct_vertices does; reads
+ * where merged vertices begin in `offset`. Writes to `linear` how far these have moved, in cubes,
+ * as a number below 0, and 1 where they did not reach the surface. */
 __kernel void mcor_compact_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const real iso, const real tolerance, const int limit, __global real4* offset,
@@ -154,8 +156,8 @@ __kernel void mcor_compact_vertices(MCOR_GRID_PARAMS, const int group_count,
   const realv t0 = lines.merged ? (realv)0 : between;
   realv t;
   fixv count, missed;
-  mcor_compact_group(&grid, &lines, t0, iso, tolerance, limit, &points, &query, &reach, &at, &t,
-    &count, &missed);
+  mcor_compact_group(
+    &grid, &lines, t0, iso, tolerance, limit, &points, &query, &reach, &at, &t, &count, &missed);
   if (attribute_count > 0)
   {
     mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
@@ -166,8 +168,8 @@ __kernel void mcor_compact_vertices(MCOR_GRID_PARAMS, const int group_count,
     if (v >= 0)
     {
       mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
-      linear[v] = MCOR_GET_FIX(missed, lane) && limit > 0 ? (real)1
-                                                          : MCOR_GET(t0, lane) - MCOR_GET(t, lane);
+      linear[v] =
+        MCOR_GET_FIX(missed, lane) && limit > 0 ? (real)1 : MCOR_GET(t0, lane) - MCOR_GET(t, lane);
       evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
     }
   }

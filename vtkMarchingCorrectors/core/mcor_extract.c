@@ -72,11 +72,11 @@ static mcor_status mcor_extract_all(
   }
   MCOR_TRY(mcor_prepare(context, input, options)); /* [III-A] */
   MCOR_TRY(context->grid.count > 0 ? mcor_check_caps(context) : MCOR_OK);
-  MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
-    "Filling is for two dimensions, but these particles do not lie in a plane. Turn filling off.");
   MCOR_RETURN_IF(options->filled && options->compact, context, MCOR_INVALID_ARGUMENT,
     "Filling needs the points on all edges of the virtual grid, which a compact contour lacks. Turn "
     "one of them off.");
+  MCOR_RETURN_IF(options->filled && !mcor_is_plane(context), context, MCOR_INVALID_ARGUMENT,
+    "Filling is for two dimensions, but these particles do not lie in a plane. Turn filling off.");
   MCOR_RETURN_IF(mcor_uses_pairs(context) && mcor_is_adaptive(&context->lattice), context,
     MCOR_INVALID_ARGUMENT,
     "Pair seeds need cubes of one size, and here cubes have up to %d. Choose uniform cubes, or "

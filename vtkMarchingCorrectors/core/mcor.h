@@ -793,8 +793,8 @@ extern "C"
   } mcor_widening;
 
   /* Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which the weight sum
-   * sum V_k W(x_j - x_k, s h_j) is at least 0.1 above the free surface's iso value (0.5 for scalars), on steps of 0.2
-   * with linear interpolation; reduced to 1 where neighbours are few (drops, threads), and to the Shepard mean around
+   * sum V_k W(x_j - x_k, s h_j) is at least the free surface's iso value (0.5 for scalars), and 0.1 more unless all
+   * neighbours of many are on one side, on steps of 0.2 with linear interpolation; reduced to 1 where neighbours are few (drops, threads), and to the Shepard mean around
    * the particle. A surface with options.widen is, to the last bit, that of an input with these factors and volumes; or
    * with uniform cubes of the same size, with the products of smoothing lengths and factors. Reads the options of
    * mcor_extract; a box only with globals, which are those of mcor_measure_globals with level_limit 0: results are then

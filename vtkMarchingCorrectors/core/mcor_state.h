@@ -285,7 +285,7 @@ typedef struct mcor_kept_widening
   mcor_widening widening; /* empty: none are kept */
   mcor_input input;
   mcor_options options;
-  double widest, least;
+  double widest, iso;
   bool uses_solids;
 } mcor_kept_widening;
 

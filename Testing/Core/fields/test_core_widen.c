@@ -79,11 +79,30 @@ static double weight_with(const core_set* set, int64_t j, double s)
   return sum;
 }
 
-/* As SPEC says: the widest step whose sum is high enough, and the way to the next. */
-static double expected_factor(const core_set* set, int64_t j, double least)
+static double ramp(double x, double from, double to)
 {
-  double upper = WIDEST, above = weight_with(set, j, upper), s = above >= least ? upper : 1,
-         crowd = 0;
+  const double t = fmin(fmax((x - from) / (to - from), 0), 1);
+  return t * t * (3 - 2 * t);
+}
+
+/* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides. */
+static double expected_factor(const core_set* set, int64_t j, double iso)
+{
+  double crowd = 0, offset[3] = { 0 };
+  for (int64_t k = 0; k < set->count; ++k)
+  {
+    const double r = distance(set, j, k) / (2 * set->smoothing_length[j]);
+    const double near = k != j && r < 1 ? 1 - r * r * r : 0;
+    crowd += near;
+    for (int a = 0; a < 3; ++a)
+    {
+      offset[a] += near * (set->position[3 * k + a] - set->position[3 * j + a]);
+    }
+  }
+  const double middle = sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) /
+    fmax(crowd, 1) / set->smoothing_length[j];
+  const double least = iso + 0.1 * (1 - ramp(middle, 0.15, 0.35) * ramp(crowd, 4.5, 6.75));
+  double upper = WIDEST, above = weight_with(set, j, upper), s = above >= least ? upper : 1;
   for (int step = 4; step >= 0 && above < least; --step)
   {
     const double lower = 1 + 0.2 * step, c = weight_with(set, j, lower);
@@ -95,22 +114,16 @@ static double expected_factor(const core_set* set, int64_t j, double least)
     upper = lower;
     above = c;
   }
-  for (int64_t k = 0; k < set->count; ++k)
-  {
-    const double r = distance(set, j, k) / (2 * set->smoothing_length[j]);
-    crowd += k != j && r < 1 ? 1 - r * r * r : 0;
-  }
-  const double t = fmin(fmax((crowd - 2.2) / 2.3, 0), 1);
-  return 1 + (s - 1) * t * t * (3 - 2 * t);
+  return 1 + (s - 1) * ramp(crowd, 2.2, 4.5);
 }
 
-static void expect_factors(const core_set* set, const mcor_widening* w, double least)
+static void expect_factors(const core_set* set, const mcor_widening* w, double iso)
 {
   double* s = malloc((size_t)set->count * sizeof *s);
   assert_non_null(s);
   for (int64_t j = 0; j < set->count; ++j)
   {
-    s[j] = expected_factor(set, j, least);
+    s[j] = expected_factor(set, j, iso);
   }
   int wide = 0, narrow = 0;
   for (int64_t j = 0; j < set->count; ++j)
@@ -147,7 +160,7 @@ static void test_factors(void** state)
     mcor_widening w;
     options.precision = precision ? MCOR_FLOAT64 : MCOR_FLOAT32;
     CORE_OK(context, mcor_widen(context, &input, &options, &w));
-    expect_factors(&set, &w, iso + 0.1);
+    expect_factors(&set, &w, iso);
     mcor_free_widening(&w);
   }
   core_free_set(&set);

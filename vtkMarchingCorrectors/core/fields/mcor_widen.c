@@ -16,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How much more than the iso value the weight sum is at a particle whose length was widened. */
+/* How much more than the iso value the weight sum is at a particle whose length was widened, if it has neighbours on
+ * both sides. */
 #define MCOR_WIDEN_MARGIN 0.1
 
 /* Neighbours, by their nearness, below which a length is not widened, and from which on it fully is: a thread has
@@ -30,7 +31,7 @@
 typedef struct mcor_widen_run
 {
   mcor_widening* out;
-  double widest, least;
+  double widest, iso;
   mcor_buffer sizes, factor, limited, wanted, list;
 } mcor_widen_run;
 
@@ -39,7 +40,7 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
   MCOR_RELEASE(context, &run->sizes, &run->factor, &run->limited, &run->wanted, &run->list);
 }
 
-/* Into `limited`, by the sorted particles. */
+/* Into `limited`, by the sorted particles; before, that holds the least sums. */
 static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;
@@ -57,9 +58,9 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
     MCOR_BUFFER(&run->sizes)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_try", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->least),
+    MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->iso), MCOR_REAL(MCOR_WIDEN_MARGIN),
     MCOR_REAL(crowd * MCOR_CROWD_FROM), MCOR_REAL(crowd * MCOR_CROWD_TO), MCOR_BUFFER(&run->sizes),
-    MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->wanted)));
+    MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted)));
   MCOR_TRY(mcor_scan(context, &run->wanted, n, &listed));
   if (listed > 0)
   {
@@ -67,8 +68,8 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_list", MCOR_LIGHT, n, MCOR_INT(n),
       MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->list)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_solve", MCOR_HEAVY, (listed + lanes - 1) / lanes,
-      MCOR_GRID_ARGS(context), MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->least),
-      MCOR_BUFFER(&run->sizes), MCOR_INT(listed), MCOR_BUFFER(&run->list),
+      MCOR_GRID_ARGS(context), MCOR_INT(plane), MCOR_REAL(run->widest),
+      MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->sizes), MCOR_INT(listed), MCOR_BUFFER(&run->list),
       MCOR_BUFFER(&run->factor)));
   }
   return MCOR_LAUNCH(context, "mcor_widen_limit", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
@@ -212,15 +213,15 @@ static mcor_status mcor_run_widen(
 
 /* ---- The call ---- */
 
-/* The least weight sum at particles: a margin above the highest iso value of the free surface. */
-static double mcor_widen_least(const mcor_options* options)
+/* The highest iso value of the free surface. */
+static double mcor_widen_iso(const mcor_options* options)
 {
   double iso = 0.5;
   for (int i = 0; i < options->iso_count && options->field == MCOR_WEIGHT_SUM; ++i)
   {
     iso = i == 0 ? options->iso_values[0] : fmax(iso, options->iso_values[i]);
   }
-  return iso + MCOR_WIDEN_MARGIN;
+  return iso;
 }
 
 /* A part of the surface's options and input: what factors depend on. */
@@ -252,7 +253,7 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
     "The widening is %g; it must be at least 1 and at most 4.", options->widen);
   const size_t n = (size_t)(input->count > 0 ? input->count : 0);
   mcor_widen_run run = {
-    .out = widening, .widest = options->widen, .least = mcor_widen_least(options)
+    .out = widening, .widest = options->widen, .iso = mcor_widen_iso(options)
   };
   widening->count = input->count;
   widening->factor = malloc(n * sizeof(double) + 1);
@@ -295,13 +296,13 @@ static mcor_status mcor_renew_widening(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   mcor_kept_widening* kept = &context->kept_widening;
-  const double least = mcor_widen_least(options);
+  const double iso = mcor_widen_iso(options);
   mcor_input particles;
   mcor_options own;
   const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
   if (kept->widening.factor && mcor_same_particles(&particles, &kept->input) &&
     mcor_same_options(&own, &kept->options) && kept->widest == options->widen &&
-    kept->least == least && kept->uses_solids == uses_solids)
+    kept->iso == iso && kept->uses_solids == uses_solids)
   {
     memset(kept->widening.statistics.seconds, 0, sizeof kept->widening.statistics.seconds);
     kept->widening.statistics.build_seconds = 0;
@@ -311,7 +312,7 @@ static mcor_status mcor_renew_widening(
   *kept = (mcor_kept_widening){ .input = particles,
     .options = own,
     .widest = options->widen,
-    .least = least,
+    .iso = iso,
     .uses_solids = uses_solids };
   mcor_widening made;
   MCOR_TRY(mcor_widen(context, input, options, &made));

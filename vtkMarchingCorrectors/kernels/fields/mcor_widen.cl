@@ -6,8 +6,14 @@
  * c(s) = sum V_k W(x_j - x_k, s h_j) is the weight sum at particle j with its own length s h_j. The factor is the
  * greatest s in [1, widest] for which c(s) is at least `least`, between steps of 0.2 by linear interpolation; then
  * 1 + (s - 1) times a share that falls to 0 where few neighbours are near, as lone drops and threads would shrink;
- * then no more than the Shepard mean of these factors at h. */
+ * then no more than the Shepard mean of these factors at h. `least` is the iso value and a margin, without which
+ * sheets would get holes; not at the surface of deep water, where all neighbours are on one side. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
+
+/* Distances of the middle of the neighbours, in smoothing lengths: below, there is water on both sides; beyond, on
+ * one. */
+#define MCOR_SIDED_FROM ((real)0.15f)
+#define MCOR_SIDED_TO ((real)0.35f)
 
 /* Particles j in the lanes, the first `count` of these; x: as in the grid. */
 typedef struct
@@ -62,12 +68,17 @@ int mcor_widen_place(
 /* Values of s that one walk over the particles is for. */
 #define MCOR_WIDEN_LEVELS 3
 
+/* The crowd: the sum of n = max(0, 1 - (r / 2 h_j)^3) over particles, and of n times their offsets. */
+typedef struct
+{
+  realv count, offset[3];
+} mcor_crowd;
+
 /* c(s) for each s of `levels`, the first of which is the largest, by the particles within `reach` h_j; and, unless
- * NULL, the crowd, the sum of max(0, 1 - (r / 2 h_j)^3). Each lane has its own reach, so that its sum does not depend
- * on the others. */
+ * NULL, the crowd. Each lane has its own reach, so that its sum does not depend on the others. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
-  realv* c, realv* crowd)
+  realv* c, mcor_crowd* crowd)
 {
   const realv scale2 = at->scale * at->scale;
   real inv_s[MCOR_WIDEN_LEVELS];
@@ -80,7 +91,7 @@ __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   }
   for (int lane = 0, next; lane < at->count; lane = next)
   {
-    realv near = 0;
+    mcor_crowd around = { 0, { 0, 0, 0 } };
     for (int l = 0; l < levels; ++l)
     {
       part[l] = 0;
@@ -104,7 +115,11 @@ __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
         }
         if (crowd && sizes[k] > 0)
         {
-          near += fmax(MCOR_FMA(q2 * (real)-0.125f, q, (realv)1), (realv)0);
+          const realv near = fmax(MCOR_FMA(q2 * (real)-0.125f, q, (realv)1), (realv)0);
+          around.count += near;
+          around.offset[0] = MCOR_FMA(near, dx, around.offset[0]);
+          around.offset[1] = MCOR_FMA(near, dy, around.offset[1]);
+          around.offset[2] = MCOR_FMA(near, dz, around.offset[2]);
         }
       }
     }
@@ -116,16 +131,28 @@ __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
     }
     if (crowd)
     {
-      *crowd = inside ? near : *crowd;
+      crowd->count = inside ? around.count : crowd->count;
+      for (int a = 0; a < 3; ++a)
+      {
+        crowd->offset[a] = inside ? around.offset[a] : crowd->offset[a];
+      }
     }
   }
 }
 
+/* From 0 to 1 between two values. */
+realv mcor_widen_ramp(realv x, real from, real to)
+{
+  const realv t = clamp((x - from) / (to - from), (realv)0, (realv)1);
+  return t * t * (3 - 2 * t);
+}
+
 /* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factors of those for which the
- * widest one will do, or for which 1 is known; to `wanted` 1 for the others, and their shares in place of factors. */
-__kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real least,
-  const real crowd_from, const real crowd_to, __global const real* sizes, __global real* factor,
-  __global int* wanted)
+ * widest one will do, or for which 1 is known; to `wanted` 1 for the others, with shares in place of factors, and the
+ * least weight sum of each. */
+__kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
+  const real margin, const real crowd_from, const real crowd_to, __global const real* sizes,
+  __global real* factor, __global real* least, __global int* wanted)
 {
   const mcor_grid grid = MCOR_GRID;
   const int begin = get_global_id(0) * MCOR_LANES;
@@ -141,15 +168,22 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   /* Terms are not negative, so that inside of the fluid a part of the particles will do. */
   const real reach = MCOR_TENSOR ? MCOR_SUPPORT * widest
                                  : fmax(MCOR_SUPPORT * widest * (real)0.54f, (real)2);
-  realv crowd = 0, c = 0;
+  mcor_crowd crowd = { 1, { 0, 0, 0 } };
+  realv c = 0;
   mcor_widen_sum(&grid, sizes, &at, 1, &widest, reach, &c, &crowd);
-  const realv t = clamp((crowd - 1 - crowd_from) / (crowd_to - crowd_from), (realv)0, (realv)1);
-  const realv taper = t * t * (3 - 2 * t);
-  const fixv known = c >= (realv)least || taper <= (realv)0;
+  const realv others = crowd.count - 1; /* without the particle itself */
+  const realv taper = mcor_widen_ramp(others, crowd_from, crowd_to);
+  const realv middle = mcor_sqrt(mcor_square(crowd.offset[0], crowd.offset[1], crowd.offset[2])) *
+    at.scale / fmax(others, (realv)1);
+  const realv sided = mcor_widen_ramp(middle, MCOR_SIDED_FROM, MCOR_SIDED_TO) *
+    mcor_widen_ramp(others, crowd_to, (real)1.5f * crowd_to);
+  const realv needed = MCOR_FMA((realv)margin, 1 - sided, (realv)iso);
+  const fixv known = c >= needed || taper <= (realv)0;
   const realv result = known ? MCOR_FMA((realv)(widest - 1), taper, (realv)1) : taper;
   for (int lane = 0; lane < at.count; ++lane)
   {
     factor[begin + lane] = MCOR_GET(result, lane);
+    least[begin + lane] = MCOR_GET(needed, lane);
     wanted[begin + lane] = !MCOR_GET_FIX(known, lane);
   }
 }
@@ -172,9 +206,9 @@ __kernel void mcor_widen_list(
 #define MCOR_WIDEN_LANES(array) MCOR_CAT(vload, MCOR_LANES)(0, array)
 #endif
 
-/* One work-item = MCOR_LANES listed particles. Reads their shares. Writes their factors. */
+/* One work-item = MCOR_LANES listed particles. Reads their shares and least sums. Writes their factors. */
 __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest,
-  const real least, __global const real* sizes, const int listed, __global const int* list,
+  __global const real* least, __global const real* sizes, const int listed, __global const int* list,
   __global real* factor)
 {
   const mcor_grid grid = MCOR_GRID;
@@ -185,7 +219,7 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
   const int count = min(MCOR_LANES, listed - begin);
   fix x[3][MCOR_LANES];
-  real of_h[MCOR_LANES], share[MCOR_LANES];
+  real of_h[MCOR_LANES], share[MCOR_LANES], sum[MCOR_LANES];
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int i = list[begin + min(lane, count - 1)];
@@ -194,12 +228,14 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
     x[2][lane] = pz[i];
     of_h[lane] = p_inv_h[i];
     share[lane] = factor[i];
+    sum[lane] = least[i];
   }
   const realv inv_h = MCOR_WIDEN_LANES(of_h);
   const mcor_widen_at at = {
     { MCOR_WIDEN_LANES(x[0]), MCOR_WIDEN_LANES(x[1]), MCOR_WIDEN_LANES(x[2]) }, inv_h,
     grid.unit * inv_h, count, plane
   };
+  const realv needed = MCOR_WIDEN_LANES(sum);
   realv s = 1, above = 0;
   real upper = widest;
   fixv found = mcor_lane_index() >= (fixv)count;
@@ -219,8 +255,8 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
     for (int l = 0; l < MCOR_WIDEN_LEVELS; ++l)
     {
       const bool is_widest = first && l == 0;
-      const fixv here = !found && c[l] >= (realv)least;
-      const realv between = (c[l] - least) / (c[l] - above) * (upper - level[l]);
+      const fixv here = !found && c[l] >= needed;
+      const realv between = (c[l] - needed) / (c[l] - above) * (upper - level[l]);
       s = here ? (is_widest ? (realv)widest : level[l] + between) : s;
       found = found || here;
       above = c[l];

@@ -116,6 +116,7 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.filled = this->Filled;
   options.capping = !this->Capping ? MCOR_CAP_NONE : this->UseBox ? MCOR_CAP_BOX : MCOR_CAP_PERIOD;
   options.compact = this->Compact;
+  options.smooth = this->Smooth;
   options.widen = this->Widening;
   options.node_threshold = this->NodeThreshold;
   options.boundary_detection = this->Trim && this->BoundaryDetection == EIGENVALUE
@@ -437,6 +438,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
   os << indent << "Preview: " << this->Preview << "\n";
   os << indent << "Compact: " << this->Compact << "\n";
+  os << indent << "Smooth: " << this->Smooth << "\n";
   os << indent << "Widening: " << this->Widening << "\n";
   os << indent << "Trim: " << this->Trim << "\n";
   os << indent << "Node Threshold: " << this->NodeThreshold << "\n";

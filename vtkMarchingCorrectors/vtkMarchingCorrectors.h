@@ -347,6 +347,11 @@ public:
   vtkSPHFlagMacro(Compact);
 
   /**
+   * For pictures: Compact, and a Widening of 2 unless another one is set. Off by default. Not over ranks.
+   */
+  vtkSPHFlagMacro(Smooth);
+
+  /**
    * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the particle stays inside of
    * the free surface: flat water becomes flat, drops, threads and sheets stay. Cubes and volumes are those of the
    * original lengths; the array Widening is the factor. From 1 (off, the default) to 4; 2 is usual. Not over ranks.
@@ -525,6 +530,7 @@ protected:
   vtkTypeBool Preview = 0;
   vtkTypeBool Trim = 1;
   vtkTypeBool Compact = 0;
+  vtkTypeBool Smooth = 0;
   double Widening = 1.0;
   double NodeThreshold = 0.1;
   int BoundaryDetection = WEIGHT_SUM;

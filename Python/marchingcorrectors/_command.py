@@ -77,7 +77,7 @@ OPTIONS = {
     "--box": ("box", numbers), "--periodic": ("periodic", numbers), "--capping": ("capping", None),
     "--filled": ("filled", None), "--seeds": ("seeds", {"complete": "complete", "pairs": "pairs"}),
     "--topology": ("topology", {"table": "table", "field": "field"}), "--preview": ("preview", None),
-    "--widen": ("widen", float), "--compact": ("compact", None),
+    "--widen": ("widen", float), "--compact": ("compact", None), "--smooth": ("smooth", None),
     "--node-threshold": ("node_threshold", float),
     "--boundary": ("boundary_detection", {"weight_sum": "weight_sum", "eigenvalue": "eigenvalue", "weight": "weight_sum"}),
     "--vertex-threshold": ("vertex_threshold", float),

@@ -181,6 +181,8 @@ STEP(wall_share, c->options.wall_share = 0.14)
 STEP(no_wall_share, c->options.wall_share = 0)
 STEP(preview, c->options.preview = 1)
 STEP(compact, c->options.compact = 1)
+STEP(widen, c->options.widen = 1.5)
+STEP(smooth, c->options.smooth = 1)
 STEP(tolerance, c->options.tolerance = 1e-2)
 STEP(iteration_limit, c->options.iteration_limit = 1)
 STEP(precision, c->options.precision = MCOR_FLOAT64)
@@ -219,7 +221,8 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(FREE_SURFACE, h_scale), AT(ARRAYS, cube_size_factor), AT(ARRAYS, cube_size),
   AT(ARRAYS, iso_value), AT(ARRAYS, iso_count), AT(ARRAYS, node_threshold),
   AT(ARRAYS, boundary_detection), AT(ARRAYS, vertex_threshold), AT(MASS_ONLY, wall_share),
-  AT(MASS_ONLY, no_wall_share), AT(ARRAYS, preview), AT(ARRAYS, compact), AT(ARRAYS, tolerance),
+  AT(MASS_ONLY, no_wall_share), AT(ARRAYS, preview), AT(ARRAYS, compact),
+  AT(ARRAYS, widen), AT(MASS_ONLY, widen), AT(FREE_SURFACE, smooth), AT(ARRAYS, tolerance),
   AT(ARRAYS, iteration_limit), AT(ARRAYS, precision),
   { "memory_limit", REUSE_ARRAYS, change_memory_limit, 1 }, AT(ARRAYS, periodic),
   AT(MASS_ONLY, periodic), AT(ARRAYS, box), AT(MASS_ONLY, box), AT(ROUGH, box), AT(ARRAYS, normals),

@@ -281,6 +281,7 @@ extern "C"
      * along lattice edges. That is undone where it would change the pieces or turn a triangle over. Points on the
      * sides of periods, at caps and on borders stay, and come out as without. Cannot be combined with `filled`. */
     int compact;
+    int smooth; /* nonzero: for pictures; as `compact`, and `widen` of 2 if that is 1 */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit; /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision; /* of the field evaluation on the device; MCOR_FLOAT32 by default */

@@ -136,7 +136,7 @@ static void mcor_count_below_threshold(mcor_context* context, const mcor_input* 
 }
 
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_surface* surface)
+  const mcor_options* asked, mcor_surface* surface)
 {
   if (!context || !surface)
   {
@@ -144,7 +144,8 @@ mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   }
   *surface = (mcor_surface){ 0 };
   MCOR_RETURN_IF(
-    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+    !input || !asked, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  const mcor_options own = mcor_spell_out(asked), *options = &own;
   const mcor_status status = options->widen != 1
     ? mcor_extract_widened(context, input, options, surface)
     : mcor_run_call(context, input, options, mcor_uses_solids(input, options), &surface->statistics,

@@ -294,6 +294,8 @@ const std::vector<Option> Table = {
     "seeds as in the paper, or complete seeds, which miss nothing (default)",
     DO(j.Surface->SetSeedMode(
       ToChoice(n, v, { { "pairs", Filter::PAIRS }, { "complete", Filter::COMPLETE } }))) },
+  { "--smooth", "", "for pictures: --compact, and --widen 2 unless another value is given",
+    DO(j.Surface->SmoothOn()) },
   { "--widen", "S",
     "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
     DO(j.Surface->SetWidening(ToPositive(n, v))) },

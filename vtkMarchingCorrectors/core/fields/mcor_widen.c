@@ -233,13 +233,14 @@ static bool mcor_choose_widening(const mcor_input* input, const mcor_options* op
   particles->widening = (mcor_array){ 0 };
   particles->attribute_count = 0;
   own->widen = 1;
+  own->compact = 0;
   own->node_threshold = 0;
   own->outputs = 0;
   mcor_evaluate_without_scalar(input, own);
   return mcor_uses_solids(input, options);
 }
 
-mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mcor_options* options,
+mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mcor_options* asked,
   mcor_widening* widening)
 {
   if (!context || !widening)
@@ -248,7 +249,8 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   }
   *widening = (mcor_widening){ 0 };
   MCOR_RETURN_IF(
-    !input || !options, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+    !input || !asked, context, MCOR_INVALID_ARGUMENT, "input and options must not be NULL.");
+  const mcor_options spelled = mcor_spell_out(asked), *options = &spelled;
   MCOR_RETURN_IF(!(options->widen >= 1 && options->widen <= 4), context, MCOR_INVALID_ARGUMENT,
     "The widening is %g; it must be at least 1 and at most 4.", options->widen);
   const size_t n = (size_t)(input->count > 0 ? input->count : 0);
@@ -332,8 +334,8 @@ mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface)
 {
   MCOR_RETURN_IF(options->ranks || options->globals, context, MCOR_INVALID_ARGUMENT,
-    "Widening needs all particles, but options.globals is set. Call mcor_widen first, and hand its "
-    "factors in with the input.");
+    "Widening needs all particles in one process. Run one process, or in C hand in the factors of "
+    "mcor_widen with the input.");
   MCOR_RETURN_IF(mcor_is_given(&input->widening), context, MCOR_INVALID_ARGUMENT,
     "Both options.widen and input.widening are set. Leave one of them out.");
   MCOR_TRY(mcor_renew_widening(context, input, options));

@@ -132,6 +132,8 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   const std::pair<bool, mcor_output> outputs[] = { { this->ComputeNormals, MCOR_OUT_NORMALS },
     { this->ComputeGradients, MCOR_OUT_GRADIENTS }, { this->ComputeWeightSum, MCOR_OUT_WEIGHT_SUM },
     { this->ComputeBoundaryEigenvalue, MCOR_OUT_BOUNDARY_EIGENVALUE },
+    { this->ComputeCurvature, MCOR_OUT_MEAN_CURVATURE },
+    { this->ComputeCurvature, MCOR_OUT_GAUSS_CURVATURE },
     { this->ComputeCorrectionLength, MCOR_OUT_CORRECTION_LENGTH },
     { this->ComputeResidual, MCOR_OUT_RESIDUAL },
     { this->ComputeBoundaryFlag, MCOR_OUT_BOUNDARY_FLAG },
@@ -451,6 +453,7 @@ void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
   os << indent << "Compute Scalars: " << this->ComputeScalars << "\n";
   os << indent << "Compute Weight Sum: " << this->ComputeWeightSum << "\n";
+  os << indent << "Compute Curvature: " << this->ComputeCurvature << "\n";
   os << indent << "Compute Boundary Eigenvalue: " << this->ComputeBoundaryEigenvalue << "\n";
   os << indent << "Compute Correction Length: " << this->ComputeCorrectionLength << "\n";
   os << indent << "Compute Residual: " << this->ComputeResidual << "\n";

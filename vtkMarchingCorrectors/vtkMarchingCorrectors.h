@@ -429,6 +429,9 @@ public:
    * - Gradients, "Gradients": of the field, unit of the scalar / L.
    * - WeightSum, "WeightSum": the weight used for trimming, no unit.
    * - BoundaryEigenvalue, "BoundaryEigenvalue": no unit, see BoundaryDetection, whatever is chosen there.
+   * - Curvature, "MeanCurvature" and "GaussCurvature": of the field's own surface, from its first and second
+   *   derivatives, unit 1 / L and 1 / L^2. The mean curvature of a drop of radius R is 1 / R, of a bubble -1 / R; in two
+   *   dimensions it is that of the line, and there is no Gaussian one.
    * - CorrectionLength, "CorrectionLength": how far the correction moved the vertex, unit L.
    * - Residual, "Residual": field minus iso value at the vertex, unit of the scalar.
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
@@ -439,6 +442,7 @@ public:
   vtkSPHFlagMacro(ComputeGradients);
   vtkSPHFlagMacro(ComputeWeightSum);
   vtkSPHFlagMacro(ComputeBoundaryEigenvalue);
+  vtkSPHFlagMacro(ComputeCurvature);
   vtkSPHFlagMacro(ComputeCorrectionLength);
   vtkSPHFlagMacro(ComputeResidual);
   vtkSPHFlagMacro(ComputeBoundaryFlag);
@@ -543,6 +547,7 @@ protected:
   vtkTypeBool ComputeScalars = 1;
   vtkTypeBool ComputeWeightSum = 0;
   vtkTypeBool ComputeBoundaryEigenvalue = 0;
+  vtkTypeBool ComputeCurvature = 0;
   vtkTypeBool ComputeCorrectionLength = 0;
   vtkTypeBool ComputeResidual = 0;
   vtkTypeBool ComputeBoundaryFlag = 0;

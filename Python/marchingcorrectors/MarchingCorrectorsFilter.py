@@ -412,6 +412,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 setattr(options, member, getattr(choice, name))
         for name in OUTPUTS:
             setattr(options, name, getattr(choice, "Compute" + camel(name), 0))
+        options.mean_curvature = options.gauss_curvature = choice.ComputeCurvature
         options.iso_value = choice.ComputeScalars
         options.field = fields["MCOR_WEIGHT_SUM" if choice.FreeSurface else
                                "MCOR_SHEPARD" if choice.ShepardNormalization else "MCOR_SUM"]

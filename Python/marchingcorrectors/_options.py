@@ -76,6 +76,9 @@ WORDS = {
     "boundary_flag": "True: 0 inside; 1 or 2 on a cut; 4 next to a cube that was left out; 8 on a cap.",
     "iso_value": "True: the iso value of each point.",
     "nearest_particle": "True: the index of the fluid particle that is nearest to each point.",
+    "mean_curvature": "True: the mean curvature of the field's own surface, 1 / R for a drop of radius R; in two dimensions that "
+                      "of the line.",
+    "gauss_curvature": "True: its Gaussian curvature.",
     "point_keys": "True: numbers that are equal for the same point in the surfaces of neighbouring boxes.",
     "triangle_keys": "True: numbers by which triangles of neighbouring boxes can be put in order.",
     "triangle_normals": "True: normals are means over triangles, not from the field's gradient.",

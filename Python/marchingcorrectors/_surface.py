@@ -73,6 +73,8 @@ class Surface(Result):
     iso_value: Optional[np.ndarray] = None  #: (points,) float64, scalar unit
     widening: Optional[np.ndarray] = None  #: (points,) float64, the factor of smoothing lengths, with widen
     nearest_particle: Optional[np.ndarray] = None  #: (points,) int64, index of a fluid particle
+    mean_curvature: Optional[np.ndarray] = None  #: (points,) float64, 1 / L; 1 / R for a drop of radius R
+    gauss_curvature: Optional[np.ndarray] = None  #: (points,) float64, 1 / L^2; not in two dimensions
     point_keys: Optional[np.ndarray] = None  #: (points, 3) uint64
     triangle_keys: Optional[np.ndarray] = None  #: (triangles, 2) uint64
     line_points: Optional[np.ndarray] = None  #: two dimensions: int32, points of one line after the other

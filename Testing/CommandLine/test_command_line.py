@@ -52,7 +52,7 @@ class Usage(CommandLineTest):
         for option in """--scalar --component --iso --free-surface --smoothing-length --volume
                 --mass --density --dp --coefh --kernel --fluid --walls --solids --wall-share --h-scale --cube-factor --cube-size
                 --derive --probe --field --seeds --topology --preview --node-threshold --boundary --vertex-threshold
-                --weight-sum --boundary-eigenvalue --gradients --attributes --no-attributes --device
+                --weight-sum --boundary-eigenvalue --curvature --gradients --gauge --flux --fluxes --velocity --attributes --no-attributes --device
                 --memory-limit --list-devices --list-arrays --stats --screenshot --repeat --quiet --help
                 --version --precision --support-radius --output-precision --box --periodic --capping --filled --times
                 --time-step --slice --line --resolution --color-by --color-range --up --view""".split():
@@ -700,7 +700,8 @@ class Options(CommandLineTest):
         """Options, arrays that the surface then has, and others that it has not."""
         for options, there, missing in (
                 ([], "Normals Velocity Kind Radius", "WeightSum BoundaryEigenvalue Gradients"),
-                (["--weight-sum", "--boundary-eigenvalue", "--gradients"], "WeightSum BoundaryEigenvalue Gradients", ""),
+                (["--weight-sum", "--boundary-eigenvalue", "--curvature", "--gradients"],
+                 "WeightSum BoundaryEigenvalue MeanCurvature GaussCurvature Gradients", ""),
                 (["--no-attributes"], "Normals", "Velocity Kind"),
                 (["--attributes", "Kind,Density"], "Normals Kind Density", "Velocity Mass")):
             self.succeed(*ISO, *options)

@@ -311,6 +311,8 @@ uint64_t core_hash(const mcor_surface* s)
   hash = core_hash_bytes(hash, s->boundary_flag, n);
   hash = core_hash_bytes(hash, s->iso_value, n * sizeof(double));
   hash = core_hash_bytes(hash, s->nearest_particle, n * sizeof(int64_t));
+  hash = core_hash_bytes(hash, s->mean_curvature, n * sizeof(double));
+  hash = core_hash_bytes(hash, s->gauss_curvature, n * sizeof(double));
   hash = core_hash_bytes(hash, &s->attribute_count, sizeof s->attribute_count);
   for (int a = 0; a < s->attribute_count; ++a)
   {

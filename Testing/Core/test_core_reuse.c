@@ -199,6 +199,7 @@ STEP(correction_length, c->options.outputs &= ~(unsigned)MCOR_OUT_CORRECTION_LEN
 STEP(residual, c->options.outputs &= ~(unsigned)MCOR_OUT_RESIDUAL)
 STEP(boundary_flag, c->options.outputs &= ~(unsigned)MCOR_OUT_BOUNDARY_FLAG)
 STEP(iso_value_array, c->options.outputs &= ~(unsigned)MCOR_OUT_ISO_VALUE)
+STEP(curvature, c->options.outputs |= MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
 STEP(nearest_particle, c->options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE)
 STEP(triangle_normals, c->options.triangle_normals = 1)
 
@@ -228,7 +229,7 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(MASS_ONLY, periodic), AT(ARRAYS, box), AT(MASS_ONLY, box), AT(ROUGH, box), AT(ARRAYS, normals),
   AT(ARRAYS, gradients), AT(ARRAYS, weight_sum), AT(ARRAYS, boundary_eigenvalue),
   AT(ARRAYS, correction_length), AT(ARRAYS, residual), AT(ARRAYS, boundary_flag),
-  AT(ARRAYS, iso_value_array), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };
+  AT(ARRAYS, iso_value_array), AT(ARRAYS, curvature), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };
 
 /* Of the surface and the counts of cells that go with it. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)

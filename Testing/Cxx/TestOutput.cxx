@@ -259,17 +259,25 @@ void TestComputedArrays()
   filter->ComputeGradientsOn();
   filter->ComputeWeightSumOn();
   filter->ComputeBoundaryEigenvalueOn();
+  filter->ComputeCurvatureOn();
   filter->ComputeCorrectionLengthOn();
   filter->ComputeResidualOn();
   filter->ComputeBoundaryFlagOn();
   filter->Update();
   vtkPointData* data = filter->GetOutput()->GetPointData();
   for (const char* name : { "Normals", "Gradients", "WeightSum", "BoundaryEigenvalue",
-         "CorrectionLength", "Residual", "BoundaryFlag" })
+         "MeanCurvature", "GaussCurvature", "CorrectionLength", "Residual", "BoundaryFlag" })
   {
     CHECK(data->GetArray(name) &&
       data->GetArray(name)->GetNumberOfTuples() == filter->GetOutput()->GetNumberOfPoints());
   }
+  double mean = 0.0; // of a sphere of 0.6, around lower values
+  for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfPoints(); ++i)
+  {
+    mean += data->GetArray("MeanCurvature")->GetComponent(i, 0);
+  }
+  mean /= static_cast<double>(filter->GetOutput()->GetNumberOfPoints());
+  CHECK(std::abs(mean * 0.6 + 1.0) < 0.05);
   vtkDataArray* iso = data->GetArray("Radius");
   CHECK(iso && iso->GetDataType() == VTK_DOUBLE && iso->GetRange()[0] == 0.6);
 

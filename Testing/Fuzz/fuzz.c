@@ -143,6 +143,7 @@ void fuzz_check_same(const mcor_surface* a, const mcor_surface* b)
   fuzz_check_bits(a->boundary_flag, b->boundary_flag, n);
   fuzz_check_bits(a->iso_value, b->iso_value, n * sizeof(double));
   fuzz_check_bits(a->nearest_particle, b->nearest_particle, n * sizeof(int64_t));
+  fuzz_check_bits(a->mean_curvature, b->mean_curvature, n * sizeof(double));
   fuzz_check_bits(a->point_keys, b->point_keys, n * MCOR_POINT_KEY * sizeof(uint64_t));
   fuzz_check_bits(a->triangle_keys, b->triangle_keys, t * MCOR_TRIANGLE_KEY * sizeof(uint64_t));
   FUZZ_CHECK(a->attribute_count == b->attribute_count);

@@ -58,7 +58,7 @@ class Results(unittest.TestCase):
 
     def test_every_array_on_request(self):
         wanted = ("gradients weight_sum boundary_eigenvalue correction_length residual boundary_flag iso_value "
-                  "nearest_particle point_keys").split()
+                  "nearest_particle mean_curvature gauss_curvature point_keys").split()
         surface = sphere(**dict.fromkeys(wanted, True), triangle_keys=True)
         for name in wanted:
             self.assertEqual(len(getattr(surface, name)), len(surface.points), name)

@@ -229,7 +229,9 @@ extern "C"
     MCOR_OUT_ISO_VALUE = 128,
     MCOR_OUT_NEAREST_PARTICLE = 256,
     MCOR_OUT_POINT_KEYS = 512,    /* see MCOR_POINT_KEY */
-    MCOR_OUT_TRIANGLE_KEYS = 1024 /* see MCOR_TRIANGLE_KEY */
+    MCOR_OUT_MEAN_CURVATURE = 1024,
+    MCOR_OUT_GAUSS_CURVATURE = 2048, /* not in two dimensions */
+    MCOR_OUT_TRIANGLE_KEYS = 4096    /* see MCOR_TRIANGLE_KEY */
   } mcor_output;
 
   typedef struct mcor_options
@@ -475,6 +477,10 @@ extern "C"
     double* widening; /* [point_count], the Shepard mean of the factors; NULL unless options.widen is above 1 */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
+    /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: those of a sphere of
+     * radius R are 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In two dimensions the mean curvature is
+     * that of the line, 1 / R for a circle. Of caps they are meaningless. */
+    double *mean_curvature, *gauss_curvature;
     double** attributes;       /* [attribute_count] -> [point_count][components] */
     /* [attribute_count]: -1; or the first fluid particle at which the attribute is NaN or infinite. Such an
      * attribute is left out; its entry in `attributes` is NULL. */

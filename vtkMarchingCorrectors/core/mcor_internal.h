@@ -285,6 +285,7 @@ mcor_status mcor_list_components(
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
 bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
+mcor_status mcor_find_curvature(mcor_context* context); /* likewise */
 mcor_status mcor_find_nearest(mcor_context* context); /* of all vertices */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
@@ -297,7 +298,7 @@ mcor_status mcor_append_output(
 mcor_status mcor_begin_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface);
 /* The arrays of a surface's points except attributes, and their bytes per point. */
-#define MCOR_SURFACE_ARRAYS 11
+#define MCOR_SURFACE_ARRAYS 13
 typedef struct mcor_surface_array
 {
   void** array;

@@ -105,6 +105,7 @@ typedef struct mcor_mesh
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
+  mcor_buffer curvature; /* real [vertex_count][2] */
   mcor_buffer means; /* real [vertex_count][attributes.count] */
   mcor_buffer
     cut_edges; /* ulong: the edge that each vertex of the trim boundary is on, see mcor_trim.cl */

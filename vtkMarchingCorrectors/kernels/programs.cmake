@@ -37,6 +37,7 @@ set(mcor_program_sources
   "kernels/compact/mcor_compact.cl     FIELD"
   "kernels/cubes/mcor_topology.cl      LATTICE FIELD"
   "kernels/surface/mcor_boundary.cl    FIELD"
+  "kernels/fields/mcor_curvature.cl    FIELD"
   "kernels/surface/mcor_trim.cl        LATTICE"
   "kernels/surface/mcor_trim_solve.cl  FIELD"
   "kernels/parts/mcor_box.cl           LATTICE"

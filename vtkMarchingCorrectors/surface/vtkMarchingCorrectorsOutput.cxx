@@ -64,6 +64,7 @@ std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_
   const std::pair<mcor_output, const char*> arrays[] = { { MCOR_OUT_NORMALS, "Normals" },
     { MCOR_OUT_GRADIENTS, "Gradients" }, { MCOR_OUT_WEIGHT_SUM, "WeightSum" },
     { MCOR_OUT_BOUNDARY_EIGENVALUE, "BoundaryEigenvalue" },
+    { MCOR_OUT_MEAN_CURVATURE, "MeanCurvature" }, { MCOR_OUT_GAUSS_CURVATURE, "GaussCurvature" },
     { MCOR_OUT_CORRECTION_LENGTH, "CorrectionLength" }, { MCOR_OUT_RESIDUAL, "Residual" },
     { MCOR_OUT_BOUNDARY_FLAG, "BoundaryFlag" } };
   std::vector<std::string> names;
@@ -236,6 +237,8 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   add("Gradients", s.gradients, 3);
   add("WeightSum", s.weight_sum, 1);
   add("BoundaryEigenvalue", s.boundary_eigenvalue, 1);
+  add("MeanCurvature", s.mean_curvature, 1);
+  add("GaussCurvature", s.gauss_curvature, 1);
   add("CorrectionLength", s.correction_length, 1);
   add("Residual", s.residual, 1);
   add("BoundaryFlag", s.boundary_flag, 1);

@@ -338,6 +338,8 @@ const std::vector<Option> Table = {
   { "--weight-sum", "", "add the array WeightSum", DO(j.Surface->ComputeWeightSumOn()) },
   { "--boundary-eigenvalue", "", "add the array BoundaryEigenvalue",
     DO(j.Surface->ComputeBoundaryEigenvalueOn()) },
+  { "--curvature", "", "add the arrays MeanCurvature (1 / R for a drop) and GaussCurvature",
+    DO(j.Surface->ComputeCurvatureOn()) },
   { "--gradients", "", "add the array Gradients",
     DO(j.Surface->ComputeGradientsOn(); j.Probe->ComputeGradientsOn()) },
   { "--attributes", "NAME[,NAME...]", "interpolate only these arrays to the surface (default all)",

@@ -415,6 +415,26 @@ static void test_half_out_of_the_water(void** state)
   free(share);
 }
 
+/* A corner on the level itself, alone in fluid: nothing, and a number. */
+static void test_corner_on_the_level(void** state)
+{
+  const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };
+  fluid made = make_fluid(make_pool(0), move_anyhow);
+  const mcor_input input = fluid_input(&made);
+  mcor_options options = flux_options(MCOR_FLOAT32);
+  mcor_samples samples;
+  const mcor_array corner = core_array(wall.points, 3);
+  CORE_OK(*state, mcor_probe(*state, &input, &options, &corner, 1, &samples));
+  const double level = samples.weight_sum[0];
+  mcor_free_samples(&samples);
+  options.iso_values = &level;
+  options.iso_count = 1;
+  const mcor_flux_reading r = flux_of(*state, &input, &options, &wall);
+  CORE_CHECK(level > 0.05 && level < 0.9 && r.area >= 0 && r.area < 1e-3, "level %g: area %g",
+    level, r.area);
+  free_fluid(&made);
+}
+
 /* Alone and among others, from particles that stay on the device or do not, from any threads. */
 static void test_same_bits(void** state)
 {
@@ -545,6 +565,7 @@ int main(void)
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_uniform),
     cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_vortex),
     cmocka_unit_test(test_sides_of_boxes), cmocka_unit_test(test_half_out_of_the_water),
-    cmocka_unit_test(test_same_bits), cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_corner_on_the_level), cmocka_unit_test(test_same_bits),
+    cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

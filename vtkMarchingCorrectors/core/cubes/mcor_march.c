@@ -181,5 +181,5 @@ void mcor_release_mesh(mcor_context* context)
   mcor_mesh* m = &context->mesh;
   MCOR_RELEASE(context, &m->used, &m->plain_used, &m->edges, &m->vertex_base, &m->triangle_base,
     &m->node, &m->ends, &m->offset, &m->linear, &m->field_value, &m->gradient, &m->vertex_weight,
-    &m->flag, &m->evaluations, &m->means, &m->cut_edges, &m->triangles, &m->scanned);
+    &m->flag, &m->evaluations, &m->means, &m->curvature, &m->cut_edges, &m->triangles, &m->scanned);
 }

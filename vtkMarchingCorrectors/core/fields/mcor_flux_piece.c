@@ -298,7 +298,9 @@ static void mcor_place_between(
   const mcor_flux_piece* piece, const mcor_flux_cut* cut, double from[3], double to[3])
 {
   const int lone = mcor_lone_corner(cut->sides);
-  const double share = cut->places[0] / (cut->places[0] + cut->places[1]);
+  const double sum =
+    cut->places[0] + cut->places[1]; /* 0 if the lone corner is on the level itself */
+  const double share = sum > 0 ? cut->places[0] / sum : 0.5;
   from[2] = to[2] = (double)piece->patch;
   for (int c = 0; c < 2; ++c)
   {

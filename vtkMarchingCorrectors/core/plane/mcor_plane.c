@@ -397,6 +397,7 @@ mcor_status mcor_flatten(
   {
     o->periodic[i] = i < 4 ? options->periodic[2 * mcor_plane_axis(plane, i / 2) + i % 2] : 0;
   }
+  o->outputs &= ~(unsigned)MCOR_OUT_GAUSS_CURVATURE; /* lines have none */
   if (options->globals)
   {
     flat->globals = *options->globals;

@@ -31,11 +31,11 @@ typedef struct mcor_download
   mcor_surface* surface; /* index of the first new point */
   /* Views of the mesh's buffers, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
-  void *eigenvalue, *nearest, *cuts; /* where the caller asked for them */
+  void *eigenvalue, *nearest, *curvature, *cuts; /* where the caller asked for them */
   uint8_t* owned;                    /* see mcor_find_counted */
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
-#define MCOR_DOWNLOADS 11
+#define MCOR_DOWNLOADS 12
 
 /* Numbers the vertices that triangles use: scanned[v] becomes how many of them come before v. */
 static mcor_status mcor_count_used(mcor_context* context, int* count)
@@ -88,6 +88,10 @@ static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNL
   {
     mappings[count++] =
       (mcor_mapping){ &context->attributes.nearest, n * sizeof(cl_int), &d->nearest };
+  }
+  if (options->outputs & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE))
+  {
+    mappings[count++] = (mcor_mapping){ &mesh->curvature, 2 * n * real, &d->curvature };
   }
   const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
   if ((options->outputs & MCOR_OUT_POINT_KEYS) && cuts > 0)
@@ -256,6 +260,14 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
     const cl_int nearest = ((const cl_int*)d->nearest)[v];
     s->nearest_particle[to] = nearest < 0 ? -1 : mcor_source_of(context, nearest);
   }
+  if (s->mean_curvature)
+  {
+    s->mean_curvature[to] = mcor_get_real(context, d->curvature, 2 * v) / cube;
+  }
+  if (s->gauss_curvature)
+  {
+    s->gauss_curvature[to] = mcor_get_real(context, d->curvature, 2 * v + 1) / cube / cube;
+  }
   if (s->correction_length)
   {
     s->correction_length[to] = (float)mcor_correction_of(d, v);
@@ -369,6 +381,9 @@ static mcor_status mcor_evaluate_extras(mcor_context* context)
       context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
     MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
   }
+  MCOR_TRY(options->outputs & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
+      ? mcor_find_curvature(context)
+      : MCOR_OK);
   return (options->outputs & MCOR_OUT_NEAREST_PARTICLE) ? mcor_find_nearest(context) : MCOR_OK;
 }
 
@@ -407,7 +422,9 @@ static mcor_status mcor_append_mesh(
 /* Whether the output still needs particles on the device. */
 bool mcor_output_evaluates(const mcor_context* context)
 {
-  return mcor_wants(context, MCOR_OUT_BOUNDARY_EIGENVALUE) || mcor_attributes_remain(context);
+  return mcor_wants(context,
+           MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE) ||
+    mcor_attributes_remain(context);
 }
 
 /* Frees what only the mesh needed, so that the output finds room. */
@@ -425,7 +442,7 @@ static void mcor_release_vertices(mcor_context* context)
   mcor_mesh* m = &context->mesh;
   mcor_release_attributes(context);
   MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->flag, &m->cut_edges, &m->scanned, &context->trim.eigenvalue);
+    &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned, &context->trim.eigenvalue);
 }
 
 /* Appends the mesh of one iso value to the surface. */

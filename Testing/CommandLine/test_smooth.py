@@ -30,8 +30,8 @@ class Smooth(CommandLineTest):
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_refused(self):
-        for options, sentence in ((["--compact", "--filled"], "(leave out --filled or --compact)"),
-                                  (["--widening", "f.vtp"], "without --widen"),
+        self.refuse(self.extract("--free-surface", "--compact", "--filled"), 1, "leave out --filled or --compact")
+        for options, sentence in ((["--widening", "f.vtp"], "without --widen"),
                                   (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")):
             with self.subTest(options):
                 self.refuse(self.extract("--free-surface", *options), 2, sentence)

@@ -459,6 +459,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
     cube_size and cubes of one size (level_limit=0) is that of widen, bit for bit.
 
     iso: the greatest iso value of the free surface; None: for the surface of a scalar.
+    return_volume: True: the volumes, too.
 
     The other arguments are those of isosurface().
 

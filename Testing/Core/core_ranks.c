@@ -55,8 +55,8 @@ static int reduce_doubles(void* user, mcor_reduction reduction, double* values, 
 {
   core_rank* rank = user;
   double* result = malloc((size_t)count * sizeof *result);
-  int failed = !result || reduction == MCOR_SUM_OF || show(rank, values, count);
-  /* Whatever the order: here it is another one on each rank. */
+  int failed = !result || show(rank, values, count);
+  /* Whatever the order, for sums, too: here it is another one on each rank. */
   for (int r = 0; r < rank->world->count && !failed; ++r)
   {
     const int from = (r + rank->number) % rank->world->count;
@@ -65,7 +65,9 @@ static int reduce_doubles(void* user, mcor_reduction reduction, double* values, 
     for (int i = 0; i < count && !failed; ++i)
     {
       const int take = reduction == MCOR_LEAST ? other[i] < result[i] : other[i] > result[i];
-      result[i] = r == 0 || take ? other[i] : result[i];
+      result[i] = r > 0 && reduction == MCOR_SUM_OF ? result[i] + other[i]
+        : r == 0 || take                            ? other[i]
+                                                    : result[i];
     }
   }
   failed = wait_for_all(rank->world) || failed;

@@ -790,6 +790,46 @@ extern "C"
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
 
+  /* An image of column integrals: where it looks. */
+  typedef struct mcor_view
+  {
+    /* Of the line of sight; its length and sign do not matter. All 0: the constant axis of a plane, else z. */
+    double direction[3];
+    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, and all that particles reach where there is none. Sides may
+     * be infinite. The image is the box as it is seen. Along x, y or z, particles count whose positions are in the box
+     * along the line of sight, and those beside the box that reach into it; else those in the box. Each counts with all
+     * of its kernel. */
+    double box[6];
+    int resolution; /* pixels along the longer side, 1 to 32768 */
+    /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what the pixel sees of the
+     * kernel; by the array of masses, sum m A F / sum m F. data NULL: column integrals. */
+    mcor_array weight;
+    const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
+  } mcor_view;
+
+  /* Owned; free with mcor_free_projection. */
+  typedef struct mcor_projection
+  {
+    int size[2];       /* pixels along the image's axes; 0, 0: there is nothing to see */
+    double* values;    /* [size[1]][size[0]], means over pixels: scalar unit x L; NaN where a mean has no weight */
+    double axes[3][3]; /* of the image, unit vectors: along a row, from row to row, and the line of sight */
+    double low[3];     /* where the image begins, along these axes; its place along the line of sight is the nearest one
+                        * of what counts */
+    double pixel[2];   /* sides of a pixel, unit L */
+    mcor_statistics statistics;
+  } mcor_projection;
+
+  /* Column integrals of the SPH sum of the scalar, sum V A integral W, exact to 1e-6 of the largest that one particle
+   * adds to a pixel; without a scalar, of the density, which is the mass: the image then has the mass that falls into
+   * it, times 1 / pixel area. In two dimensions, the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale,
+   * periodic and progress apply, and where volumes are computed those of mcor_probe do. The result has the same bits
+   * for any order of the particles. Ranks get all of the image; they need boxes and globals (of
+   * mcor_measure_probe_globals) only where volumes are computed or h is estimated, and then `counted`, so that each
+   * particle counts once. *projection is overwritten. */
+  mcor_status mcor_project(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, const mcor_view* view, mcor_projection* projection);
+  void mcor_free_projection(mcor_projection* projection);
+
   /* Widened smoothing lengths. Owned; free with mcor_free_widening. */
   typedef struct mcor_widening
   {

@@ -40,6 +40,7 @@ double mcor_seconds(void);
 /* Returns the norm of an SPH kernel W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);
 double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane);
+bool mcor_is_tensor(mcor_sph_kernel kernel); /* a product of three, along the axes */
 
 /* mcor_memory.c. Fails where memory of the host could not be allocated. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);

@@ -78,7 +78,7 @@ extern "C"
   {
     MCOR_LEAST = 0,
     MCOR_GREATEST = 1,
-    MCOR_SUM_OF = 2 /* whole numbers alone: exact in any order */
+    MCOR_SUM_OF = 2 /* whole numbers, or others whose sum is exact in any order */
   } mcor_reduction;
 
   /* Ranks: processes, or threads with a context each, that share an input. All of them call the

@@ -28,11 +28,12 @@ const char* mcor_phase_name(mcor_phase phase)
 }
 
 #define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane)                               \
-  { #name, support, norm, { variance, plane } },
+  { #name, support, norm, { variance, plane }, tensor },
 static const struct
 {
   const char* name;
   double support, norm, variance[2];
+  bool is_tensor;
 } mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
 
@@ -66,6 +67,11 @@ double mcor_kernel_norm(mcor_sph_kernel kernel)
 double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane)
 {
   return mcor_kernel_table[kernel].variance[is_plane];
+}
+
+bool mcor_is_tensor(mcor_sph_kernel kernel)
+{
+  return mcor_kernel_table[kernel].is_tensor;
 }
 
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)

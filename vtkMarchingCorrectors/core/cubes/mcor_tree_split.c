@@ -316,14 +316,6 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-static bool mcor_is_tensor(mcor_sph_kernel kernel)
-{
-#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane) tensor,
-  static const bool tensors[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
-#undef MCOR_ENTRY
-  return tensors[kernel];
-}
-
 /* Particles of a slice: of all slices of a loop as many as are split by in some 0.1 s. */
 static int64_t mcor_split_grain(const mcor_tree_job* job)
 {

@@ -138,7 +138,7 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
     {
       continue;
     }
-    if (!(job->input->solid && job->input->solid[to]))
+    if (job->factors && !(job->input->solid && job->input->solid[to]))
     {
       job->out->factor[to] = mcor_get_real(context, job->factors, i);
     }
@@ -152,27 +152,40 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
+/* The factors where there are any, and volumes. */
 static mcor_status mcor_deliver_factors(
   mcor_context* context, const mcor_input* input, mcor_widen_run* run)
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)grid->count, real = n * context->cl.real_size;
+  const int count = run->out->factor ? 4 : 3;
   cl_int* originals;
-  void *order, *factors, *weight, *inv_h;
+  void *order, *weight, *inv_h, *factors = NULL;
   const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &order },
-    { &run->limited, real, &factors }, { &grid->trim_weight, real, &weight },
-    { &grid->inv_h, real, &inv_h } };
+    { &grid->trim_weight, real, &weight }, { &grid->inv_h, real, &inv_h },
+    { &run->limited, real, &factors } };
   mcor_status status = mcor_find_originals(context, &originals);
-  status = status == MCOR_OK ? mcor_map_all(context, views, 4) : status;
+  status = status == MCOR_OK ? mcor_map_all(context, views, count) : status;
   if (status == MCOR_OK)
   {
     mcor_widen_job job = { context, input, run->out, order, originals, factors, weight, inv_h };
     status =
       mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL);
-    status = mcor_unmap_all(context, views, 4, status);
+    status = mcor_unmap_all(context, views, count, status);
   }
   free(originals);
   return status;
+}
+
+mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double* volume)
+{
+  mcor_widening out = { .volume = volume };
+  mcor_widen_run run = { .out = &out };
+  for (int64_t i = 0; i < input->count; ++i)
+  {
+    volume[i] = 1;
+  }
+  return context->grid.count > 0 ? mcor_deliver_factors(context, input, &run) : MCOR_OK;
 }
 
 static mcor_status mcor_run_widen(

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* What all ranks do together in a call. They exchange only what does not depend on how particles
- * are spread over them: least and greatest values, sums of whole numbers, and records that are
+ * are spread over them: least and greatest values, exact sums, and records that are
  * then sorted or used as a set. */
 
 #include "mcor_ranks.h"

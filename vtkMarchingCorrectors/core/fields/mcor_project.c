@@ -1,0 +1,336 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Column integrals of the SPH sum, averaged over the pixels of an image: what the image shows, and the call. */
+
+#include "mcor_project.h"
+#include "mcor_plane.h"
+#include "mcor_probe.h"
+#include "mcor_ranks.h"
+#include "mcor_widen.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MCOR_MOST_PIXELS 32768 /* along a side */
+#define MCOR_MOST_PERIODS 2    /* longer supports have too many images */
+#define MCOR_MOST_IMAGES 16    /* of a period in a box, along an axis */
+
+/* ---- the image ---- */
+
+/* The axes of the image: with a line of sight along x, y or z the other two, in this order. Otherwise z points up, or y
+ * where one looks along z, nearly. */
+static mcor_status mcor_choose_axes(mcor_project_job* job)
+{
+  mcor_context* context = job->context;
+  const mcor_plane* plane = &context->plane;
+  double(*axes)[3] = job->out->axes;
+  double sight[3];
+  memcpy(sight, job->view->direction, sizeof sight);
+  const double largest = fmax(fabs(sight[0]), fmax(fabs(sight[1]), fabs(sight[2])));
+  MCOR_RETURN_IF(!isfinite(sight[0]) || !isfinite(sight[1]) || !isfinite(sight[2]), context,
+    MCOR_INVALID_ARGUMENT, "The direction of a projection is %g, %g, %g; it must be finite.",
+    sight[0], sight[1], sight[2]);
+  if (largest == 0)
+  {
+    sight[mcor_plane_axis(plane, 2)] = 1;
+  }
+  int across = -1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool is_along = sight[(a + 1) % 3] == 0 && sight[(a + 2) % 3] == 0;
+    across = is_along ? a : across;
+  }
+  job->is_aligned = across >= 0;
+  memset(axes, 0, sizeof job->out->axes);
+  if (job->is_aligned)
+  {
+    axes[0][across == 0 ? 1 : 0] = 1;
+    axes[1][across == 2 ? 1 : 2] = 1;
+    axes[2][across] = 1;
+  }
+  else
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      sight[a] /= largest;
+    }
+    const double length = sqrt(mcor_dot(sight, sight));
+    for (int a = 0; a < 3; ++a)
+    {
+      axes[2][a] = sight[a] / length;
+    }
+    const int up = fabs(axes[2][2]) > 0.9 ? 1 : 2;
+    double rest = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      axes[1][a] = (a == up) - axes[2][up] * axes[2][a];
+      rest += axes[1][a] * axes[1][a];
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      axes[1][a] /= sqrt(rest);
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      axes[0][a] = axes[1][b] * axes[2][c] - axes[1][c] * axes[2][b];
+    }
+  }
+  MCOR_RETURN_IF(job->is_plane && axes[2][mcor_plane_axis(plane, 2)] != 1, context,
+    MCOR_INVALID_ARGUMENT,
+    "The particles lie in a plane of constant %c, so they can be projected along %c alone.",
+    mcor_axis_letter(context, 2), mcor_axis_letter(context, 2));
+  for (int i = 0; i < 9; ++i)
+  {
+    job->axes[i / 3][i % 3] = axes[i / 3][mcor_plane_axis(plane, i % 3)];
+  }
+  return MCOR_OK;
+}
+
+/* Where particles are, and how far their supports go. */
+static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_project_job* job = data;
+  double *low = job->low[slice], *high = job->high[slice], *h_range = job->h_range[slice];
+  double reach[6];
+  for (int k = 0; k < 6; ++k)
+  {
+    const double unit[3] = { k == 3, k == 4, k == 5 };
+    reach[k] = k == 2
+      ? 0
+      : mcor_column_reach(job->context->run.options->sph_kernel, k < 3 ? job->axes[k] : unit);
+    low[k] = DBL_MAX;
+    high[k] = -DBL_MAX;
+  }
+  h_range[0] = DBL_MAX;
+  h_range[1] = -DBL_MAX;
+  mcor_project_chunk chunk;
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  {
+    mcor_read_project_chunk(job, begin, mcor_chunk_of(last - begin), false, &chunk);
+    for (int i = 0; i < chunk.count; ++i)
+    {
+      const double x[3] = { chunk.x[0][i], chunk.x[1][i], chunk.x[2][i] };
+      for (int k = 0; k < 6; ++k)
+      {
+        const double at = k < 3 ? mcor_dot(job->axes[k], x) : x[k - 3];
+        low[k] = fmin(low[k], at - reach[k] * chunk.h[i]);
+        high[k] = fmax(high[k], at + reach[k] * chunk.h[i]);
+      }
+    }
+    mcor_widen_range(chunk.h, chunk.count, &h_range[0], &h_range[1]);
+  }
+}
+
+/* The sides of the image: of the box or the period as it is seen, else of all that particles reach. */
+static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
+{
+  mcor_context* context = job->context;
+  mcor_projection* out = job->out;
+  mcor_statistics* s = context->run.statistics;
+  const double* periodic = context->run.options->periodic;
+  const int w = mcor_plane_axis(&context->plane, 2);
+  double low[7], high[7]; /* the last of h */
+  bool is_bounded = false, is_given = false;
+  int slices;
+  MCOR_TRY(mcor_parallel_run(
+    context, job->input->count, MCOR_HEAVY_GRAIN, mcor_range_slice, job, &slices));
+  for (int k = 0; k < 7; ++k)
+  {
+    low[k] = DBL_MAX;
+    high[k] = -DBL_MAX;
+    for (int i = 0; i < slices; ++i)
+    {
+      low[k] = fmin(low[k], k < 6 ? job->low[i][k] : job->h_range[i][0]);
+      high[k] = fmax(high[k], k < 6 ? job->high[i][k] : job->h_range[i][1]);
+    }
+  }
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 7));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, 7));
+  for (int i = 0; i < 6; ++i)
+  {
+    is_given = is_given || job->view->box[i] != 0;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const int axis = mcor_plane_axis(&context->plane, a);
+    const double from = is_given ? job->view->box[2 * axis] : -INFINITY,
+                 to = is_given ? job->view->box[2 * axis + 1] : INFINITY;
+    MCOR_RETURN_IF(!(from < to) && !(from == to && job->axes[2][a] == 1), context,
+      MCOR_INVALID_ARGUMENT,
+      "The box along %c goes from %g to %g; the first must be lower than the second.", 'x' + axis,
+      from, to);
+    job->period[a] = periodic[2 * a + 1] - periodic[2 * a];
+    MCOR_RETURN_IF(job->period[a] > 0 && high[6] > 0 &&
+        high[6] * mcor_support_factor(context->run.options->sph_kernel) >
+          MCOR_MOST_PERIODS * job->period[a],
+      context, MCOR_INVALID_ARGUMENT,
+      "The period along %c is %g, too short for support radii of up to %g. Correct the period, or "
+      "the smoothing "
+      "lengths.",
+      'x' + axis, job->period[a], high[6] * mcor_support_factor(context->run.options->sph_kernel));
+    const bool is_periodic = job->period[a] > 0;
+    const bool is_across_plane = job->is_plane && a == 2;
+    job->box[2 * a] = is_across_plane ? -INFINITY
+      : isfinite(from)                ? from
+      : is_periodic                   ? periodic[2 * a]
+                                      : -INFINITY;
+    job->box[2 * a + 1] = is_across_plane ? INFINITY
+      : isfinite(to)                      ? to
+      : is_periodic                       ? periodic[2 * a + 1]
+                                          : INFINITY;
+    is_bounded = is_bounded || isfinite(job->box[2 * a]) || isfinite(job->box[2 * a + 1]);
+    MCOR_RETURN_IF(
+      is_periodic && job->box[2 * a + 1] - job->box[2 * a] > MCOR_MOST_IMAGES * job->period[a],
+      context, MCOR_INVALID_ARGUMENT,
+      "The box along %c goes from %g to %g, which is more than %d periods. Make it smaller.",
+      'x' + axis, job->box[2 * a], job->box[2 * a + 1], MCOR_MOST_IMAGES);
+  }
+  double from[3] = { low[0], low[1], low[2] }, to[3] = { high[0], high[1], high[2] };
+  for (int k = 0; k < 3 && is_bounded; ++k)
+  {
+    from[k] = to[k] = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int fallback = k == 2 && job->is_aligned ? 2 : 3 + a;
+      const double side[2] = { isfinite(job->box[2 * a]) ? job->box[2 * a] : low[fallback],
+        isfinite(job->box[2 * a + 1]) ? job->box[2 * a + 1] : high[fallback] };
+      from[k] += fmin(job->axes[k][a] * side[0], job->axes[k][a] * side[1]);
+      to[k] += fmax(job->axes[k][a] * side[0], job->axes[k][a] * side[1]);
+    }
+  }
+  /* Without particles there is an image only where the box tells of it. */
+  const double extent[2] = { to[0] - from[0], to[1] - from[1] };
+  *is_empty = !(extent[0] > 0 && extent[1] > 0 && isfinite(extent[0]) && isfinite(extent[1]));
+  const int longer = extent[1] > extent[0];
+  for (int k = 0; k < 2 && !*is_empty; ++k)
+  {
+    const double pixels = k == longer
+      ? job->view->resolution
+      : floor(job->view->resolution * (extent[k] / extent[longer]) + 0.5);
+    out->size[k] = pixels < 1 ? 1 : (int)pixels;
+    out->pixel[k] = extent[k] / out->size[k];
+    out->low[k] = from[k];
+  }
+  out->low[2] = from[2] + context->plane.at * out->axes[2][w];
+  s->dimension = context->run.options->dimension;
+  s->smoothing_length_min = low[6] <= high[6] ? low[6] / job->h_scale : 0;
+  s->smoothing_length_max = low[6] <= high[6] ? high[6] / job->h_scale : 0;
+  return MCOR_OK;
+}
+
+/* ---- the call ---- */
+
+/* What the search grid is needed for: volumes that are computed, an estimated smoothing length. */
+static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_options* options)
+{
+  mcor_context* context = job->context;
+  const mcor_input* input = job->input;
+  const bool needs_volume =
+    !mcor_projects_density(input) || !mcor_is_given(&input->mass) || job->channels == 2;
+  const bool computes = needs_volume && mcor_needs_density(input);
+  if (!computes && !input->estimate_smoothing_length)
+  {
+    mcor_check_reuse(context, input, options); /* what is kept may be of other particles */
+    return MCOR_OK;
+  }
+  if (mcor_has_box(options))
+  {
+    mcor_bound_by_box(context, options);
+  }
+  if (input->count == 0)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_prepare(context, input, options));
+  job->volumes = computes ? malloc((size_t)input->count * sizeof(double) + 1) : NULL;
+  MCOR_TRY(mcor_allocated(context, job->volumes || !computes));
+  return computes ? mcor_read_volumes(context, input, job->volumes) : MCOR_OK;
+}
+
+static mcor_status mcor_project_particles(mcor_project_job* job)
+{
+  mcor_context* context = job->context;
+  const mcor_options* options = context->run.options;
+  bool is_empty = true;
+  MCOR_TRY(mcor_prepare_project(job, options));
+  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
+  MCOR_TRY(mcor_choose_axes(job));
+  MCOR_TRY(mcor_place_image(job, &is_empty));
+  MCOR_TRY(is_empty ? MCOR_OK : mcor_spread_particles(job));
+  return mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1);
+}
+
+static mcor_status mcor_run_project(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  mcor_project_job* job = data;
+  const mcor_view* view = job->view;
+  *job = (mcor_project_job){ .context = context,
+    .input = input,
+    .view = view,
+    .out = job->out,
+    .is_plane = mcor_is_plane(context),
+    .h_scale = options->h_scale,
+    .channels = view->weight.data ? 2 : 1 };
+  mcor_free_projection(job->out); /* of an attempt before */
+  mcor_options checked = *options;
+  checked.field = mcor_projects_density(input) ? MCOR_WEIGHT_SUM : MCOR_SUM;
+  MCOR_TRY(mcor_check_input(context, input, &checked));
+  MCOR_RETURN_IF(view->resolution < 1 || view->resolution > MCOR_MOST_PIXELS, context,
+    MCOR_INVALID_ARGUMENT, "The resolution is %d; it must be at least 1 and at most %d.",
+    view->resolution, MCOR_MOST_PIXELS);
+  MCOR_RETURN_IF(view->weight.data && mcor_components(&view->weight) != 1, context,
+    MCOR_INVALID_ARGUMENT, "The weight array %s has %d components; it must have 1.",
+    mcor_array_name(&view->weight, "weight"), mcor_components(&view->weight));
+  MCOR_RETURN_IF(
+    mcor_projects_density(input) && !mcor_is_given(&input->mass) && !mcor_is_given(&input->density),
+    context, MCOR_INVALID_ARGUMENT,
+    "There is neither mass nor density, which the column density is the integral of. Name one of "
+    "them, or choose a scalar.");
+  const mcor_status status = mcor_project_particles(job);
+  mcor_release_spread(job);
+  free(job->volumes);
+  return status;
+}
+
+mcor_status mcor_project(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const mcor_view* view, mcor_projection* projection)
+{
+  if (!context || !projection)
+  {
+    return MCOR_INVALID_ARGUMENT;
+  }
+  *projection = (mcor_projection){ 0 };
+  MCOR_RETURN_IF(!input || !options || !view, context, MCOR_INVALID_ARGUMENT,
+    "input, options and view must not be NULL.");
+  mcor_options own = *options;
+  mcor_input without = *input;
+  without.attributes = NULL;
+  without.attribute_count = 0;
+  const bool uses_solids = mcor_evaluate_without_scalar(input, &own);
+  own.ranks = options->ranks;
+  mcor_project_job* job = malloc(sizeof *job);
+  MCOR_TRY(mcor_allocated(context, job));
+  job->view = view;
+  job->out = projection;
+  const mcor_status status = mcor_run_call(
+    context, &without, &own, uses_solids, &projection->statistics, mcor_run_project, job);
+  free(job);
+  if (status != MCOR_OK)
+  {
+    mcor_free_projection(projection);
+  }
+  return status;
+}
+
+void mcor_free_projection(mcor_projection* projection)
+{
+  if (projection)
+  {
+    free(projection->values);
+    *projection = (mcor_projection){ .statistics = projection->statistics };
+  }
+}

@@ -1,0 +1,86 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef mcor_project_h
+#define mcor_project_h
+
+/* A projection's image, and the particles that are spread over it. */
+
+#include "mcor_column.h"
+#include "mcor_input.h"
+#include "mcor_parallel.h"
+
+/* A particle, or an image of it, in the image of the call. */
+typedef struct mcor_splat
+{
+  double at[2];          /* from the corner, in pixels */
+  double pixel[2];       /* in h */
+  double amount[2];      /* V A, or V B A and V B */
+  int first[2], last[2]; /* the pixels that it reaches */
+} mcor_splat;
+
+/* What one thread needs to spread particles. */
+typedef struct mcor_brush
+{
+  mcor_column_side* sides;
+  double* corners[2]; /* on the row's lower and upper side */
+} mcor_brush;
+
+typedef struct mcor_project_job
+{
+  mcor_context* context;
+  const mcor_input* input;
+  const mcor_view* view;
+  mcor_projection* out;
+  double axes[3][3]; /* out->axes, turned as the particles are */
+  bool is_aligned;   /* with the axes of the particles */
+  bool is_plane;
+  double box[6];    /* turned; sides that nobody gave are infinite */
+  double period[3]; /* 0: open */
+  double* volumes;  /* where they are computed; else NULL */
+  double h_scale;
+  mcor_column column;
+  int channels; /* 2: a mean */
+  double
+    unit[2][2]; /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine */
+  double* sums; /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
+  int64_t* splats_before; /* [blocks + 1] */
+  int64_t first_block;    /* of those spread together */
+  mcor_splat* splats;
+  int bands, first_row[MCOR_SLICES + 1], *band_of_row;
+  int64_t* listed; /* indices of the splats that reach each band */
+  int64_t first_listed[MCOR_SLICES + 1];
+  mcor_brush brushes[MCOR_SLICES];
+  /* What each slice found. */
+  double low[MCOR_SLICES][6], high[MCOR_SLICES][6]; /* along the axes of the image, then x, y, z */
+  double most[MCOR_SLICES][2];
+  double h_range[MCOR_SLICES][2];
+  int64_t wrong[MCOR_SLICES];
+} mcor_project_job;
+
+/* The particles of a chunk that count. */
+typedef struct mcor_project_chunk
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], amount[2][MCOR_CHUNK];
+  int64_t source[MCOR_CHUNK];
+} mcor_project_chunk;
+
+/* Whether the column density is that of the mass, or V times density. */
+static inline bool mcor_projects_density(const mcor_input* input)
+{
+  return !input->scalar.data;
+}
+
+static inline double mcor_dot(const double a[3], const double b[3])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* mcor_project_spread.c. At most MCOR_CHUNK particles, with or without amounts. */
+void mcor_read_project_chunk(
+  const mcor_project_job* job, int64_t first, int count, bool amounts, mcor_project_chunk* chunk);
+/* Spreads all particles over the image, of which all but the values is known, in steps of a call. */
+mcor_status mcor_spread_particles(mcor_project_job* job);
+void mcor_release_spread(mcor_project_job* job);
+
+#endif

@@ -6,7 +6,7 @@ import vtkmodules.vtkCommonExecutionModel  # noqa: F401
 
 from .vtkMarchingCorrectors import (vtkMarchingCorrectors, vtkSPHAlgorithm, vtkSPHComponents,
                                     vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge, vtkSPHMeter, vtkSPHProbe,
-                                    vtkSPHResample, vtkSPHTemporalInterpolator)
+                                    vtkSPHProjection, vtkSPHResample, vtkSPHTemporalInterpolator)
 
 __all__ = ["vtkMarchingCorrectors", "vtkSPHAlgorithm", "vtkSPHComponents", "vtkSPHDerivatives", "vtkSPHFlux",
-           "vtkSPHGauge", "vtkSPHMeter", "vtkSPHProbe", "vtkSPHResample", "vtkSPHTemporalInterpolator"]
+           "vtkSPHGauge", "vtkSPHMeter", "vtkSPHProbe", "vtkSPHProjection", "vtkSPHResample", "vtkSPHTemporalInterpolator"]

@@ -564,6 +564,10 @@ protected:
    */
   bool CallCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call);
+  /** Calls the core, as number `place` of `count` processes of this machine. Returns its status; `message` says why it
+   * failed, unless it was cancelled. */
+  int RunCore(vtkSPHParticles& particles, mcor_options& options,
+    const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
 
   /**
    * Whether processes share a run, in a build that can.
@@ -654,8 +658,6 @@ private:
   void ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output);
   bool AgreeOnBlocks(vtkDataObjectTree* blocks);
   void ProcessJoined(vtkDataObjectTree* input, vtkDataObject* output);
-  int RunCore(vtkSPHParticles& particles, mcor_options& options,
-    const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
 };
 VTK_ABI_NAMESPACE_END
 

@@ -18,6 +18,7 @@
 #include "Picture.h"
 #include "PieceFile.h"
 #include "ProbeRun.h"
+#include "ProjectionRun.h"
 #include "RunStatistics.h"
 #include "SafeText.h"
 #include "Sharing.h"
@@ -179,6 +180,11 @@ void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
 /// False if a step failed, of which all was said.
 bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
+  if (job.Has("--project"))
+  {
+    ProjectParticles(job, messages, sharing);
+    return true;
+  }
   if (job.IsGauge())
   {
     return MakeGaugeTable(job, messages, sharing);
@@ -207,7 +213,7 @@ bool MakeOnRanks(Job& job, MessageCapture* messages)
         if (!job.Picture.File.empty() || job.Repeat > 1)
         {
           throw std::runtime_error(
-            "several processes share a surface, a film, a probe, gauges or fluxes, "
+            "several processes share a surface, a film, a probe, a projection, gauges or fluxes, "
             "but no --screenshot or --repeat; run these without mpirun");
         }
       });

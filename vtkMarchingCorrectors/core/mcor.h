@@ -812,7 +812,7 @@ extern "C"
   {
     int size[2];       /* pixels along the image's axes; 0, 0: there is nothing to see */
     double* values;    /* [size[1]][size[0]], means over pixels: scalar unit x L; NaN where a mean has no weight */
-    double axes[3][3]; /* of the image, unit vectors: along a row, from row to row, and the line of sight */
+    double axes[9];    /* three unit vectors: along a row, from row to row, and the line of sight */
     double low[3];     /* where the image begins, along these axes; its place along the line of sight is the nearest one
                         * of what counts */
     double pixel[2];   /* sides of a pixel, unit L */
@@ -827,6 +827,9 @@ extern "C"
    * mcor_measure_probe_globals) only where volumes are computed or h is estimated, and then `counted`, so that each
    * particle counts once. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
+    const mcor_options* options, const mcor_view* view, mcor_projection* projection);
+  /* The same image, without its values. */
+  mcor_status mcor_place_view(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   void mcor_free_projection(mcor_projection* projection);
 

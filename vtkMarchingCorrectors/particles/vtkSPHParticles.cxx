@@ -407,7 +407,7 @@ void vtkSPHParticles::Interpolate(vtkDataArray* array)
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
 }
 
-bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
+bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request, const std::string& role)
 {
   if (RealName(request.Name).empty() && !request.Array)
   {
@@ -423,7 +423,7 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request)
   const vtkSmartPointer<vtkDataArray> velocity =
     request.Name == "Velocity" && !request.Array ? this->JoinVelocity() : nullptr;
   vtkDataArray* array =
-    velocity ? velocity.Get() : this->Check("derivatives", request.Name, request.Array);
+    velocity ? velocity.Get() : this->Check(role, request.Name, request.Array);
   if (array)
   {
     this->Interpolate(array);
@@ -495,6 +495,58 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
   this->Core.attributes = this->Attributes.data();
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
   return this->Error.empty();
+}
+
+bool vtkSPHParticles::CollectProjection(
+  const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView)
+{
+  const vtkSPHParticlesChoice& f = this->Description;
+  const bool hasScalar = !RealName(scalar.Name).empty() || scalar.Array;
+  vtkDataArray* summed = scalar.Name == "Density" && !scalar.Array ? this->SumDensities() : nullptr;
+  if (hasScalar && !summed && (!this->Error.empty() || !this->CollectArray(scalar, "projection")))
+  {
+    return false;
+  }
+  if (summed)
+  {
+    this->Interpolate(summed);
+  }
+  if (!this->CollectParticles() ||
+    (!mcor_is_given(&this->Core.mass) &&
+      !this->CollectQuantity(
+        "mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass, this->Core.mass)) ||
+    (!mcor_is_given(&this->Core.mass) &&
+      !this->CollectQuantity("density", f.DensityArrayName, f.Density, MCOR_DENSITY,
+        this->Density, this->Core.density)))
+  {
+    return false;
+  }
+  if (hasScalar)
+  {
+    this->Core.scalar = this->Attributes.front();
+    const int components = this->Core.scalar.components;
+    if (components > 1 && component >= components)
+    {
+      this->Error = "The scalar " + Quote(this->Interpolated.front().Name) +
+        " has no component " + std::to_string(component) + "; choose 0 to " +
+        std::to_string(components - 1) + ", or -1 for the magnitude.";
+      return false;
+    }
+    this->Core.scalar_component = components > 1 ? std::max(component, MCOR_MAGNITUDE) : 0;
+  }
+  weightView = {};
+  if (!RealName(weight).empty())
+  {
+    vtkDataArray* array = this->Find("weight", weight);
+    if (!array)
+    {
+      return false;
+    }
+    this->Interpolate(array); // for other ranks, too
+    weightView = array == this->Mass ? this->Core.mass : this->Attributes.back();
+  }
+  this->Core.attribute_count = 0;
+  return true;
 }
 
 // The data set's own time is part of it: users change arrays in place and tell the data set.

@@ -72,9 +72,16 @@ public:
 
   /**
    * Makes the array asked for the only one of the core's attributes, whatever its type. False if it
-   * is not usable; Error then says why.
+   * is not usable; Error then says why, and what it was for.
    */
-  bool CollectArray(const vtkSPHRequest& request);
+  bool CollectArray(const vtkSPHRequest& request, const std::string& role = "derivatives");
+
+  /**
+   * CollectParticles(), and what a projection sees: the scalar, or mass or density where none is asked for, and the
+   * weight of a mean, whose name may be empty. False if something is not usable; Error then says what.
+   */
+  bool CollectProjection(
+    const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView);
 
   /**
    * Makes velocity and, where it is known, density the core's attributes, after CollectParticles(). The velocity is the

@@ -81,7 +81,7 @@ const std::vector<Rule> OfOthers = {
   { IF(!j.Has("--screenshot")), "without --screenshot there is no picture", { "--view", "--up" } },
   { IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
     "without --screenshot or a .ply file there are no colours", { "--color-by", "--color-range" } },
-  { IF(!j.IsProbe() && !j.Has("--color-by") && j.Has("--color-range")),
+  { IF(!j.IsProbe() && !j.Has("--project") && !j.Has("--color-by") && j.Has("--color-range")),
     "--color-range needs --color-by NAME" },
   { IF(j.Has("--screenshot") && !EndsWith(j.Picture.File, ".png")),
     "--screenshot writes a .png file, not '{--screenshot}'" },
@@ -94,8 +94,9 @@ const std::vector<Rule> OfOthers = {
     "--widening writes a .vtp file, not '{--widening}'" },
   { IF(j.IsFilm() || LaunchedCount() > 1), "--widening is for one surface of one process",
     { "--widening" } },
-  { IF(!j.Has("--slice") && !j.Has("--line")), "--resolution is for --slice and --line",
-    { "--resolution" } },
+  { IF(!j.Has("--slice") && !j.Has("--line") && !j.Has("--project")),
+    "--resolution is for --slice, --line and --project", { "--resolution" } },
+  { IF(!j.Has("--project")), "--weighted-by is for --project", { "--weighted-by" } },
   { IF(!j.Has("--components")), "without --components there are no pieces to remove",
     { "--least-volume", "--least-particles" } },
   { IF(j.Has("--components")), "--components needs a surface", { "--probe", "--slice", "--line" } },
@@ -122,6 +123,17 @@ const std::vector<Rule> OfProbes = {
     "the output of {mode} is a .vti or .vtk file, not '{output}'" },
   { IF(!j.Has("--probe") && j.Has("--line") && !IsTo(j, ".vtp") && !IsTo(j, ".vtk")),
     "the output of {mode} is a .vtp or .vtk file, not '{output}'" },
+};
+
+const std::vector<Rule> OfProjections = {
+  { IF(j.Inputs.size() > 1 || IsCollectionFile(j.Inputs.front()) || !j.Times.empty() ||
+      j.TimeStep != 1.0),
+    "{mode} takes one INPUT of one time" },
+  { IsAny, "{mode} makes no surface",
+    { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
+      "--slice", "--line", "--gauge", "--gauges", "--gauge-grid" } },
+  { IF(!IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+    "the output of {mode} is a .vti or .vtk file, not '{output}'" },
 };
 
 const std::vector<Rule> OfSurfaces = {
@@ -216,7 +228,7 @@ void Check(const Job& job)
     return;
   }
   Enforce(OfAll, job);
-  if (job.IsTable())
+  if (job.IsTable() && !job.Has("--project"))
   {
     Enforce(job.IsFlux() ? OfFluxes : OfGauges, job);
     return;
@@ -230,7 +242,7 @@ void Check(const Job& job)
     }
   }
   Enforce(OfOthers, job);
-  Enforce(job.IsProbe() ? OfProbes : OfSurfaces, job);
+  Enforce(job.Has("--project") ? OfProjections : job.IsProbe() ? OfProbes : OfSurfaces, job);
 }
 
 const Option& FindOption(const std::string& name)
@@ -345,7 +357,7 @@ std::vector<std::string> Job::InputFiles() const
 const char* Job::Mode() const
 {
   for (const char* option :
-    { "--flux", "--fluxes", "--gauge-grid", "--gauge", "--gauges", "--probe", "--slice", "--line" })
+    { "--project", "--flux", "--fluxes", "--gauge-grid", "--gauge", "--gauges", "--probe", "--slice", "--line" })
   {
     if (this->Has(option))
     {
@@ -357,7 +369,7 @@ const char* Job::Mode() const
 
 bool Job::IsFilm() const
 {
-  return !this->IsProbe() && !this->IsTable() &&
+  return !this->IsProbe() && !this->IsTable() && !this->Has("--project") &&
     (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
       (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
 }

@@ -12,6 +12,7 @@
 #include "vtkSPHFlux.h"
 #include "vtkSPHGauge.h"
 #include "vtkSPHProbe.h"
+#include "vtkSPHProjection.h"
 
 #include <array>
 #include <map>
@@ -46,11 +47,13 @@ struct Job
   vtkNew<vtkSPHProbe> Probe;             ///< where IsProbe()
   vtkNew<vtkSPHGauge> Gauge;             ///< where HasGauges()
   vtkNew<vtkSPHFlux> Flux;               ///< where IsFlux()
+  vtkNew<vtkSPHProjection> Projection;   ///< with --project
 
   /// For settings that all of them have.
-  std::array<vtkSPHAlgorithm*, 5> All() const
+  std::array<vtkSPHAlgorithm*, 6> All() const
   {
-    return { this->Surface, this->Derivatives, this->Probe, this->Gauge, this->Flux };
+    return { this->Surface, this->Derivatives, this->Probe, this->Gauge, this->Flux,
+      this->Projection };
   }
   bool IsProbe() const
   {
@@ -66,7 +69,7 @@ struct Job
   }
   /// All files that are read, but for those that they list.
   std::vector<std::string> InputFiles() const;
-  /// The first option that asks for gauges, fluxes, or a probe.
+  /// The first option that asks for a projection, gauges, fluxes, or a probe.
   const char* Mode() const;
   /// Whether there are surfaces of several times.
   bool IsFilm() const;

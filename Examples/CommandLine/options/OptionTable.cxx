@@ -93,6 +93,7 @@ void SetSolids(Job& job, Text option, Text text)
   job.Probe->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Gauge->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Flux->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
+  job.Projection->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
   job.Surface->SetSolids(solids);
 }
 
@@ -132,6 +133,21 @@ std::string DescribeKernels()
   return text;
 }
 
+void SetProjection(Job& job, Text option, Text text)
+{
+  std::vector<double> direction(3, 0.0);
+  const std::size_t axis = std::string("xyz").find(text);
+  if (text.size() == 1 && axis != std::string::npos)
+  {
+    direction[axis] = 1.0;
+  }
+  else
+  {
+    direction = ToDirection(option, text);
+  }
+  job.Projection->SetDirection(direction.data());
+}
+
 void SetBoundary(Job& job, Text option, Text text)
 {
   const int boundary = ToChoice(option, text == "weight" ? "weight_sum" : text, // its word of old
@@ -151,11 +167,14 @@ const std::vector<Option> Table = {
   { "", "", "What to contour", {} },
   { "--scalar", "NAME", "point array to contour",
     DO(j.Scalar = Printable(v); j.Surface->SetInputArrayToProcess(
-      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str())) },
+      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str());
+       j.Projection->SetInputArrayToProcess(
+         0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str())) },
   { "--component", "N|magnitude",
     "component of a vector, counted from 0, or its magnitude (default)",
-    DO(j.Surface->SetScalarComponent( // -1 is the filter's number for it
-      v == "magnitude" || v == "-1" ? Filter::MAGNITUDE : ToCount(n, v, 0))) },
+    DO(const int component = // -1 is the filters' number for it
+         v == "magnitude" || v == "-1" ? Filter::MAGNITUDE : ToCount(n, v, 0);
+       j.Surface->SetScalarComponent(component); j.Projection->SetScalarComponent(component)) },
   { "--iso", "V[,V...]",
     "iso values of the scalar (default: chosen, about the median, and told), or of the weight sum "
     "with --free-surface (default 0.5)",
@@ -180,8 +199,21 @@ const std::vector<Option> Table = {
   { "--line", "X,Y,Z,X,Y,Z", "on a line between two points; OUTPUT is a .vtp file",
     DO(j.Slice.Line = ToLine(n, v)) },
   { "--resolution", "N",
-    "number of points on the line, or on the longest side of the slice (default 512)",
-    DO(j.Slice.Resolution = ToCount(n, v, 2, 1 << 15)) },
+    "number of points on the line, or on the longest side of the slice or projection (default 512)",
+    DO(j.Slice.Resolution = ToCount(n, v, 2, 1 << 15);
+       j.Projection->SetResolution(j.Slice.Resolution)) },
+
+  { "", "",
+    "Projection: integrals along lines of sight, in place of a surface; OUTPUT is an image (.vti)",
+    {} },
+  { "--project", "AXIS|X,Y,Z",
+    "along x, y, z or any direction: the column density, or the integral of --scalar; --box is "
+    "what is seen",
+    SetProjection },
+  { "--weighted-by", "NAME",
+    "the mean of --scalar along the line of sight, weighted by this array (that of masses: by "
+    "mass)",
+    DO(j.Projection->SetWeightArrayName(Printable(v).c_str())) },
 
   { "", "",
     "Gauges: where lines cross the free surface, in place of a surface; OUTPUT is a .csv table",
@@ -276,7 +308,8 @@ const std::vector<Option> Table = {
   { "--box", "X0,X1,Y0,Y1,Z0,Z1",
     "extract only the cells in this box, whose sides may be inf or -inf; around particles in a "
     "plane it may be flat",
-    DO(j.Surface->SetBox(ToBox(n, v).data()); j.Surface->UseBoxOn()) },
+    DO(j.Surface->SetBox(ToBox(n, v).data()); j.Surface->UseBoxOn();
+       j.Projection->SetBox(j.Surface->GetBox()); j.Projection->UseBoxOn()) },
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
     "periodic particles: lengths (0: not periodic), bounds X0,X1,Y0,Y1,Z0,Z1, or those in the "
     "field data",

@@ -107,7 +107,7 @@ static double add_particle(const column* c, const mcor_projection* view, const d
     at[k] = -view->low[k];
     for (int a = 0; a < 3; ++a)
     {
-      at[k] += view->axes[k][a] * x[a];
+      at[k] += view->axes[3 * k + a] * x[a];
     }
   }
   for (int p = 0; p < view->size[0] * view->size[1]; p += step)
@@ -306,7 +306,7 @@ static void test_brute_force(void** state)
           double at[3];
           for (int a = 0; a < 3; ++a)
           {
-            at[a] = x[a] + 1.6 * (u * found.axes[0][a] + v * found.axes[1][a]);
+            at[a] = x[a] + 1.6 * (u * found.axes[a] + v * found.axes[3 + a]);
           }
           most = fmax(most, add_particle(&c, &found, at, h, set.volume[i], 8, 1, image));
         }

@@ -25,7 +25,7 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
 {
   mcor_context* context = job->context;
   const mcor_plane* plane = &context->plane;
-  double(*axes)[3] = job->out->axes;
+  double(*axes)[3] = (double(*)[3])job->out->axes;
   double sight[3];
   memcpy(sight, job->view->direction, sizeof sight);
   const double largest = fmax(fabs(sight[0]), fmax(fabs(sight[1]), fabs(sight[2])));
@@ -214,7 +214,7 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
     out->pixel[k] = extent[k] / out->size[k];
     out->low[k] = from[k];
   }
-  out->low[2] = from[2] + context->plane.at * out->axes[2][w];
+  out->low[2] = from[2] + context->plane.at * out->axes[6 + w];
   s->dimension = context->run.options->dimension;
   s->smoothing_length_min = low[6] <= high[6] ? low[6] / job->h_scale : 0;
   s->smoothing_length_max = low[6] <= high[6] ? high[6] / job->h_scale : 0;
@@ -230,7 +230,7 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
   const mcor_input* input = job->input;
   const bool needs_volume =
     !mcor_projects_density(input) || !mcor_is_given(&input->mass) || job->channels == 2;
-  const bool computes = needs_volume && mcor_needs_density(input);
+  const bool computes = needs_volume && mcor_needs_density(input) && !job->places_only;
   if (!computes && !input->estimate_smoothing_length)
   {
     mcor_check_reuse(context, input, options); /* what is kept may be of other particles */
@@ -259,7 +259,7 @@ static mcor_status mcor_project_particles(mcor_project_job* job)
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
   MCOR_TRY(mcor_choose_axes(job));
   MCOR_TRY(mcor_place_image(job, &is_empty));
-  MCOR_TRY(is_empty ? MCOR_OK : mcor_spread_particles(job));
+  MCOR_TRY(is_empty || job->places_only ? MCOR_OK : mcor_spread_particles(job));
   return mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1);
 }
 
@@ -273,11 +273,12 @@ static mcor_status mcor_run_project(
     .view = view,
     .out = job->out,
     .is_plane = mcor_is_plane(context),
+    .places_only = job->places_only,
     .h_scale = options->h_scale,
     .channels = view->weight.data ? 2 : 1 };
   mcor_free_projection(job->out); /* of an attempt before */
   mcor_options checked = *options;
-  checked.field = mcor_projects_density(input) ? MCOR_WEIGHT_SUM : MCOR_SUM;
+  checked.field = mcor_projects_density(input) || job->places_only ? MCOR_WEIGHT_SUM : MCOR_SUM;
   MCOR_TRY(mcor_check_input(context, input, &checked));
   MCOR_RETURN_IF(view->resolution < 1 || view->resolution > MCOR_MOST_PIXELS, context,
     MCOR_INVALID_ARGUMENT, "The resolution is %d; it must be at least 1 and at most %d.",
@@ -285,8 +286,8 @@ static mcor_status mcor_run_project(
   MCOR_RETURN_IF(view->weight.data && mcor_components(&view->weight) != 1, context,
     MCOR_INVALID_ARGUMENT, "The weight array %s has %d components; it must have 1.",
     mcor_array_name(&view->weight, "weight"), mcor_components(&view->weight));
-  MCOR_RETURN_IF(
-    mcor_projects_density(input) && !mcor_is_given(&input->mass) && !mcor_is_given(&input->density),
+  MCOR_RETURN_IF(!job->places_only && mcor_projects_density(input) &&
+      !mcor_is_given(&input->mass) && !mcor_is_given(&input->density),
     context, MCOR_INVALID_ARGUMENT,
     "There is neither mass nor density, which the column density is the integral of. Name one of "
     "them, or choose a scalar.");
@@ -296,8 +297,8 @@ static mcor_status mcor_run_project(
   return status;
 }
 
-mcor_status mcor_project(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const mcor_view* view, mcor_projection* projection)
+static mcor_status mcor_call_project(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const mcor_view* view, bool places_only, mcor_projection* projection)
 {
   if (!context || !projection)
   {
@@ -316,6 +317,7 @@ mcor_status mcor_project(mcor_context* context, const mcor_input* input,
   MCOR_TRY(mcor_allocated(context, job));
   job->view = view;
   job->out = projection;
+  job->places_only = places_only;
   const mcor_status status = mcor_run_call(
     context, &without, &own, uses_solids, &projection->statistics, mcor_run_project, job);
   free(job);
@@ -324,6 +326,18 @@ mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     mcor_free_projection(projection);
   }
   return status;
+}
+
+mcor_status mcor_project(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const mcor_view* view, mcor_projection* projection)
+{
+  return mcor_call_project(context, input, options, view, false, projection);
+}
+
+mcor_status mcor_place_view(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, const mcor_view* view, mcor_projection* projection)
+{
+  return mcor_call_project(context, input, options, view, true, projection);
 }
 
 void mcor_free_projection(mcor_projection* projection)

@@ -34,6 +34,7 @@ typedef struct mcor_project_job
   double axes[3][3]; /* out->axes, turned as the particles are */
   bool is_aligned;   /* with the axes of the particles */
   bool is_plane;
+  bool places_only; /* no values are wanted */
   double box[6];    /* turned; sides that nobody gave are infinite */
   double period[3]; /* 0: open */
   double* volumes;  /* where they are computed; else NULL */

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSPHProjection
+ * @brief   column densities of SPH particles: an image of integrals along lines of sight
+ *
+ * vtkSPHProjection integrates the SPH sum of a scalar, sum V A W, along parallel lines of sight, and gives the mean of
+ * this over each pixel of an image. Each kernel's integral is exact to 1e-6 of the largest that one particle adds to a
+ * pixel, be it much smaller or larger than a pixel, so the image has all of the mass that falls into it.
+ *
+ * The scalar is that of SetInputArrayToProcess(0, ...), of a vector its magnitude or ScalarComponent. By default it is
+ * the density, so that the array of the output is the column density, "ColumnDensity": the sum of m W over the lines of
+ * sight, which needs masses, or densities and volumes. Otherwise the array has the scalar's name. With WeightArrayName
+ * it is the mean of the scalar along the line of sight; NaN where there is nothing.
+ *
+ * One looks along Direction: by default along the constant axis of particles in a plane, else along z. Looking along x,
+ * y or z, the image (vtkImageData) lies in the world as the slice at the lower end of what is seen; its points are the
+ * centres of pixels. Otherwise it is turned by a direction matrix.
+ *
+ * The image shows all that particles reach, or the period of periodic particles, or, with UseBox, the Box.
+ *
+ * Blocks of composite data are one set of particles, always. If the controller has several processes, each has some of
+ * the particles, and each gets the part of the image that is asked for, the same to the last bit as from one process.
+ *
+ * @sa
+ * vtkSPHAlgorithm vtkSPHResample
+ */
+
+#ifndef vtkSPHProjection_h
+#define vtkSPHProjection_h
+
+#include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHAlgorithm.h"
+
+#include <string> // For a member
+
+struct mcor_projection;
+struct mcor_view;
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkImageData;
+
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHProjection : public vtkSPHAlgorithm
+{
+public:
+  static vtkSPHProjection* New();
+  vtkTypeMacro(vtkSPHProjection, vtkSPHAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The direction of the lines of sight; its length and sign do not matter. 0, 0, 0 (the default): the constant axis of
+   * particles in a plane, else z.
+   */
+  vtkSetVector3Macro(Direction, double);
+  vtkGetVector3Macro(Direction, double);
+  ///@}
+
+  /**
+   * Pixels along the longer side of the image, 1 to 32768; 512 by default.
+   */
+  vtkSPHClampMacro(Resolution, int, 1, 32768);
+
+  ///@{
+  /**
+   * What is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along x, y or z, particles count whose
+   * positions are in the box along the line of sight, and those beside it that reach into it; else those in the box.
+   * Each counts with all of its kernel. Off by default.
+   */
+  vtkSPHFlagMacro(UseBox);
+  vtkSetVector6Macro(Box, double);
+  vtkGetVector6Macro(Box, double);
+  ///@}
+
+  /**
+   * The array whose values are weights of a mean: sum V B A / sum V B of what a pixel sees. By the array of masses,
+   * particles weigh what their masses are. Empty (the default): the integral itself.
+   */
+  vtkSPHTextMacro(WeightArrayName);
+
+  /**
+   * Of a scalar with several components, the one that counts; -1 (the default): the magnitude.
+   */
+  vtkSPHValueMacro(ScalarComponent, int);
+
+  /**
+   * Also leave solid particles out when volumes are computed from positions. Off by default.
+   */
+  vtkSPHFlagMacro(IgnoreSolids);
+
+  /**
+   * The image.
+   */
+  vtkImageData* GetImage();
+
+protected:
+  vtkSPHProjection();
+  ~vtkSPHProjection() override;
+
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  const char* GetOutputClassName(const char* inputClassName) override;
+  void Process(vtkDataObject* input, vtkDataObject* output) override;
+  bool TakesTogether() const override { return true; }
+
+  double Direction[3] = { 0.0, 0.0, 0.0 };
+  int Resolution = 512;
+  vtkTypeBool UseBox = 0;
+  double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
+  std::string WeightArrayName;
+  int ScalarComponent = -1;
+
+private:
+  vtkSPHProjection(const vtkSPHProjection&) = delete;
+  void operator=(const vtkSPHProjection&) = delete;
+
+  mcor_view MakeView() const;
+  bool Collect(vtkSPHParticles& particles, vtkPointSet* points, mcor_view& view);
+  void Place(vtkPointSet* particles, mcor_projection& placed);
+  void Fill(vtkImageData* image, const std::string& name, mcor_projection& found);
+
+  // For many processes together.
+  void PlaceDistributed(vtkPointSet* particles, mcor_projection& placed);
+  void ProcessDistributed(vtkPointSet* particles, vtkImageData* image);
+
+  int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // asked of this process
+};
+VTK_ABI_NAMESPACE_END
+
+#endif

@@ -137,8 +137,14 @@ int vtkSPHProjection::RequestData(
 
 bool vtkSPHProjection::Collect(vtkSPHParticles& particles, vtkPointSet* points, mcor_view& view)
 {
+  vtkSPHRequest scalar = this->FindRequest(0, points);
+  if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
+  {
+    scalar = { points->GetPointData()->GetAbstractArray(this->ScalarArrayName.c_str()),
+      this->ScalarArrayName, true };
+  }
   return particles.CollectProjection(
-    this->FindRequest(0, points), this->ScalarComponent, this->WeightArrayName, view.weight);
+    scalar, this->ScalarComponent, this->WeightArrayName, view.weight);
 }
 
 void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
@@ -227,6 +233,7 @@ void vtkSPHProjection::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Use Box: " << this->UseBox << "\n";
   PrintNumbers(os, indent, "Box", this->Box, 6);
   os << indent << "Weight Array Name: " << this->WeightArrayName << "\n";
+  os << indent << "Scalar Array Name: " << this->ScalarArrayName << "\n";
   os << indent << "Scalar Component: " << this->ScalarComponent << "\n";
 }
 VTK_ABI_NAMESPACE_END

@@ -8,8 +8,7 @@
  * this over each pixel of an image. Each kernel's integral is exact to 1e-6 of the largest that one particle adds to a
  * pixel, be it much smaller or larger than a pixel, so the image has all of the mass that falls into it.
  *
- * The scalar is that of SetInputArrayToProcess(0, ...), of a vector its magnitude or ScalarComponent. By default it is
- * the density, so that the array of the output is the column density, "ColumnDensity": the sum of m W over the lines of
+ * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the density, so that the array of the output is the column density, "ColumnDensity": the sum of m W over the lines of
  * sight, which needs masses, or densities and volumes. Otherwise the array has the scalar's name. With WeightArrayName
  * it is the mean of the scalar along the line of sight; NaN where there is nothing.
  *
@@ -79,6 +78,12 @@ public:
   vtkSPHTextMacro(WeightArrayName);
 
   /**
+   * The point array that is integrated. Empty, or "(density)" (the default): the density, or the array of
+   * SetInputArrayToProcess(0, ...).
+   */
+  vtkSPHTextMacro(ScalarArrayName);
+
+  /**
    * Of a scalar with several components, the one that counts; -1 (the default): the magnitude.
    */
   vtkSPHValueMacro(ScalarComponent, int);
@@ -110,6 +115,7 @@ protected:
   vtkTypeBool UseBox = 0;
   double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
   std::string WeightArrayName;
+  std::string ScalarArrayName;
   int ScalarComponent = -1;
 
 private:

@@ -17,6 +17,7 @@ from ._functions import derivatives, flow, free_surface, isosurface, probe, wide
 from ._gauge import Gauges, gauge
 from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
                        devices)
+from ._project import Projection, project
 from ._structs import VERSION as __version__
 from ._surface import Derivatives, Samples, Surface
 from ._warnings import InputWarning
@@ -32,12 +33,13 @@ if TYPE_CHECKING:
     vtkSPHFlux: Any
     vtkSPHGauge: Any
     vtkSPHProbe: Any
+    vtkSPHProjection: Any
     vtkSPHResample: Any
     vtkSPHTemporalInterpolator: Any
 
 __all__ = ["Cancelled", "Context", "Derivatives", "DeviceError", "Error", "Fluxes", "Gauges", "InputWarning", "InvalidArgument",
-           "InvalidData", "OutOfCapacity", "Samples", "Surface", "derivatives", "devices", "flow",
-           "flux", "free_surface", "gauge", "isosurface", "probe", "read_pyvista", "widening"]
+           "InvalidData", "OutOfCapacity", "Projection", "Samples", "Surface", "derivatives", "devices", "flow",
+           "flux", "free_surface", "gauge", "isosurface", "probe", "project", "read_pyvista", "widening"]
 
 # The C++ filter lies in a folder of the same name, where CMake installed it.
 __path__ = _extend_path(__path__, __name__)

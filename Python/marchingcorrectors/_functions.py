@@ -163,9 +163,12 @@ def of_files(function: Function) -> Function:
             return thing if stays else positions.array(thing)
 
         given = [array_of("scalar", thing) for thing in arguments]
-        words = {name: array_of(name, thing) if name in ("scalar", "scalar_dot", "solid", *QUANTITIES) else thing
-                 for name, thing in words.items()}
+        named = ("scalar", "scalar_dot", "weighted_by", "solid", *QUANTITIES)
+        words = {name: array_of(name, thing) if name in named else thing for name, thing in words.items()}
         words, only = positions.words(words), words.get("only")
+        if function.__name__ == "project":  # which sees masses even where volumes are others'
+            for name in ("mass", "density"):
+                words[name] = positions.quantity(name) if words.get(name) is None else words[name]
         if isinstance(only, Mapping):
             words["only"] = choose(only, positions.array)
         if words.get("solid") is None and only is None:

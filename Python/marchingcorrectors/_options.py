@@ -86,7 +86,7 @@ WORDS = {
     "estimate_smoothing_length": "True: 1.3 times the median particle distance; smoothing_length is not needed. "
                                  "\"neighbours\", or \"neighbours=ETA\": for each particle the h with h^3 sum W = ETA^3, "
                                  "ETA 1.3 unless given (in a plane squares).",
-    "scalar_component": "which component of a vector is contoured: 0, 1, ..., or its magnitude.",
+    "scalar_component": "which component of a vector is taken: 0, 1, ..., or its magnitude.",
     "ignore_solids": "True: walls do not add to the weights that trim the surface.",
     "particles_version": "equal numbers above 0 in two calls with one context promise that positions, smoothing "
                          "lengths, volumes and solids are the same: they stay on the device.",
@@ -102,9 +102,10 @@ FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "scalar_version", "attributes_version"))
 EVERY = ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids", "particles_version")
 WIDENING = ("widen", "cube_size", "cube_size_factor", "wall_share")
-DERIVATIVES, GAUGE, PROBE, WIDENING = (
+DERIVATIVES, GAUGE, PROBE, PROJECT, WIDENING = (
     more + tuple(name for name, (_, scope, _) in c.OPTIONS.items() if {"ALL", kind} & set(scope)) + EVERY
-    for kind, more in (("DERIVE", ()), ("GAUGE", ()), ("PROBE", ("gradients", "attributes_version")), ("WIDENING", WIDENING)))
+    for kind, more in (("DERIVE", ()), ("GAUGE", ()), ("PROBE", ("gradients", "attributes_version")),
+                       ("PROJECT", ("scalar_component",)), ("WIDENING", WIDENING)))
 
 
 def words_of(name):

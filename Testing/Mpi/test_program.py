@@ -357,6 +357,21 @@ class Program(unittest.TestCase):
                                         "Nope"), "Nope")
         self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "could not be written")
 
+    def test_projection(self):
+        """Also of lengths and volumes that are found from all particles: the image is that of one process, byte for byte."""
+        bare = read(PARTICLES)
+        bare.GetPointData().RemoveArray("Density")
+        write(bare, self.path("bare.vtp"))
+        for file, how in ((PARTICLES, ["z"]), (PARTICLES, ["1,2,3", "--periodic", "0,0,3.1"]),
+                          (PARTICLES, ["x", "--smoothing-length", "estimate"]),
+                          (PARTICLES, ["y", "--scalar", "Velocity", "--weighted-by", "Mass"]),
+                          (self.path("bare.vtp"), ["z", "--scalar", "Speed"])):
+            how = ["--project", *how, "--resolution", "150"]
+            self.good(self.run_alone(file, self.path("alone.vti"), *how))
+            self.good(self.run_ranks(write_pieces(file, self.folder.name, 5), self.path("ranks.vti"), *how))
+            self.assertTrue(filecmp.cmp(self.path("alone.vti"), self.path("ranks.vti"), shallow=False), how)
+        self.check_fails(self.run_ranks(PARTICLES, self.path("o.vti"), "--project", "z", "--scalar", "Nope"), "Nope")
+
     def write_series(self):
         """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""
         particles = read(PARTICLES)

@@ -1,19 +1,21 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The XML of SPH Derivatives, SPH Flux, SPH Gauge, SPH Probe and SPH Resample against the wrapped filters, without ParaView."""
+"""The XML of SPH Derivatives, SPH Flux, SPH Gauge, SPH Probe, SPH Projection and SPH Resample against the wrapped filters,
+without ParaView."""
 import os
 import pathlib
 import unittest
 import xml.etree.ElementTree
 
 from marchingcorrectors import (vtkSPHAlgorithm, vtkSPHComponents, vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge,
-                                vtkSPHMeter, vtkSPHProbe, vtkSPHResample)
+                                vtkSPHMeter, vtkSPHProbe, vtkSPHProjection, vtkSPHResample)
 
 PLUGIN = pathlib.Path(os.environ["MCOR_PLUGIN_XML"])
 TYPES = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": str}
 INPUTS = {"SetInputConnection", "SetSourceConnection"}
 NOT_SCALAR = INPUTS | {"SetInputArrayToProcess", "AddExcludedArray", "SetPeriodicBounds", "SetWithin", "ReleaseDeviceMemory",
-                       "SetOrigin", "SetNormal", "SetRadius", "SetPoint1", "SetPoint2", "SetBounds", "SetDimensions"}
+                       "SetOrigin", "SetNormal", "SetRadius", "SetPoint1", "SetPoint2", "SetBounds", "SetDimensions",
+                       "SetDirection", "SetBox"}
 # Setters without a property: (automatic) in the panel's lists stands for the first. A probe's particles are one set.
 NOT_IN_XML = {"SetController", "SetDetectArrays"}
 PROBES = NOT_IN_XML | {"SetBlocks"}
@@ -23,7 +25,7 @@ DIFFERENT = {"DetectFluid": "0", "NaNOutside": "0"}
 
 class TestFieldXml(unittest.TestCase):
     def for_each(self, check):
-        for filter_class in (vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge, vtkSPHProbe, vtkSPHResample):
+        for filter_class in (vtkSPHDerivatives, vtkSPHFlux, vtkSPHGauge, vtkSPHProbe, vtkSPHProjection, vtkSPHResample):
             name = filter_class.__name__[3:]
             proxy = xml.etree.ElementTree.parse(PLUGIN / f"{name}.xml").find(".//SourceProxy")
             self.assertEqual((proxy.get("name"), proxy.get("class")), (name, filter_class.__name__))
@@ -66,7 +68,7 @@ class TestFieldXml(unittest.TestCase):
             if filter_class is not vtkSPHResample or element.get("name") != "NaNOutside":
                 text = DIFFERENT.get(element.get("name"), text)
             self.assertIs(type(get()), kind)
-            self.assertEqual(get(), kind("" if text in ("(automatic)", "(none)") else text))
+            self.assertEqual(get(), kind("" if text in ("(automatic)", "(none)", "(density)") else text))
             for domain in element:
                 values = [entry.get("value") for entry in domain if domain.tag == "EnumerationDomain"]
                 values += ["0", "1"] if domain.tag == "BooleanDomain" else []

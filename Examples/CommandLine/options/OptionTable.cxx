@@ -168,8 +168,7 @@ const std::vector<Option> Table = {
   { "--scalar", "NAME", "point array to contour",
     DO(j.Scalar = Printable(v); j.Surface->SetInputArrayToProcess(
       0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str());
-       j.Projection->SetInputArrayToProcess(
-         0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, j.Scalar.c_str())) },
+       j.Projection->SetScalarArrayName(j.Scalar.c_str())) },
   { "--component", "N|magnitude",
     "component of a vector, counted from 0, or its magnitude (default)",
     DO(const int component = // -1 is the filters' number for it

@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Projections by the program marching-correctors: test_project.py PROGRAM PRELOAD."""
+import math
+import struct
+import subprocess
+import xml.etree.ElementTree
+
+import binary_files
+import particle_files as files
+from command_line_test import WITH_DISPLAY, CommandLineTest, main
+
+
+class Project(CommandLineTest):
+    """A block of particles with the sides 1 around the origin and the mass 1000."""
+
+    def setUp(self):
+        super().setUp()
+        self.image = self.directory / "surface.vti"  # a name that refuse() looks for
+
+    def project(self, *options, source=None):
+        """Name, size, spacing, and values of the image."""
+        self.run_good(source or self.input, self.image, *options)
+        image = xml.etree.ElementTree.parse(self.image).getroot().find("ImageData")
+        array, = image.iter("DataArray")
+        extent = list(map(int, image.get("WholeExtent").split()))
+        size = [high - low + 1 for low, high in zip(extent[::2], extent[1::2])]
+        data = binary_files.unpacked(array.text.strip())
+        values = struct.unpack(f"<{len(data) // 8}d", data)
+        self.assertEqual(len(values), math.prod(size))
+        spacing = list(map(float, image.get("Spacing").split()))
+        return array.get("Name"), size, spacing, values
+
+    def mass(self, *options, axis=2):
+        _, _, spacing, values = self.project(*options)
+        del spacing[axis]
+        return sum(values) * math.prod(spacing)
+
+    def test_mass(self):
+        """All of it is there, whatever the direction and the size of pixels."""
+        for how in (["x", "--resolution", "33"], ["y", "--resolution", "7"], ["0,-3,0", "--resolution", "60"],
+                    ["1,2,-1", "--kernel", "quintic", "--resolution", "50"]):
+            axis = {"x": 0, "y": 1, "0,-3,0": 1}.get(how[0], 2)
+            self.assertAlmostEqual(self.mass("--project", *how, axis=axis), 1000, delta=1e-3, msg=how)
+
+    def test_image(self):
+        name, size, spacing, values = self.project("--project", "y", "--resolution", "20")
+        self.assertEqual((name, size), ("ColumnDensity", [20, 1, 20]))
+        self.assertAlmostEqual(spacing[0], (0.9 + 4 * 0.13) / 20)
+        middle = values[10 * 20 + 10]
+        self.assertAlmostEqual(middle, 1000, delta=20)  # through the middle of water, over a length of 1
+        self.assertEqual(values[0], 0)
+        name, size, _, values = self.project("--project", "z", "--scalar", "Velocity", "--component", "0", "--resolution", "9")
+        self.assertEqual((name, size), ("Velocity", [9, 9, 1]))
+        self.assertAlmostEqual(values[4 * 9 + 4], 0, delta=1e-9)
+        self.assertAlmostEqual(values[4 * 9 + 1], -values[4 * 9 + 7], delta=1e-9)
+        self.assertLess(values[4 * 9 + 2], -0.1)
+
+    def test_weights_box_and_period(self):
+        for by in ("Density", "Mass"):
+            _, size, _, values = self.project("--project", "z", "--scalar", "Kind", "--weighted-by", by,
+                                              "--box=-0.45,0.45,-0.45,0.45,-inf,inf", "--resolution", "9")
+            self.assertEqual(size, [9, 9, 1])
+            self.assertEqual(values[0], 0)
+            self.assertGreater(values[8], 0.99)
+        values = self.project("--project", "z", "--scalar", "Radius", "--weighted-by", "Mass", "--box=-2,2,-2,2,-2,2", "--resolution", "20")[3]
+        self.assertTrue(math.isnan(values[0]))
+        self.assertAlmostEqual(self.mass("--project", "z", "--periodic", "1,1,1", "--resolution", "32"), 1000, delta=1e-6)
+        self.assertAlmostEqual(self.mass("--project", "z", "--box=-2,2,-2,2,-1,0", "--resolution", "40"), 500, delta=1e-3)
+
+    def test_plane(self):
+        """Particles in a plane: the field itself."""
+        points = [(x, y, 0.5) for x, y, z in self.points if z == self.points[0][2]]
+        arrays = {name: self.arrays[name][:100] for name in ("SmoothingLength", "Density", "Mass")}
+        arrays["Mass"] = [10.0] * 100
+        files.write_vtp(self.directory / "plane.vtp", points, arrays)
+        name, size, _, values = self.project("--project", "z", "--resolution", "15", source="plane.vtp")
+        self.assertEqual((name, size), ("ColumnDensity", [15, 15, 1]))
+        self.assertAlmostEqual(values[7 * 15 + 7], 1000, delta=10)
+        self.image.unlink()
+        self.refuse(self.run_program("plane.vtp", self.image, "--project", "x"), 1, "plane of constant z")
+
+    def test_picture(self):
+        for direction in ("y", "1,1,1"):
+            done = subprocess.run([WITH_DISPLAY, self.program, self.input, self.image, "--project", direction, "--resolution",
+                                   "64", "--screenshot", "image.png"], cwd=self.directory, capture_output=True, text=True,
+                                  timeout=600, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertGreater((self.directory / "image.png").stat().st_size, 3000)
+
+    def test_wrong_usage(self):
+        cases = [(["w"], 2, "--project needs|direction|three numbers"), (["0,0,0"], 2, "0,0,0"), (["1,2"], 2, "1,2"),
+                 (["z", "--iso", "1"], 2, "leave out --iso"), (["z", "--slice", "z=0"], 2, "leave out --slice"),
+                 (["z", "--gauge", "a=0,0,0:0,0,1"], 2, "leave out --gauge"),
+                 (["z", "--resolution", "1"], 2, "--resolution"), (["z", "--times", "1"], 2, "one INPUT of one time"),
+                 (["z", "--scalar", "Nope"], 1, "no point array 'Nope' for the projection"),
+                 (["z", "--scalar", "Velocity", "--component", "3"], 1, "no component 3"),
+                 (["z", "--weighted-by", "Velocity"], 1, "3 components"), (["z", "--weighted-by", "Nope"], 1, "'Nope' for the weight"),
+                 (["z", "--smoothing-length", "Nope"], 1, "Nope"), (["z", "--box", "0,0,0,1,0,1"], 1, "The box along x")]
+        for options, status, sentence in cases:
+            with self.subTest(options):
+                self.refuse(self.run_program(self.input, self.image, "--project", *options), status, sentence)
+        self.refuse(self.run_program(self.input, "surface.vtp", "--project", "z"), 2, r"\.vti or \.vtk file, not 'surface.vtp'")
+        self.refuse(self.run_program(self.input, "surface.vtp", "--weighted-by", "Mass", "--free-surface"), 2, "is for --project")
+
+
+if __name__ == "__main__":
+    main()

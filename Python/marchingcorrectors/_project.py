@@ -50,7 +50,9 @@ class Projection(Result):
 def _direction(direction):
     if isinstance(direction, str) and direction in ("x", "y", "z"):
         return [float(direction == axis) for axis in "xyz"]
-    numbers = np.zeros(3) if direction is None else np.ravel(contiguous(direction, "direction"))
+    numbers = np.zeros(0 if isinstance(direction, str) else 3)
+    if not isinstance(direction, (str, type(None))):
+        numbers = np.ravel(contiguous(direction, "direction"))
     if len(numbers) != 3 or direction is not None and not numbers.any():
         raise InvalidArgument(f"direction is {direction!r}; it must be \"x\", \"y\", \"z\" or three numbers that are not all 0.")
     return numbers.tolist()

@@ -40,6 +40,7 @@ CASES = {
     "gauges": Case(cases.gauges, "1,000 gauges against the free surface of the same particles"),
     "plane": Case(cases.plane, "two dimensions, against vtkSPHInterpolator + vtkFlyingEdges2D; a cold start", "1M"),
     "probe": Case(cases.probe, "a slice against vtkSPHInterpolator, and a volume", runs=5),
+    "project": Case(cases.project, "column densities against sarracen; needs the wheel, and sarracen", "10k,100k", "1k,2k"),
     "ranks": Case(cases.ranks, "what processes under mpirun exchange, and a model of it", "50k,200k"),
     "walls": Case(cases.walls, "where surfaces end at walls"),
     "wheel": Case(cases.wheel, "what calling from Python costs; needs the wheel", runs=9),

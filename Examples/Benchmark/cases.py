@@ -405,6 +405,51 @@ def wheel(benchmark):
         raise SystemExit("benchmark.py: the surfaces differ")
 
 
+def project(benchmark):
+    """Column densities of Evrard's sphere, 1 / r, with h of 1.2 spacings, in boxes of 2.6: project() of Python beside
+    sarracen's code for the processor. Its exact mode gives means over pixels, too; else it evaluates kernels at the
+    centres of pixels, here also of finer images, which are averaged. Errors: the largest difference from ours, by the
+    greatest value; the exact mode's tells how far both are right. By the clock and of processors."""
+    import numpy as np
+    import marchingcorrectors
+    from sarracen.interpolate.cpu_backend import CPUBackend
+    from sarracen.kernels import CubicSplineKernel
+    column, side, out = CubicSplineKernel().get_column_kernel_func(10000), 1.3, benchmark.report
+
+    def timed(call):
+        taken, image = [], call()  # which compiles
+        for _ in range(benchmark.runs):
+            begin = time.perf_counter(), time.process_time()
+            image = call()
+            taken.append((time.perf_counter() - begin[0], time.process_time() - begin[1]))
+        return image, *medians(taken)
+
+    for count, pixels in zip(benchmark.sizes, (128, 512)):
+        random = np.random.default_rng(1)
+        radius = np.sqrt(random.random(count))
+        places = random.normal(size=(count, 3))
+        places *= (radius / np.linalg.norm(places, axis=1))[:, None]
+        h, mass = 1.2 * (2 * np.pi * radius / count) ** (1 / 3), np.full(count, 1 / count)
+        x, y = places[:, 0].copy(), places[:, 1].copy()
+
+        def theirs(fine, exact):
+            image = CPUBackend.interpolate_3d_projection(x, y, mass, h, column, 2.0, pixels * fine, pixels * fine, -side, side,
+                                                         -side, side, exact)
+            return image.reshape(pixels, fine, pixels, fine).mean((1, 3))
+
+        ours, *seconds = timed(lambda: marchingcorrectors.project(
+            places, mass=mass, smoothing_length=h, resolution=pixels, box=(-side, side) * 3).values)
+        rows = [["marchingcorrectors", "", *(f"{s:.3f}" for s in seconds), ""]]
+        for name, fine, exact in (("centres", 1, False), ("centres, 4 x 4", 4, False), ("exact", 1, True)):
+            if exact and count > benchmark.sizes[0]:
+                continue
+            image, *other = timed(lambda: theirs(fine, exact))
+            rows.append([f"sarracen, {name}", f"{np.abs(image - ours).max() / ours.max():.1e}", *(f"{s:.3f}" for s in other),
+                         f"{other[1] / seconds[1]:.1f}"])
+        out.heading(f"{count:,} particles, {pixels} x {pixels} pixels, median h {np.median(h) * pixels / 2 / side:.1f} pixels")
+        out.table(["", "error", "seconds", "processors", "times ours"], rows)
+
+
 class Walls:
     """The planes of the solid particles' bounding box, and the box around the solids that stand on its floor; y is up."""
 

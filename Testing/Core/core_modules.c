@@ -456,6 +456,28 @@ static int modules_tank(mcor_context* context, const mcor_input* input)
   return good;
 }
 
+static int modules_project(mcor_context* context, const mcor_input* input)
+{
+  const mcor_view view = { .direction = { 1, -2, 0.5 },
+    .resolution = 40,
+    .weight = input->smoothing_length };
+  const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
+  mcor_projection found;
+  const mcor_status status = mcor_project(context, input, &options, &view, &found);
+  modules_hash hash = { "project", CORE_HASH_OF_NOTHING };
+  const int64_t pixels = (int64_t)found.size[0] * found.size[1];
+  double sum = 0;
+  for (int64_t i = 0; i < pixels; ++i) /* the bits of no number are another machine's */
+  {
+    found.values[i] = isnan(found.values[i]) ? -1 : found.values[i];
+    sum += fabs(found.values[i]);
+  }
+  modules_add(&hash, found.values, (size_t)pixels * sizeof(double));
+  modules_end(context, &hash, found.size[0], found.size[1]);
+  mcor_free_projection(&found);
+  return status == MCOR_OK && sum > 1;
+}
+
 typedef struct modules_run
 {
   const char* name;
@@ -467,7 +489,7 @@ int main(int argc, char** argv)
   static const modules_run runs[] = { { "adaptive", modules_adaptive },
     { "uniform", modules_uniform }, { "plane", modules_plane }, { "probe", modules_probe },
     { "derive", modules_derive }, { "gauge", modules_gauge }, { "flux", modules_flux },
-    { "tank", modules_tank } };
+    { "project", modules_project }, { "tank", modules_tank } };
   mcor_context* context = NULL;
   if (mcor_create_context(NULL, &context) != MCOR_OK)
   {

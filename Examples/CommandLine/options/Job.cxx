@@ -131,7 +131,7 @@ const std::vector<Rule> OfProjections = {
     "{mode} takes one INPUT of one time" },
   { IsAny, "{mode} makes no surface",
     { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
-      "--slice", "--line", "--gauge", "--gauges", "--gauge-grid" } },
+      "--slice", "--line", "--gauge", "--gauges", "--gauge-grid", "--flux", "--fluxes" } },
   { IF(!IsTo(j, ".vti") && !IsTo(j, ".vtk")),
     "the output of {mode} is a .vti or .vtk file, not '{output}'" },
 };
@@ -356,8 +356,8 @@ std::vector<std::string> Job::InputFiles() const
 
 const char* Job::Mode() const
 {
-  for (const char* option :
-    { "--project", "--flux", "--fluxes", "--gauge-grid", "--gauge", "--gauges", "--probe", "--slice", "--line" })
+  for (const char* option : { "--project", "--flux", "--fluxes", "--gauge-grid", "--gauge",
+         "--gauges", "--probe", "--slice", "--line" })
   {
     if (this->Has(option))
     {

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Union
 import numpy as np
 
 from . import _structs as c
-from ._arrays import contiguous, number, set_option, statistics, take
+from ._arrays import SUMMED, contiguous, number, set_option, statistics, take
 from ._context import Context
 from ._functions import called, of_files, prepare
 from ._library import InvalidArgument, lib
@@ -99,6 +99,8 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     """
     check_names(project, options, PROJECT)
     given, units = locals(), Units(positions)
+    if isinstance(scalar, str) and scalar == SUMMED:  # of particles without that array: the sum of their masses
+        scalar = None
     # Masses and densities that volumes are not made of.
     is_made = volume is None and mass is not None or isinstance(volume, str) and scalar is not None
     own = {} if is_made else {"mass": None, "density": None}

@@ -23,7 +23,7 @@ struct FluxSection
   std::string File;
 };
 
-/// What a section is written as, for sentences.
+/// A section as it is written, for sentences.
 extern const char* const FluxForm;
 
 /// NAME=SECTION. Throws UsageError.

@@ -4,10 +4,10 @@
 
 #include "Job.h"
 #include "ParticleFile.h"
+#include "ParticleParts.h"
 #include "ParticleTimes.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
-#include "Walls.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"

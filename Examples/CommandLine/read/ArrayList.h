@@ -7,7 +7,7 @@
 
 class vtkPointSet;
 
-/// What --list-arrays prints: a line for each array of the particles, and for what a run would find.
+/// The text of --list-arrays: a line for each array of the particles, and for what a run would find.
 std::string DescribeArrays(vtkPointSet& particles);
 
 #endif

@@ -10,7 +10,7 @@
 /// std::runtime_error with one sentence where one is below 0, or greater than a file of its size can
 /// hold: so it is damaged. Knows VTK's XML and legacy files.
 void CheckDeclaredSizes(const std::string& file);
-/// The same of a part of the file.
+/// Checks a part of the file.
 void CheckDeclaredSizes(const std::string& file, std::string_view text);
 
 #endif

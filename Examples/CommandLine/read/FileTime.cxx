@@ -133,7 +133,7 @@ bool ReadTime(const std::string& file, MessageCapture* messages, double& time)
   }
   catch (const std::exception&)
   {
-    // What is wrong is said where all of the file is read.
+    // A fault is told where all of the file is read.
   }
   messages->Clear();
   return isFound || FindRange(text, time);

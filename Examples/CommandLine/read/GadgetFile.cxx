@@ -25,7 +25,7 @@
 namespace
 {
 
-/// What formats call an array, its name here, and its columns. The first ones are of all types, the others of gas.
+/// Names of an array in formats, its name here, and its columns. The first ones are of all types, the others of gas.
 struct Known
 {
   const char* Label;

@@ -206,7 +206,7 @@ const std::vector<FileFormat<Reader>> Formats = {
   { ".dump", ReadLammps },
 };
 
-/// The same of data sets of any class.
+/// Formats of data sets of any class.
 const std::vector<FileFormat<Reader>> DataFormats = {
   { ".vti", ReadOne<ReadXmlWith<vtkXMLImageDataReader>> },
   { ".vtr", ReadOne<ReadXmlWith<vtkXMLRectilinearGridReader>> },
@@ -229,7 +229,7 @@ const FileFormat<Reader>* FormatOf(
   return &formats == &Formats && IsGadget(file) ? &Gadget : FindFormat(formats, file);
 }
 
-/// What numbers of points and particles are counted in.
+/// The greatest number of points or particles.
 const vtkIdType MostPoints = VTK_INT_MAX;
 
 /// VTK's readers seek in the file, so it must be a regular one.

@@ -20,7 +20,7 @@ std::string ParticleFileEndings();
 /// sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages);
 
-/// The same for files that each hold a part of the particles. Arrays that are not in all of them are
+/// As ReadParticles() above, for files that each hold a part of the particles. Arrays that are not in all of them are
 /// left out, and so are particles that a part marks as another one's (vtkGhostType). A step of a film may have no
 /// points.
 vtkSmartPointer<vtkPointSet> ReadParticles(
@@ -30,14 +30,14 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
 /// step. Throws std::runtime_error.
 std::vector<double> ListTimes(const std::string& file);
 
-/// What --walls names, as one set; null where that is nothing. Throws std::runtime_error.
+/// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(
   const std::vector<std::string>& files, MessageCapture* messages);
 
 /// These files, and those that they list as pieces: all that is read, as far as lists can be.
 std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages);
 
-/// Of `count` processes, the part that this one reads: every so manieth piece of a file that lists
+/// The part that this one of `count` processes reads: every so manieth piece of a file that lists
 /// pieces; another file is the first one's. May have no points.
 vtkSmartPointer<vtkPointSet> ReadParticlesPart(
   const std::string& file, int rank, int count, MessageCapture* messages);

@@ -16,12 +16,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
+#include <vector>
+
+const char* const WallArrayName = "IsWall";
 
 namespace
 {
 
-/// The same without copies of other parts' particles.
+/// The part without copies of other parts' particles.
 vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
 {
   auto own = vtkSmartPointer<vtkPolyData>::New();
@@ -76,6 +80,53 @@ void MakeTypesAlike(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
   }
 }
 
+/// Each component's median; 0 for marks of copies, which walls are not.
+std::vector<double> Median(vtkDataArray* array, const std::string& name)
+{
+  std::vector<double> median(static_cast<std::size_t>(array->GetNumberOfComponents()));
+  if (name == vtkDataSetAttributes::GhostArrayName())
+  {
+    return median;
+  }
+  std::vector<double> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  for (std::size_t c = 0; c < median.size(); ++c)
+  {
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      values[i] = array->GetComponent(static_cast<vtkIdType>(i), static_cast<int>(c));
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[c] = *middle;
+  }
+  return median;
+}
+
+/// Both one after the other, in the fluid's type.
+vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, vtkIdType wallCount)
+{
+  const vtkIdType count = fluid->GetNumberOfTuples();
+  auto all = vtk::TakeSmartPointer(fluid->NewInstance());
+  all->SetName(fluid->GetName());
+  all->SetNumberOfComponents(fluid->GetNumberOfComponents());
+  all->SetNumberOfTuples(count + wallCount);
+  all->InsertTuples(0, count, 0, fluid);
+  if (walls && walls->GetNumberOfComponents() == fluid->GetNumberOfComponents())
+  {
+    for (vtkIdType i = 0; i < wallCount; ++i)
+    {
+      all->SetTuple(count + i, walls->GetTuple(i));
+    }
+    return all;
+  }
+  const std::vector<double> median = Median(fluid, fluid->GetName());
+  for (vtkIdType i = 0; i < wallCount; ++i)
+  {
+    all->SetTuple(count + i, median.data());
+  }
+  return all;
+}
+
 }
 
 vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts)
@@ -102,4 +153,43 @@ vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPoin
   }
   joined->SetFieldData(parts.front()->GetFieldData());
   return joined;
+}
+
+vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls)
+{
+  if (!walls || fluid->GetNumberOfPoints() == 0)
+  {
+    return fluid; // without fluid there is nothing for walls to end
+  }
+  vtkPointData* arrays = fluid->GetPointData();
+  if (arrays->HasArray(WallArrayName))
+  {
+    throw std::runtime_error(std::string("the particles have an array '") + WallArrayName +
+      "', the name by which --walls marks walls; use --fluid " + WallArrayName +
+      "=VALUE, or rename it");
+  }
+  const vtkIdType count = fluid->GetNumberOfPoints(), wallCount = walls->GetNumberOfPoints();
+  auto all = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetData(Append(fluid->GetPoints()->GetData(), walls->GetPoints()->GetData(), wallCount));
+  all->SetPoints(points);
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = arrays->GetArray(i); // null where it is one of strings
+    if (array)
+    {
+      all->GetPointData()->AddArray(
+        Append(array, walls->GetPointData()->GetArray(array->GetName()), wallCount));
+    }
+  }
+  vtkNew<vtkUnsignedCharArray> marks;
+  marks->SetName(WallArrayName);
+  marks->SetNumberOfTuples(count + wallCount);
+  for (vtkIdType i = 0; i < count + wallCount; ++i)
+  {
+    marks->SetValue(i, i < count ? 0 : 1);
+  }
+  all->GetPointData()->AddArray(marks);
+  all->SetFieldData(fluid->GetFieldData());
+  return all;
 }

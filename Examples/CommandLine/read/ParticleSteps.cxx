@@ -28,7 +28,7 @@ namespace
 
 using Steps = std::vector<ParticleSteps::Step>;
 
-/// Those of a .pvd file.
+/// Steps of a .pvd file.
 Steps ListedSteps(
   const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings)
 {
@@ -96,7 +96,7 @@ std::vector<std::string> InOrder(std::vector<std::string> files)
   return files;
 }
 
-/// Those of files given one by one, at the times that the files tell of.
+/// Steps of files given one by one, at the times that the files tell of.
 Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::string>& warnings)
 {
   std::vector<std::string> files;

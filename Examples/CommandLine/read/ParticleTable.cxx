@@ -554,7 +554,7 @@ vtkTypeInt64 CountOf(View line)
   return ToInteger(Trimmed(line), count) ? count : -1;
 }
 
-/// What stands behind KEY= in the second line of extended XYZ, with or without quotes.
+/// The text behind KEY= in the second line of extended XYZ, with or without quotes.
 std::string ValueOf(const std::string& comment, const std::string& key)
 {
   const std::string small = Small(comment);
@@ -696,7 +696,7 @@ vtkTypeInt64 FindXyzStep(Lines& lines)
   return -1;
 }
 
-/// What a dump says of a step before its particles.
+/// Numbers that a dump gives of a step before its particles.
 struct DumpHead
 {
   double Time = 0.0;

@@ -14,7 +14,7 @@ class vtkPointSet;
 class vtkTable;
 struct Job;
 
-/// What is measured at each time of the input.
+/// A measurement at each time of the input.
 struct MeterTask
 {
   vtkSPHMeter* Meter;

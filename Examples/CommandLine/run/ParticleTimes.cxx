@@ -8,9 +8,9 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
+#include "ParticleParts.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "Walls.h"
 
 #include "vtkPolyData.h"
 #include "vtkSPHTemporalInterpolator.h"

@@ -3,8 +3,8 @@
 #include "Sharing.h"
 
 #include "ParticleFile.h"
+#include "ParticleParts.h"
 #include "ParticleTimes.h"
-#include "Walls.h"
 
 #include <cstdlib>
 #include <initializer_list>

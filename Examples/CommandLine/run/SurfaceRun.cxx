@@ -7,11 +7,11 @@
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
+#include "ParticleParts.h"
 #include "PeriodOfData.h"
 #include "SafeText.h"
 #include "Sharing.h"
 #include "SurfaceFile.h"
-#include "Walls.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"

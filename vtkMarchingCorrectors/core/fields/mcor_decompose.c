@@ -14,7 +14,7 @@ typedef struct mcor_decompose_job
   const mcor_flow* flow;
 } mcor_decompose_job;
 
-/* Turns the symmetric matrix so that element (p, q) becomes 0; r is the third index. */
+/* Turns the symmetric matrix so that element (p, q) becomes 0. r is the third index. */
 static void mcor_rotate_away(double m[3][3], int p, int q, int r)
 {
   if (fabs(m[p][q]) < 1e-18 * (fabs(m[p][p]) + fabs(m[q][q])))
@@ -36,8 +36,9 @@ static void mcor_rotate_away(double m[3][3], int p, int q, int r)
   m[r][q] = m[q][r] = s * rp + c * rq;
 }
 
-/* The eigenvalue in the middle of a symmetric matrix, by Jacobi's rotations: the roots of the
- * characteristic polynomial would lose half of the digits where two are equal, as of a rotation. */
+/* Returns the middle eigenvalue of a symmetric matrix, by Jacobi's rotations. The roots of the
+ * characteristic polynomial would lose half of the digits where two are equal, as they are for a
+ * rotation. */
 static double mcor_middle_eigenvalue(double m[3][3])
 {
   const double trace = m[0][0] + m[1][1] + m[2][2];

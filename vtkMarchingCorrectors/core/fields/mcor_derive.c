@@ -17,11 +17,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Particles that are treated at a time. */
+/* Particles treated at a time. */
 #define MCOR_DERIVE_BATCH (1 << 20)
 
-/* M is inverted where that magnifies rounding by less than this, which it does by its condition: in
- * the Frobenius norm, 3 for the identity. */
+/* Worst condition of an M that is inverted, in the Frobenius norm, where the identity has 3. The
+ * condition is how much inversion magnifies rounding. */
 #define MCOR_WORST_CONDITION 300
 
 typedef struct mcor_derive_run
@@ -33,9 +33,9 @@ typedef struct mcor_derive_run
   mcor_buffer arrays;     /* fix [varying_count][grid.count], sorted */
   mcor_point_batch batch; /* of particles */
   mcor_buffer moments, slopes;
-  int first, count;  /* sorted particles of the batch */
-  int inside;        /* of these, where gradients are wanted */
-  cl_int* particles; /* [grid.count] index on the device, in input order, of sorted particles */
+  int first, count;  /* sorted particles in the batch */
+  int inside;        /* particles of the batch whose gradients are wanted */
+  cl_int* particles; /* [grid.count] index on the device, in input order, of each sorted particle */
 } mcor_derive_run;
 
 static void mcor_release_derive(mcor_derive_run* run)
@@ -47,7 +47,7 @@ static void mcor_release_derive(mcor_derive_run* run)
 
 /* ---- arrays ---- */
 
-/* The components that vary as fixed-point numbers, which their scales are those of from then on. */
+/* Loads the varying components as fixed-point numbers, and sets their scales to match. */
 static mcor_status mcor_load_arrays(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
@@ -57,7 +57,7 @@ static mcor_status mcor_load_arrays(mcor_derive_run* run)
   for (int i = 0; i < attributes->varying_count; ++i)
   {
     mcor_component* c = &attributes->varying[i];
-    /* One bit for the sign, one for differences. */
+    /* One bit is for the sign, one for differences. */
     c->scale = ldexp(c->scale, fix == sizeof(int32_t) ? 29 : 61);
     MCOR_TRY(mcor_sort_values(context, run->input, &run->input->attributes[c->attribute],
       c->component, c->shift, c->scale, true, &run->arrays, i));
@@ -70,7 +70,8 @@ static mcor_status mcor_load_arrays(mcor_derive_run* run)
 
 /* ---- evaluation ---- */
 
-/* Sorts the batch's particles by place and cuts them into groups that are evaluated together. */
+/* Sorts the particles of the batch by position, and cuts them into groups that are evaluated
+ * together. */
 static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
 {
   mcor_context* context = run->context;
@@ -103,7 +104,7 @@ static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
   return mcor_group_batch(context, &run->batch, run->count, run->inside, groups);
 }
 
-/* The inverse of m; false where it would magnify rounding too much. */
+/* Inverts m. Returns false if that would magnify rounding too much. */
 static bool mcor_invert(const double m[3][3], double inverse[3][3])
 {
   double det = 0, norm = 0, inverse_norm = 0;
@@ -154,7 +155,8 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     {
       m[k / 3][k % 3] = mcor_get_real(context, job->moments, 9 * i + k);
     }
-    if (mcor_is_plane(context)) /* the matrix of two axes, whose condition this does not change */
+    if (mcor_is_plane(
+          context)) /* the third axis is empty: this entry keeps the condition of the other two */
     {
       m[2][2] =
         sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));
@@ -283,7 +285,7 @@ static mcor_status mcor_run_derive(
   mcor_derive_run run = *(const mcor_derive_run*)data;
   mcor_derivatives* derivatives = run.derivatives;
   run.input = input;
-  mcor_free_derivatives(derivatives); /* of an attempt before */
+  mcor_free_derivatives(derivatives); /* results of an earlier attempt */
   derivatives->statistics.dimension = options->dimension;
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_TRY(mcor_make_derivatives(context, input, derivatives));

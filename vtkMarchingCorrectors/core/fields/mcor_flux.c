@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Flux: what flows through sections, from the Shepard means of velocity and density where the weight sum is at least
- * the level. Samples are the probe's, crossings of the level the gauges'. */
+/* Fluxes through sections: integrals of the Shepard means of velocity and density, over the area
+ * where the weight sum is at least the level. The probe evaluates samples; the gauges find
+ * crossings of the level. */
 
 #include "mcor_flux.h"
 #include "mcor_input.h"
@@ -13,10 +14,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The least speed and density that count beside those of a section: of the greatest ones of all particles, to whose
- * rounding means are exact. */
+/* Least speed and density to which a section's accuracy is relative, as a share of the greatest
+ * ones of all particles: means are exact to the rounding of those. */
 #define MCOR_FLUX_FLOOR 0.0625
-/* Room of sums above the largest one that means allow; weights below 0, as of M'4, allow a little more. */
+/* Room of sums above the largest one that means allow. Weights below 0, as M'4 has, make sums a
+ * little larger. */
 #define MCOR_FLUX_ROOM 8
 
 /* ---- the call ---- */
@@ -42,7 +44,8 @@ static mcor_status mcor_check_velocity(
   return MCOR_OK;
 }
 
-/* From the ranges of velocity and density: what is small, and the units in which sums are whole numbers. */
+/* Sets from the ranges of velocity and density: the floors of speed and density, and the units
+ * in which sums are whole numbers. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
@@ -108,7 +111,7 @@ static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
   return MCOR_OK;
 }
 
-/* What a call under way was given. */
+/* Arguments of a call under way. */
 typedef struct mcor_flux_call
 {
   const mcor_section* sections;
@@ -156,7 +159,7 @@ static mcor_status mcor_run_flux(
     mcor_flatten_sides(&context->plane, call->box, box);
     job.edges.box = box;
   }
-  mcor_free_fluxes(call->fluxes); /* of an attempt before */
+  mcor_free_fluxes(call->fluxes); /* results of an earlier attempt */
   job.found = calloc((size_t)call->count + 1, sizeof *job.found);
   mcor_status status = mcor_allocated(context, job.found);
   status = status == MCOR_OK ? mcor_flux_input(context, input, options, &job) : status;
@@ -193,7 +196,9 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
   MCOR_TRY(mcor_begin_level(context, input, options, "Fluxes", &own, &call.level));
   const bool uses_solids = mcor_uses_solids(input, &own);
   mcor_input given = *input;
-  given.particles_version = mcor_has_box(&own) ? 0 : input->particles_version; /* of no other box */
+  given.particles_version = mcor_has_box(&own)
+    ? 0
+    : input->particles_version; /* a grid cut by another box must not be reused */
   call.box = mcor_has_box(&own) ? options->box : NULL;
   memset(own.box, 0, sizeof own.box);
   const mcor_status status =

@@ -3,43 +3,43 @@
 #ifndef mcor_flux_h
 #define mcor_flux_h
 
-/* Flow through sections. A section is made of patches, each the image of parameters (u, v) from 0 to 1; a patch is
- * divided into cells, cells into triangles (in two dimensions, a patch into lines), which are pieces. Pieces are
- * integrated, cut where the fluid ends, and divided until their integrals no longer change. */
+/* Flow through sections. A section consists of patches. A patch is the image of parameters (u,
+ * v) from 0 to 1; it is divided into cells, and each cell into triangles (in two dimensions a
+ * patch is divided into lines). These triangles and lines are called pieces. Pieces are cut
+ * where the fluid ends, integrated, and divided until their integrals no longer change. */
 
 #include "mcor_gauge.h"
 
-/* The longest side of a cell, in smallest scaled smoothing lengths. */
+/* Longest side of a cell, in smallest scaled smoothing lengths. */
 #define MCOR_FLUX_CELL 0.75
 
-/* What is integrated: 1, v . n, rho v . n. */
+/* Integrals of a section: of 1, v . n and rho v . n. */
 #define MCOR_FLUX_SUMS 3
 
 typedef enum mcor_patch_shape
 {
   MCOR_PATCH_RECTANGLE,
   MCOR_PATCH_TRIANGLE, /* u + v <= 1 */
-  MCOR_PATCH_QUARTER,  /* of a disc: at u times its radius; `along` turns to `across` as v grows */
-  MCOR_PATCH_LINE      /* of u alone */
+  MCOR_PATCH_QUARTER,  /* a quarter of a disc: at u radii, from `along` to `across` as v grows */
+  MCOR_PATCH_LINE      /* uses u alone */
 } mcor_patch_shape;
 
 typedef struct mcor_patch
 {
   mcor_patch_shape shape;
   int64_t section;
-  double corner[3], along[3],
-    across[3];      /* where it begins, and its edges; as the device has coordinates */
-  double normal[3]; /* by component of the velocity, unit length */
-  double measure;   /* area or length for a unit of parameters; of a quarter at u = 1, v = 0 */
+  double corner[3], along[3], across[3]; /* start and edges, in the device's coordinates */
+  double normal[3]; /* one entry for each component of the velocity, unit length */
+  double measure;   /* area or length for a unit of parameters; of a quarter: at u = 1, v = 0 */
   double counts[2]; /* cells along u and v: whole numbers */
 } mcor_patch;
 
-/* What a section has been found to have. Sums are whole numbers of units, so that their order does not matter. */
+/* Results of a section. Sums are whole numbers of units, so their order does not matter. */
 typedef struct mcor_flux_section
 {
-  double area;           /* of all of it */
-  int64_t reached;       /* 1: particles reach it */
-  double speed, density; /* greatest ones seen in it, with the least that matter */
+  double area;           /* of the whole section, with and without fluid */
+  int64_t reached;       /* 1: particles reach the section */
+  double speed, density; /* greatest ones seen, or the floors of the job if greater */
   double unit[MCOR_FLUX_SUMS];
   int64_t sum[MCOR_FLUX_SUMS];
 } mcor_flux_section;
@@ -48,13 +48,13 @@ typedef struct mcor_flux_section
 typedef struct mcor_flux_piece
 {
   int64_t patch;
-  int depth;           /* how often its cell's was divided */
-  bool unclear;        /* the field between its corners is not on the sides that these tell */
+  int depth;           /* divisions since the piece of its cell */
+  bool unclear;        /* the level may cross it in a way that its corners do not show */
   double corner[3][2]; /* u, v */
-  double area;         /* of the piece of the cell */
-  double factor;       /* by which it counts; 1 but for bulges, see mcor_append_bulge */
-  double bulge;        /* area between the level and its chord */
-  double sum[MCOR_FLUX_SUMS]; /* of its part in fluid */
+  double area;         /* of the cell's piece that this one came from */
+  double factor;       /* multiplies the integrals; 1 but for bulges, see mcor_append_bulge */
+  double bulge;        /* area between the level and the chord */
+  double sum[MCOR_FLUX_SUMS]; /* over the part in fluid */
 } mcor_flux_piece;
 
 typedef struct mcor_flux_pieces
@@ -70,13 +70,14 @@ typedef struct mcor_flux_cell
 
 typedef struct mcor_flux_job
 {
-  mcor_gauge_job edges; /* first; crossings on the edges of pieces, and the run that evaluates */
+  mcor_gauge_job
+    edges; /* must be first; finds crossings on edges of pieces; its run evaluates the field */
   const mcor_section* sections;
   int64_t section_count;
   bool is_plane;
-  int velocity_components; /* of the input's first attribute */
+  int velocity_components; /* of the velocity, the input's first attribute */
   bool has_density;
-  double smoothing_length; /* the smallest scaled one */
+  double smoothing_length; /* the smallest scaled smoothing length */
   double speed_floor, density_floor;
   mcor_flux_section* found; /* [section_count] */
   mcor_patch* patches;      /* [patch_room] */
@@ -86,29 +87,30 @@ typedef struct mcor_flux_job
   double low[3], high[3]; /* around all patches */
 } mcor_flux_job;
 
-/* mcor_flux_patch.c. Checks a section, and appends its patches. */
+/* mcor_flux_patch.c. Checks a section and appends its patches. */
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
-/* mcor_flux_closed.c. -1 if the triangles are a closed surface with normals inwards; else 1. */
+/* mcor_flux_closed.c. Sets sign to -1 if the triangles form a closed surface with normals
+ * inwards, else to 1. */
 mcor_status mcor_orient_triangles(
   mcor_context* context, const double* points, int64_t point_count, double* sign);
-/* The point that parameters are of; its patch is the third of them. */
+/* Maps parameters (u, v, number of the patch) to a point. */
 void mcor_map_patch(const void* job, const double parameters[3], double point[3]);
-/* Area for a unit of parameters there. */
+/* Returns the area for a unit of parameters at (u, v). */
 double mcor_patch_measure(const mcor_patch* patch, const double uv[2]);
-/* Lists the cells that particles may reach, of those that this call owns; the lattice is known. */
+/* Lists the cells that this call owns and that particles may reach. The lattice must be known. */
 mcor_status mcor_list_flux_cells(mcor_flux_job* job);
 
-#define MCOR_FLUX_POINTS 7 /* of a triangle; of a line 3 */
+#define MCOR_FLUX_POINTS 7 /* samples of a triangle; a line has 3 */
 
-/* Samples of one batch. */
+/* Samples of a batch. */
 typedef struct mcor_flux_field
 {
-  double (*at)[3]; /* [MCOR_GAUGE_BATCH], parameters and patch */
+  double (*at)[3]; /* [MCOR_GAUGE_BATCH]: u, v and number of the patch */
   double *weight, *velocity, *density;
-  double* values[2]; /* of the attributes: the last two */
+  double* values[2]; /* velocity and density, as the probe takes them */
 } mcor_flux_field;
 
-/* Points of a piece at which it is sampled; the first of them are its corners. */
+/* Returns the number of samples of a piece. The first ones are its corners. */
 static inline int mcor_piece_points(const mcor_flux_job* job)
 {
   return job->is_plane ? 3 : MCOR_FLUX_POINTS;
@@ -119,17 +121,18 @@ static inline int mcor_piece_corners(const mcor_flux_job* job)
   return job->is_plane ? 2 : 3;
 }
 
-/* mcor_flux_piece.c. Evaluates samples at places [0, count) of the field. */
+/* mcor_flux_piece.c. Evaluates the field at samples [0, count). */
 mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int count);
 double mcor_speed_along(const mcor_flux_job* job, const mcor_flux_field* field, int64_t sample,
   const double direction[3]);
-/* Point k of a piece: its corners, the middles of its edges, its middle. */
+/* Finds sample k of a piece: corners first, then middles of edges, then the middle. */
 void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, int k, double at[3]);
-/* Finds the integrals of pieces. */
+/* Integrates pieces. */
 mcor_status mcor_measure_pieces(
   mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces);
 
-/* mcor_flux_divide.c. Adds up all cells; a rank without any scales the sections alone, as all do. */
+/* mcor_flux_divide.c. Adds up all cells. A rank without particles calls mcor_scale_sections alone,
+ * because it reduces over all ranks. */
 mcor_status mcor_add_fluxes(mcor_gauge_job* job);
 mcor_status mcor_scale_sections(mcor_flux_job* job);
 

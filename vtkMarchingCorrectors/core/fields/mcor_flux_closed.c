@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Whether triangles of a section are a closed surface, whose normals then point outwards. */
+/* Orientation of sections made of triangles: if they form a closed surface, normals point
+ * outwards. */
 
 #include "mcor_flux.h"
 #include "mcor_vector.h"
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* An edge of a triangle, with its lesser end first; turned: from the second one. */
+/* An edge of a triangle, its lesser end first. turned: the triangle has it the other way round. */
 typedef struct mcor_flux_edge
 {
   double ends[2][3];
@@ -60,7 +61,8 @@ mcor_status mcor_orient_triangles(
   }
   qsort(edges, (size_t)point_count, sizeof *edges, mcor_compare_flux_edges);
   bool closed = point_count % 2 == 0;
-  for (int64_t i = 0; i + 1 < point_count && closed; i += 2) /* each edge in both directions */
+  for (int64_t i = 0; i + 1 < point_count && closed;
+       i += 2) /* every edge must occur once in each direction */
   {
     closed = !edges[i].turned && edges[i + 1].turned &&
       mcor_compare_numbers(edges[i].ends[0], edges[i + 1].ends[0], 6) == 0;

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums over the cells of sections. A piece is divided until its parts have together what it has itself. */
+/* Sums over the cells of sections. A piece is divided until its parts together have the
+ * integrals of the piece itself. */
 
 #include "mcor_flux.h"
 #include "mcor_ranks.h"
@@ -9,21 +10,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells that are looked at together. */
+/* Cells treated together. */
 #define MCOR_FLUX_TOGETHER 4096
-/* What a piece and its parts may differ by, of its area times the speeds of its section; where it is small beside the
- * section, of more, as errors of many pieces make up for each other. */
+/* Greatest difference between the integrals of a piece and its parts, relative to the piece's
+ * area times the speeds of its section. A piece that is small beside the section may differ by
+ * more (MCOR_FLUX_SMALL), because errors of many pieces cancel. */
 #define MCOR_FLUX_TOLERANCE 2.5e-7
 #define MCOR_FLUX_SMALL 0.125
-/* Parabolas are that much nearer to the level than their chords. */
+/* A bulge may be this many times larger than the tolerance: parabolas are that much nearer to
+ * the level than chords. */
 #define MCOR_FLUX_BULGE 64
-/* How often a piece is divided at most; and one whose sides are unclear. */
+/* Most divisions of a piece, and of one that is unclear. */
 #define MCOR_FLUX_DEPTH 12
 #define MCOR_FLUX_UNCLEAR_DEPTH 6
 
 /* ---- speeds ---- */
 
-/* The greatest over all ranks. */
+/* Reduces the greatest speeds and densities of sections over all ranks. */
 mcor_status mcor_scale_sections(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
@@ -81,7 +84,7 @@ static mcor_status mcor_append_piece(
   return MCOR_OK;
 }
 
-/* The pieces of cells [first, last). */
+/* Makes the pieces of cells [first, last). */
 static mcor_status mcor_begin_pieces(
   mcor_flux_job* job, int64_t first, int64_t last, mcor_flux_pieces* pieces)
 {
@@ -102,7 +105,7 @@ static mcor_status mcor_begin_pieces(
         { u[0], v[1] } },
       .area = size * mcor_patch_measure(patch, middle) };
     MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
-    /* Beyond the diagonal of a triangle there is none. */
+    /* A triangle patch has no second piece beyond its diagonal. */
     if (!job->is_plane &&
       (patch->shape != MCOR_PATCH_TRIANGLE || (double)(cell->u + cell->v + 2) <= patch->counts[0]))
     {
@@ -115,7 +118,7 @@ static mcor_status mcor_begin_pieces(
   return MCOR_OK;
 }
 
-/* Two halves of a line, four quarters of a triangle. */
+/* Divides lines into two halves, triangles into four quarters. */
 static mcor_status mcor_divide_pieces(
   const mcor_flux_job* job, const mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
 {
@@ -141,7 +144,7 @@ static mcor_status mcor_divide_pieces(
   return MCOR_OK;
 }
 
-/* Whether the parts of a piece may take its place in the sum; `sum` becomes theirs. */
+/* Whether the parts of a piece may replace it in the sum. Sets `sum` to the sum of the parts. */
 static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
   const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
 {
@@ -169,7 +172,7 @@ static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* pie
   return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
 }
 
-/* Adds pieces to their sections. */
+/* Divides pieces until they are settled, and adds them to their sections. */
 static mcor_status mcor_settle_pieces(
   mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
 {

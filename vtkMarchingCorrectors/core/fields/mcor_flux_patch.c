@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sections of fluxes as patches, and patches as cells. */
+/* Sections as patches, and patches as cells. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-/* Cells of all sections near particles at most; and of one along an edge, wherever. */
+/* Most cells near particles, of all sections together; most cells of one patch along an edge. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 4e15
 
@@ -20,7 +20,7 @@ static mcor_gauge_label mcor_label_section(const mcor_flux_job* job, int64_t num
   return mcor_label_gauge(job->sections[number].name, number);
 }
 
-/* Appends a patch, given in the caller's coordinates. normal: of length 1. */
+/* Appends a patch given in the caller's coordinates. normal: has length 1. */
 static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch_shape shape,
   const double corner[3], const double along[3], const double across[3], const double normal[3])
 {
@@ -47,7 +47,7 @@ static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch
   }
   for (int c = 0, axis = 0; axis < 3; ++axis)
   {
-    /* Velocities of two components lack that of the constant axis. */
+    /* A velocity of two components has none along the constant axis. */
     if (job->velocity_components == 3 || axis != mcor_plane_axis(plane, 2))
     {
       patch.normal[c++] = normal[axis];
@@ -74,7 +74,7 @@ static mcor_status mcor_add_line(mcor_flux_job* job, int64_t number, const doubl
   return mcor_add_patch(job, number, MCOR_PATCH_LINE, corner, along, none, normal);
 }
 
-/* In two dimensions its line, where it goes through the plane. */
+/* Appends a rectangle; in two dimensions, the line along which it crosses the plane. */
 static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const double corner[3],
   const double edges[2][3], const double normal[3])
 {
@@ -163,7 +163,7 @@ static mcor_status mcor_add_disc(
   return MCOR_OK;
 }
 
-/* Triangles without area are left out. */
+/* Appends triangles; leaves out the ones without area. */
 static mcor_status mcor_add_triangles(mcor_flux_job* job, int64_t number)
 {
   const mcor_section* section = &job->sections[number];
@@ -246,7 +246,7 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
   }
 }
 
-/* Whether it has some size, were it not for the plane of the particles. */
+/* Whether the section has an area, or would have one beside the plane of the particles. */
 static bool mcor_has_size(const mcor_flux_job* job, int64_t number)
 {
   const mcor_section* section = &job->sections[number];
@@ -308,7 +308,8 @@ void mcor_map_patch(const void* data, const double parameters[3], double point[3
   double along = parameters[0], across = parameters[1];
   if (patch->shape == MCOR_PATCH_QUARTER)
   {
-    /* (1 - v^2, 2 v) / (1 + v^2) are on the circle, and have the same bits everywhere, unlike sine and cosine. */
+    /* (1 - v^2, 2 v) / (1 + v^2) is on the unit circle and has the same bits everywhere; sine
+     * and cosine have not. */
     const double v = parameters[1], radius = parameters[0] / (1 + v * v);
     along = radius * (1 - v * v);
     across = radius * (2 * v);
@@ -336,10 +337,10 @@ typedef struct mcor_flux_block
 typedef struct mcor_flux_reach
 {
   double low[3], high[3];
-  double (*owned)[2]; /* cells of the box that this call owns; NULL: all */
+  double (*owned)[2]; /* cells of the box that this call owns; NULL: it owns all */
 } mcor_flux_reach;
 
-/* Whether a block comes near the reach. */
+/* Whether a block of cells comes near the reach. */
 static bool mcor_is_near(
   const mcor_flux_job* job, const mcor_flux_reach* reach, const mcor_flux_block* block)
 {
@@ -359,7 +360,7 @@ static bool mcor_is_near(
       high[a] = fmax(high[a], point[a]);
     }
   }
-  /* How far an arc leaves its chord. */
+  /* The farthest that an arc is from its chord. */
   const double turn = (double)(block->last[1] - block->first[1]) / patch->counts[1];
   const double bulge =
     patch->shape == MCOR_PATCH_QUARTER ? 0.5 * sqrt(patch->measure) * turn * turn : 0;
@@ -413,7 +414,7 @@ static mcor_status mcor_list_block(
   return MCOR_OK;
 }
 
-/* How many cells a patch has along its parameters. */
+/* Sets the number of cells along the parameters of a patch. */
 static void mcor_count_cells_of(mcor_patch* patch, double step)
 {
   double third[3];
@@ -427,8 +428,7 @@ static void mcor_count_cells_of(mcor_patch* patch, double step)
   {
     lengths[0] = lengths[1] = fmax(fmax(lengths[0], lengths[1]), sqrt(mcor_dot(third, third)));
   }
-  lengths[1] *=
-    patch->shape == MCOR_PATCH_QUARTER ? 2 : 1; /* its arc at most, were it as fast all along */
+  lengths[1] *= patch->shape == MCOR_PATCH_QUARTER ? 2 : 1; /* the longest that its arc can be */
   for (int p = 0; p < 2; ++p)
   {
     patch->counts[p] = fmax(ceil(lengths[p] / step), 1);
@@ -450,7 +450,7 @@ mcor_status mcor_list_flux_cells(mcor_flux_job* job)
   }
   for (int a = 0; a < 3; ++a)
   {
-    const bool periodic = lattice->period[a] > 0; /* along periods particles are everywhere */
+    const bool periodic = lattice->period[a] > 0; /* along a period, particles are everywhere */
     reach.low[a] = periodic ? -INFINITY : context->measure.low[a] - lattice->cube;
     reach.high[a] = periodic ? INFINITY : context->measure.high[a] + lattice->cube;
     if (box && !periodic)

@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Integrals over pieces of cells. One between corners that are in fluid is a quadrature exact for cubic functions,
- * whose points are corners, middles of edges, and the middle. One with corners on both sides is cut where its edges
- * cross the level; of a triangle, the level is a parabola through these crossings and one between them. */
+/* Integrals over pieces. A piece whose corners are all in fluid is integrated by a quadrature
+ * that is exact for cubic functions; its points are the corners, the middles of edges, and the
+ * middle. A piece with corners on both sides is cut where its edges cross the level. In a
+ * triangle, the level is taken as a parabola through these crossings and one between them. */
 
 #include "mcor_flux.h"
 #include "mcor_vector.h"
@@ -11,13 +12,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A parabola through the ends and the middle of an edge leaves them by an eighth of its bend at most: where the level
- * is nearer than four times that, it may cross the edge twice. */
+/* A parabola through the ends and the middle of an edge goes beyond them by at most an eighth of
+ * its bend. If the level is nearer than four times that, it may cross the edge twice. */
 #define MCOR_FLUX_NEAR 0.5
-/* Weights bend by 4 / h^2 or so, from which they deviate from a line between two samples by an eighth of the square of
- * the way. */
+/* Weights bend by about 4 / h^2, so they differ from a line between two samples by an eighth of
+ * that times the square of the distance. */
 #define MCOR_FLUX_BEND 0.125
-/* Rounds of mcor_solve_crossings: an edge's crossing is then known to 1e-7 of it. */
+/* Rounds of mcor_solve_crossings, after which a crossing is known to 1e-7 of its edge. */
 #define MCOR_FLUX_SOLVE_ROUNDS 3
 
 mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int count)
@@ -61,7 +62,7 @@ void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, in
   at[2] = (double)piece->patch;
 }
 
-/* Adds the integrals of a piece whose samples begin at number `first`. */
+/* Adds the integrals of a piece. first: number of its first sample. */
 static void mcor_integrate_piece(const mcor_flux_job* job, const mcor_flux_field* field,
   const mcor_flux_piece* piece, int64_t first, double sum[MCOR_FLUX_SUMS])
 {
@@ -86,26 +87,27 @@ static void mcor_integrate_piece(const mcor_flux_job* job, const mcor_flux_field
   }
 }
 
-/* A piece that is to be cut. */
+/* A piece with corners on both sides of the level. */
 typedef struct mcor_flux_cut
 {
   int64_t piece;
-  int sides;        /* corners in fluid, as bits */
-  double weight[3]; /* at corners */
+  int sides;        /* bits of the corners in fluid */
+  double weight[3]; /* at the corners */
   double crossing
-    [2][2]; /* of a triangle: on the edges from its lone corner to the next, and to the last one */
-  double places[2]; /* of these, from that corner */
+    [2]
+    [2]; /* in a triangle: on the edges from its lone corner to the next and to the last corner */
+  double places[2]; /* places of the crossings, from that corner */
 } mcor_flux_cut;
 
 typedef struct mcor_flux_cuts
 {
   mcor_flux_cut* cuts; /* [room] */
   int64_t count, room;
-  mcor_gauge_line* lines; /* [line_room]: what the level crosses, in parameters */
+  mcor_gauge_line* lines; /* [line_room] lines that the level crosses, in parameters */
   int64_t line_count, line_room;
 } mcor_flux_cuts;
 
-/* A line, in parameters, that the level crosses. */
+/* Appends a line, in parameters, that the level crosses. */
 static mcor_status mcor_append_crossed(mcor_flux_job* job, mcor_flux_cuts* cuts,
   const double from[3], const double to[3], double from_weight, double to_weight)
 {
@@ -123,19 +125,19 @@ static mcor_status mcor_append_crossed(mcor_flux_job* job, mcor_flux_cuts* cuts,
   return MCOR_OK;
 }
 
-/* Crosses the lines so far. Their parts of the job stay. */
+/* Finds where the level crosses the lines so far. The job's parts stay for mcor_crossing_at. */
 static mcor_status mcor_solve_cuts(mcor_flux_job* job, const mcor_flux_cuts* cuts)
 {
   mcor_context* context = job->edges.context;
   const int arrays = context->attributes.count;
   job->edges.lines = cuts->lines;
-  context->attributes.count = 0; /* crossings are those of weights */
+  context->attributes.count = 0; /* crossings need weights alone */
   const mcor_status status = mcor_solve_crossings(&job->edges, MCOR_FLUX_SOLVE_ROUNDS, true);
   context->attributes.count = arrays;
   return status;
 }
 
-/* Where line number i is crossed: from 0 to 1, and its parameters. */
+/* Returns the place from 0 to 1 where line i is crossed; sets `at` to its parameters. */
 static double mcor_crossing_at(
   const mcor_flux_job* job, const mcor_flux_cuts* cuts, int64_t i, double at[2])
 {
@@ -146,14 +148,14 @@ static double mcor_crossing_at(
   return place;
 }
 
-/* The corner of a triangle that is alone on its side. */
+/* Returns the corner of a triangle that is alone on its side. */
 static int mcor_lone_corner(int sides)
 {
   static const int lone[8] = { 0, 0, 1, 2, 2, 1, 0, 0 };
   return lone[sides];
 }
 
-/* Whether the level, which an edge's ends are on one side of, may be crossed between them. */
+/* Whether the level may cross an edge whose ends are on one side of it. */
 static bool mcor_may_cross(const mcor_flux_job* job, const mcor_flux_piece* piece, int from, int to,
   const double* weight, double middle)
 {
@@ -173,7 +175,8 @@ static bool mcor_may_cross(const mcor_flux_job* job, const mcor_flux_piece* piec
     nearest < MCOR_FLUX_NEAR * fabs(ends[0] + ends[1] - 2 * (middle - level));
 }
 
-/* What its samples tell of a piece. */
+/* Sorts a piece by its samples: integrates it if it lies in fluid, appends a cut if the level
+ * crosses it. */
 static mcor_status mcor_take_piece(mcor_flux_job* job, const mcor_flux_field* field,
   mcor_flux_pieces* pieces, int64_t number, int64_t first, mcor_flux_cuts* cuts)
 {
@@ -222,7 +225,8 @@ static mcor_status mcor_take_piece(mcor_flux_job* job, const mcor_flux_field* fi
   return MCOR_OK;
 }
 
-/* Samples all pieces. cuts: NULL: they lie in fluid, and add to whose[i]'s sums. */
+/* Samples all pieces. Without cuts, piece i lies in fluid and is added to the sums of owners'
+ * piece whose[i]. */
 static mcor_status mcor_sample_pieces(mcor_flux_job* job, mcor_flux_field* field,
   mcor_flux_pieces* pieces, mcor_flux_cuts* cuts, mcor_flux_pieces* owners, const int64_t* whose)
 {
@@ -251,10 +255,10 @@ static mcor_status mcor_sample_pieces(mcor_flux_job* job, mcor_flux_field* field
   return MCOR_OK;
 }
 
-/* The parts of pieces that lie in fluid, and whose they are. */
+/* Parts of pieces that lie in fluid, and the number of the piece that each belongs to. */
 typedef struct mcor_flux_parts
 {
-  mcor_flux_pieces pieces; /* with room for three of each cut */
+  mcor_flux_pieces pieces; /* has room for three of each cut */
   int64_t* whose;
 } mcor_flux_parts;
 
@@ -269,7 +273,8 @@ static void mcor_append_part(mcor_flux_parts* parts, const mcor_flux_pieces* pie
   parts->whose[parts->pieces.count++] = whose;
 }
 
-/* A triangle's part up to the chord between its crossings; a line's up to its crossing. */
+/* Appends the part of a triangle up to the chord between its crossings, or of a line up to its
+ * crossing. */
 static void mcor_append_chord(const mcor_flux_job* job, const mcor_flux_pieces* pieces,
   const mcor_flux_cut* cut, mcor_flux_parts* parts)
 {
@@ -293,7 +298,7 @@ static void mcor_append_chord(const mcor_flux_job* job, const mcor_flux_pieces* 
   }
 }
 
-/* The line through the middle of the chord, from the lone corner to the edge beyond. */
+/* Finds the line from the lone corner through the middle of the chord to the opposite edge. */
 static void mcor_place_between(
   const mcor_flux_piece* piece, const mcor_flux_cut* cut, double from[3], double to[3])
 {
@@ -310,8 +315,8 @@ static void mcor_place_between(
   }
 }
 
-/* Between its crossings the level leaves the chord: what a parabola and the chord enclose is 4/3 of the triangle with
- * the crossing of the line between them. */
+/* Appends the bulge between the chord and the level. A parabola and its chord enclose 4/3 of the
+ * triangle of the two crossings and the one between them. */
 static void mcor_append_bulge(mcor_flux_job* job, mcor_flux_pieces* pieces,
   const mcor_flux_cut* cut, const mcor_flux_cuts* between, int64_t line, mcor_flux_parts* parts)
 {
@@ -326,12 +331,13 @@ static void mcor_append_bulge(mcor_flux_job* job, mcor_flux_pieces* pieces,
     fabs((m[0] - p[0]) * (q[1] - p[1]) - (q[0] - p[0]) * (m[1] - p[1]));
 }
 
-/* Adds the bulges of triangles. Where the level does not cross the line between crossings, the piece is unclear. */
+/* Adds the bulges of triangles. If the level does not cross the line between the crossings, the
+ * piece is unclear. */
 static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_field* field,
   mcor_flux_pieces* pieces, const mcor_flux_cuts* cuts, mcor_flux_cuts* between,
   mcor_flux_parts* parts)
 {
-  int64_t* of = malloc((size_t)cuts->count * sizeof *of); /* each line's cut */
+  int64_t* of = malloc((size_t)cuts->count * sizeof *of); /* number of each line's cut */
   mcor_status status = mcor_allocated(job->edges.context, of);
   job->edges.changed.count = 0;
   for (int64_t first = 0; first < cuts->count && status == MCOR_OK; first += MCOR_GAUGE_BATCH)
@@ -370,7 +376,7 @@ static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_field* field
   return status;
 }
 
-/* Adds to pieces what they have behind their cuts. */
+/* Adds to each cut piece the integrals of its part in fluid. */
 static mcor_status mcor_add_cuts(
   mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_cuts* cuts)
 {

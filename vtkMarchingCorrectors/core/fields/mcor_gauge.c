@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Gauges: where lines go through the free surface. The weight sums are the probe's. */
+/* Gauges: where lines cross the free surface. The probe evaluates the weight sums. */
 
 #include "mcor_gauge.h"
 #include "mcor_input.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 
 #define MCOR_GAUGE_LEVEL 0.5
-/* Samples of lines taken together. */
+/* Samples treated together. */
 #define MCOR_GAUGE_TOGETHER (1 << 20)
 /* Steps beyond a box up to which the field is evaluated: see mcor_gauge_line.c. */
 #define MCOR_GAUGE_MARGIN 2.5
@@ -25,7 +25,7 @@ const char* mcor_gauge_state_name(mcor_gauge_state state)
   return (unsigned)state < MCOR_GAUGE_STATE_COUNT ? names[state] : NULL;
 }
 
-/* Lines together, as many as are worth it. */
+/* Treats lines together, as many as have about MCOR_GAUGE_TOGETHER samples. */
 static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 {
   const int64_t count = job->sample_count;
@@ -45,7 +45,7 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 
 /* ---- the call ---- */
 
-/* The box is not one of cells. */
+/* The box is one of points, not of cells. */
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const double* box, double margin, const double low[3],
   const double high[3])
@@ -61,7 +61,7 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
     context->box.points[2 * a + 1] = box ? box[2 * a + 1] + margin : high[a];
   }
   context->box.has_points = true;
-  /* Another call may take the search grid, unless it is cut. */
+  /* Other calls may reuse the search grid, unless it is cut to these points. */
   context->box.of_points = box || input->particles_version == 0 || context->run.far;
   return MCOR_OK;
 }
@@ -108,7 +108,7 @@ mcor_status mcor_run_points(
   return status;
 }
 
-/* The records of the particles at hand. */
+/* Makes the records from the particles of this rank. */
 static mcor_status mcor_gauge_particles(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
 {
@@ -130,7 +130,7 @@ static mcor_status mcor_gauge_particles(
 static mcor_status mcor_gauge_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
 {
-  mcor_free_gauges(job->gauges); /* of an attempt before */
+  mcor_free_gauges(job->gauges); /* results of an earlier attempt */
   MCOR_TRY(mcor_check_input(context, input, options));
   for (int64_t i = 0; i < job->line_count; ++i)
   {
@@ -152,7 +152,8 @@ static mcor_status mcor_gauge_input(
   return mcor_finish_statistics(context);
 }
 
-/* In two dimensions, lines in the plane and the box are turned, and the places on them are turned back. */
+/* Runs a call. In two dimensions, turns the lines and the box into the plane z = 0, and the
+ * results back. */
 static mcor_status mcor_run_gauge(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -235,8 +236,9 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   mcor_input without = *input;
   without.attributes = NULL;
   without.attribute_count = 0;
-  without.particles_version =
-    mcor_has_box(&own) ? 0 : input->particles_version; /* of no other box */
+  without.particles_version = mcor_has_box(&own)
+    ? 0
+    : input->particles_version; /* a grid cut by another box must not be reused */
   mcor_gauge_job job = { .context = context,
     .lines = lines,
     .line_count = count,

@@ -3,12 +3,12 @@
 #ifndef mcor_gauge_h
 #define mcor_gauge_h
 
-/* Lines on which the level's crossings are sought. Places on a line are numbers from 0 to 1. Fluxes, see mcor_flux.h,
- * seek them on the edges of a section's triangles. */
+/* Lines whose crossings with the level are sought. Places on a line are numbers from 0 to 1.
+ * Fluxes (mcor_flux.h) use lines along the edges of a section's triangles. */
 
 #include "mcor_probe.h"
 
-/* A part of a line between two places where the weight sum is known. */
+/* A part of a line between two places at which the weight sum is known. */
 typedef struct mcor_gauge_part
 {
   int64_t line;
@@ -22,12 +22,13 @@ typedef struct mcor_gauge_parts
   int64_t count, capacity;
 } mcor_gauge_parts;
 
-/* How a line, or a part of one, is sampled: at i / steps, for first <= i <= last; no particle reaches the rest.
- * This call owns samples own_first to own_last: extrema at them, and crossings from them to the next one. */
+/* Samples of a line, or of a part of one: at i / steps for first <= i <= last; no particle
+ * reaches the rest. This call owns samples own_first to own_last: the extrema at them, and the
+ * crossings between each and the next sample. */
 typedef struct mcor_gauge_samples
 {
   int64_t line, steps, first, last, own_first, own_last;
-  int64_t begin; /* the first one of the whole line */
+  int64_t begin; /* first sample of the whole line */
 } mcor_gauge_samples;
 
 /* A record of a line: a crossing at a place from 0 to 1, or one of these instead. */
@@ -39,68 +40,72 @@ typedef struct mcor_gauge_record
   double place;
 } mcor_gauge_record;
 
-/* A call under way: what is asked for, then what is found. */
+/* A call under way: its arguments, then its results. */
 typedef struct mcor_gauge_job
 {
   mcor_context* context;
   const mcor_gauge_line* lines; /* [line_count] */
   int64_t line_count;
   double level;
-  const double* box; /* [6], of the samples that this call owns; NULL: all */
+  const double* box; /* [6], box of the samples that this call owns; NULL: all */
   mcor_gauges* gauges;
-  mcor_probe_run* run;         /* which evaluates */
-  /* Lines are in parameters, of which this makes points; NULL: they are in points. */
+  mcor_probe_run* run; /* evaluates the field */
+  /* Turns parameters into points if lines are given in parameters; NULL: lines are given in
+   * points. */
   void (*map)(const void* data, const double parameters[3], double point[3]);
   const void* map_data;
   mcor_gauge_samples* samples; /* [sample_room], sample_count of them in use */
   int64_t sample_count, sample_room;
   mcor_gauge_record* records; /* [record_room] */
   int64_t record_count, record_room;
-  mcor_gauge_parts changed;  /* on unlike sides of the level at their ends */
-  mcor_gauge_parts suspects; /* with an extremum inside that may be beyond the level */
+  mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
+  mcor_gauge_parts suspects; /* parts with an extremum that may be beyond the level */
 } mcor_gauge_job;
 
-/* Points on the device at a time. */
+/* Points that are on the device at a time. */
 #define MCOR_GAUGE_BATCH (1 << 18)
 
-/* How messages call a gauge or a section: by its name in quotes, or its number. */
+/* A gauge or section in messages: its name in quotes, or its number. */
 typedef struct mcor_gauge_label
 {
   char text[80];
 } mcor_gauge_label;
 
-/* mcor_gauge.c. What gauges and fluxes share. The options of a call for the level, which it checks; who: names what
- * needs it. */
+/* mcor_gauge.c. Shared by gauges and fluxes. Derives the options of the call in `own`, and the
+ * level, which it checks. who: subject of the error sentence. */
 mcor_status mcor_begin_level(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const char* who, mcor_options* own, double* level);
-/* Where the field is evaluated: from low to high, or, if ranks share the work, `margin` around the box. */
+/* Sets the box in which the field is evaluated: from low to high, or, if ranks share the work,
+ * the caller's box and `margin` around it. */
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const double* box, double margin, const double low[3],
   const double high[3]);
-/* Does the work with the job's run ready for MCOR_GAUGE_BATCH points at a time, the attributes on the device. */
+/* Loads the attributes, prepares the job's run for MCOR_GAUGE_BATCH points at a time, and calls
+ * `work`. */
 mcor_status mcor_run_points(
   mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*));
 
 /* mcor_gauge_line.c */
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
-/* The cells of a box, along x, y, z; whether a point is in one of them. */
+/* Finds the cells of a box along x, y, z; tells whether a point is in one of them. */
 void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2]);
 bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2]);
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
-/* How far apart samples are at most, L. */
+/* Returns the greatest distance between samples, L. */
 double mcor_gauge_step(double h_scale, double smoothing_length_min);
-/* Appends the samples of a line, those in the box, if there is one; the lattice is known. */
+/* Appends the samples of a line; with a box, only the owned ones. The lattice must be known. */
 mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
 /* Makes the readings of all lines from the records of all ranks. */
 mcor_status mcor_read_lines(
   const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count);
 
-/* mcor_gauge_solve.c. Evaluates samples [first, last) of the job's, and appends what is found to its records. */
+/* mcor_gauge_solve.c. Evaluates entries [first, last) of the job's samples, and appends the
+ * results to its records. */
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last);
-/* Makes the job's changed parts so short that their crossings are known. one: each has one alone; else, in the first
- * round, as many as show. */
+/* Shortens the job's changed parts until their crossings are known. one: each part keeps its
+ * first crossing only; else the first round keeps all that it finds. */
 mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one);
-/* Where on such a part the weight sum is the level. */
+/* Returns the place on such a part where the weight sum equals the level. */
 double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part);
 void mcor_free_gauge_parts(mcor_gauge_job* job);
 

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Lines of gauges: where they are sampled, and what they read of what was found there.
+/* Lines of gauges: their samples, and their readings.
  *
- * Ranks share lines sample by sample: one owns those in cells of its box. It looks at two more on either side,
- * so that it finds what one process finds there. */
+ * Ranks share lines sample by sample. A rank owns the samples in cells of its box. It also looks
+ * at two more on either side, so it finds there the same as one process does. */
 
 #include "mcor_box.h"
 #include "mcor_gauge.h"
@@ -14,14 +14,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_GAUGE_STEP 0.25 /* of the smallest scaled smoothing length */
+#define MCOR_GAUGE_STEP 0.25 /* in smallest scaled smoothing lengths */
 #define MCOR_GAUGE_LEAST_STEPS 4
-/* Samples of one line at most. */
+/* Most samples of one line. */
 #define MCOR_GAUGE_MOST (1 << 26)
 
 /* ---- lines ---- */
 
-/* hypot has not the same bits everywhere. */
+/* Returns the length of a line. hypot does not have the same bits everywhere. */
 static double mcor_gauge_length(const mcor_gauge_line* line)
 {
   double way[3], most = 0, sum = 0;
@@ -72,7 +72,8 @@ mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, 
   return MCOR_OK;
 }
 
-/* The part of a line that particles may reach, as places on it; along periods they are everywhere. */
+/* Finds the part of a line that particles may reach, as places on it. Along a period, particles
+ * are everywhere. */
 static void mcor_clip_line(const mcor_context* context, const mcor_gauge_line* line, double clip[2])
 {
   const mcor_measure* m = &context->measure;
@@ -107,7 +108,7 @@ double mcor_gauge_step(double h_scale, double smoothing_length_min)
   return MCOR_GAUGE_STEP * h_scale * smoothing_length_min;
 }
 
-/* Parts with their neighbours, as far as the whole has some. */
+/* Appends own samples with up to two neighbours on either side. */
 static mcor_status mcor_append_samples(
   mcor_gauge_job* job, const mcor_gauge_samples* whole, int64_t own_first, int64_t own_last)
 {
@@ -198,7 +199,7 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   }
   const double first = fmax(floor(clip[0] * steps) - 1, 0);
   const double last = fmin(ceil(clip[1] * steps) + 1, steps);
-  const bool whole_is_countable = steps < 4e15; /* so that places on it are told apart */
+  const bool whole_is_countable = steps < 4e15; /* doubles can then tell places on it apart */
   MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
     MCOR_OUT_OF_CAPACITY,
     "Gauge %s needs %.3g sample points, one every quarter of the smallest smoothing "
@@ -208,7 +209,7 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   mcor_gauge_samples whole = {
     .line = number, .steps = (int64_t)steps, .first = (int64_t)first, .last = (int64_t)last
   };
-  if (whole.last - whole.first < 2) /* a row of three, for parabolas */
+  if (whole.last - whole.first < 2) /* a parabola needs three samples */
   {
     whole.first = whole.first >= 2 ? whole.last - 2 : 0;
     whole.last = whole.first + 2;
@@ -219,7 +220,7 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
 
 /* ---- readings ---- */
 
-/* From its crossings, still places on the line, what a line reads. */
+/* Makes the reading of a line from its crossings, which are places before and lengths after. */
 static void mcor_read_line(
   const mcor_gauge_line* line, bool full, mcor_gauge_reading* r, double* crossings)
 {
@@ -229,7 +230,7 @@ static void mcor_read_line(
   r->state = full ? MCOR_GAUGE_FULL : n > 0 ? MCOR_GAUGE_WET : MCOR_GAUGE_DRY;
   r->first = r->last = NAN;
   r->depth = 0;
-  /* Crossings alternate, and the line's end tells whether the last one led into the fluid. */
+  /* Crossings alternate. The end of the line tells whether the last one led into the fluid. */
   for (int64_t i = n - (full ? 0 : 1); i >= 0; i -= 2)
   {
     const double end = i < n ? at[i] : 1, begin = i > 0 ? at[i - 1] : 0;

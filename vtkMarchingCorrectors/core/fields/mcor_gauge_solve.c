@@ -1,12 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Crossings of the level along lines, from weight sums. All lines go through
- * the same steps together, so that the device has many points at a time.
+/* Crossings of the level along lines, from weight sums. All lines go through each step together,
+ * so the device has many points at a time.
  *
- * Samples are a quarter of a smoothing length apart, over which the weight sum, as smooth as the kernel,
- * is almost a parabola. One through three samples goes beyond the middle one by an eighth of their
- * differences at most; where the level is nearer than four times that, it is looked at more finely. */
+ * Samples are a quarter of a smoothing length apart. The weight sum is as smooth as the kernel,
+ * so it is almost a parabola over that distance. A parabola through three samples goes beyond
+ * the middle one by at most an eighth of their differences. If the level is nearer than four
+ * times that, the part is looked at more finely. */
 
 #include "mcor_gauge.h"
 
@@ -14,9 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_GAUGE_FINER 16   /* parts of a part with an extremum */
-#define MCOR_GAUGE_SECTIONS 8 /* of one with a crossing */
-/* Rounds: an extremum is then known to 1e-7 of a smoothing length, a crossing to 1e-8. */
+#define MCOR_GAUGE_FINER 16   /* sections of a part with an extremum */
+#define MCOR_GAUGE_SECTIONS 8 /* sections of a part with a crossing */
+/* Rounds, after which an extremum is known to 1e-7 of a smoothing length, a crossing to 1e-8. */
 #define MCOR_GAUGE_EXTREMUM_ROUNDS 7
 #define MCOR_GAUGE_SOLVE_ROUNDS 8
 #define MCOR_GAUGE_NEAR 0.5
@@ -32,7 +33,7 @@ void mcor_free_gauge_parts(mcor_gauge_job* job)
   job->changed = job->suspects = (mcor_gauge_parts){ 0 };
 }
 
-/* Weight sums at places on lines. */
+/* Evaluates weight sums at places on lines. */
 static mcor_status mcor_gauge_weights(
   mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight)
 {
@@ -62,14 +63,14 @@ static mcor_status mcor_gauge_weights(
   return MCOR_OK;
 }
 
-/* Weight sums at successive places of a line, evenly apart. */
+/* Weight sums at evenly spaced places of a line. */
 typedef struct mcor_gauge_row
 {
   int64_t line, count;
-  int64_t own_first, own_last; /* see mcor_gauge_samples; of this row */
-  int64_t before;              /* places of the line before this row */
+  int64_t own_first, own_last; /* see mcor_gauge_samples; counted in this row */
+  int64_t before;              /* number of places on the line before this row */
   double first, step,
-    last;               /* places: of the line's first, from one to the next, of this row's last */
+    last; /* first: of the line's first place; step: between places; last: of this row's last place */
   const double* weight; /* [count] */
 } mcor_gauge_row;
 
@@ -78,7 +79,7 @@ static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
   return i + 1 == row->count ? row->last : row->first + (double)(row->before + i) * row->step;
 }
 
-/* How far sample i is from the level. */
+/* Returns the distance of sample i from the level. */
 static double mcor_row_distance(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
 {
   return fabs(row->weight[i] - job->level);
@@ -102,8 +103,8 @@ static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts*
   return MCOR_OK;
 }
 
-/* Whether the weight sum may pass the level and come back next to sample i: it is the nearest to the
- * level of its neighbours, which are on its side. */
+/* Whether the weight sum may pass the level and come back next to sample i. Sample i must be
+ * nearer to the level than its neighbours, and on their side of it. */
 static bool mcor_row_suspect(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
@@ -126,7 +127,8 @@ static bool mcor_row_suspect(const mcor_gauge_job* job, const mcor_gauge_row* ro
   return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
 }
 
-/* Parts of a row with a crossing, and, unless there is no room for more, with an extremum to look at. */
+/* Appends the parts of a row with a crossing, and, if suspects is not NULL, the parts with an
+ * extremum to look at. */
 static mcor_status mcor_scan_row(
   mcor_gauge_job* job, const mcor_gauge_row* row, mcor_gauge_parts* suspects, bool* found)
 {
@@ -150,7 +152,8 @@ static mcor_status mcor_scan_row(
   return MCOR_OK;
 }
 
-/* Weight sums within parts, at count - 1 places between the ends of each; free both with free(). */
+/* Weight sums inside of parts, at count - 1 places between the ends of each. Free with
+ * mcor_free_inner. */
 typedef struct mcor_gauge_inner
 {
   double *place, *weight;
@@ -190,8 +193,9 @@ static mcor_status mcor_evaluate_inner(
   return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
 }
 
-/* Looks at parts, the job's suspects or those with a crossing, in sections: these take their place. Of suspects
- * that have a crossing that alone is kept. one: of each part the first with a crossing alone. */
+/* Divides parts into sections, and replaces them by the sections with a crossing or a suspect
+ * extremum. A suspect with a crossing keeps the crossing alone, among the changed parts. one:
+ * each part keeps its first crossing alone. */
 static mcor_status mcor_look_closer(
   mcor_gauge_job* job, mcor_gauge_parts* parts, int sections, bool one)
 {
@@ -222,7 +226,7 @@ static mcor_status mcor_look_closer(
   return status;
 }
 
-/* Weight sums at samples of lines, those of one after the other. */
+/* Evaluates the weight sums at samples of lines, line after line. */
 static mcor_status mcor_evaluate_samples(
   mcor_gauge_job* job, int64_t first, int64_t last, mcor_gauge_inner* inner)
 {
@@ -285,7 +289,7 @@ double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part)
   return part->low + (part->high - part->low) * fmin(fmax(share, 0), 1);
 }
 
-/* Parts may have several crossings in the first round; later, that would be rounding. */
+/* Only the first round may find several crossings in a part; later ones would be rounding. */
 mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one)
 {
   for (int round = 0; round < rounds && job->changed.count > 0; ++round)

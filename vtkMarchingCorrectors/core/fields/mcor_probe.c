@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The field at points of the caller's choice: Shepard means or sums of particle arrays, and their
- * gradients. On the device an array is A' = (A - A0) s, with A0 in the middle of its range, so that
- * single precision keeps the digits of one with a large offset. */
+/* The probe: Shepard means or sums of particle arrays, and their gradients, at points of the
+ * caller's choice. On the device an array is A' = (A - A0) s, with A0 in the middle of its
+ * range: single precision then keeps the digits of an array with a large offset. */
 
 #include "mcor_probe.h"
 #include "mcor_input.h"
@@ -14,13 +14,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Points that are on the device at a time: so many that a batch takes about so long, as a run may be
- * cancelled between two. Of fewer, in no order, fewer are near each other: a fourth takes a tenth longer. */
+/* Points on the device at a time. Their number is adapted until a batch takes about
+ * MCOR_BATCH_SECONDS, because a run can be cancelled between batches. In a smaller batch of
+ * unordered points, fewer points are near each other: a fourth of the points takes a tenth
+ * longer in all. */
 #define MCOR_MOST_IN_BATCH (1 << 20)
 #define MCOR_LEAST_IN_BATCH (1 << 14)
 #define MCOR_BATCH_SECONDS 0.1
 
-/* Fluid weight below which a mean has no digits, MCOR_LEAST_SUM of mcor_attribute.cl. */
+/* Fluid weight below which a mean has no digits; MCOR_LEAST_SUM in mcor_attribute.cl. */
 #define MCOR_LEAST_WEIGHT 1e-30
 
 void mcor_release_probe(mcor_probe_run* run)
@@ -44,7 +46,7 @@ typedef struct mcor_probe_job
   double threshold;
 } mcor_probe_job;
 
-/* A part of the batch's points: their weights, and where they go. */
+/* A chunk of the batch's points: their weights, and their numbers in the caller's order. */
 typedef struct mcor_probe_chunk
 {
   int64_t first;
@@ -78,7 +80,8 @@ static void mcor_put_weights(const mcor_probe_job* job, mcor_probe_chunk* chunk)
   }
 }
 
-/* Component c of those on the device; the scale, a power of 2, divides exactly. */
+/* Writes component c of the attributes on the device to the results. Its scale is a power of 2,
+ * so dividing by it is exact. */
 static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
 {
   const mcor_context* context = job->run->context;
@@ -87,7 +90,8 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
   const int width = mcor_components(&job->run->input->attributes[component->attribute]);
   const double shift = component->shift, unscale = 1 / component->scale;
   const bool is_sum = job->run->is_sum;
-  /* Rounding of a mean does not take it beyond what it is of, unless the kernel itself does. */
+  /* Rounding must not take a mean out of the range of its values. Only the kernel M'4 itself
+   * can. */
   const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
@@ -105,7 +109,7 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
   }
 }
 
-/* Its gradient. */
+/* Writes the gradient of component c. */
 static void mcor_put_gradients(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
 {
   const mcor_context* context = job->run->context;
@@ -207,7 +211,7 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   return mcor_deliver_samples(run);
 }
 
-/* How many points the next batch has, after one that was evaluated since `begin`. Kept for the next
+/* Adapts the size of the next batch to the time since `begin`. The size is kept for the next
  * call. */
 static void mcor_fit_batch(mcor_context* context, double begin, double built)
 {
@@ -223,13 +227,13 @@ static void mcor_fit_batch(mcor_context* context, double begin, double built)
   }
 }
 
-/* Whether the attributes of the last probe are those of this one, and are still on the device. */
+/* Whether the attributes on the device are those of this call. */
 static bool mcor_has_attributes(const mcor_context* context, const mcor_input* input)
 {
   return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;
 }
 
-/* Keeps them for the next probe, or not: not where each batch of them replaces the one before. */
+/* Keeps the attributes on the device for the next probe, if all of them fit at once. */
 static void mcor_keep_attributes(mcor_context* context, const mcor_input* input, mcor_samples* s)
 {
   mcor_attributes* attributes = &context->attributes;
@@ -245,7 +249,8 @@ static void mcor_keep_attributes(mcor_context* context, const mcor_input* input,
   }
 }
 
-/* All arrays, some at a time, at all points, some at a time. */
+/* Evaluates all arrays at all points: some arrays at a time, and for these some points at a
+ * time. */
 static mcor_status mcor_probe_all(mcor_probe_run* run)
 {
   mcor_context* context = run->context;
@@ -282,13 +287,13 @@ static mcor_status mcor_probe_all(mcor_probe_run* run)
   return MCOR_OK;
 }
 
-/* Zeros; not NULL where there are none. */
+/* Allocates zeros. Returns NULL only if memory runs out. */
 static void* mcor_zeros(size_t count, size_t size)
 {
   return calloc(count + 1, size);
 }
 
-/* Room for the results. Points that no particle reaches keep the zeros. */
+/* Allocates the results. Points that no particle reaches keep the zeros. */
 static mcor_status mcor_make_samples(
   mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
 {
@@ -315,7 +320,7 @@ static mcor_status mcor_make_samples(
   return mcor_allocated(context, complete);
 }
 
-/* The tables of the attributes. */
+/* Allocates the tables of the attributes, and lists their components. */
 static mcor_status mcor_make_tables(
   mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
 {
@@ -346,7 +351,7 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   const mcor_input* input = run->input;
   mcor_samples* samples = run->samples;
   const bool gradients = options->outputs & MCOR_OUT_GRADIENTS;
-  mcor_free_samples(samples); /* of an attempt before */
+  mcor_free_samples(samples); /* results of an earlier attempt */
   samples->count = run->point_count;
   MCOR_TRY(mcor_check_input(context, input, options));
   MCOR_TRY(mcor_make_tables(context, input, gradients, samples));
@@ -373,7 +378,7 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   return mcor_finish_statistics(context);
 }
 
-/* In two dimensions, the points and gradients are turned. */
+/* Runs a call. In two dimensions, turns the points into the plane z = 0, and the gradients back. */
 static mcor_status mcor_run_probe(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -401,8 +406,9 @@ static mcor_status mcor_run_probe(
   return MCOR_OK;
 }
 
-/* Calls that evaluate arrays, but no scalar, run as for the free surface: without solids, but where these
- * count in computed volumes. Sets the options; returns whether solids are used. */
+/* Sets the options of a call that evaluates arrays but no scalar. Such a call runs as for the
+ * free surface: without solids, unless they count in computed volumes. Returns whether solids
+ * are used. */
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options)
 {
   const bool uses_solids =

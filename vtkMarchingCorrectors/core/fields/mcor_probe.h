@@ -17,22 +17,20 @@ typedef struct mcor_probe_run
   bool is_sum;
   mcor_point_batch batch;
   mcor_buffer weight, sums, weight_gradient, gradients;
-  int64_t first;     /* point of the batch */
-  int count, inside; /* points of the batch; those of them that particles may reach */
+  int64_t first;     /* first point of the batch */
+  int count, inside; /* points of the batch; points of it that particles may reach */
   int group_count;
 } mcor_probe_run;
 
-/* mcor_probe_points.c. The box around the finite points of the caller, which only particles nearby are
- * needed for. */
-void mcor_bound_probe(
-  mcor_context* context, const mcor_array* points, int64_t count, bool alone);
-/* The same, where the caller said where its points are. */
+/* mcor_probe_points.c. Limits the particles used to those near the caller's finite points. */
+void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count, bool alone);
+/* Limits the particles used to those near options->box, which holds the caller's points. */
 void mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
-/* Takes the caller's points [first, last) to the device. */
+/* Writes the caller's points [first, last) to the device. */
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);
 
-/* mcor_probe.c. The arrays on the device, at the points [first, last). */
+/* mcor_probe.c. Evaluates the attributes on the device at points [first, last). */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
 

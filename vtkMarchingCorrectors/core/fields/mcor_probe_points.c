@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The points of a probe: the box around them, and their way to the device. */
+/* The points of a probe: the box around them, and their upload. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -10,8 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-void mcor_bound_probe(
-  mcor_context* context, const mcor_array* points, int64_t count, bool alone)
+void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count, bool alone)
 {
   mcor_array all = *points;
   all.components = 3;
@@ -29,17 +28,18 @@ void mcor_bound_by_box(mcor_context* context, const mcor_options* options)
   context->box.of_points = true;
 }
 
-/* A batch's points on their way to the device, and what each slice of them found. */
+/* Points of a batch during upload, and the results of each slice of them. */
 typedef struct mcor_point_job
 {
   const mcor_probe_run* run;
   void *node, *offset; /* views */
   int inside[MCOR_SLICES];
-  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* of the nodes */
+  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* lowest and highest node */
 } mcor_point_job;
 
-/* A coordinate within the period, its upper side too: rounded as particles are, so that points a period
- * apart are at one place. Of one on a side the other side is as good; that is taken where the box is. */
+/* Returns a coordinate within the period, whose upper side is included. It is rounded as
+ * particles are, so points a period apart have the same position. A point on one side of the
+ * period is moved to the other side if the box is there. */
 static double mcor_wrap_point(const mcor_context* context, int axis, double at)
 {
   const mcor_lattice* lattice = &context->lattice;
@@ -54,7 +54,8 @@ static double mcor_wrap_point(const mcor_context* context, int axis, double at)
   return (within + (off_lower ? period : off_upper ? -period : 0)) / step;
 }
 
-/* Where points [first, first + count) of the batch are, from the lattice's origin, in edges. */
+/* Reads positions of points [first, first + count) of the batch, from the lattice's origin, in
+ * edges. */
 static void mcor_read_points(
   const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
 {
@@ -69,7 +70,8 @@ static void mcor_read_points(
     {
       at[a][i] = at[a][i] / lattice->edge[a] - origin;
     }
-    /* The gradient of its kernel is 0 exactly at a particle, and near by not: points round as those do. */
+    /* This kernel's gradient is 0 exactly at a particle, but not nearby: points are rounded as
+     * particles are. */
     for (int i = 0; i < count && run->context->run.options->sph_kernel == MCOR_QUADRATIC; ++i)
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
@@ -81,7 +83,8 @@ static void mcor_read_points(
   }
 }
 
-/* The node and the offset of a point; node -1 where no particle may reach it. Returns whether one may. */
+/* Writes the node and the offset of a point; the node is -1 if no particle may reach it. Returns
+ * whether one may. */
 static bool mcor_put_point(
   const mcor_point_job* job, int64_t i, const double at[3][MCOR_CHUNK], int in_chunk)
 {
@@ -129,7 +132,7 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
   memcpy(job->high[slice], high, sizeof high);
 }
 
-/* How many points particles may reach, and their bricks. */
+/* Counts the points that particles may reach, and finds the box of their bricks. */
 static void mcor_bound_points(mcor_probe_run* run, const mcor_point_job* job, int slices)
 {
   run->inside = 0;

@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Widening: longer smoothing lengths, which make a smoother surface, as far as they leave each particle inside of it.
- * A surface with widening is that of an input with the factors: one call makes these, then mcor_extract runs. The
- * context keeps the last ones for the next call with the same particles. */
+/* Widening: longer smoothing lengths make a smoother surface, as long as each particle stays
+ * inside of it. A widened surface is the surface of an input with factors: one call makes the
+ * factors, then mcor_extract runs. The context keeps the factors for the next call with the same
+ * particles. */
 
 #include "mcor_widen.h"
 #include "mcor_box.h"
@@ -16,15 +17,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How much more than the iso value the weight sum is at a particle whose length was widened, if it has neighbours on
- * both sides. */
+/* Least excess of the weight sum over the iso value at a widened particle with neighbours on both
+ * sides. */
 #define MCOR_WIDEN_MARGIN 0.1
 
-/* Neighbours, by their nearness, below which a length is not widened, and from which on it fully is: a thread has
- * 2 in space, a sheet 6; in the plane a line has 2. */
+/* Numbers of neighbours, weighted by nearness: below the first a length is not widened, from the
+ * second on it is fully widened. A thread has 2 in space, a sheet 6; in the plane a line has 2. */
 #define MCOR_CROWD_FROM 2.2
 #define MCOR_CROWD_TO 4.5
-#define MCOR_CROWD_IN_PLANE 0.31 /* times these */
+#define MCOR_CROWD_IN_PLANE 0.31 /* multiplies both in the plane */
 
 /* ---- The device ---- */
 
@@ -40,7 +41,7 @@ static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
   MCOR_RELEASE(context, &run->sizes, &run->factor, &run->limited, &run->wanted, &run->list);
 }
 
-/* Into `limited`, by the sorted particles; before, that holds the least sums. */
+/* Finds the factors of the sorted particles, into `limited`, which holds the least sums before. */
 static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;
@@ -76,7 +77,7 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_REAL(run->widest), MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->limited));
 }
 
-/* Whether each sorted particle is in the box, and in the period, as its images are not; NULL: all are. */
+/* Finds which sorted particles are in the box and no periodic images. NULL: all are. */
 static mcor_status mcor_find_originals(mcor_context* context, cl_int** originals)
 {
   const mcor_grid* grid = &context->grid;
@@ -90,9 +91,8 @@ static mcor_status mcor_find_originals(mcor_context* context, cl_int** originals
   }
   *originals = malloc((size_t)n * sizeof(cl_int));
   mcor_status status = mcor_allocated(context, *originals);
-  status = status == MCOR_OK
-    ? mcor_reserve(context, &batch.in_node, (size_t)n * 4 * sizeof(cl_int))
-    : status;
+  status = status == MCOR_OK ? mcor_reserve(context, &batch.in_node, (size_t)n * 4 * sizeof(cl_int))
+                             : status;
   status = status == MCOR_OK
     ? mcor_reserve(context, &batch.in_offset, (size_t)n * 4 * context->cl.real_size)
     : status;
@@ -122,7 +122,8 @@ typedef struct mcor_widen_job
   const void *factors, *weight, *inv_h; /* views */
 } mcor_widen_job;
 
-/* To where the particles came from; volumes, if they were computed, from the weights. */
+/* Writes factors to the particles' places in the input; volumes too, from the weights, if they
+ * were computed. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_widen_job* job = data;
@@ -199,7 +200,7 @@ static mcor_status mcor_run_widen(
   }
   for (int64_t i = 0; i < input->count && out->volume; ++i)
   {
-    out->volume[i] = 1; /* of what is not on the device: not read */
+    out->volume[i] = 1; /* stays for particles that are not on the device; never read */
   }
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->run.widest = run->widest;
@@ -226,7 +227,7 @@ static mcor_status mcor_run_widen(
 
 /* ---- The call ---- */
 
-/* The highest iso value of the free surface. */
+/* Returns the highest iso value of the free surface. */
 static double mcor_widen_iso(const mcor_options* options)
 {
   double iso = 0.5;
@@ -237,9 +238,9 @@ static double mcor_widen_iso(const mcor_options* options)
   return iso;
 }
 
-/* A part of the surface's options and input: what factors depend on. */
-static bool mcor_choose_widening(const mcor_input* input, const mcor_options* options,
-  mcor_input* particles, mcor_options* own)
+/* Selects the input and options that factors depend on. Returns whether solids are used. */
+static bool mcor_choose_widening(
+  const mcor_input* input, const mcor_options* options, mcor_input* particles, mcor_options* own)
 {
   *particles = *input;
   *own = *options;
@@ -273,8 +274,8 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   widening->count = input->count;
   widening->factor = malloc(n * sizeof(double) + 1);
   widening->volume = mcor_needs_density(input) ? malloc(n * sizeof(double) + 1) : NULL;
-  mcor_status status = mcor_allocated(
-    context, widening->factor && (widening->volume || !mcor_needs_density(input)));
+  mcor_status status =
+    mcor_allocated(context, widening->factor && (widening->volume || !mcor_needs_density(input)));
   mcor_input particles;
   mcor_options own;
   const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
@@ -306,7 +307,8 @@ void mcor_release_widening(mcor_context* context)
 
 /* ---- A surface ---- */
 
-/* The factors, those of the last call where they still hold. What that cost is no cost of this call. */
+/* Renews the factors, unless those of the last call still hold; kept ones cost this call no
+ * time. */
 static mcor_status mcor_renew_widening(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
@@ -335,7 +337,7 @@ static mcor_status mcor_renew_widening(
   return MCOR_OK;
 }
 
-/* The last attribute is the widening's own array. */
+/* Moves the last attribute, which is the widening, to its own array. */
 static void mcor_take_widening(mcor_surface* surface)
 {
   const int last = --surface->attribute_count;
@@ -353,7 +355,8 @@ mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
     "Both options.widen and input.widening are set. Leave one of them out.");
   MCOR_TRY(mcor_renew_widening(context, input, options));
   const mcor_widening widening = context->kept_widening.widening;
-  /* A call that runs out of memory gives back what the context keeps, but not what it reads. */
+  /* The context gives back what it keeps if memory runs out. The call reads the factors, so they
+   * are taken out. */
   context->kept_widening.widening = (mcor_widening){ 0 };
   const int count = input->attribute_count > 0 ? input->attribute_count : 0;
   mcor_array* attributes = malloc(((size_t)count + 1) * sizeof *attributes);
@@ -362,7 +365,8 @@ mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   mcor_status status = mcor_allocated(context, attributes);
   if (status == MCOR_OK)
   {
-    own.widening = (mcor_array){ .data = widening.factor, .type = MCOR_FLOAT64, .name = "Widening" };
+    own.widening =
+      (mcor_array){ .data = widening.factor, .type = MCOR_FLOAT64, .name = "Widening" };
     if (widening.volume)
     {
       own.volume = (mcor_array){ .data = widening.volume, .type = MCOR_FLOAT64, .name = "volume" };

@@ -5,7 +5,7 @@
 
 #include "mcor_internal.h"
 
-/* mcor_extract with options.widen above 1. */
+/* Does mcor_extract with options.widen above 1. */
 mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface);
 void mcor_release_widening(mcor_context* context);

@@ -26,9 +26,9 @@
  * A loop of two vertices has no triangles: its segments are one line, where two faces that other
  * cells see meet without this one. */
 
-#define MCOR_ADAPTIVE_SLOTS 96     /* codes of slots, of which 48 occur */
-#define MCOR_ADAPTIVE_VERTICES 32  /* of a loop, at most */
-#define MCOR_ADAPTIVE_TRIANGLES 30 /* of a cell, at most */
+#define MCOR_ADAPTIVE_SLOTS 96     /* number of codes of slots; 48 occur */
+#define MCOR_ADAPTIVE_VERTICES 32  /* most vertices of a loop */
+#define MCOR_ADAPTIVE_TRIANGLES 30 /* most triangles of a cell */
 
 #ifdef __OPENCL_VERSION__
 #define MCOR_ADAPTIVE_FUNCTION
@@ -36,18 +36,18 @@
 #define MCOR_ADAPTIVE_FUNCTION static inline
 #endif
 
-/* Costs of a way to cut a loop. Forbidden outweighs all the rest. */
-#define MCOR_ADAPTIVE_FLAT 64 /* beside lengths of up to 48 */
+/* Costs of cutting a loop. A forbidden diagonal outweighs all the rest. */
+#define MCOR_ADAPTIVE_FLAT 64 /* added to lengths of up to 48 */
 #define MCOR_ADAPTIVE_FORBIDDEN 8192
 
-/* Which slot follows each on its loop; 0xff: no vertex. */
+/* The slot that follows each slot on its loop; 0xff: no vertex. */
 typedef struct mcor_adaptive_links
 {
   MCOR_TYPE(uchar) next[MCOR_ADAPTIVE_SLOTS];
 } mcor_adaptive_links;
 
-/* One loop. facets: which parts of the cell's surface each vertex lies in: bits 4 f .. 4 f + 3 the
- * sub-faces of face f, all four where it is whole; bit 24 + f the face. */
+/* A loop. facets: the parts of the cell's surface that each vertex lies in. Bits 4 f .. 4 f + 3
+ * are the sub-faces of face f, all four if it is whole; bit 24 + f is the face. */
 typedef struct mcor_adaptive_loop
 {
   int length;
@@ -56,15 +56,15 @@ typedef struct mcor_adaptive_loop
   MCOR_TYPE(uint) facets[MCOR_ADAPTIVE_VERTICES];
 } mcor_adaptive_loop;
 
-/* The slot between two neighbouring nodes, half an edge or an edge apart. */
+/* Returns the slot between two neighbouring nodes, half an edge or an edge apart. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
 {
   const int lower = a < b ? a : b, step = a + b - 2 * lower;
   return (step < 3 ? 0 : step < 9 ? 1 : 2) << 5 | lower;
 }
 
-/* Cuts off each run of nodes above on a ring, counter-clockwise seen from outside. The direction
- * makes triangles face the nodes below. */
+/* Cuts off each run of nodes above on a ring, counter-clockwise seen from outside. This
+ * direction makes triangles face the nodes below. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
   const int* ring, int count, MCOR_TYPE(uint) above, mcor_adaptive_links* links)
 {
@@ -86,7 +86,8 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
   }
 }
 
-/* Node i of the eight around a face, axis * 2 + side, counter-clockwise from its lowest corner. */
+/* Returns node i of the eight around a face, axis * 2 + side, counter-clockwise from its lowest
+ * corner. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_face_node(int face, int i)
 {
   const int axis = face >> 1, side = face & 1;
@@ -149,7 +150,7 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_take_loop(
   }
 }
 
-/* Where a vertex is: in the middle of its half-edge or edge. */
+/* Finds the position of a vertex: the middle of its half-edge or edge. */
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_place(
   MCOR_TYPE(uint) split, int slot, MCOR_TYPE(uchar) place[3])
 {
@@ -157,7 +158,7 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_place(
   place[0] = (MCOR_TYPE(uchar))(2 * (node % 3));
   place[1] = (MCOR_TYPE(uchar))(2 * (node / 3 % 3));
   place[2] = (MCOR_TYPE(uchar))(2 * (node / 9));
-  /* Where the next position is no node, this is an edge that is not split. */
+  /* If the next position is no node, the edge is not split. */
   place[axis] =
     (MCOR_TYPE(uchar))(place[axis] + (place[axis] > 0 || (split >> (node + step) & 1) ? 1 : 2));
 }
@@ -204,15 +205,15 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_is_flat(const mcor_adaptive_loop* loop)
   return common != 0;
 }
 
-/* Whether two vertices lie in one sub-face or whole face, or on one edge: in two faces. */
+/* Whether two vertices lie in one sub-face or whole face, or on one edge, i.e. in two faces. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_forbids(MCOR_TYPE(uint) facets_a, MCOR_TYPE(uint) facets_b)
 {
   const MCOR_TYPE(uint) common = facets_a & facets_b, faces = common >> 24;
   return (common & 0xffffff) != 0 || (faces & (faces - 1)) != 0;
 }
 
-/* Cost of a diagonal. In a cell that is like all around it any that may be is as good as another:
- * then the first way that is found is taken, as in the case table. */
+/* Returns the cost of a diagonal. In a cell without finer cells around it, all allowed diagonals
+ * cost the same: the first way found is taken, as in the case table. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, int a, int b)
 {
@@ -230,14 +231,14 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cost(
   return cost;
 }
 
-/* Where in costs that of the part from vertex a to b > a stands. */
+/* Returns the place in `costs` of the part from vertex a to b > a. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_part(int a, int b)
 {
   return b * (b - 1) / 2 + a;
 }
 
-/* The third vertex of the triangle at side a-b of the part from a to b, and the part's cost without
- * that side. */
+/* Finds the third vertex of the triangle at side a-b of the part from a to b, and the part's
+ * cost without that side. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_apex(
   const MCOR_TYPE(ushort) * costs, int a, int b, int* least)
 {
@@ -271,7 +272,8 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_fill_costs(
   }
 }
 
-/* Writes a loop's triangles: each before those of the parts beside it. Returns their number. */
+/* Writes a loop's triangles, each before the triangles of the parts beside it. Returns their
+ * number. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
@@ -302,7 +304,8 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
   return count;
 }
 
-/* The number of a cell's triangles; adds to flat_loops its loops that lie in one face. */
+/* Returns the number of a cell's triangles, and adds its loops that lie in one face to
+ * flat_loops. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_count(
   MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, int* flat_loops)
 {
@@ -323,7 +326,7 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_count(
   return count;
 }
 
-/* Writes a cell's triangles, three slots each, and returns their number. Without split edges these
+/* Writes a cell's triangles, three slots each. Returns their number. Without split edges they
  * are the case table's. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
   MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, MCOR_TYPE(uchar) * triangles)

@@ -38,7 +38,7 @@ typedef double real, realv;
 
 #if defined(__OPENCL_VERSION__) || defined(MCOR_W_ON_HOST)
 
-/* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps it has the value of one side. */
+/* w(q), and its derivatives w'(q) and w''(q). Where w'' jumps, it has the value of one side. */
 
 /* With a = 2 - q and b = 1 - q where positive, 1/4 a^3 - b^3; as a - b = 1 where b is not 0, this
  * is a c + b^2 with c = 1/4 a^2 - b^2, and its derivative is -3 c. */
@@ -68,7 +68,8 @@ MCOR_OF_Q mcor_w_quadratic(realv q)
   return a * a;
 }
 
-/* 0 where it has no direction: at 0, as far as positions of large supports are rounded. */
+/* The gradient is 0 where it has no direction: at 0, as far as positions of large supports are
+ * rounded. */
 MCOR_OF_Q mcor_dw_quadratic(realv q)
 {
   return q < (real)1e-6 ? (realv)0 : (real)-2 * fmax((real)2 - q, (realv)0);

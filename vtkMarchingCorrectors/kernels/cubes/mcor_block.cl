@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Blocks: cubes of nodes are divided, from few that cover the whole lattice down to blocks, where
- * they are active. An inactive cube is certain of one side of the iso value, or void, and so are all
- * around it: no crossed edge is in it, or leads out of it. Empty space, and space that coarse
- * particles fill with values far from the iso value, cost next to nothing.
+/* Blocks: cubes of nodes that are divided where they are active, from few that cover the whole
+ * lattice down to blocks. A cube is inactive if it and all around it are certain of one side of
+ * the iso value, or void: no crossed edge is in it, or leads out of it. Empty space costs next
+ * to nothing, and so does space that coarse particles fill with values far from the iso value.
  *
  * Cubes of one size are sorted by key, as blocks are, and found by mcor_find_block. */
 

@@ -1,16 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The bound of complete seeds [III-C]: what is certain of the nodes in a box from the particles that
- * reach it.
+/* The bound of complete seeds [III-C]: finds, from the particles that reach a box, what is
+ * certain of the nodes in it.
  *
- * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the field's
- * sign against iso is that of F = sum c_j w_j - level, level = 0 (Shepard) or iso. Wherever in the
- * box the point is, each w_j lies between its least and its greatest value there, so that
+ * With c_j = V_j norm / h_j^3 times A_j - iso (Shepard), A_j (sum) or 1 (weight sum), the
+ * field's sign against iso is the sign of F = sum c_j w_j - level, level = 0 (Shepard) or iso.
+ * Wherever in the box the point is, each w_j lies between its least and its greatest value
+ * there, so that
  *
  *   F >= sum of c_j * (least w_j where c_j > 0, greatest where c_j < 0) - level,
  *
- * and likewise from above; this holds for kernels with negative lobes, too. */
+ * and likewise from above. This holds for kernels with negative lobes, too. */
 
 /* Rounding. u is the unit roundoff, n the number of particles that reach the box. A distance that a
  * node's evaluation computes is off by 8 u of itself at most, or of the support where the particle
@@ -32,7 +33,7 @@
 #define MCOR_BOUND_FARTHER ((real)1 + 8 * MCOR_UNIT_ROUNDOFF)
 
 #if MCOR_TENSOR
-/* Interval of the one-dimensional w around d, e to both sides: w falls, then rises to 0. */
+/* Finds the interval of the one-dimensional w from d - e to d + e: w falls, then rises to 0. */
 void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
 {
   const realv near = fmax(fabs(d) - e, (realv)0) * (inv_h * MCOR_BOUND_NEARER);
@@ -43,7 +44,7 @@ void mcor_bound_interval(realv d, real e, realv inv_h, realv* low, realv* high)
                                                                      : fmin(a, b);
 }
 
-/* Least and greatest w over boxes of half size e around (dx, dy, dz). */
+/* Finds the least and greatest w in boxes of half size e around (dx, dy, dz). */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
@@ -57,8 +58,8 @@ void mcor_bound_weights(
   *greatest = fmax(fmax(al * zl, al * zh), fmax(ah * zl, ah * zh));
 }
 #else
-/* w at the point of a box of half size e around (dx, dy, dz) that is nearest (side -1) or farthest
- * (side 1). */
+/* Returns w at the point of a box of half size e around (dx, dy, dz) that is nearest (side -1)
+ * or farthest (side 1). */
 realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side, realv inv_h)
 {
   const realv x = fmax(fabs(dx) + side * e[0], (realv)0);
@@ -68,7 +69,7 @@ realv mcor_bound_weight(realv dx, realv dy, realv dz, const real e[3], real side
   return MCOR_W(mcor_sqrt(mcor_square(x, y, z)) * (inv_h * off));
 }
 
-/* Least and greatest w there: w falls with the distance. */
+/* Finds the least and greatest w in the boxes: w falls with the distance. */
 void mcor_bound_weights(
   realv dx, realv dy, realv dz, const real e[3], realv inv_h, realv* least, realv* greatest)
 {
@@ -81,10 +82,10 @@ void mcor_bound_weights(
 typedef struct
 {
   int count;
-  realv low, high;   /* of F + level */
-  realv size;        /* of the absolute terms */
-  realv weight;      /* of the trimming weights times the greatest w */
-  realv weight_size; /* of the absolute terms of that, where they may be negative */
+  realv low, high;   /* bounds of F + level */
+  realv size;        /* sum of the absolute terms */
+  realv weight;      /* sum of the trimming weights times the greatest w */
+  realv weight_size; /* sum of its absolute terms, if terms may be negative */
 } mcor_bound;
 
 mcor_bound mcor_bound_start(void)
@@ -93,7 +94,7 @@ mcor_bound mcor_bound_start(void)
   return bound;
 }
 
-/* Adds the tile's particles. The box is the query's. */
+/* Adds the tile's particles for the query's box. */
 void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mcor_bound* bound)
 {
   const real e[3] = { query->half_size[0] * MCOR_BOUND_LARGER,
@@ -132,7 +133,7 @@ void mcor_bound_add(const mcor_query* query, const mcor_tile* tile, real iso, mc
   bound->count += tile->count;
 }
 
-/* The state that the sums prove. */
+/* Returns the state that the sums prove. */
 int mcor_bound_state(const mcor_bound* bound, real iso, real node_threshold)
 {
   const real k = (2 * (real)bound->count + MCOR_BOUND_ROUNDINGS) * MCOR_UNIT_ROUNDOFF;

@@ -4,8 +4,8 @@
 /* Cells and edges as masks of a brick: bit x + 4 y + 16 z is the cell, or the edge along an axis, whose lowest node has
  * that bit. */
 
-/* From node masks of a brick and its upper neighbours: mask c becomes that of each cell's corner c
- * (bits x, y, z). */
+/* Makes masks of corners from the node masks of a brick and its upper neighbours: mask c becomes
+ * the mask of each cell's corner c (bits x, y, z). */
 MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -17,7 +17,7 @@ MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
   }
 }
 
-/* Cells of which some corner is set, and those of which all are. */
+/* Return the cells that have some corner set, and the cells that have all. */
 ulong mcor_cell_some(const ulong* corners)
 {
   ulong some = 0;
@@ -38,8 +38,8 @@ ulong mcor_cell_all(const ulong* corners)
   return all;
 }
 
-/* Cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes on both sides.
- * */
+/* Returns the cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes
+ * on both sides. */
 ulong mcor_cell_faces(const ulong* corners, int axis, int side)
 {
   ulong some = 0, all = ~0UL;
@@ -51,7 +51,7 @@ ulong mcor_cell_faces(const ulong* corners, int axis, int side)
   return some & ~all;
 }
 
-/* A brick's cells that are beside these through crossed faces. */
+/* Returns a brick's cells that are beside these through crossed faces. */
 ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
 {
   ulong cells = 0;
@@ -63,7 +63,8 @@ ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
   return cells;
 }
 
-/* Cells that are valid at all nodes and have nodes on both sides. above: of their corners. */
+/* Returns the cells that are valid at all nodes and have nodes on both sides. above: masks of
+ * their corners. */
 ulong mcor_cell_crossed(
   const ulong* above, __global const int* neighbours, __global const ulong* valid, int slot)
 {
@@ -73,9 +74,9 @@ ulong mcor_cell_crossed(
   return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(m);
 }
 
-/* Per edge along an axis of a brick, the cells around it: q[0] above in both other axes, q[1] below
- * in the first, q[2] below in the second, q[3] below in both. m: masks of a brick and its lower
- * neighbours. */
+/* Finds, for each edge along an axis of a brick, the cells around it: q[0] above in both other
+ * axes, q[1] below in the first, q[2] below in the second, q[3] below in both. m: masks of a
+ * brick and its lower neighbours. */
 MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
 {
   const int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;
@@ -85,13 +86,13 @@ MCOR_ONE_COPY void mcor_cell_around(const ulong* m, int axis, ulong* q)
   q[3] = mcor_from_last(c, q[1], mcor_from_last(b, m[1 << c], m[1 << b | 1 << c]));
 }
 
-/* MCOR_EDGE_MASKS, three an axis: crossed edges; of these, those next to a cell that is not used; of
- * these, pinched ones: only two cells are used, opposite to each other. Their triangles form two
- * fans, so that such an edge has two vertices, the second one for the cell below in the first other
- * axis. */
+/* MCOR_EDGE_MASKS hold three masks an axis: crossed edges; the ones of these next to a cell that
+ * is not used; the ones of these that are pinched. Only two cells around a pinched edge are
+ * used, opposite to each other. Their triangles form two fans, so the edge has two vertices, the
+ * second one for the cell below in the first other axis. */
 
-/* Writes those of a brick's edges along an axis, of which these have a used cell in each quadrant around them;
- * returns their number of vertices. */
+/* Writes the masks of a brick's edges along an axis. The arguments hold the edges with a used
+ * cell in each quadrant around them. Returns the number of vertices. */
 int mcor_cell_edges(const ulong* q, int axis, __global ulong* to)
 {
   const ulong crossed = q[0] | q[1] | q[2] | q[3];
@@ -105,7 +106,7 @@ int mcor_cell_edges(const ulong* q, int axis, __global ulong* to)
 /* Nodes of a brick's cells. */
 #define MCOR_CELL_NODES 125
 
-/* Number of the first vertex of node n's edges among the vertices of its brick. */
+/* Returns the number of the first vertex of node n's edges among the vertices of its brick. */
 int mcor_edge_rank(__global const ulong* e, int n)
 {
   const ulong below = (1UL << n) - 1;
@@ -117,8 +118,8 @@ int mcor_edge_rank(__global const ulong* e, int n)
   return rank;
 }
 
-/* Vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z; of a pinched
- * edge, -1 less the first of the two. upper: slots of its upper neighbours, or -1. */
+/* Finds the vertices of all edges of a brick's cells, by axis and lower node x + 5 y + 25 z. A
+ * pinched edge has -1 less the first of its two. upper: slots of its upper neighbours, or -1. */
 void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int numbers[3][MCOR_CELL_NODES])
 {

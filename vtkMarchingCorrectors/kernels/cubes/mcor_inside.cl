@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that its nodes are above the
- * iso value of the free surface, before any others are looked at. */
+/* Bricks far inside of the fluid [III-C]: the few particles close to a brick's nodes prove that
+ * the nodes are above the iso value of the free surface, before any other particles are looked
+ * at. */
 
-/* Share of the query's box and what is in reach of it that the tile's particles fill, roughly. */
+/* Returns roughly the share of the query's box and its reach that the tile's particles fill. */
 real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
 {
   realv volume = 0, inv_h = 0;
@@ -20,20 +21,19 @@ real mcor_seed_filled(const mcor_query* query, real unit, const mcor_tile* tile)
   return mcor_lane_sum(volume) / (MCOR_NORM * box);
 }
 
-/* With less than this filled, a brick is taken to be near the surface. */
+/* A brick whose surroundings are filled less than this is taken to be near the surface. */
 #define MCOR_INSIDE_FILLED ((real)0.8f)
 
 /* A share of each particle's support. */
 #define MCOR_INSIDE_SHARE 0.5f
 
-/* Whether that proof is tried: by regions, where a work-item evaluates whole bricks, else by
- * bricks. */
+/* Whether that proof is tried: by regions if a work-item evaluates whole bricks, else by bricks. */
 #define MCOR_PROVES_INSIDE (MCOR_FIELD == 2 && !MCOR_TENSOR)
 
 #if MCOR_PROVES_INSIDE && MCOR_LANES > 1
-/* Whether those of a tile's particles that are close to any of 2 x 2 points, as many above each other as there are
- * lanes, `step` apart from `at` on, lift all points above the iso value. The order of the sum is not that of nodes:
- * the margin covers it, too. */
+/* Whether the particles of the tile that are close to any of 2 x 2 points, as many above each
+ * other as there are lanes, lift all points above the iso value. Points are `step` apart from
+ * `at` on. The sum has another order than that of a node; the margin covers this, too. */
 bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real step[3], real iso)
 {
   const fixv lane = mcor_lane_index();
@@ -62,9 +62,10 @@ bool mcor_points_are_inside(const mcor_tile* tile, const real at[3], const real 
   return MCOR_ALL(w > iso * (real)1.0001f);
 }
 
-/* Whether they do so at the nodes on a leaf's far sides, of its level. The finer ones there are nodes of finer leaves,
- * too: either own ones, which a proof of those knows, or on their far sides, where a leaf beside a larger one is
- * chosen. The march goes on from there. tile: what is close to all of the leaf. */
+/* Whether the close particles do so at the nodes of the leaf's level on its far sides. The finer
+ * nodes there are also nodes of finer leaves: either own ones, which a proof of those leaves
+ * covers, or nodes on their far sides, where a leaf beside a larger one is chosen. The march
+ * goes on from there. tile: particles close to any of the leaf. */
 bool mcor_sides_are_inside(
   const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile, real iso)
 {
@@ -100,12 +101,13 @@ bool mcor_sides_are_inside(
 }
 #endif
 
-/* A brick is MCOR_ABOVE if the particles within half their support of its nodes, an eighth of all, which make
- * up most of the weight sum there, alone lift all nodes above the iso value: with a kernel w >= 0
- * the rest can only add, in rounded sums, too, as rounding is monotone and the order is the same.
- * The margin is for a compiler that rounds the same term in another way in another place. Far inside
- * the fluid, no more is ever evaluated. Else MCOR_EXAMINE. Of a leaf `beside` finer or coarser ones,
- * of which that does not hold on its far sides, too, these are open. wide: those of the brick's region, if it is complete. */
+/* Returns MCOR_ABOVE if the particles within half their support of a brick's nodes alone lift
+ * all its nodes above the iso value, else MCOR_EXAMINE. These are an eighth of all particles in
+ * reach, and make up most of the weight sum. The rest can only add: w >= 0, rounding is
+ * monotone, and the order is the same. The margin is for a compiler that rounds the same term in
+ * another way in another place. Far inside the fluid, no more is ever evaluated. A leaf `beside`
+ * finer or coarser ones gets MCOR_OPEN_SIDES, too, if the proof fails on its far sides. wide:
+ * the close particles of the brick's region, if complete. */
 int mcor_seed_proof(
   const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide, real iso)
 {
@@ -144,8 +146,8 @@ int mcor_seed_proof(
 }
 
 #if MCOR_PROVES_INSIDE
-/* One work-item = one slot, of `count` from `first` on. Tries the proof where its nodes are neither known nor
- * certain, and it was not tried. */
+/* One work-item = one slot, of `count` from `first` on. Tries the proof unless the nodes are
+ * known or certain, or the proof was tried before. */
 __kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
   __global ulong* above, __global ulong* valid)

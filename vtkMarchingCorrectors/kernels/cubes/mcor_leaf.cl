@@ -1,22 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the cells of leaves that finer ones touch. Such a cell has nodes in the middle of
- * edges, or of faces, too; mcor_adaptive_cell.h makes its triangles. Such nodes and the edges between them
- * are at whole numbers 0 to 8 of the finer cells from the leaf's first node, and are in the slots of
- * the level below; other edges in those of the leaf's level. */
+/* Adaptive cubes: the cells of leaves that touch finer leaves. Such a cell also has nodes in the
+ * middle of edges or faces; mcor_adaptive_cell.h makes its triangles. The leaf's nodes have
+ * coordinates 0 to 8, in finer cells from its first node. Finer nodes and the edges between them
+ * are in slots of the level below; other edges are in slots of the leaf's level. */
 
-/* Facts about a leaf's nodes. */
+/* The nodes of a leaf. */
 typedef struct
 {
-  __global const int* slots; /* of mcor_leaf_tables */
+  __global const int* slots; /* made by mcor_leaf_tables */
   __global const ulong *above, *valid;
-  uint hanging; /* where finer nodes are, by where they lie in the leaf: bits as of directions */
-  int plane;    /* nodes above the plane are as those in it */
-  ulong corners_above[8], corners_valid[8]; /* of cells, see mcor_cell_corners */
+  uint hanging; /* where the leaf has finer nodes: a bit for each part of it, as of directions */
+  int plane;    /* nodes above the plane have the masks of nodes in it */
+  ulong corners_above[8], corners_valid[8]; /* masks of cells, see mcor_cell_corners */
 } mcor_leaf;
 
-/* Slot and number of the node at u, by the leaf's level where that has a slot for it. */
+/* Returns slot and number of the node at (x, y, z): in a slot of the leaf's level if there is
+ * one. */
 int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
 {
   z = leaf->plane ? 0 : z;
@@ -32,8 +33,8 @@ int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
   return (int2)(slot, (x & 3) + 4 * (y & 3) + 16 * (z & 3));
 }
 
-/* Fills in where finer nodes are: an edge, or a face, has one in its middle where any leaf that touches
- * it there is finer. */
+/* Returns where a leaf has finer nodes: an edge or a face has one in its middle if any leaf that
+ * touches it there is finer. */
 uint mcor_leaf_hanging(uint finer)
 {
   uint hanging = 0;
@@ -50,14 +51,14 @@ uint mcor_leaf_hanging(uint finer)
   return hanging;
 }
 
-/* Masks of the leaf's own nodes and those of the 7 bricks up from it. A brick that the leaf's level has
- * no slot for is finer: its nodes on the leaf's side are looked up one by one. */
+/* Makes masks of the leaf's own nodes and of the 7 bricks up from it. A brick without a slot of
+ * the leaf's level is finer: its nodes on the leaf's side are looked up one by one. */
 void mcor_leaf_masks(const mcor_leaf* leaf, __global const ulong* masks, ulong m[8])
 {
   for (int d = 0; d < 8; ++d)
   {
     const int slot = leaf->slots[d];
-    const bool above = leaf->plane && d > 3; /* which no cell needs */
+    const bool above = leaf->plane && d > 3; /* no cell needs these */
     m[d] = slot < 0 ? 0 : masks[slot];
     for (int n = 0; n < 64 && slot < 0 && !above; ++n)
     {
@@ -88,7 +89,7 @@ mcor_leaf mcor_leaf_load(int i, int plane, __global const uint* finer, __global 
   return leaf;
 }
 
-/* Cells that may have finer nodes. */
+/* Returns the cells that may have finer nodes. */
 ulong mcor_leaf_hanging_cells(uint hanging)
 {
   ulong cells = 0;
@@ -103,13 +104,14 @@ ulong mcor_leaf_hanging_cells(uint hanging)
   return cells;
 }
 
-/* Where a coordinate of 0 to 8 lies in the leaf: on its first side, within, on its last. */
+/* Returns where a coordinate of 0 to 8 lies in the leaf: on its first side, within, on its last
+ * side. */
 int mcor_leaf_zone(int u)
 {
   return u == 0 ? 0 : u == 8 ? 2 : 1;
 }
 
-/* A cell's nodes, bits x + 3 y + 9 z of mcor_adaptive_cell.h. */
+/* Nodes of a cell, bits x + 3 y + 9 z of mcor_adaptive_cell.h. */
 typedef struct
 {
   uint split, above;
@@ -142,15 +144,15 @@ mcor_adaptive_nodes_of mcor_leaf_cell(const mcor_leaf* leaf, int cell)
   return nodes;
 }
 
-/* An edge of a cell: where it is kept, and which quadrants around it the cell takes up, as bits, see
- * mcor_cell_around. */
+/* An edge of a cell: its slot, lower node and axis, and the quadrants around it that the cell
+ * takes up, as bits, see mcor_cell_around. */
 typedef struct
 {
   int slot, node, axis;
   uint quadrants;
 } mcor_leaf_edge;
 
-/* The edge from middle-node `lower` of a cell along an axis. */
+/* Returns a cell's edge along an axis from node `lower` of its 27. */
 mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, int axis, int lower)
 {
   const int p[3] = { lower % 3, lower / 3 % 3, lower / 9 };
@@ -174,7 +176,7 @@ mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, in
   return edge;
 }
 
-/* The corners of a cell, bits as of mcor_march_case, among its nodes. */
+/* Turns corners of a cell, bits as in mcor_march_case, into bits of its nodes. */
 uint mcor_leaf_corner_nodes(int corners)
 {
   uint above = 0;
@@ -185,7 +187,7 @@ uint mcor_leaf_corner_nodes(int corners)
   return above;
 }
 
-/* Notes which edges a cell uses, that finer ones touch. */
+/* Marks the edges that a cell beside finer leaves uses. */
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
 {
@@ -218,12 +220,12 @@ void mcor_leaf_mark(
   }
 }
 
-/* Leaves, and the nodes of all bricks. plane: they are squares. */
+/* Leaves, and the nodes of all bricks. plane: cells are squares. */
 #define MCOR_LEAF_PARAMS                                                                           \
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* For bricks: which cells are plain; of others, which leaf a brick is. */
+/* Tables by slot: which cells are plain, and, for other cells, which leaf the brick is. */
 #define MCOR_PLAIN_PARAMS __global const ulong *plain, __global const int *leaf_of
 
 /* Parameters of mcor_march_triangles and mcor_plane_lines, which are launched alike. */
@@ -233,7 +235,8 @@ void mcor_leaf_mark(
     __global const ulong *used, __global const ulong *edges, __global const int *vertex_base,      \
     __global const int *triangle_base, __global ulong *triangle_cells, __global int *triangles
 
-/* Cells without finer nodes that are valid at all nodes and have nodes on both sides. */
+/* Returns the cells without finer nodes that are valid at all nodes and have nodes on both
+ * sides. */
 ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
 {
   return mcor_cell_some(leaf->corners_above) & ~mcor_cell_all(leaf->corners_above) &
@@ -264,7 +267,7 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
   cells[slot] = some ? ~0UL : 0;
 }
 
-/* Vertex of a cell's edge, given as in mcor_adaptive_cell.h. */
+/* Returns the vertex of a cell's edge, given as in mcor_adaptive_cell.h. */
 int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int lower,
   __global const ulong* edges, __global const int* vertex_base)
 {
@@ -275,12 +278,12 @@ int mcor_leaf_vertex(const mcor_leaf* leaf, int cell, uint split, int axis, int 
   {
     number += (int)((e[a] >> edge.node & 1) + (e[6 + a] >> edge.node & 1));
   }
-  /* A pinched edge's second vertex is that of the cell below in the first other axis. */
+  /* The second vertex of a pinched edge belongs to the cell below in the first other axis. */
   const bool below = (edge.quadrants & 5) == 0;
   return number + (int)(below && (e[6 + axis] >> edge.node & 1));
 }
 
-/* Writes the triangles of a cell that finer ones touch; returns their number. */
+/* Writes the triangles of a cell that touches finer leaves. Returns their number. */
 int mcor_leaf_emit(const mcor_leaf* leaf, int cell, __global const ulong* edges,
   __global const int* vertex_base, __global int* to)
 {

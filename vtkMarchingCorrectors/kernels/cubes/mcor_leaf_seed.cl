@@ -1,20 +1,21 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: which leaves may have surface in them.
+/* Adaptive cubes: finds the leaves that may have surface.
  *
- * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have the nodes of that level, 5 along an edge, and
- * where a leaf beside is finer those of the level below on its sides: 9 along an edge. Where all leaves up from it are
- * of its level, each tells of its own nodes, 4 along an edge: by its state (mcor_seed.cl), or by their values. Then
- * there is no surface in it if it and they are on one side. Beside leaves of other levels its state has to tell of
- * all its points, sides included. All lengths are in cells of the level, as which the search grid is seen
- * (mcor_view_level). */
+ * A leaf is a brick of 4 x 4 x 4 cells of its level. Its cells have nodes of that level, 5 along
+ * an edge. Where a leaf beside it is finer, they also have nodes of the level below on its
+ * sides, 9 along an edge. If all leaves up from it are of its level, each answers for its own
+ * nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. There is no surface in
+ * the leaf if it and they are on one side. Beside leaves of other levels, the state has to cover
+ * all points of the leaf, sides included. All lengths are in cells of the level; the search grid
+ * is seen in them, too (mcor_view_level). */
 
-/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: of the 27 bricks in and around a leaf, those that are
- * finer. */
+/* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: the finer ones of the 27 bricks in and around a leaf. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
-/* One work-item = one element, with the padding. Writes inverse smoothing lengths in other cells. */
+/* One work-item = one element, with the padding. Writes inverse smoothing lengths in cells of
+ * another size. */
 __kernel void mcor_adaptive_scale(
   const int count, __global const real* inv_h, const real factor, __global real* scaled)
 {
@@ -22,7 +23,8 @@ __kernel void mcor_adaptive_scale(
   scaled[i] = inv_h[i] * factor;
 }
 
-/* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row have their bits. row: number in its block of the first. */
+/* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row have their bits set. row: number of
+ * its first brick in the block. */
 uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 {
   const int word = row >> 5, at = row & 31;
@@ -31,8 +33,9 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
   return found | (blocks.z < 0 ? 0 : (bits[blocks.z * MCOR_BLOCK_WORDS + word] >> at & 1) << 9);
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are split. Notes its leaves
- * that are beside others: finer ones around them, or up from them none or coarser ones. In the plane, none are up. */
+/* One work-item = one row of 8 bricks of a block. Reads which bricks are leaves, and which are
+ * split. Marks its leaves that are beside other levels: with finer leaves around them, or with
+ * none or a coarser one up from them. A plane has none up from it. */
 __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
   __global const uint* split, __global uint* beside)
 {
@@ -57,7 +60,7 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
       up[d - (d < 6 ? 4 : 5)] = rows[d] | mcor_row_bits(at, row, leaves);
     }
   }
-  uint finer = 0, all = ~0u; /* bits x: around, up from it */
+  uint finer = 0, all = ~0u; /* bits x: finer bricks around; bricks up from it */
   for (int d = 0; d < 9; ++d)
   {
     finer |= rows[d] | rows[d] >> 1 | rows[d] >> 2;
@@ -69,13 +72,14 @@ __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global con
   atomic_or(beside + (m >> 5), (own & (finer | ~all)) << (m & 31));
 }
 
-/* The leaves, and what is known of their nodes. */
+/* Leaves, and the facts known about their nodes. */
 #define MCOR_KNOWN_PARAMS                                                                          \
   MCOR_BRICK_PARAMS, __global const uint *leaves, __global const uchar *states,                    \
     __global const ulong *known, __global const ulong *above, __global const ulong *valid
 #define MCOR_KNOWN_ARGS MCOR_BRICK_ARGS, leaves, states, known, above, valid
 
-/* On which sides those nodes of brick m may be that the leaf down from it by d (bits x, y, z; 0: itself) has. */
+/* Returns the sides of some nodes of brick m: the nodes that it shares with the leaf down from
+ * it by d (bits x, y, z; 0: itself). */
 int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 {
   if (m < 0 || !mcor_has_brick(leaves, m))
@@ -92,8 +96,8 @@ int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
   return (its & above[slot] ? MCOR_ABOVE : 0) | (its & ~above[slot] ? MCOR_BELOW : 0);
 }
 
-/* One work-item = one row of 8 bricks of a block. Requests its leaves that are to be examined: nodes that cells of
- * theirs may have are on both sides. */
+/* One work-item = one row of 8 bricks of a block. Chooses its leaves whose cells may have nodes
+ * on both sides. */
 __kernel void mcor_leaf_choose(
   MCOR_KNOWN_PARAMS, const int plane, __global const uint* beside, __global uint* chosen)
 {
@@ -127,8 +131,8 @@ __kernel void mcor_leaf_choose(
   atomic_or(chosen + (m >> 5), found << (m & 31));
 }
 
-/* One work-item = one word of 32 bricks. Reads the scanned counts of chosen ones. Writes these, in order, and which
- * bricks around them are split. */
+/* One work-item = one word of 32 bricks. Reads the scanned counts of chosen leaves. Writes the
+ * leaves in order, and which bricks around each are split. */
 __kernel void mcor_leaf_list(MCOR_BLOCK_PARAMS, __global const uint* chosen,
   __global const int* scanned, __global const uint* split, __global int4* cells,
   __global uint* finer)

@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the nodes of leaves where there may be surface. They are kept in slots, of bricks of one
- * level as everywhere: those of a leaf, and those that hold the far ends of its cells and the finer
- * nodes. */
+/* Adaptive cubes: the nodes of leaves that may have surface. Nodes are kept in the slots of
+ * bricks, as everywhere: the slot of the leaf, and the slots that hold the far ends of its cells
+ * and its finer nodes. */
 
 #define MCOR_WANTED_IN_PLANE (0xfUL | 0x1ffUL << 8)
 
-/* Bricks whose nodes a leaf needs: of its level bits 0 to 7 (x, y, z up), of the finer one from bit 8
- * on, (x, y, z) 0 to 2 from its first one. Where a leaf beyond a far side is finer, that one has the
- * leaf's nodes there, too. In the plane, those of its layer. */
+/* Returns the bricks whose nodes a leaf needs. Bits 0 to 7 are bricks of its level (x, y, z up);
+ * bits from 8 on are bricks of the finer level, (x, y, z) 0 to 2 from the leaf's first one. If a
+ * leaf beyond a far side is finer, its brick has the leaf's nodes there, too. In the plane, only
+ * bricks of its layer. */
 ulong mcor_leaf_wanted(uint finer, int plane)
 {
   ulong wanted = 0;
@@ -34,7 +35,7 @@ ulong mcor_leaf_wanted(uint finer, int plane)
   return plane ? wanted & MCOR_WANTED_IN_PLANE : wanted;
 }
 
-/* The brick of bit `b` of these, with its level. */
+/* Returns the brick of bit `b`, with its level. */
 int4 mcor_leaf_wanted_brick(int4 leaf, int b)
 {
   const int f = b - 8;
@@ -68,8 +69,8 @@ __kernel void mcor_leaf_tables(MCOR_BRICK_PARAMS, const int count, const int pla
   }
 }
 
-/* One work-item = one slot. Writes the state of its brick if that is a leaf, and signs if they are certain, but not
- * known. */
+/* One work-item = one slot. Writes the state of its brick if that is a leaf. Writes the signs of
+ * its nodes if they are certain but not known. */
 __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global const int4* bricks,
   __global const uint* leaves, __global const uchar* states, __global const ulong* known,
   __global uchar* proofs, __global ulong* above, __global ulong* valid)
@@ -86,8 +87,8 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   }
 }
 
-/* Marks a slot whose nodes' values are needed after all; of those below the node threshold they never
- * are. */
+/* Asks for the node values of a slot that was certain. Values below the node threshold are never
+ * needed. */
 void mcor_leaf_ask(__global uchar* proofs, int slot)
 {
   if (slot >= 0 && (proofs[slot] == MCOR_ABOVE || proofs[slot] == MCOR_BELOW))
@@ -96,8 +97,8 @@ void mcor_leaf_ask(__global uchar* proofs, int slot)
   }
 }
 
-/* The same of those that crossed cells of a leaf need, which has no finer ones around it; whether there are
- * any. */
+/* Asks for the node values that crossed cells of a leaf need. The leaf has no finer ones around
+ * it. Returns whether it has crossed cells. */
 bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
   __global const ulong* valid, __global uchar* proofs)
 {
@@ -120,8 +121,9 @@ bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
   return crossed != 0;
 }
 
-/* One work-item = one leaf. Writes whether its cells have nodes on both sides: if not, there is no surface.
- * Then values are needed, of slots that were certain, too. */
+/* One work-item = one leaf. Writes whether its cells have nodes on both sides; if not, there is
+ * no surface in it. If so, asks for the values that its cells need, also in slots that were
+ * certain. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
   __global uchar* mixed, __global uchar* proofs)

@@ -1,15 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by lattice edge.
+/* Extraction [III-D.1]: marching cubes on masks of 64 nodes or cells, vertices numbered by
+ * lattice edge.
  *
- * A cell is plain that no finer brick touches, not even at its corner: it has all its nodes in bricks of its level. Of
- * the others, where cubes have several levels, mcor_march_hanging finds which are used, and which edges
- * they use. */
+ * A cell is plain if no finer brick touches it, not even at its corner: it has all its nodes in
+ * bricks of its level. With several levels, mcor_march_hanging finds which other cells are used,
+ * and which edges they use. */
 
-/* One work-item = one leaf. Reads its nodes' masks. Of its cells that are not plain, leaves the used ones in `used`,
- * and notes which edges they use; writes the number of their triangles, or lines, by slot, and adds that of the loops
- * of owned ones that lie in one face between leaves. */
+/* One work-item = one leaf. Reads its nodes' masks. Leaves in `used` the used ones of its cells
+ * that are not plain, and marks the edges that they use. Writes the number of their triangles,
+ * or lines, by slot. Adds the number of loops of owned cells that lie in one face between
+ * leaves. */
 __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   __global const ulong* owned, __global uint* quadrants, __global ulong* used,
   __global int* triangle_count, __global int* flat_loops)
@@ -52,8 +54,8 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
   }
 }
 
-/* One work-item = one brick. Reads the node masks. Of its plain cells, leaves in `used` those that are valid at all
- * nodes and have nodes on both sides; writes these to plain_used, too. */
+/* One work-item = one brick. Reads the node masks. Leaves in `used` its plain cells that are
+ * valid at all nodes and have nodes on both sides; writes these to plain_used, too. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
   __global const ulong* plain, __global const ulong* above, __global const ulong* valid, __global ulong* used, __global ulong* plain_used)
 {
@@ -109,8 +111,8 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
   }
 }
 
-/* Value at the upper end of the edge from node n of a brick along an axis; beyond it, of the brick there, or of the
- * finer one that has the node. */
+/* Returns the value at the upper end of the edge from node n of a brick along an axis. An end
+ * beyond the brick is in the next brick, or in the finer one that has the node. */
 real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 brick, int slot, int n,
   int axis, __global const real* node_value)
 {

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes. What depends on the form is in mcor_node_lanes.cl and
- * mcor_node_point.cl, of which the host embeds one. */
+/* Evaluation of the field at nodes. The host embeds one of mcor_node_lanes.cl and
+ * mcor_node_point.cl, which have the parts that differ on CPUs and GPUs. */
 
-/* Nodes that one work-item evaluates: a brick where particles are gathered for many lanes at once.
- * Groups of MCOR_LANES of them. */
+/* Nodes that one work-item evaluates: a whole brick if particles are gathered for many lanes at
+ * once. They form groups of MCOR_LANES. */
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 
@@ -18,16 +18,15 @@ typedef struct
 #endif
 } mcor_node_sums;
 
-/* Where those of a work-item's n-th node are. */
+/* Place of a work-item's n-th node in these sums. */
 int mcor_group_of(int n);
 int mcor_lane_of(int n);
 
-/* Makes them for the nodes of a query of mcor_node_query. The tile may hold its particles
- * already. */
+/* Sums at the nodes of a query of mcor_node_query. The tile may already hold its particles. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums);
 
-/* Completes the query for nodes of a brick. All bricks of a region count positions from its first
- * node, so that a node's value is the same whichever of its tiles is at hand. */
+/* Completes the query for nodes of a brick. All bricks of a region count positions from its
+ * first node, so a node's value is the same whichever tile of the region it is made from. */
 void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
 {
   const int4 first = brick / MCOR_REGION_BRICKS * MCOR_REGION_BRICKS * MCOR_BRICK;
@@ -36,8 +35,8 @@ void mcor_query_in_region(const mcor_grid* grid, int4 brick, mcor_query* query)
   mcor_query_place(grid, query, origin);
 }
 
-/* The query for the nodes of a work-item, MCOR_ITEM_NODES of a brick from `first` on, and so many `more` beyond
- * the last ones. share: of each particle's support. */
+/* Returns the query for the nodes of a work-item: MCOR_ITEM_NODES of a brick from `first` on,
+ * and `more` beyond the last ones. share: share of each particle's support that counts. */
 MCOR_ONE_COPY mcor_query mcor_node_query(
   const mcor_grid* grid, int4 brick, int first, int more, float share)
 {
@@ -79,8 +78,8 @@ void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global 
   }
 }
 
-/* Finds which nodes of a brick are above the iso value, and which are valid: their weight is not
- * below the node threshold. */
+/* Returns which nodes of a brick are above the iso value, and which are valid: their weight is
+ * not below the node threshold. */
 ulong2 mcor_node_signs(
   __global const real* value, __global const real* weight, real iso, real node_threshold)
 {
@@ -93,8 +92,8 @@ ulong2 mcor_node_signs(
   return (ulong2)(a, v);
 }
 
-/* One work-item = MCOR_ITEM_NODES nodes of a brick, of `count` from `first` on. Where they are needed, reads the
- * particles that reach them. Writes their values and weights. */
+/* One work-item = MCOR_ITEM_NODES nodes of a brick, of `count` from `first` on. If they are
+ * needed, reads the particles that reach them, and writes their values and weights. */
 __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)
@@ -114,8 +113,8 @@ __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int coun
   mcor_node_store(&sums, node_value + first_node, node_weight + first_node);
 }
 
-/* One work-item = one brick. Reads the values of its nodes where these are `evaluated`: they are
- * known from now on. Writes which are above the iso value, and which are valid. */
+/* One work-item = one brick. Reads the values of its nodes if these were `evaluated`, and marks
+ * them known. Writes which are above the iso value, and which are valid. */
 __kernel void mcor_node_sides(const int brick_count, __global const ulong* evaluated,
   __global ulong* known, __global const real* node_value, __global const real* node_weight,
   const real iso, const real node_threshold, __global ulong* above, __global ulong* valid)

@@ -7,7 +7,7 @@
 #define MCOR_GROUP_XY 2
 #define MCOR_GROUP_Z (MCOR_LANES / 4)
 
-/* First node of group g. */
+/* Returns the first node of group g. */
 int4 mcor_group_node(int g)
 {
   return (int4)(2 * (g & 1), 2 * (g >> 1 & 1), MCOR_GROUP_Z * (g >> 2), 0);
@@ -23,7 +23,7 @@ int mcor_lane_of(int n)
   return (n & 1) | (n >> 2 & 1) << 1 | (n >> 4) % MCOR_GROUP_Z << 2;
 }
 
-/* Places in the tile of the particles that reach a group, whose first node is (x, y, z). */
+/* Lists the places in the tile of the particles that reach a group. (x, y, z): its first node. */
 int mcor_node_list(
   const mcor_tile* tile, const real edge[3], real x, real y, real z, real share, int* list)
 {
@@ -41,10 +41,10 @@ int mcor_node_list(
   return count;
 }
 
-/* Nodes of a group from its query's origin, and weights there in two steps, see
+/* Nodes of a group, from its query's origin; weights there are made in two steps, see
  * mcor_distance. */
 #if MCOR_TENSOR
-/* A group has few different x, y and z, so that one evaluation of w serves them all: lanes 0 and 1
+/* A group has few different x, y and z, so one evaluation of w serves them all: lanes 0 and 1
  * are x, 2 and 3 y, from 4 on z. */
 typedef struct
 {

@@ -1,11 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The paper's seed selection [III-C]: pairs of particles closer than the smoothing length with
- * values on both sides, and all cells on the straight line between them. Where there is certainly no surface, there
- * are no blocks: cells there are not marked. */
+/* The paper's seed selection [III-C]: pairs of particles that are closer than the smoothing
+ * length and have values on both sides, and all cells on the straight line between them. Cells
+ * without a block are not marked: there is certainly no surface. */
 
-/* Adds a cell to those of its brick, if that is one; `reached` is by the bricks' numbers. Whether it is new. */
+/* Adds a cell to the cells of its brick, if the brick exists. `reached` is by the bricks'
+ * numbers. Returns whether the cell is new. */
 bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reached)
 {
   const int number = mcor_brick_number(MCOR_BLOCK_ARGS, 0, x >> 2, y >> 2, z >> 2);
@@ -41,16 +42,16 @@ __kernel void mcor_pair_request(
 #define MCOR_MARK_PARAMS MCOR_BLOCK_PARAMS, __global uint* reached
 #define MCOR_MARK_ARGS MCOR_BLOCK_ARGS, reached
 
-/* Where a line, of which 1 / gap is the extent along an axis, crosses the side by which it leaves the cell
- * from `low` on: as a share of the line; beyond it where it ends in the cell. */
+/* Returns where a line leaves the cell from `low` on along an axis, as a share of the line;
+ * above 1 if it ends in the cell. 1 / gap: extent of the line along the axis. */
 real mcor_pair_crossing(long from, long low, long edge, int step, real gap, bool ends)
 {
   const long side = step < 0 ? from - low : low + edge - from;
   return ends ? (real)2 : (real)side * gap;
 }
 
-/* Marks the cells on the line between particles j and k. Where it passes an edge or a corner of a cell to within
- * rounding, the cells on both sides are found. */
+/* Marks the cells on the line between particles j and k. If the line passes an edge or a corner
+ * of a cell to within rounding, marks the cells on both sides. */
 void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
 {
   const fix from[3] = { grid->px[j], grid->py[j], grid->pz[j] };
@@ -88,12 +89,12 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
   }
 }
 
-/* Pairs may be as far apart as the smoothing length, not scaled; and a little more, so that
- * rounding does not decide where particles lie on a lattice of that spacing. */
+/* Greatest distance of a pair, in unscaled smoothing lengths. It is a little more than 1, so
+ * that rounding does not decide for particles on a lattice of that spacing. */
 #define MCOR_PAIR_REACH ((real)1.0001)
 
-/* Rounding error, at most, of the square of a distance within the smoothing length 1 / inv_h, as
- * positions count from the query's origin. */
+/* Returns the greatest rounding error of the square of a distance within the smoothing length 1
+ * / inv_h. Positions count from the query's origin. */
 real mcor_pair_slack(const mcor_query* query, real inv_h)
 {
   const real* half_size = query->half_size;
@@ -102,7 +103,7 @@ real mcor_pair_slack(const mcor_query* query, real inv_h)
   return off * (2 / inv_h + 3 * off);
 }
 
-/* Which of particles i, i + 1, ... of the tile may make a pair with particle j. */
+/* Returns which of particles i, i + 1, ... of the tile may make a pair with particle j. */
 fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const mcor_tile* tile,
   int i, int j, real iso, real h_scale)
 {
@@ -119,9 +120,9 @@ fixv mcor_pair_candidates(const mcor_grid* grid, const mcor_query* query, const 
     MCOR_TILE(tile, weight, i) != 0 && (above || (r2 + slack) * other * other >= (real)1);
 }
 
-/* Whether particle k, on the other side of the iso value, is closer to particle j than its smoothing
- * length. A pair in which each is closer than the other's is left to the particle above. By exact
- * differences: which particles were looked at together does not matter. */
+/* Whether particle k, on the other side of the iso value, is closer to particle j than j's
+ * smoothing length. If each is closer than the other's length, the pair is left to the particle
+ * above. Differences are exact, so it does not matter which particles were looked at together. */
 bool mcor_pair_is_chosen(const mcor_grid* grid, int j, int k, real iso, real h_scale)
 {
   const real x = (real)(grid->px[k] - grid->px[j]) * grid->unit;
@@ -153,8 +154,8 @@ void mcor_pair_seed_particle(const mcor_grid* grid, const mcor_query* query, con
   }
 }
 
-/* Fits the query to those of particles [begin, end) that lie in one row, and to what may pair with
- * them. Returns how many. */
+/* Fits the query to the first of particles [begin, end) that lie in one row, and to the
+ * particles that may pair with them. Returns how many they are. */
 int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mcor_query* query)
 {
   real coarsest;
@@ -163,7 +164,7 @@ int mcor_pair_query(const mcor_grid* grid, int begin, int end, real h_scale, mco
   return count;
 }
 
-/* Greatest inv_h of the tile's particles. */
+/* Returns the greatest inv_h of the tile's particles. */
 real mcor_pair_finest(const mcor_tile* tile)
 {
   realv most = 0;
@@ -179,7 +180,7 @@ real mcor_pair_finest(const mcor_tile* tile)
   return finest;
 }
 
-/* Marks cells for particles [begin, end), which the query was fitted to. */
+/* Marks cells for particles [begin, end), to which the query was fitted. */
 void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begin, int end,
   real iso, real h_scale, MCOR_MARK_PARAMS)
 {
@@ -191,7 +192,8 @@ void mcor_pair_seed_particles(const mcor_grid* grid, mcor_query* query, int begi
     const real finest = mcor_pair_finest(&tile);
     for (int j = begin; j < end && (seen == 3 || !tile.complete); ++j)
     {
-      /* One below that is no coarser than any other leaves all its pairs to those. */
+      /* A particle below whose length is no longer than any other leaves all its pairs to the
+       * others. */
       const bool leaves = grid->value[j] < iso && grid->inv_h[j] >= finest;
       if (!leaves && (!MCOR_SOLIDS || grid->weight[j] != 0))
       {

@@ -3,7 +3,7 @@
 
 /* Growth of the cells between pairs [III-C], from cell to cell through crossed faces. */
 
-/* Whether bricks that have nodes of a brick's cells have no slot yet. */
+/* Whether a brick that has nodes of this brick's cells still lacks a slot. */
 bool mcor_pair_lacks(
   MCOR_BLOCK_PARAMS, __global const int* neighbours, int slot, int own, int4 brick, ulong cells)
 {
@@ -29,7 +29,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   const int4 brick = bricks[i];
   const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
   const ulong before = grown[own];
-  /* Others add to them meanwhile: what is missed is there in the next round. */
+  /* Others add cells meanwhile; the next round sees the ones missed here. */
   const ulong first = atomic_or(reached + 2L * own, 0), rest = atomic_or(reached + 2L * own + 1, 0);
   ulong cells = domain[i] & (rest << 32 | first);
   if (cells == before)
@@ -53,7 +53,7 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   mcor_add_cells(reached, own, cells);
   if (!mcor_pair_lacks(MCOR_BLOCK_ARGS, neighbours, i, own, brick, cells))
   {
-    grown[own] = cells; /* else again, when all its nodes are known */
+    grown[own] = cells; /* else again, once all its nodes are known */
   }
   const ulong fresh = cells & ~before & used;
   for (int face = 0; face < 6 && fresh; ++face)
@@ -71,8 +71,9 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   }
 }
 
-/* One work-item = one brick of a block. Reaches the images, at whole periods (of so many cells; 0: open), of its
- * reached cells, as far as they are in the first period or in the ring around it. flags: 1 where one is new. */
+/* One work-item = one brick of a block. Reaches the periodic images of its reached cells that
+ * are in the first period or in the ring around it. Periods are in cells; 0: open. flags: 1
+ * where a cell is new. */
 __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_x,
   const int first_y, const int first_z, const int period_x, const int period_y, const int period_z,
   __global uint* reached, __global int* flags)
@@ -107,7 +108,8 @@ __kernel void mcor_pair_wrap(MCOR_BLOCK_PARAMS, const int ring, const int first_
   }
 }
 
-/* One work-item = one brick. Writes to its slot those of its cells that are reached, and that pairs marked. */
+/* One work-item = one brick. Writes to its slot its cells that are reached, and the ones that
+ * pairs marked. */
 __kernel void mcor_pair_fill(const int brick_count, __global const int4* bricks, MCOR_BLOCK_PARAMS,
   __global const ulong* reached, __global const ulong* marked, __global ulong* cells,
   __global ulong* seeds)

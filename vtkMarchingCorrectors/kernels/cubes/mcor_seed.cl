@@ -1,23 +1,24 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Complete seeds [III-C]: which bricks of nodes are to be evaluated, so that no crossed edge is
- * missed. Nodes are left out where the side of the iso value that they are on is certain without,
- * or where their weight is certain to be too low: whole blocks (32^3 nodes) or more of them,
- * regions (8^3) and bricks (4^3). A crossed edge has nodes on both sides. If both were left out,
- * two neighbouring bricks would be certain of different sides: those are evaluated after all
- * (mcor_seed_request). If one was, an evaluated brick would have a node on the other side than its
- * neighbour: that is evaluated then (mcor_seed_grow). All bricks of regions that are not certain
- * have slots while they are tested, so that the particles gathered for the bound serve the nodes'
- * values, too (mcor_seed_bricks). */
+/* Complete seeds [III-C]: finds the bricks whose nodes must be evaluated so that no crossed edge
+ * is missed. Nodes are left out if their side of the iso value is certain without evaluation, or
+ * if their weight is certainly too low: whole blocks (32^3 nodes) or several of them, regions
+ * (8^3) and bricks (4^3). A crossed edge has nodes on both sides. If both nodes were left out,
+ * two neighbouring bricks would be certain of different sides: these are evaluated after all
+ * (mcor_seed_request). If one was left out, an evaluated brick would have a node on the other
+ * side than its neighbour: the neighbour is evaluated then (mcor_seed_grow). All bricks of
+ * uncertain regions have slots while they are tested, so that the particles gathered for the
+ * bound also serve the nodes' values (mcor_seed_bricks). */
 
 #if !MCOR_OF_LATTICE
-/* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the least
- * and the greatest of its values. */
+/* Whether the range of raw values decides: a Shepard mean with weights >= 0 lies between the
+ * least and the greatest of its values. */
 #define MCOR_RANGE_DECIDES (MCOR_FIELD == 0 && !MCOR_TENSOR)
 
-/* Parameters on which a node's side depends. side_margin: how far rounding may move a mean of values that are
- * all on one side, as a share of each; see mcor_side_margin in mcor_seed.c. */
+/* Parameters on which a node's side depends. side_margin: greatest change by rounding of a mean
+ * of values that are all on one side, as a share of each value; see mcor_side_margin in
+ * mcor_seed.c. */
 typedef struct
 {
   __global const uchar* side_flags; /* see mcor_seed_side_flags */
@@ -32,12 +33,12 @@ typedef struct
     side_flags, side_margin, iso, node_threshold                                                   \
   }
 
-/* Sides of the iso value on which particles are: bit 0 above, bit 1 below; both where it is so close
- * that a mean of such values may round to the other side. Kept for every MCOR_SIDE_PARTICLES successive
- * sorted particles, so that most queries need not look at particles. */
+/* Sides of the iso value on which particles are: bit 0 above, bit 1 below. Both are set if a
+ * value is so close that a mean of such values may round to the other side. One flag serves
+ * MCOR_SIDE_PARTICLES successive sorted particles, so most queries need not look at particles. */
 
 #if MCOR_OF_FIELD
-/* One work-item = one run. Writes its fluid particles' sides. */
+/* One work-item = one run of particles. Writes the sides of its fluid particles. */
 __kernel void mcor_seed_side_flags(const int particle_count, __global const real* weight,
   __global const real* value, const real side_margin, const real iso, __global uchar* side_flags)
 {
@@ -57,7 +58,8 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
 }
 #endif
 
-/* Sides of all particles that may reach a query's box, and maybe some more; as a state. */
+/* Returns the sides of all particles that may reach a query's box, and maybe of some more, as a
+ * state. */
 int mcor_query_side_flags(
   const mcor_grid* grid, mcor_query* query, __global const uchar* side_flags)
 {
@@ -75,7 +77,8 @@ int mcor_query_side_flags(
   return seen;
 }
 
-/* The query for a cube of nodes, `cubes` long, but no more than `depth` along z, from the first one of a brick on. */
+/* Returns the query for a cube of nodes from the first node of a brick on. It is `cubes` long,
+ * but no more than `depth` along z. */
 MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int cubes, int depth)
 {
   mcor_query query;
@@ -91,7 +94,7 @@ MCOR_ONE_COPY mcor_query mcor_seed_query(const mcor_grid* grid, int4 brick, int 
   return query;
 }
 
-/* Sides of the tile's particles. */
+/* Returns the sides of the tile's particles. */
 int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 {
   fixv above = 0, below = 0;
@@ -108,9 +111,9 @@ int mcor_tile_sides(const mcor_tile* tile, real side_margin, real iso)
 /* A coarse cube that more particles reach is divided without a bound. */
 #define MCOR_COARSE_PARTICLES 1024
 
-/* State of a cube of nodes, the query's box, whose particles are left in the tile; it may hold them
- * before. Of a coarse one, less is asked: it may be taken for certain where a part is void, and for
- * undecided. */
+/* Returns the state of a cube of nodes, the query's box. The tile may hold its particles before,
+ * and holds them afterwards. A coarse cube needs a weaker answer: it may count as certain though
+ * a part is void, and as undecided without a bound. */
 int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, bool coarse,
   const mcor_seed_limits* limits)
 {
@@ -151,7 +154,7 @@ int mcor_seed_state(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
 
 #define MCOR_REGION_CUBES (MCOR_REGION_BRICKS * MCOR_BRICK)
 
-/* Number of a region's first brick, and offsets of the numbers of all of them. */
+/* Return the number of a region's first brick, and the offsets of the numbers of its bricks. */
 int mcor_region_number(int region)
 {
   const int block = region / MCOR_BLOCK_REGIONS, r = region % MCOR_BLOCK_REGIONS;
@@ -162,7 +165,7 @@ int mcor_region_offset(int b)
   return (b & 1) + 8 * (b >> 1 & 1) + 64 * (b >> 2);
 }
 
-/* The bricks of a region, bits x, y, z, that are leaves; with one level all are. */
+/* Returns the bricks of a region, bits x, y, z, that are leaves; with one level all are. */
 uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
 {
   uint found = 0;
@@ -173,11 +176,12 @@ uint mcor_region_leaves(MCOR_TREE_PARAMS, int number)
   return has_leaves ? found : 0xff;
 }
 
-/* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and the states of blocks;
- * of a plane (depth 0), or with several levels, it asks the range of raw values first. Writes the states of its bricks,
- * or leaves, as far as the region tells; requests those that are not certain, and lists the regions that have such, in
- * any order from number `first` on; list_count: of each level. With several levels, a region has the nodes on its
- * far sides, too. Above a plane nothing is examined. */
+/* One work-item = one region, of `count` from `first` on. Reads the particles that reach it, and
+ * the states of blocks. In a plane (depth 0) or with several levels, it first tries the range of
+ * raw values. Writes the states of its bricks, or leaves, that follow from the region, and
+ * requests the uncertain ones. Appends a region with uncertain bricks to the list, in any order
+ * from number `first` on; list_count: of each level. With several levels, a region includes the
+ * nodes on its far sides. Above a plane nothing is examined. */
 __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int count, const int depth,
   __global const mcor_rung* rungs, __global const ulong* block_keys,
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
@@ -207,7 +211,7 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   {
     state = mcor_query_side_flags(&grid, &query, side_flags);
   }
-  uint inside = 0, open = 0; /* bricks */
+  uint inside = 0, open = 0; /* bits of bricks */
   if (MCOR_PROVES_INSIDE && MCOR_ITEM_NODES == 64 && depth > 0 && state == MCOR_EXAMINE)
   {
     query.radius = -MCOR_INSIDE_SHARE;
@@ -243,9 +247,10 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   }
 }
 
-/* State of a brick whose region is not certain: of its nodes, of a leaf beside other levels also of those on its far
- * sides. wide: the particles of the region, if it is complete. As the brick's are at hand, its nodes are evaluated if they are to be, where a
- * work-item evaluates whole bricks; returns the known ones. */
+/* Finds the state of a brick in an uncertain region. The state covers its nodes; for a leaf
+ * beside other levels also the nodes on its far sides. wide: the particles of the region, if
+ * complete. If a work-item evaluates whole bricks, it also evaluates the nodes of a brick to
+ * examine, because its particles are at hand. Returns the nodes known now. */
 ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor_tile* wide,
   const mcor_seed_limits* limits, __global uchar* state, __global real* value,
   __global real* weight)
@@ -279,9 +284,9 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor
 /* Bricks of a region that a work-item treats. */
 #define MCOR_ITEM_BRICKS (MCOR_ITEM_NODES == 64 ? 8 : 1)
 
-/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list, of `count` from `first` on. Reads the particles that reach
- * it. Of bricks of which nothing is known, writes the states, and the nodes known by now with their
- * values and signs. */
+/* One work-item = MCOR_ITEM_BRICKS bricks of a region of the list, of `count` from `first` on.
+ * Reads the particles that reach it. Writes the states of bricks that are not known yet, and the
+ * values and signs of nodes that it evaluates. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int count,
   MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS, __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
   __global real* node_value, __global real* node_weight, __global ulong* above,
@@ -326,7 +331,7 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
 #endif
 
 #if MCOR_OF_LATTICE
-/* A block and those left and right of it, or -1. */
+/* Returns a block and the blocks left and right of it; -1 for one that does not exist. */
 int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 {
   return (int3)(mcor_find_block(MCOR_BLOCK_ARGS, level, x - 1, y, z),
@@ -334,8 +339,8 @@ int3 mcor_seed_blocks(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
     mcor_find_block(MCOR_BLOCK_ARGS, level, x + 1, y, z));
 }
 
-/* Which of the bricks x = -1 to 8 (bits 0 to 9) of a row are certain to be above, and to be below
- * (from bit 16 on). row: place of the row in the blocks. */
+/* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row are certainly above, and which
+ * certainly below (from bit 16 on). row: place of the row in the blocks. */
 uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
 {
   uint sides = 0;
@@ -348,8 +353,8 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
   return sides;
 }
 
-/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each brick that is to
- * be examined, or certain to be on another side than one next to it. */
+/* One work-item = one row of 8 bricks of a block. Reads the states. Requests each brick to
+ * examine, and each brick that is certainly on another side than one next to it. */
 __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)
 {
@@ -388,9 +393,9 @@ __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactiv
   }
 }
 
-/* One work-item = one brick; those without `fresh` nodes have been looked at before. Reads its
- * nodes' sides, and the states of bricks around it that are not evaluated. Requests those certain
- * of another side than a valid node next to them. */
+/* One work-item = one brick; bricks without `fresh` nodes were looked at before. Reads its
+ * nodes' sides, and the states of bricks around it that are not evaluated. Requests the ones
+ * that are certain of another side than a valid node next to them. */
 __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global const int4* bricks,
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
   __global const uchar* states, __global uint* brick_bits, __global int* grown)

@@ -1,15 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: on an ambiguous face, nodes above and below the iso value are diagonal to
- * each other; which of them are connected is asked of the field itself, where the bilinear
- * interpolant of the face has its saddle. The face is evaluated once, by the brick that owns its
- * lowest node, so that both cells read the same answer. Then cells with two loops are asked in the
- * same way, at the saddles of the trilinear interpolant, whether the loops make a tunnel.
+/* Topology by the field. On an ambiguous face, nodes above and below the iso value are diagonal
+ * to each other. The field itself decides which of them are connected, where the bilinear
+ * interpolant of the face has its saddle. The brick that owns the face's lowest node evaluates
+ * it once, so both cells read the same answer. The same is then done for cells with two loops:
+ * the field at the saddles of the trilinear interpolant decides whether the loops make a tunnel.
  *
- * Of adaptive cubes the field decides on faces between two plain cells of one level, and on tunnels in plain cells;
- * all other ambiguous faces are as in the case table. Which faces these are is up to the leaves alone, so that cells
- * on both sides agree. */
+ * With adaptive cubes, the field decides on faces between two plain cells of one level, and on
+ * tunnels in plain cells; all other ambiguous faces follow the case table. Only the leaves
+ * determine which faces these are, so cells on both sides agree. */
 
 /* The field at a sample. */
 #define MCOR_SAMPLE_BELOW 0
@@ -39,7 +39,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
       : plane                             ? p[0]
                                           : p[0] & mcor_from_last(axis, p[0], p[1 << axis]);
     const ulong layer =
-      plane ? 0xffffUL : ~0UL; /* of squares; others of a plane are not ambiguous */
+      plane ? 0xffffUL : ~0UL; /* squares are ambiguous; other faces of a plane are not */
     const ulong reached = layer & between & (u[0] | mcor_from_last(axis, u[0], u[1 << axis]));
     const ulong ambiguous = reached & mcor_ambiguous_faces(m, axis);
     decisions[slot * (long)MCOR_DECISION_MASKS + axis] = ambiguous;
@@ -48,7 +48,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   counts[slot] = count;
 }
 
-/* Value of node n of a brick, moved by the bits of `corner` along x, y, z. */
+/* Returns the value of node n of a brick, moved by the bits of `corner` along x, y, z. */
 real mcor_topology_value(
   __global const real* node_value, __global const int* neighbours, int slot, int n, int corner)
 {
@@ -59,7 +59,7 @@ real mcor_topology_value(
   return node_value[owner * 64L + ((x & 3) | (y & 3) << 2 | (z & 3) << 4)];
 }
 
-/* Part of a whole; 0 / 0 where a device knows no denormal numbers. */
+/* Returns part / whole; it is 0 / 0 on a device without denormal numbers. */
 real mcor_topology_part(real part, real whole)
 {
   return whole != 0 ? part / whole : (real)0.5;
@@ -103,7 +103,7 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
 #endif
 
 #if MCOR_OF_FIELD
-/* One work-item = one group of samples. Writes on which side of the iso value the field is. */
+/* One work-item = one group of samples. Writes the side of the iso value on which the field is. */
 __kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* sample_node, __global const real4* sample_offset,
   const real iso, __global uchar* side)
@@ -173,7 +173,7 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
   counts[slot] = 2 * (int)popcount(cells);
 }
 
-/* The trilinear interpolant of corner values f, and the saddles of it that lie in the cell. */
+/* The trilinear interpolant of corner values f, and its saddles in the cell. */
 typedef struct
 {
   real x, y, z, xy, yz, xz, xyz; /* its coefficients */

@@ -1,16 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How a cell is cut: by its case, and by what the field decided on its faces and on tunnels in it. */
+/* The way a cell is cut: by its case, and by the field's decisions on its faces and on tunnels
+ * in it. */
 
-/* Faces across an axis, by their lowest node, that are ambiguous. corners: see mcor_cell_corners. */
+/* Returns the ambiguous faces across an axis, by their lowest node. corners: see
+ * mcor_cell_corners. */
 ulong mcor_ambiguous_faces(const ulong* corners, int axis)
 {
   const int du = 1 << (axis + 1) % 3, dv = 1 << (axis + 2) % 3;
   return (corners[0] ^ corners[du]) & (corners[0] ^ corners[dv]) & ~(corners[0] ^ corners[du | dv]);
 }
 
-/* Marching Cubes case of a cell: bit c is set where corner c is above. */
+/* Returns the Marching Cubes case of a cell: bit c is set if corner c is above. */
 int mcor_march_case(const ulong* corners, int cell)
 {
   int result = 0;
@@ -21,8 +23,8 @@ int mcor_march_case(const ulong* corners, int cell)
   return result;
 }
 
-/* First row of a cell's case, plus that of its decisions on faces. corners: see
- * mcor_cell_corners. */
+/* Returns the first row of a cell's case, plus the number of its decisions on faces. corners:
+ * see mcor_cell_corners. */
 int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   __global const ulong* decisions, __global const int* cases, int slot, int cell)
 {
@@ -43,7 +45,7 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   return row;
 }
 
-/* The row of a cell with all that was decided. *tunnel: whether it has a tunnel. */
+/* Returns the row of a cell after all decisions. *tunnel: whether it has a tunnel. */
 __global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
   __global const int* neighbours, __global const ulong* decisions, __global const int* cases,
   __global const mcor_cell_row* rows, int slot, int cell, int* tunnel)
@@ -57,13 +59,14 @@ __global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
   return rows + (other ? first + other : row);
 }
 
-/* How cells are cut: the case table, and decisions on faces and cells where the topology is resolved. */
+/* Data by which cells are cut: the case table, and the decisions on faces and cells if the
+ * topology is resolved. */
 #define MCOR_CUT_PARAMS                                                                            \
   __global const uchar *case_table, const int resolved, __global const int *neighbours,            \
     __global const ulong *decisions, __global const int *cases, __global const mcor_cell_row *rows
 #define MCOR_CUT_ARGS case_table, resolved, neighbours, decisions, cases, rows
 
-/* How a cell without finer nodes is cut: as the field decided, or by the case table. */
+/* Returns how a cell without finer nodes is cut: as the field decided, or by the case table. */
 typedef struct
 {
   __global const uchar* edges; /* see mcor_cell_row */
@@ -87,7 +90,7 @@ mcor_cell_cut mcor_cell_cut_of(const ulong* corners, MCOR_CUT_PARAMS, int slot, 
   return cut;
 }
 
-/* The number of triangles of these of a brick's cells; adds to that of tunnels. */
+/* Returns the number of triangles of these cells of a brick, and adds to the number of tunnels. */
 int mcor_cells_count(const ulong* corners, MCOR_CUT_PARAMS, int slot, ulong cells, int* tunnels)
 {
   int triangles = 0;

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where there may be surface; a
- * brick has a slot (values, masks) where it is needed. Blocks are sorted by key, bricks by block,
- * then z, y, x: a slot number is a count of bits, and depends on nothing but the set of bricks. */
+/* The sparse virtual grid [III-B]. Blocks of 8 x 8 x 8 bricks exist where there may be surface.
+ * A brick has a slot (values, masks) if it is needed. Blocks are sorted by key, bricks by block,
+ * then z, y, x: a slot number is a count of bits, and depends on the set of bricks alone. */
 
 #define MCOR_BLOCK_PARAMS                                                                          \
   const int block_count, const int block_shift, __global const mcor_rung *rungs,                   \
@@ -12,21 +12,21 @@
 #define MCOR_BRICK_PARAMS                                                                          \
   MCOR_BLOCK_PARAMS, __global const uint *brick_bits, __global const int *brick_base
 
-/* Key of a block of a level. */
+/* Returns the key of a block of a level. */
 ulong mcor_block_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
   __global const mcor_rung* rung = rungs + level;
   return rung->base + ((ulong)z * rung->n[1] + y) * rung->n[0] + x;
 }
 
-/* Whether the lattice has it. */
+/* Whether the block is on the lattice. */
 bool mcor_has_block(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
   __global const mcor_rung* rung = rungs + level;
   return x >= 0 && y >= 0 && z >= 0 && x < rung->n[0] && y < rung->n[1] && z < rung->n[2];
 }
 
-/* Index of a block of a level, or -1. */
+/* Returns the index of a block of a level, or -1. */
 int mcor_find_block(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 {
   if (!mcor_has_block(rungs, level, x, y, z))
@@ -41,15 +41,16 @@ int mcor_find_block(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 
 #define MCOR_BLOCK_ARGS block_count, block_shift, rungs, block_keys, block_buckets
 
-/* Position of a brick among the MCOR_BLOCK_BRICKS of each block, or -1 where it has no block. */
+/* Returns the number of a brick, counted through the MCOR_BLOCK_BRICKS of each block, or -1 if
+ * its block does not exist. */
 int mcor_brick_number(MCOR_BLOCK_PARAMS, int level, int x, int y, int z)
 {
   const int block = mcor_find_block(MCOR_BLOCK_ARGS, level, x >> 3, y >> 3, z >> 3);
   return block < 0 ? -1 : block * MCOR_BLOCK_BRICKS + (z & 7) * 64 + (y & 7) * 8 + (x & 7);
 }
 
-/* The same for a brick beside another one, with number `own`: mostly in the same block. x, y, z: -1
- * to 1. */
+/* Returns the number of a brick beside the one with number `own`; mostly they share a block. x,
+ * y, z: -1 to 1. */
 MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int x, int y, int z)
 {
   const int bx = (brick.x & 7) + x, by = (brick.y & 7) + y, bz = (brick.z & 7) + z;
@@ -58,13 +59,13 @@ MCOR_ONE_COPY int mcor_number_beside(MCOR_BLOCK_PARAMS, int own, int4 brick, int
     : mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x + x, brick.y + y, brick.z + z);
 }
 
-/* Whether the brick with a number has its bit. */
+/* Whether the bit of the brick with number m is set. */
 bool mcor_has_brick(__global const uint* bits, int number)
 {
   return bits[number >> 5] >> (number & 31) & 1;
 }
 
-/* Slot of the brick with a number, or -1. */
+/* Returns the slot of the brick with number m, or -1. */
 int mcor_slot_of_number(__global const uint* brick_bits, __global const int* brick_base, int number)
 {
   if (number < 0)
@@ -75,7 +76,7 @@ int mcor_slot_of_number(__global const uint* brick_bits, __global const int* bri
   return bits & bit ? brick_base[number >> 5] + (int)popcount(bits & (bit - 1)) : -1;
 }
 
-/* Slot of a brick, or -1. */
+/* Returns the slot of a brick, or -1. */
 MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, int z)
 {
   return mcor_slot_of_number(
@@ -84,12 +85,13 @@ MCOR_ONE_COPY int mcor_find_brick(MCOR_BRICK_PARAMS, int level, int x, int y, in
 
 #define MCOR_BRICK_ARGS MCOR_BLOCK_ARGS, brick_bits, brick_base
 
-/* If there are several levels: which bricks are leaves, and which of these are beside others, see mcor_leaf_compare. */
+/* With several levels: which bricks are leaves, and which leaves are beside other levels, see
+ * mcor_leaf_compare. */
 #define MCOR_TREE_PARAMS                                                                           \
   const int has_leaves, __global const uint *leaves, __global const uint *beside
 #define MCOR_TREE_ARGS has_leaves, leaves, beside
 
-/* Position of a block, in blocks of its level, and the level. */
+/* Returns the position of a block, in blocks of its level, and the level. */
 int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
 {
   int level = 0;
@@ -102,7 +104,7 @@ int4 mcor_block_of_key(__global const mcor_rung* rungs, ulong key)
   return (int4)((int)(number % nx), (int)(number / nx % ny), (int)(number / nx / ny), level);
 }
 
-/* Brick number `local_brick` of a block with a key: its coordinates, and its level. */
+/* Returns coordinates and level of brick `local_brick` of the block with a key. */
 int4 mcor_brick_in_block(__global const mcor_rung* rungs, ulong key, int local_brick)
 {
   const int4 block = mcor_block_of_key(rungs, key);
@@ -110,29 +112,30 @@ int4 mcor_brick_in_block(__global const mcor_rung* rungs, ulong key, int local_b
     block.z * 8 + (local_brick >> 6), block.w);
 }
 
-/* The same of number m. */
+/* Returns coordinates and level of the brick with number m. */
 MCOR_ONE_COPY int4 mcor_brick_of_number(
   __global const mcor_rung* rungs, __global const ulong* block_keys, int m)
 {
   return mcor_brick_in_block(rungs, block_keys[m / MCOR_BLOCK_BRICKS], m % MCOR_BLOCK_BRICKS);
 }
 
-/* Key of a brick of a level: bricks of all of the lattice are in the order of their slots. */
+/* Returns the key of a brick of a level. Sorted keys are in the order of slots. */
 ulong mcor_brick_key(__global const mcor_rung* rungs, int level, int x, int y, int z)
 {
   return mcor_block_key(rungs, level, x >> 3, y >> 3, z >> 3) * MCOR_BLOCK_BRICKS +
     (ulong)((x & 7) | (y & 7) << 3 | (z & 7) << 6);
 }
 
-/* Requests the brick with number m; true if nothing had requested it before. It has no slot
- * until the host has placed it. */
+/* Requests the brick with number m. Returns true if nothing had requested it before. The brick
+ * has no slot until the host has placed it. */
 bool mcor_request_brick(__global uint* brick_bits, int m)
 {
   const uint bit = 1u << (m & 31);
   return !(atomic_or(brick_bits + (m >> 5), bit) & bit);
 }
 
-/* Adds cells to those of a brick or leaf, 64 bits in two words; which of them are new. */
+/* Adds cells to the cells of a brick or leaf, 64 bits in two words. Returns which of them are
+ * new. */
 ulong mcor_add_cells(__global uint* cells, int at, ulong added)
 {
   const uint low = (uint)added, high = (uint)(added >> 32);
@@ -185,11 +188,11 @@ __kernel void mcor_brick_neighbours(
   }
 }
 
-/* A slot's state that is certain, so that no node's value is needed. */
+/* Whether a slot's state is certain, so that no node's value is needed. */
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
-/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are neither known nor, if
- * there are leaves of several levels, certain. */
+/* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are
+ * unless they are known, or, with leaves of several levels, certain. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
@@ -197,8 +200,8 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
   need[slot] = known[slot] || (leaf_count > 0 && MCOR_IS_CERTAIN(proofs[slot])) ? 0 : ~0UL;
 }
 
-/* One work-item = one brick of the old set. Moves what is known of it to its slot in the new set,
- * if it has one. words: of 4 bytes, that the values of a brick's nodes take. */
+/* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
+ * one. words: 4-byte words that the values of a brick's nodes take. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,
@@ -228,7 +231,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   const int x0, const int y0, const int z0, const int x1, const int y1, const int z1
 #define MCOR_SIDES_ARGS x0, y0, z0, x1, y1, z1
 
-/* Keeps those of a brick's cells, of its level, whose centres are in the box. */
+/* Keeps a brick's cells, of its level, whose centres are in the box. */
 ulong mcor_cells_within(MCOR_SIDES_PARAMS, int4 brick)
 {
   ulong cells = ~0UL;
@@ -254,7 +257,7 @@ MCOR_ONE_COPY void mcor_brick_masks(
   }
 }
 
-/* Whether these of a brick's cells have nodes of its upper neighbour d (bits x, y, z; 0 is
+/* Whether any of these cells of a brick has nodes in its upper neighbour d (bits x, y, z; 0 is
  * itself). */
 bool mcor_cells_reach(ulong cells, int d)
 {

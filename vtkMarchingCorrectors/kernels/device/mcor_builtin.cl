@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in functions that kernels use, declared as in Clang's opencl-c.h. PoCL has that header read
- * before every program: 18,000 lines that take longer than all of ours, again when a compiled program is
- * loaded. The host has it left out (MCOR_DECLARES_BUILTINS, -D_OPENCL_H_), and where that does not work,
- * leaves it in. */
+/* The built-in functions that kernels use, declared as in Clang's opencl-c.h. PoCL reads that
+ * header before every program: 18,000 lines, which take longer than all of ours, and again when
+ * a compiled program is loaded. The host makes PoCL skip it (MCOR_DECLARES_BUILTINS,
+ * -D_OPENCL_H_); if that fails, it does not. */
 
 #if MCOR_DECLARES_BUILTINS
 #define MCOR_BUILTIN __attribute__((overloadable, const))

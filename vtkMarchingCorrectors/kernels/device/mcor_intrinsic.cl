@@ -8,8 +8,8 @@
 #define __has_builtin(name) 0
 #endif
 
-/* The compiler makes a CPU's instructions itself. One that makes SPIR-V first may know the names of
- * built-in functions, too, but has no place for them there. */
+/* True if the compiler makes a CPU's instructions itself. A compiler that makes SPIR-V first may
+ * know these built-in functions, too, but cannot express them there. */
 #if (defined(__x86_64__) || defined(__i386__) || defined(__aarch64__) || defined(__arm__) ||       \
   defined(__powerpc64__) || defined(__riscv)) &&                                                   \
   !defined(__SPIRV__)
@@ -18,14 +18,15 @@
 #define MCOR_FOR_CPU 0
 #endif
 
-/* Asks for an element that will be needed. */
+/* Prefetches an element. */
 #if MCOR_LANES > 1 && MCOR_FOR_CPU && __has_builtin(__builtin_prefetch)
 #define MCOR_PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
 #else
 #define MCOR_PREFETCH(p)
 #endif
 
-/* MCOR_LANES elements from p[i] on. Compilers may make several accesses of vloadn and vstoren. */
+/* Read and write MCOR_LANES elements from p[i] on. Compilers may split vloadn and vstoren into
+ * several accesses. */
 #if MCOR_LANES == 1
 #define MCOR_LOAD(i, p) ((p)[i])
 #define MCOR_LOAD_FIX(i, p) ((p)[i])
@@ -39,12 +40,12 @@ typedef fixv __attribute__((aligned(4))) mcor_loose_fixv;
 #endif
 #endif
 
-/* The lanes of a group of particles that are kept, as a mask, and their packing into an array's
- * next elements. The array needs room for MCOR_LANES elements. */
+/* Makes a mask of the lanes of a group of particles that are kept, and packs these into an
+ * array's next elements. The array needs room for MCOR_LANES elements. */
 #if MCOR_LANES == 16 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX512F__) &&                    \
   __has_builtin(__builtin_ia32_compresssf512_mask) &&                                              \
   __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_cmpd512_mask)
-/* A vector unit that packs by itself: a third of a gather's time. */
+/* The vector unit packs by itself, which saves a third of a gather's time. */
 typedef ushort mcor_mask;
 typedef realv __attribute__((aligned(4))) mcor_loose_realv;
 #define MCOR_MASK(keep, lanes)                                                                     \
@@ -77,7 +78,7 @@ void mcor_interleave4(realv a, realv b, realv c, realv d, real* to)
 #elif MCOR_LANES == 8 && !MCOR_DOUBLE && MCOR_FOR_CPU && defined(__AVX2__) && defined(__BMI2__) && \
   __has_builtin(__builtin_ia32_movmskps256) && __has_builtin(__builtin_ia32_permvarsf256) &&       \
   __has_builtin(__builtin_ia32_pdep_di) && __has_builtin(__builtin_ia32_pext_di)
-/* One that permutes: the numbers of the lanes that are kept, in front. */
+/* The vector unit permutes: the numbers of the kept lanes come first. */
 typedef struct
 {
   int8 kept;

@@ -9,7 +9,7 @@
 /* mcor_item is a parameter of each kernel, see CompileAhead.cmake. */
 #define get_global_id(dimension) mcor_item
 
-/* S: the ending of Clang's functions of T. */
+/* S: suffix of Clang's functions of T. */
 #define MCOR_DEFINE_REAL(T, S)                                                                     \
   MCOR_DEFINE T fabs(T x)                                                                          \
   {                                                                                                \
@@ -37,7 +37,7 @@
   }                                                                                                \
   MCOR_DEFINE_RANGE(T, T)
 
-/* NaN gives way to the other argument. B: T, or a scalar for all lanes of T. */
+/* These return the other argument if one is NaN. B: T, or a scalar for all lanes of T. */
 #define MCOR_DEFINE_RANGE(T, B)                                                                    \
   MCOR_DEFINE T fmin(T a, B other)                                                                 \
   {                                                                                                \
@@ -70,7 +70,7 @@
     return min(max(x, low), high);                                                                 \
   }
 
-/* L: the ending of Clang's functions of T; B: bits. */
+/* L: suffix of Clang's functions of T; B: bits. */
 #define MCOR_DEFINE_BITS(T, L, B)                                                                  \
   MCOR_DEFINE_INTEGER(T, T)                                                                        \
   MCOR_DEFINE T popcount(T x)                                                                      \
@@ -122,7 +122,8 @@ MCOR_DEFINE_ATOMIC(uint, and, and, MCOR_COMMA uint v, v)
 MCOR_DEFINE_ATOMIC(uint, min, umin, MCOR_COMMA uint v, v)
 MCOR_DEFINE_ATOMIC(uint, max, umax, MCOR_COMMA uint v, v)
 
-/* Vectors R of n numbers T. Clang makes one instruction of such a loop, but branches of one with a choice. */
+/* Vectors R of n numbers T. Clang makes one instruction of such a loop; a loop with a choice
+ * would become branches. */
 #define MCOR_EACH_LANE(R, n, value)                                                                \
   R r;                                                                                             \
   for (int i = 0; i < n; ++i)                                                                      \
@@ -172,7 +173,7 @@ MCOR_DEFINE_ATOMIC(uint, max, umax, MCOR_COMMA uint v, v)
   MCOR_DEFINE_MEMORY_IN(n, R, T, __global)                                                         \
   MCOR_DEFINE_MEMORY_IN(n, R, T, __private)
 
-/* And masks I of integers F. */
+/* Vectors with masks I of integers F. */
 #define MCOR_DEFINE_VECTOR(n, R, T, I, F)                                                          \
   MCOR_DEFINE_REALS(n, R, T)                                                                       \
   MCOR_DEFINE_INTEGER(I, F)                                                                        \

@@ -18,18 +18,19 @@
  * little longer than the longest of them, and each is a whole number of fixed-point units. Nodes, and
  * offsets from them, are counted in edges. */
 
-/* Programs, see mcor_program.c. That of the lattice is compiled once for all SPH kernels and fields, with
- * solids and without: of what is set, it knows MCOR_LANES and MCOR_DOUBLE alone. */
+/* Programs, see mcor_program.c. The lattice's program is compiled once for all SPH kernels and
+ * fields, with and without solids: of the host's settings, it uses MCOR_LANES and MCOR_DOUBLE
+ * alone. */
 #define MCOR_OF_LATTICE (MCOR_PROGRAM == 0)
 #define MCOR_OF_FIELD (MCOR_PROGRAM == 1)
 
-/* Every device is to give the same bits. Additions and multiplications are exact to the last bit
- * everywhere, and so is fma, slow as it may be where it is no instruction; but a compiler may not
- * choose between them. */
+/* Every device must give the same bits. Additions, multiplications and fma are exact to the last
+ * bit everywhere, though fma is slow if it is no instruction. A compiler must not choose between
+ * them. */
 #pragma OPENCL FP_CONTRACT OFF
 
-/* Marks functions called in several places, and seldom for one particle: a compiler for CPUs makes a copy for
- * each call else, in each kernel anew, and its time is the first surface's. */
+/* Marks functions that are called in several places, and seldom for one particle. Otherwise a
+ * compiler for CPUs makes a copy for each call in each kernel, which delays the first surface. */
 #if MCOR_LANES == 1
 #define MCOR_INLINE
 #define MCOR_ONE_COPY
@@ -37,12 +38,12 @@
 #define MCOR_ONE_COPY __attribute__((noinline))
 #define MCOR_INLINE __attribute__((always_inline))
 #ifdef POCL_DEVICE_ADDRESS_BITS
-/* PoCL makes three functions of a kernel, and would put all of it into each. */
+/* PoCL makes three functions of a kernel, and would inline all of it into each. */
 #define __kernel __kernel MCOR_ONE_COPY
 #endif
 #endif
 
-/* The number of this work-item, of which there may be more than there is to do: they return at once. */
+/* Defines the number of this work-item. Surplus work-items return at once. */
 #define MCOR_ITEM(item, condition)                                                                 \
   const int item = get_global_id(0);                                                               \
   if (!(condition))                                                                                \
@@ -96,7 +97,7 @@ typedef MCOR_CAT(MCOR_FIX_NAME, MCOR_LANES) fixv;
 #define MCOR_GET_FIX(v, lane) (((const fix*)&(v))[lane])
 #endif
 
-/* a * b + c, rounded once, in each lane. In loops over particles. */
+/* a * b + c, rounded once, in each lane; for loops over particles. */
 #define MCOR_FMA(a, b, c) fma((realv)(a), (realv)(b), (realv)(c))
 
 /* 0, 1, ... MCOR_LANES - 1. */
@@ -125,8 +126,8 @@ real mcor_lane_sum(realv v)
 #define MCOR_CLUSTER MCOR_CLUSTER_OF(MCOR_LANES)
 #define MCOR_GROUPED_POINTS MCOR_GROUPED_POINTS_OF(MCOR_LANES)
 
-/* A vertex keeps this distance from the ends of its edge, so that vertices of edges which meet in a
- * node at the iso value stay apart and no triangle loses its area. */
+/* Least distance of a vertex from the ends of its edge. Vertices of edges that meet in a node at
+ * the iso value then stay apart, and no triangle loses its area. */
 #define MCOR_EDGE_MARGIN (MCOR_DOUBLE ? (real)1e-9 : (real)3.8e-6f)
 
 /* Masks of a brick's nodes or cells, see mcor_shared.h. */
@@ -134,13 +135,14 @@ real mcor_lane_sum(realv v)
 #define MCOR_LOW_Y 0x000F000F000F000FUL
 #define MCOR_LOW_Z 0x000000000000FFFFUL
 
-/* Bits of the nodes that are lowest along an axis. */
+/* Masks of the lowest nodes along an axis. */
 ulong mcor_lowest(int axis)
 {
   return axis == 0 ? MCOR_LOW_X : axis == 1 ? MCOR_LOW_Y : MCOR_LOW_Z;
 }
 
-/* The mask whose bit n is bit n + 1 along an axis; `next` is the neighbour brick's mask there. */
+/* Returns the mask whose bit n is bit n + 1 along an axis. next: the neighbour brick's mask
+ * there. */
 ulong mcor_from_next(int axis, ulong m, ulong next)
 {
   const ulong low = mcor_lowest(axis);
@@ -148,7 +150,8 @@ ulong mcor_from_next(int axis, ulong m, ulong next)
   return (m >> step & ~(low << 3 * step)) | (next & low) << 3 * step;
 }
 
-/* The mask whose bit n is bit n - 1 along an axis; `last` is the neighbour brick's mask there. */
+/* Returns the mask whose bit n is bit n - 1 along an axis. last: the neighbour brick's mask
+ * there. */
 ulong mcor_from_last(int axis, ulong m, ulong last)
 {
   const ulong low = mcor_lowest(axis);
@@ -156,13 +159,14 @@ ulong mcor_from_last(int axis, ulong m, ulong last)
   return (m & ~(low << 3 * step)) << step | (last >> 3 * step & low);
 }
 
-/* Index of the lowest bit set. */
+/* Returns the index of the lowest bit set. */
 int mcor_ctz(ulong m)
 {
   return 63 - (int)clz(m & -m);
 }
 
-/* Index of the first of the sorted keys [low, high) that is not below `key`, or `high`. */
+/* Returns the index of the first of the sorted keys [low, high) that is not below `key`, or
+ * `high`. */
 MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, ulong key)
 {
   while (low < high)
@@ -180,8 +184,9 @@ MCOR_ONE_COPY int mcor_find_key(__global const ulong* keys, int low, int high, u
   return low;
 }
 
-/* Monotone in x, so that the cells of lo and hi enclose those of everything in between. Every period is
- * divided alike, so that sums, whose order is that of the cells, are the same a period away. */
+/* Returns the cell of x along an axis. It is monotone in x, so the cells of lo and hi enclose
+ * the cells of everything in between. Every period is divided alike, so sums, whose order is
+ * that of the cells, are the same a period away. */
 MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x)
 {
   const fix period = (fix)level->period[axis];
@@ -189,7 +194,7 @@ MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x
   {
     return (int)floor((float)x * level->inv_cell[axis]);
   }
-  /* Nearly all periods at once, the others one by one: rounding does not matter. */
+  /* Most periods are removed at once, the rest one by one, so rounding does not matter. */
   fix rest = x - (fix)level->side[axis];
   const int most = (int)((float)rest / (float)period) - 1, periods = max(most, -1);
   const int cells = level->period_cells[axis];
@@ -201,10 +206,10 @@ MCOR_ONE_COPY int mcor_cell_of(__global const mcor_level* level, int axis, fix x
   return rest < 0 ? -1 : cell + min((int)((float)rest * level->inv_cell[axis]), cells - 1);
 }
 
-/* Cell along an axis of a particle of the level. */
+/* Returns the cell along an axis of a particle of the level. */
 MCOR_INLINE int mcor_cell_of_particle(__global const mcor_level* level, int axis, fix x)
 {
-  /* The same, but for what is clamped. */
+  /* Returns the cell without clamping. */
   const int cell = level->period[axis] == 0 ? (int)((float)x * level->inv_cell[axis])
                                             : mcor_cell_of(level, axis, x);
   return clamp(cell, 0, level->cells[axis] - 1);

@@ -3,11 +3,11 @@
 
 /* SPH gradients of particle arrays at the particles themselves.
  *
- * Arrays are fixed-point numbers, so that a difference of two values is exact as that of two
- * positions is: a linear array then has an exact gradient up to the rounding of the sums. */
+ * Arrays are fixed-point numbers, so a difference of two values is exact, as a difference of two
+ * positions is. The gradient of a linear array is then exact up to the rounding of the sums. */
 
-/* One work-item = one sorted particle, of `count` from `first`. Writes its place as node and offset, and
- * whether it is in the box, if there is one; the node of others is -1. */
+/* One work-item = one sorted particle, of `count` from `first`. Writes its position as node and
+ * offset, and whether it is in the box, if there is one; particles outside have node -1. */
 __kernel void mcor_derive_place(const int first, const int count, const real units,
   const real edge_x, const real edge_y, const real edge_z, __global const fix* px,
   __global const fix* py, __global const fix* pz, const int has_box, const int first_x,
@@ -28,14 +28,14 @@ __kernel void mcor_derive_place(const int first, const int count, const real uni
     (real)(z % step_z) / (real)step_z, 0);
 }
 
-/* Sums over the neighbours of the particles i in the lanes; per cube. */
+/* Sums over the neighbours of the particles i in the lanes, per cube. */
 typedef struct
 {
   realv moments[3][3];              /* sum V_j grad_a W_ij (x_j - x_i)_b */
-  realv slopes[MCOR_ARRAY_STEP][3]; /* sum V_j (A_j - A_i) grad_a W_ij, of up to as many A */
+  realv slopes[MCOR_ARRAY_STEP][3]; /* sum V_j (A_j - A_i) grad_a W_ij of these A */
 } mcor_derive_sums;
 
-/* Adds the particles of a reach. values: A_j, own: A_i, both fixed-point. */
+/* Adds the particles of a reach. values: A_j; own: A_i; both fixed-point. */
 void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
   const mcor_values* values, const fixv own[MCOR_ARRAY_STEP], mcor_derive_sums* sums)
 {
@@ -67,7 +67,7 @@ void mcor_derive_add(const mcor_reach* reach, const mcor_points* points, const r
   }
 }
 
-/* The particles' own values of an array. */
+/* Returns the particles' own values of an array. */
 fixv mcor_derive_own(
   const mcor_points* points, __global const int* order, __global const real* array)
 {
@@ -84,9 +84,9 @@ fixv mcor_derive_own(
 #endif
 }
 
-/* One work-item = one group of particles, of those from `first` on in `order`. Reads arrays of
- * fixed-point numbers, `stride` long each, from number `first_array` on. Writes the sums of up to
- * MCOR_ARRAY_STEP of them. */
+/* One work-item = one group of particles, numbered in `order` from `first` on. Reads arrays of
+ * fixed-point numbers, `stride` long each, from number `first_array` on. Writes the sums of up
+ * to MCOR_ARRAY_STEP of them. */
 __kernel void mcor_derive_gradients(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int first, __global const int* order, const int first_array, const int array_count,
@@ -107,7 +107,7 @@ __kernel void mcor_derive_gradients(MCOR_GRID_PARAMS, const int group_count,
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* Beyond the last array, the first one again. */
+    /* The first array stands in for those beyond the last. */
     array[c] = arrays + (first_array + (c < count ? c : 0)) * (long)stride;
     own[c] = mcor_derive_own(&points, order, array[c] + first);
     for (int a = 0; a < 3; ++a)

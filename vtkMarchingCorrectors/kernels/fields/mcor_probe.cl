@@ -2,11 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The field at points of the caller's choice: weight sums, means or sums of particle arrays, and
- * their gradients. Every sum goes through its particles in the order of the search grid, so that a
- * point's bits do not depend on the other points. */
+ * their gradients. Every sum adds its particles in the order of the search grid, so a point's
+ * bits do not depend on other points. */
 
-/* One work-item = one point. Reads its node; below 0 where no particle reaches it. Writes a key by
- * which points of a cell, and cells of a brick, follow each other; first: the first brick. */
+/* One work-item = one point. Reads its node, which is below 0 if no particle reaches it. Writes
+ * a key that puts points of a cell, and cells of a brick, next to each other. first: the first
+ * brick. */
 __kernel void mcor_probe_key(const int count, const int first_x, const int first_y,
   const int first_z, const int bricks_x, const int bricks_y, const int bricks_z,
   __global const int4* node, __global ulong* keys)
@@ -35,7 +36,7 @@ __kernel void mcor_probe_order(const int count, __global const int* order,
 void mcor_probe_put(const mcor_points* points, realv weight, const realv* sums,
   __global real* weight_sum, MCOR_ATTRIBUTE_PARAMS)
 {
-  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
+  for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* constant limit: sums stay in registers */
   {
     for (int lane = 0; lane < MCOR_LANES && c < attribute_count; ++lane)
     {
@@ -70,15 +71,15 @@ void mcor_probe_alone(const mcor_grid* grid, mcor_query* query, const mcor_point
   mcor_probe_put(points, w, sums, weight_sum, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* mcor_probe_sums, which launches them, is in mcor_probe_lanes.cl and mcor_probe_point.cl. */
+/* mcor_probe_sums, which launches these, is in mcor_probe_lanes.cl and mcor_probe_point.cl. */
 
-/* Gradients, per cube, of the weight sum and of sums of up to MCOR_ARRAY_STEP arrays. */
+/* Gradients, per cube, of the weight sum and of the sums of up to MCOR_ARRAY_STEP arrays. */
 typedef struct
 {
   realv weight[3], sums[MCOR_ARRAY_STEP][3];
 } mcor_probe_slopes;
 
-/* Adds those of the particles of a reach. at: of mcor_points_relative. */
+/* Adds the particles of a reach. at: made by mcor_points_relative. */
 void mcor_probe_add(const mcor_reach* reach, const mcor_points* points, const realv at[3],
   const mcor_values* values, mcor_probe_slopes* slopes)
 {
@@ -125,7 +126,7 @@ __kernel void mcor_probe_gradients(MCOR_GRID_PARAMS, const int group_count,
   mcor_points_relative(&grid, &query, &points, at);
   for (int c = 0; c < MCOR_ARRAY_STEP; ++c)
   {
-    /* Beyond the last array, the weights: any finite values do. */
+    /* The weights stand in for arrays beyond the last: any finite values do. */
     arrays[c] = c < count ? attributes + (first_array + c) * (long)stride : p_weight;
     slopes.sums[c][0] = slopes.sums[c][1] = slopes.sums[c][2] = 0;
   }

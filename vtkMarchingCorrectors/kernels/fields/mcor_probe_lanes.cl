@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at many points, as a CPU wants it; see mcor_probe.cl. Points of a slice or a volume lie so close
- * together that most particles that reach one group of them reach the next ones, too: these are a cluster, with
- * one tile of particles. */
+/* Sums at many points, in the form for CPUs; see mcor_probe.cl. Points of a slice or a volume
+ * lie so close together that most particles that reach one group also reach the next ones. These
+ * groups form a cluster with one tile of particles. */
 
 typedef struct
 {
@@ -12,8 +12,8 @@ typedef struct
   realv weight[MCOR_CLUSTER], sums[MCOR_CLUSTER][MCOR_ATTRIBUTE_LIMIT];
 } mcor_cluster;
 
-/* Whether the parts lie so close together that it takes longer to pack their lists of particles than to
- * go through the whole tile: measured at planes of points. */
+/* Whether the parts lie so close together that packing their lists of particles takes longer
+ * than going through the whole tile; measured at planes of points. */
 #define MCOR_TILE_SHARE 0.8f
 bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mcor_points* points)
 {
@@ -30,8 +30,8 @@ bool mcor_reach_is_tile(const mcor_grid* grid, const mcor_query* query, const mc
   return rest < MCOR_TILE_SHARE * grid->levels[0].support;
 }
 
-/* The first groups of those from begin to before end that fit into one cluster: returns how many, one
- * at least, and the box around their points, in cubes from the first one's node. */
+/* Fits groups from `begin` on, before `end`, into one cluster. Returns how many fit, one at
+ * least, and the box around their points, in cubes from the first one's node. */
 int mcor_cluster_bound(const mcor_grid* grid, __global const int* groups, int begin, int end,
   __global const int4* node, __global const real4* offset, real4* least, real4* most)
 {
@@ -84,7 +84,7 @@ void mcor_cluster_place(
   mcor_query_place(grid, query, origin);
 }
 
-/* Middle and half size of what lanes are between. */
+/* Finds middle and half size of the range of the lanes. */
 real2 mcor_lane_range(realv v)
 {
 #if MCOR_LANES == 16
@@ -98,8 +98,8 @@ real2 mcor_lane_range(realv v)
   return (real)0.5 * (real2)(low + high, high - low);
 }
 
-/* Places in the tile of the particles that reach a group of points; `at` is of
- * mcor_points_relative. Returns how many. */
+/* Lists the places in the tile of the particles that reach a group of points. at: made by
+ * mcor_points_relative. Returns their number. */
 int mcor_cluster_list(
   const mcor_tile* tile, const mcor_points* points, const realv at[3], int* list)
 {
@@ -123,16 +123,16 @@ typedef struct
   real of[MCOR_ATTRIBUTE_LIMIT][MCOR_TILE_SIZE + 16];
 } mcor_cluster_values;
 
-/* Where a group's points are from particle i of a tile. */
+/* Finds the offsets of a group's points from particle i of a tile. */
 void mcor_cluster_from(
   const mcor_tile* tile, int i, const mcor_points* points, const realv at[3], realv d[3])
 {
   mcor_points_from(at, points, (realv)(tile->x[i]), (realv)(tile->y[i]), (realv)(tile->z[i]), d);
 }
 
-/* Adds the weights of the listed particles at a group's points, and the first `step`
- * arrays times them, in one loop: each sum alone would wait for its last addition. `step` is a
- * constant. keep: the weights are asked for. */
+/* Adds the weights of the listed particles at a group's points, and the first `step` arrays
+ * times the weights. One loop does all sums, because each sum alone would wait for its last
+ * addition. step: a constant. keep: the weights are wanted. */
 __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
   const mcor_points* points, const realv at[3], const mcor_cluster_values* values, const int* list,
   int count, const int step, bool keep, realv* weight, realv* weight_sum, realv* sums)
@@ -154,7 +154,7 @@ __attribute__((always_inline)) void mcor_cluster_begin(const mcor_tile* tile,
     for (int k = begin; k < end; ++k)
     {
       const int i = list[k];
-      mcor_cluster_from(tile, i, points, at, d); /* again: to keep it takes longer */
+      mcor_cluster_from(tile, i, points, at, d); /* made again: keeping it takes longer */
       const realv v = tile->weight[i] *
         mcor_weight_gradient(d, length + (k - begin), (realv)(tile->inv_h[i]), &slope, along);
       w += v;

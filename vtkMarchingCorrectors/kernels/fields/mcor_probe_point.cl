@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at one point, as a GPU wants it; see mcor_probe.cl. */
+/* Sums at one point, in the form for GPUs; see mcor_probe.cl. */
 
-/* One work-item = one group, which is a point. Writes its weight sum, and the sums of weight times
- * array over the particles. */
+/* One work-item = one group, which is one point. Writes its weight sum, and the sums of weight
+ * times array over the particles. */
 __kernel void mcor_probe_sums(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
   __global const int4* node, __global const real4* offset, __global real* weight_sum,
   MCOR_ATTRIBUTE_PARAMS)

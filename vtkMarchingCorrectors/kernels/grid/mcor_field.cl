@@ -3,13 +3,14 @@
 
 /* A particle's contribution to the SPH field at a point. */
 
-/* Roots. CPU vector units take longer for a square root and a division than for all the rest of a
- * kernel sum. From an integer guess y, whose error e = 1 - x y^2 is below 0.07, and
+/* Roots. CPU vector units take longer for a square root and a division than for the rest of a
+ * kernel sum. From an integer guess y, whose error e = 1 - x y^2 is below 0.07,
  *
  *   1 / sqrt(x) = y / sqrt(1 - e) = y (1 + e p(e))
  *
- * with p a minimax polynomial (2.4e-8), come results to 1 ulp or so that are the same on every
- * device, which OpenCL's rsqrt need not be. In double precision its root is exact to the last bit. */
+ * with p a minimax polynomial (2.4e-8) gives results to about 1 ulp. They are the same on every
+ * device; those of OpenCL's rsqrt need not be. In double precision the root is exact to the last
+ * bit. */
 #if !MCOR_DOUBLE
 realv mcor_rsqrt_guess(realv x)
 {
@@ -23,7 +24,7 @@ realv mcor_rsqrt_series(realv e)
   return MCOR_FMA(e, MCOR_FMA(e, p, (real)0.37500035f), (real)0.49999833f);
 }
 
-/* 1 / sqrt(x), finite at 0. */
+/* Returns 1 / sqrt(x), finite at 0. */
 realv mcor_rsqrt(realv x)
 {
   const realv y = mcor_rsqrt_guess(x), e = MCOR_FMA(-(x * y), y, (real)1);
@@ -52,11 +53,11 @@ realv mcor_square(realv x, realv y, realv z)
   return MCOR_FMA(z, z, MCOR_FMA(y, y, x * x));
 }
 
-/* W / norm * h^3 at offset (dx, dy, dz). In two steps, to be made for MCOR_STEP particles in turn:
- * as a chain, they take longer than a CPU can look ahead. */
+/* W / norm * h^3 at offset (dx, dy, dz). It is made in two steps, so that MCOR_STEP particles
+ * can take turns: a chain of both is longer than a CPU can look ahead. */
 #define MCOR_STEP (MCOR_LANES == 1 ? 1 : 32)
 
-/* With a tensor kernel: the weight itself, in place of a distance. */
+/* Returns the weight itself, in place of a distance, for a tensor kernel. */
 realv mcor_distance(realv dx, realv dy, realv dz, realv inv_h)
 {
 #if MCOR_TENSOR
@@ -75,7 +76,7 @@ realv mcor_weight(realv distance, realv inv_h)
 #endif
 }
 
-/* The same, and the gradient with respect to the offset d; again in two steps. */
+/* W / norm * h^3 and its gradient with respect to the offset d, again in two steps. */
 typedef struct
 {
   realv r2, inv_r;
@@ -92,7 +93,7 @@ mcor_length mcor_length_of(const realv d[3])
   return length;
 }
 
-/* The gradient is slope * along, a factor of which costs a sum less than that of a vector. */
+/* The gradient is slope * along. Summing a common factor costs less than summing a vector. */
 realv mcor_weight_gradient(
   const realv d[3], const mcor_length* length, realv inv_h, realv* slope, realv along[3])
 {
@@ -105,8 +106,8 @@ realv mcor_weight_gradient(
   along[2] = sign(d[2]) * MCOR_DW(q[2]) * w[0] * w[1] * inv_h;
   return w[0] * w[1] * w[2];
 #else
-  /* 1 / r being finite at r = 0, the gradient is 0 there: for the quadratic kernel, whose slope is
-   * not, by definition. */
+  /* 1 / r is finite at r = 0, so the gradient is 0 there. The slope of the quadratic kernel is
+   * not 0 at 0; its gradient there is 0 by definition. */
   const realv per_r = length->inv_r * inv_h, q = length->r2 * per_r;
   *slope = MCOR_DW(q) * per_r;
   along[0] = d[0];

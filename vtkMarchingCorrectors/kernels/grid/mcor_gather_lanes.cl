@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles for MCOR_LANES points at once, as a CPU wants it; the interface is that at the end of
- * mcor_query.cl. */
+/* Particles for MCOR_LANES points at once, in the form for CPUs; mcor_query.cl has the interface
+ * at its end. */
 
-/* Particles that one gather collects at most before they are evaluated. */
+/* Most particles that one gather collects before they are evaluated. */
 #define MCOR_TILE_SIZE 1024
 
-/* For arrays that are read MCOR_LANES elements at a time: no such access then touches two cache
+/* Alignment of arrays that are read MCOR_LANES elements at a time: no access touches two cache
  * lines. */
 #define MCOR_ALIGNED __attribute__((aligned(sizeof(real) * MCOR_LANES)))
 
@@ -15,7 +15,7 @@
 typedef struct
 {
   int count;
-  bool complete;  /* the tile holds everything */
+  bool complete;  /* the tile holds all particles of the query */
   bool delivered; /* nothing is left for this loop */
   MCOR_ALIGNED int list[MCOR_TILE_SIZE + 16];
   /* Position from the query's origin, in cubes. */
@@ -26,7 +26,7 @@ typedef struct
 #endif
 } mcor_tile;
 
-/* Particles i, i + 1, ... of a tile, one in each lane; particle i in all lanes; its index. */
+/* Reads particles i, i + 1, ... of a tile, one in each lane; particle i in all lanes; its index. */
 #define MCOR_TILE(tile, name, i) MCOR_LOAD(i, (tile)->name)
 #define MCOR_EACH(tile, name, i) ((tile)->name[i])
 #define MCOR_INDEX(tile, i) ((tile)->list[i])
@@ -60,7 +60,7 @@ fixv mcor_tile_near(realv x, realv y, realv z, realv inv_h, real cx, real cy, re
 #endif
 }
 
-/* Puts the particles of a mask behind the tile's first `count`, but for the list. */
+/* Appends the particles of a mask to the tile, but not to its list. */
 void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_h, realv weight,
   realv value, realv trim_weight, int count, mcor_tile* tile)
 {
@@ -77,15 +77,15 @@ void mcor_tile_pack(const mcor_mask* mask, realv x, realv y, realv z, realv inv_
 #endif
 }
 
-/* Tests the particles that are left of the query's row, and puts those that reach its box behind
- * the tile's first `count`, while there is room. Returns the new count. */
+/* Tests the remaining particles of the query's row, and appends those that reach its box to the
+ * tile while there is room. Returns the new count. */
 int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_tile* tile)
 {
   const real unit = grid->unit;
   const fix ox = query->origin[0], oy = query->origin[1], oz = query->origin[2];
   const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
   const real hx = query->half_size[0], hy = query->half_size[1], hz = query->half_size[2];
-  /* Within their own support, or within the query's radius. */
+  /* Particles count within their own support, or within the query's radius. */
   const bool own = query->radius < 0;
   const realv reach = own ? -query->radius : (real)1;
   const realv inv_radius = own ? (real)1 : (real)MCOR_SUPPORT / query->radius;
@@ -108,8 +108,8 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
   return count;
 }
 
-/* Sets the lanes beyond the end, which loads of MCOR_LANES particles see, to particles without
- * weight. */
+/* Fills the lanes beyond the end, which loads of MCOR_LANES particles see, with particles
+ * without weight. */
 void mcor_tile_pad(mcor_tile* tile)
 {
   real* const arrays[] = { tile->x, tile->y, tile->z, tile->inv_h, tile->weight, tile->value,
@@ -157,8 +157,8 @@ bool mcor_tile_next(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, b
   return true;
 }
 
-/* Fills a tile, but for its list, from a complete one of a query with the same origin and a box
- * that holds this one's. */
+/* Fills a tile, but not its list, from a complete tile of a query with the same origin and a box
+ * that encloses this one's. */
 void mcor_tile_narrow(const mcor_tile* wide, const mcor_query* query, mcor_tile* tile)
 {
   const real cx = query->center[0], cy = query->center[1], cz = query->center[2];
@@ -200,11 +200,11 @@ bool mcor_reach_next(const mcor_grid* grid, mcor_query* query, const mcor_points
 #else
 #define MCOR_REACH_SIZE (MCOR_PARTS * (MCOR_TILE_SIZE + 16))
 
-/* Which particles of a tile reach each part: one mask for MCOR_LANES of them. */
+/* Finds which particles of a tile reach each part: one mask for MCOR_LANES of them. */
 typedef struct
 {
   mcor_mask mask[MCOR_PARTS][MCOR_TILE_SIZE / MCOR_LANES + 1];
-  int chunks, longest; /* masks of a part; particles of the part with most */
+  int chunks, longest; /* masks of a part; number of particles of the longest part */
 } mcor_reach_masks;
 
 typedef struct
@@ -253,8 +253,8 @@ void mcor_reach_test(const mcor_tile* tile, const mcor_points* points, mcor_reac
   }
 }
 
-/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. Ends of
- * the shorter lists become 0, which is no weight. */
+/* Packs one array of a tile for all parts: element i of part p goes to i * MCOR_PARTS + p. The
+ * ends of shorter lists become 0, which is no weight. */
 void mcor_reach_pack(const mcor_reach_masks* masks, const real* array, real* to)
 {
   MCOR_ALIGNED real packed[MCOR_PARTS][MCOR_TILE_SIZE + 2 * MCOR_LANES];
@@ -359,8 +359,9 @@ void mcor_values_load(
 
 #define MCOR_VALUE_OF(values, reach, c, i) MCOR_VALUE((values)->of[c], i)
 
-/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes:
- * together, as a sum alone would wait for its last addition. weight: w_i in each lane. */
+/* Adds sum w_i A_i over the particles of a reach for up to MCOR_ATTRIBUTE_STEP attributes. They
+ * are summed together, because a sum alone would wait for its last addition. weight: w_i in each
+ * lane. */
 #define MCOR_ATTRIBUTE_STEP 4
 void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes, const int stride,
   int count, const realv* weight, realv sums[MCOR_ATTRIBUTE_STEP])
@@ -386,8 +387,8 @@ void mcor_attribute_add(const mcor_reach* reach, __global const real* attributes
   sums[3] = s3;
 }
 
-/* As mcor_attribute_add for the first `step` arrays, a constant, but sets the weights, too, and adds them: in
- * one loop, as each sum alone would wait for its last addition. */
+/* Does mcor_attribute_add for the first `step` arrays, a constant; also makes the weights and
+ * adds them. One loop does all sums, because each sum alone would wait for its last addition. */
 __attribute__((always_inline)) void mcor_attribute_begin(const mcor_grid* grid,
   const mcor_query* query, const mcor_points* points, const mcor_reach* reach, const int step,
   int count, const int stride, __global const real* attributes, realv* weight, realv* weight_sum,

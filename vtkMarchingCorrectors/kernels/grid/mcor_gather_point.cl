@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles for one point per work-item, as a GPU wants it: they are read where they are, a row of
- * search cells at a time, and nothing is copied. The interface is that at the end of
- * mcor_query.cl. */
+/* Particles for one point per work-item, in the form for GPUs. They are read in place, a row of
+ * search cells at a time; nothing is copied. mcor_query.cl has the interface at its end. */
 
 /* Particles of a row that may reach the query's box. */
 typedef struct
@@ -114,7 +113,7 @@ void mcor_attribute_sums(const mcor_grid* grid, mcor_query* query, const mcor_po
       const real weight = MCOR_EACH(tile, weight, i) *
         mcor_weight_gradient(d, &length, MCOR_EACH(tile, inv_h, i), &slope, along);
       w += weight;
-      for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* to the limit: so sums stay in registers */
+      for (int c = 0; c < MCOR_ATTRIBUTE_LIMIT; ++c) /* constant limit: sums stay in registers */
       {
         if (c < count)
         {

@@ -17,8 +17,8 @@ __kernel void mcor_grid_key(const int count, __global const mcor_level* levels,
   keys[i] = level->base + (cell_z * level->cells[1] + cell_y) * level->cells[0] + cell_x;
 }
 
-/* One work-item = the cells that begin in a batch of sorted keys. Raises `most` to the particles of a
- * cell. */
+/* One work-item = the cells that begin in a batch of sorted keys. Raises `most` to the largest
+ * number of particles in a cell. */
 __kernel void mcor_grid_count(const int count, __global const ulong* keys, __global int* most)
 {
   const int begin = get_global_id(0) * MCOR_BATCH, end = min(begin + MCOR_BATCH, count);
@@ -32,13 +32,13 @@ __kernel void mcor_grid_count(const int count, __global const ulong* keys, __glo
   }
 }
 
-/* The particles' arrays, in any order. size: volume or mass, or 1, below 0 of solids. */
+/* Arrays of particles, in any order. size: volume or mass, or 1; below 0 for solids. */
 #define MCOR_PARTICLES                                                                             \
   __global const fix *x, __global const fix *y, __global const fix *z, __global const real *inv_h, \
     __global const real *size
 
-/* Order of two particles of one search cell: by position, then by size and kind. Particles equal in
- * all of this are interchangeable but for their scalar, see mcor_grid_order_value. */
+/* Compares two particles of one search cell: by position, then by size and kind. Particles equal
+ * in all of this differ in their scalar at most, see mcor_grid_order_value. */
 bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
 {
   if (x[i] != x[j])
@@ -61,10 +61,10 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
   return a != b ? a < b : size[i] > size[j];
 }
 
-/* The limit of insertion sort. */
+/* Most elements of an insertion sort. */
 #define MCOR_INSERTION_LIMIT MCOR_INSERTION_OF(MCOR_LANES)
 
-/* Elements from[0 .. count) of an array, in place. */
+/* Sorts elements from[0 .. count) of an array in place. */
 #define MCOR_GRID_PERMUTE(type, array)                                                             \
   {                                                                                                \
     type old[MCOR_INSERTION_LIMIT];                                                                \
@@ -78,7 +78,7 @@ bool mcor_grid_before(MCOR_PARTICLES, int i, int j)
     }                                                                                              \
   }
 
-/* Sorts the particles of each of some whole cells. */
+/* Sorts the particles of each of several whole cells. */
 void mcor_grid_insert(__global const ulong* keys, __global fix* x, __global fix* y, __global fix* z,
   __global real* inv_h, __global real* size, __global int* order, int count)
 {
@@ -111,8 +111,8 @@ void mcor_grid_insert(__global const ulong* keys, __global fix* x, __global fix*
   MCOR_GRID_PERMUTE(int, order)
 }
 
-/* End of the whole cells from `first` on that begin before `end`, as many as have room for insertion
- * sort: `first` itself where the first of them has not. */
+/* Returns the end of the whole cells from `first` on that begin before `end` and that insertion
+ * sort has room for; `first` itself if the first cell is too large. */
 int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int count)
 {
   const int limit = min(first + MCOR_INSERTION_LIMIT, count);
@@ -131,9 +131,10 @@ int mcor_grid_cells_end(__global const ulong* keys, int first, int end, int coun
   return last;
 }
 
-/* One work-item = the cells that begin in a batch of sorted particles. Orders the particles in these
- * cells, so that it no longer depends on the order of the input; not those of a cell with more than
- * MCOR_INSERTION_LIMIT, which mcor_grid_sort_runs and mcor_grid_merge have ordered. */
+/* One work-item = the cells that begin in a batch of sorted particles. Sorts the particles of
+ * these cells, so that their order no longer depends on the input. Leaves out cells with more
+ * than MCOR_INSERTION_LIMIT particles, which mcor_grid_sort_runs and mcor_grid_merge have
+ * sorted. */
 __kernel void mcor_grid_order(const int count, __global const ulong* keys, __global fix* x,
   __global fix* y, __global fix* z, __global real* inv_h, __global real* size, __global int* order)
 {
@@ -152,7 +153,7 @@ __kernel void mcor_grid_order(const int count, __global const ulong* keys, __glo
   }
 }
 
-/* One work-item = one particle. Turns its volume into its weights; norm: of the SPH kernel. */
+/* One work-item = one particle. Turns its volume into its weights. norm: of the SPH kernel. */
 __kernel void mcor_grid_weigh(const int count, const real norm, __global const real* inv_h,
   __global real* weight, __global real* trim_weight)
 {
@@ -163,10 +164,11 @@ __kernel void mcor_grid_weigh(const int count, const real norm, __global const r
   weight[i] = size < 0 ? (real)0 : w; /* the same array where there are no solids */
 }
 
-/* Groups of more than MCOR_INSERTION_LIMIT particles with the same key are sorted by all work-items
- * together: runs of MCOR_SORTED_RUN, then pairs of runs are merged into runs twice as long. The groups
- * are cells, or (by_value) coincident particles, which are sorted by their scalar, so that not even they
- * make a result depend on the order of the input; then by that order, so that no earlier scalar's shows. */
+/* Groups of more than MCOR_INSERTION_LIMIT particles with one key are sorted by all work-items
+ * together: runs of MCOR_SORTED_RUN first, then pairs of runs are merged into runs twice as
+ * long. A group is a cell, or (by_value) the particles at one position. The latter are sorted by
+ * their scalar, so that not even they make a result depend on the order of the input; then by
+ * the order before it, so that no trace of an earlier scalar stays. */
 #define MCOR_SORT_PARAMS                                                                           \
   const int count, __global const ulong *keys, MCOR_PARTICLES, const int by_value,                 \
     __global const real *value
@@ -183,7 +185,7 @@ bool mcor_sort_before(MCOR_SORT_PARAMS, int i, int j)
                   : mcor_grid_before(x, y, z, inv_h, size, i, j);
 }
 
-/* Whether place i may be one of more than MCOR_INSERTION_LIMIT with one key. */
+/* Whether place i may belong to a group of more than MCOR_INSERTION_LIMIT. */
 bool mcor_sort_is_large(__global const ulong* keys, int i, int count)
 {
   const int step = MCOR_INSERTION_LIMIT / 2;
@@ -221,9 +223,9 @@ __kernel void mcor_grid_sort_runs(MCOR_SORT_PARAMS, __global int* order)
   }
 }
 
-/* One work-item = one batch of sorted particles. Reads an order with sorted runs of a width. Writes
- * where each particle is in the order with runs of twice that width: as many places behind its own
- * among both runs as the other run has before it. */
+/* One work-item = one batch of sorted particles. Reads an order with sorted runs of a width.
+ * Writes the place of each particle in the order with runs of twice that width: its place in its
+ * own run, plus the number of particles of the other run before it. */
 __kernel void mcor_grid_merge(
   MCOR_SORT_PARAMS, const int width, __global const int* order, __global int* merged)
 {
@@ -248,7 +250,7 @@ __kernel void mcor_grid_merge(
     while (low < high)
     {
       const int middle = low + (high - low) / 2;
-      /* Where keys are equal, the first run's come first. */
+      /* With equal keys, the first run comes first. */
       const bool before = is_first ? mcor_sort_before(MCOR_SORT_ARGS, order[middle], order[i])
                                    : !mcor_sort_before(MCOR_SORT_ARGS, order[i], order[middle]);
       low = before ? middle + 1 : low;
@@ -267,7 +269,7 @@ __kernel void mcor_grid_gather_value(const int count, __global const int* order,
   out[(long)out_row * count + i] = in[order[i]];
 }
 
-/* Whether sorted particles i and j differ in their scalar only; mostly x tells. */
+/* Whether sorted particles i and j differ in their scalar at most. Mostly x decides. */
 #define MCOR_COINCIDENT_PARAMS                                                                     \
   __global const fix *px, __global const fix *py, __global const fix *pz,                          \
     __global const real *inv_h, __global const real *weight, __global const real *trim_weight
@@ -279,8 +281,8 @@ bool mcor_grid_is_same(MCOR_COINCIDENT_PARAMS, int i, int j)
 #define MCOR_SAME(i, j)                                                                            \
   (px[i] == px[j] && mcor_grid_is_same(px, py, pz, inv_h, weight, trim_weight, i, j))
 
-/* One work-item = one sorted particle, the first of coincident ones. Sorts these; where they are more
- * than MCOR_INSERTION_LIMIT, says so. */
+/* One work-item = one sorted particle, if it is the first of several at one position. Sorts
+ * these; if they are more than MCOR_INSERTION_LIMIT, reports so instead. */
 __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __global real* value,
   __global int* order, __global int* many)
 {
@@ -311,8 +313,8 @@ __kernel void mcor_grid_order_value(const int count, MCOR_COINCIDENT_PARAMS, __g
   }
 }
 
-/* One work-item = one sorted particle. Writes 1 where it differs from the one before it in more than
- * the scalar. */
+/* One work-item = one sorted particle. Writes 1 if it differs from the one before it in more
+ * than the scalar. */
 __kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __global int* flags)
 {
   MCOR_ITEM(i, i < count);
@@ -336,10 +338,11 @@ typedef struct
 {
   realv mass;                /* m_k w(q) */
   realv size;                /* (h_k / h_j)^d w(q), d: dimensions */
-  realv fluid[3], solids[3]; /* (h_k / h_j)^d grad w(q), of these */
+  realv fluid[3], solids[3]; /* (h_k / h_j)^d grad w(q), of fluid and of solids */
 } mcor_density_sums;
 
-/* Beyond, a neighbour is all that counts, and the cube is near what single precision holds. */
+/* Greatest ratio of smoothing lengths: beyond it a neighbour outweighs all others, and the cube
+ * of the ratio is near the limit of single precision. */
 #define MCOR_LARGEST_RATIO ((real)1e10f)
 
 #define MCOR_DENSITY_PULL(side)                                                                    \
@@ -347,8 +350,8 @@ typedef struct
   side[1] = MCOR_FMA(pull, along[1], side[1]);                                                     \
   side[2] = MCOR_FMA(pull, along[2], side[2]);
 
-/* Adds particle k to particles at x; scale: 1 / h_j, in the unit of positions, inside: of which lanes it is in a
- * tile. */
+/* Adds particle k to particles at x. scale: 1 / h_j, in the unit of positions. inside: lanes
+ * whose query the tile belongs to. */
 void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, const fixv x[3],
   realv scale, realv inv_h, fixv inside, int plane, mcor_density_sums* sums)
 {
@@ -375,9 +378,9 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 #endif
 }
 
-/* The factor of the density: 1 + 5/3 D^2, D^2 = variance |g|^2 / n^2, which makes up for the side that
- * has no neighbours: one_sided = 5/3 variance. Solids fill that side, but not more: of their share of g goes in
- * what leaves least. */
+/* Returns the factor of the density, 1 + 5/3 D^2 with D^2 = variance |g|^2 / n^2. It makes up
+ * for the side without neighbours. one_sided: 5/3 variance. Solids fill that side, but not more:
+ * their part of g is added with the share, 0 to 1, that leaves least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;
@@ -450,16 +453,16 @@ __kernel void mcor_grid_density(MCOR_GRID_PARAMS, const real h_scale, const int 
 #endif
 }
 
-/* Density, as a factor of what a particle itself adds to it, at least: below, a computed volume would
- * be huge, or negative, as a kernel with negative lobes can make it. */
+/* Least density, as a factor of what a particle itself adds to it. Below it, a computed volume
+ * would be huge, or negative, which kernels with negative lobes can cause. */
 #define MCOR_LEAST_DENSITY ((real)0.01f)
 
-/* Where the field is evaluated, in cubes. */
+/* Box in which the field is evaluated, in cubes. */
 #define MCOR_EVALUATED_PARAMS                                                                      \
   const real low_x, const real low_y, const real low_z, const real high_x, const real high_y,      \
     const real high_z
 
-/* Whether a particle, `support` around x, reaches what is evaluated, or nearly so. */
+/* Whether a particle, with `support` around x, reaches that box, or nearly so. */
 bool mcor_grid_reaches(const real* x, real support, MCOR_EVALUATED_PARAMS)
 {
   const real far = support * (real)1.001f + (real)0.01f;
@@ -467,9 +470,10 @@ bool mcor_grid_reaches(const real* x, real support, MCOR_EVALUATED_PARAMS)
     x[2] + far > low_z && x[2] - far < high_z;
 }
 
-/* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled h)^3: as
- * V = m / (sum m W), the norm and the unscaled h^3 cancel. Writes the first particle, if any, of
- * which the density is too low to `without`; not where it lacks neighbours, as it reaches nothing. */
+/* One work-item = one sorted particle. Turns mass and density into the weight V norm / (scaled
+ * h)^3: V = m / (sum m W), so norm and unscaled h^3 cancel. Writes to `without` the first
+ * particle whose density is too low. A particle outside of the box may lack neighbours; it is
+ * not reported, because it reaches nothing. */
 __kernel void mcor_grid_weight(const int count, const real h_scale, __global const int* order,
   __global const real* density, const real unit, __global const fix* px, __global const fix* py,
   __global const fix* pz, __global const real* inv_h, MCOR_EVALUATED_PARAMS, __global real* weight,

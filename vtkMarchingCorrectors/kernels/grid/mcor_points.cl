@@ -1,26 +1,26 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Points that are evaluated together, in groups of up to MCOR_LANES, and the particles that reach
- * them.
+/* Points that are evaluated together, in groups of up to MCOR_LANES, and the particles that
+ * reach them.
  *
- * Many more particles reach some point of a group than reach a given one. So where packing is cheap
- * a group consists of MCOR_PARTS parts of points close together, each with its own list of
- * particles; the lists are gone through at the same time, lane l of a vector being of part l %
- * MCOR_PARTS. Every sum goes through its particles in the order of the search grid, whatever the
- * groups are. */
+ * Many more particles reach some point of a group than reach one given point. If packing is
+ * cheap, a group therefore consists of MCOR_PARTS parts of points close together, each with its
+ * own list of particles. The lists are gone through at the same time: lane l of a vector belongs
+ * to part l % MCOR_PARTS. Every sum adds its particles in the order of the search grid, whatever
+ * the groups are. */
 
-/* How far apart the nodes of a group may be, in cubes, all three axes together; along one:
+/* Greatest distance between nodes of a group, in cubes, summed over the three axes; along one:
  * MCOR_GROUP_EDGE. */
 #define MCOR_GROUP_EDGES 12
 
 #define MCOR_PART (MCOR_LANES / MCOR_PARTS)
 
 #if !MCOR_OF_LATTICE
-/* Points: lattice node, and from there. */
+/* Points: a lattice node, and an offset from it. */
 typedef struct
 {
-  int index[MCOR_LANES]; /* of each lane's point; -1 where a lane repeats another one */
+  int index[MCOR_LANES]; /* number of each lane's point; -1 if a lane repeats another one */
   fixv x, y, z;
   realv ox, oy, oz;
   /* The box of each part, in cubes from the query's origin. */
@@ -33,22 +33,22 @@ bool mcor_same_brick(int4 a, int4 b)
   return a.x >> 2 == b.x >> 2 && a.y >> 2 == b.y >> 2 && a.z >> 2 == b.z >> 2;
 }
 
-/* Where a walk through successive points is: a part holds up to MCOR_PART points of one brick. */
+/* State of a walk through successive points. A part holds up to MCOR_PART points of one brick. */
 typedef struct
 {
-  int part, size; /* of the last point: its part in the group, and how many that has so far */
-  int4 low, high; /* of the group's nodes */
+  int part, size; /* part of the last point in the group, and the number of points in it so far */
+  int4 low, high; /* box of the group's nodes */
 } mcor_grouping;
 
-/* Whether nodes that are so far apart may share one gather of particles, which is to stay small. */
+/* Whether nodes this far apart may share one gather of particles, which is to stay small. */
 bool mcor_group_fits(int4 extent)
 {
   return extent.x + extent.y + extent.z <= MCOR_GROUP_EDGES &&
     max(extent.x, max(extent.y, extent.z)) <= MCOR_GROUP_EDGE;
 }
 
-/* Takes the next point, at `node`; `before` is the one before it. Returns false where it does not
- * fit the group, which the caller then starts anew. */
+/* Takes the next point, at `node`. before: the node of the point before it. Returns false if it
+ * does not fit the group; the caller then starts a new one. */
 bool mcor_group_add(mcor_grouping* grouping, int4 before, int4 node)
 {
   const int4 low = min(grouping->low, node), high = max(grouping->high, node);
@@ -91,7 +91,7 @@ __kernel void mcor_group_count(
 }
 
 #else
-/* Gives the points of a group to lanes; `from` is the point to load in each lane. */
+/* Gives the points of a group to lanes. from: the point to load in each lane. */
 void mcor_points_place(
   __global const int4* node, int begin, int end, mcor_points* points, int from[MCOR_LANES])
 {
@@ -180,8 +180,8 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
   mcor_query_place(grid, query, origin);
 }
 
-/* An offset, given in edges. Where edges differ, a particle's place is a fixed-point number again: it is itself
- * among what is evaluated there. */
+/* Turns an offset in edges into cubes. If edges differ along the axes, a particle's position is
+ * rounded to a fixed-point number again, so that it finds itself when it is evaluated. */
 real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
 {
   const real at = offset * grid->edge[axis], units = at * grid->units,
@@ -190,7 +190,7 @@ real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
   return near ? whole * grid->unit : at;
 }
 
-/* Loads the group of points from begin to before end and their offsets. */
+/* Loads the group of points from `begin` to before `end`, and their offsets. */
 void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const int4* node,
   __global const real4* offset, mcor_points* points)
 {
@@ -206,7 +206,7 @@ void mcor_group_points(const mcor_grid* grid, int begin, int end, __global const
   }
 }
 
-/* The same, and fits the query to them, `margin` added. */
+/* Loads a group of points, and fits the query to them, with `margin` added. */
 void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const int4* node,
   __global const real4* offset, real margin, mcor_points* points, mcor_query* query)
 {
@@ -216,7 +216,7 @@ void mcor_group_load(const mcor_grid* grid, int begin, int end, __global const i
   mcor_points_bound(grid, low, high, points, query);
 }
 
-/* The points' nodes from the query's origin, as particles are in a tile. */
+/* Finds the points' nodes from the query's origin, as the particles of a tile count from it. */
 void mcor_points_relative(
   const mcor_grid* grid, const mcor_query* query, const mcor_points* points, realv at[3])
 {
@@ -225,9 +225,10 @@ void mcor_points_relative(
   at[2] = MCOR_CONVERT_REALV(points->z - query->origin[2]) * grid->unit;
 }
 
-/* Where the points are from a particle at (x, y, z); `at` is of mcor_points_relative. What is in
- * parentheses is exact where the particle reaches the point, see MCOR_POINT_EXTENT: so the distance
- * depends on particle and point alone, not on the query's origin. */
+/* Finds the offsets of the points from a particle at (x, y, z). at: made by
+ * mcor_points_relative. The terms in parentheses are exact if the particle reaches the point,
+ * see MCOR_POINT_EXTENT. So the distance depends on particle and point alone, not on the query's
+ * origin. */
 void mcor_points_from(
   const realv at[3], const mcor_points* points, realv x, realv y, realv z, realv d[3])
 {

@@ -3,10 +3,10 @@
 
 /* The search grid [III-A]: rows of particles that may reach a box.
  *
- * The search grid has one level for each factor of 2 of support radius that occurs, so that a
- * particle costs work only where its own support reaches. Particles are sorted by (level, z, y, x)
- * cell and, in a cell, by position, x first, so that a row of cells is sorted by x: the order of
- * every sum is fixed by the particles alone. */
+ * The search grid has one level for each factor of 2 of support radius that occurs, so a
+ * particle costs work only where its own support reaches. Particles are sorted by (level, z, y,
+ * x) cell, and within a cell by position, x first, so a row of cells is sorted by x. The
+ * particles alone fix the order of every sum. */
 
 #define MCOR_GRID_PARAMS                                                                           \
   const int particle_count, const int level_count, const int bucket_shift, const real unit,        \
@@ -20,16 +20,16 @@
 typedef struct
 {
   int particle_count, level_count, bucket_shift;
-  real unit, units; /* of fixed-point numbers, in cubes; of a cube: powers of two */
-  real edge[3]; /* of a cell, at most 1 */
-  fix step[3];  /* the same in fixed-point units: from node to node */
+  real unit, units; /* of fixed-point numbers, in cubes; of a cube, in these: powers of two */
+  real edge[3];     /* length of an edge in cubes, at most 1 */
+  fix step[3];      /* length of an edge, from node to node, in fixed-point units */
   __global const mcor_level* levels;
   __global const int* buckets;     /* first particle with cell key >= bucket << bucket_shift */
   __global const ulong* cell_keys; /* sorted */
   __global const fix *px, *py, *pz;
   __global const real* inv_h;       /* 1 / (h scale * smoothing length), per cube */
   __global const real* weight;      /* V norm / (scaled h)^3; 0 for solids */
-  __global const real* trim_weight; /* the same, solids included */
+  __global const real* trim_weight; /* V norm / (scaled h)^3, solids included */
   __global const real* value;       /* A - A0 */
 } mcor_grid;
 
@@ -40,7 +40,7 @@ typedef struct
       cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                             \
   }
 
-/* Index of the first particle whose cell key is >= key. */
+/* Returns the index of the first particle whose cell key is >= key. */
 int mcor_first_particle(const mcor_grid* grid, ulong key)
 {
   const ulong bucket = key >> grid->bucket_shift;
@@ -56,36 +56,38 @@ int mcor_first_particle(const mcor_grid* grid, ulong key)
 typedef struct
 {
   fix low[3], high[3];
-  fix origin[3];                /* in a tile, positions count from here */
-  real center[3], half_size[3]; /* of the box, in cubes from the origin */
+  fix origin[3];                /* positions in a tile count from here */
+  real center[3], half_size[3]; /* the box, in cubes from the origin */
   float radius; /* cubes; below 0: -1 times the share of each particle's own support, e.g. -1 */
-  /* This level, in fixed-point units: cells, where the first one begins, how far rounding may have
-   * moved that; reach; squared distance of row z. */
+  /* The current level, in fixed-point units: its cells; where the first one begins; how far
+   * rounding may have moved that; reach; squared distance of row z. */
   float cell_size[3], first_cell[3], slack[3], reach2, z2;
   int level, first[3], last[3], y, z;
-  bool has_many_rows; /* in reach, see MCOR_MANY_ROWS */
-  int begin, end;     /* particles left of the current row */
+  bool has_many_rows; /* rows in reach, see MCOR_MANY_ROWS */
+  int begin, end;     /* remaining particles of the current row */
 } mcor_query;
 
-/* A distance, as far as the lattice reaches: then positions that far beyond it do not overflow. */
+/* Limits a distance to the lattice's extent, so that positions that far beyond it do not
+ * overflow. */
 fix mcor_query_reach(float distance)
 {
   const fix most = (fix)1 << (MCOR_DOUBLE ? 62 : 30);
   return distance < (float)most ? (fix)distance : most;
 }
 
-/* With more rows, one passes over the empty ones at once. Where smoothing lengths differ much, nearly all
- * are: particles of most levels are elsewhere. */
+/* With more rows than this, a query skips the empty ones at once. If smoothing lengths differ
+ * much, nearly all are empty: particles of most levels are elsewhere. */
 #define MCOR_MANY_ROWS(grid) ((grid)->level_count > 1 ? 3 : 64)
 
-/* x + reach, or the greatest number: a lattice may be nearly as long. */
+/* Returns x + reach, or the greatest number if that overflows: a lattice may be nearly as long. */
 fix mcor_query_beyond(fix x, fix reach)
 {
   const fix most = (((fix)1 << (MCOR_DOUBLE ? 62 : 30)) - 1) * 2 + 1;
   return min(x, most - reach) + reach;
 }
 
-/* The part of a query that depends on the level; false where the level has no cell in reach. */
+/* Sets the part of a query that depends on the level. Returns false if the level has no cell in
+ * reach. */
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
@@ -126,7 +128,7 @@ bool mcor_query_next_level(const mcor_grid* grid, mcor_query* query, int level)
   return false;
 }
 
-/* Completes a query that has its box. */
+/* Completes a query whose box is set. */
 void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin[3])
 {
   for (int a = 0; a < 3; ++a)
@@ -137,8 +139,8 @@ void mcor_query_place(const mcor_grid* grid, mcor_query* query, const fix origin
   }
 }
 
-/* Square of the distance between the box and a cell along an axis, less what rounding may have
- * moved a particle across the cell's face. */
+/* Returns the squared distance between the box and a cell along an axis, less the distance by
+ * which rounding may have moved a particle across the cell's face. */
 float mcor_query_distance2(const mcor_query* query, int axis, int cell)
 {
   const float low = (float)query->low[axis], high = (float)query->high[axis];
@@ -149,7 +151,7 @@ float mcor_query_distance2(const mcor_query* query, int axis, int cell)
   return d > 0 ? d * d : 0;
 }
 
-/* Particles [begin, end) of the current row that may be in reach. A row is sorted by x. */
+/* Finds particles [begin, end) of the current row that may be in reach. A row is sorted by x. */
 void mcor_query_row(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
@@ -180,7 +182,7 @@ void mcor_query_row(const mcor_grid* grid, mcor_query* query)
   query->end = end;
 }
 
-/* Moves to just before the row, or the plane of rows, of the level's next particle. */
+/* Moves to just before the row, or the plane of rows, that has the level's next particle. */
 void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
@@ -199,7 +201,7 @@ void mcor_query_skip_rows(const mcor_grid* grid, mcor_query* query)
   }
 }
 
-/* Moves to the next row with particles; false at the end. */
+/* Moves to the next row with particles. Returns false at the end. */
 bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
 {
   while (query->level < grid->level_count)
@@ -227,9 +229,9 @@ bool mcor_query_next_row(const mcor_grid* grid, mcor_query* query)
   return false;
 }
 
-/* Fits the query's box to those of the sorted particles [begin, end) before x descends, which it does
- * where a row ends if the next one has particles on the left. Returns how many, and the least of
- * their inv_h. */
+/* Fits the query's box to the first of the sorted particles [begin, end), up to where x
+ * descends. It does so at the end of a row if the next one has particles further left. Returns
+ * their number, and the least of their inv_h. */
 int mcor_query_particles(
   const mcor_grid* grid, mcor_query* query, int begin, int end, real* coarsest)
 {

@@ -26,8 +26,8 @@ __kernel void mcor_scan_sum(
 }
 
 #if MCOR_LANES > 1
-/* One work-item in all, as a CPU has few segments. Reads the segment sums. Writes their exclusive prefix
- * sums. */
+/* One work-item in all, because a CPU has few segments. Reads the segment sums. Writes their
+ * exclusive prefix sums. */
 __kernel void mcor_scan_top(const int segments, __global long* sums)
 {
   long sum = 0;
@@ -39,7 +39,7 @@ __kernel void mcor_scan_top(const int segments, __global long* sums)
   }
 }
 #else
-/* Scans the segments' sums by one work-group of 64; a work-item = a 64th of the sums. */
+/* One work-item = a 64th of the segment sums; one work-group of 64 scans them all. */
 __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
   const int segments, __global long* sums)
 {
@@ -69,9 +69,9 @@ __attribute__((reqd_work_group_size(64, 1, 1))) __kernel void mcor_scan_top(
 
 #endif
 
-/* One work-item = one segment. Reads counts, and the scanned segment sums if there are several. Writes
- * the exclusive prefix sums in place of the counts; element `count` becomes the total, and so does
- * that behind the segment sums. */
+/* One work-item = one segment. Reads counts, and the scanned segment sums if there are several.
+ * Replaces the counts by their exclusive prefix sums. Writes the total to element `count`, and
+ * behind the segment sums. */
 __kernel void mcor_scan_fill(
   __global int* counts, const int count, const int segments, __global long* sums)
 {
@@ -113,9 +113,10 @@ __kernel void mcor_sort_count(__global const ulong* keys, const int count, const
   }
 }
 
-/* One work-item = one segment. Reads keys, values (in the first round that of key i is i) and the
- * scanned histogram. Writes both in the order of the digit, equal digits in the order in which they
- * came. in_bits, out_bits: of values that are below their keys in one number; 0: they are by themselves. */
+/* One work-item = one segment. Reads keys, values (in the first round the value of key i is i)
+ * and the scanned histogram. Writes both in the order of the digit; equal digits keep their
+ * order. in_bits, out_bits: bits of values stored below their keys in one number; 0: values are
+ * stored separately. */
 __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* values,
   const int count, const int segments, const int shift, const int bits, const int in_bits,
   const int out_bits, __global const int* histogram, __global ulong* sorted_keys,
@@ -142,7 +143,7 @@ __kernel void mcor_sort_fill(__global const ulong* keys, __global const int* val
   }
 }
 
-/* One work-item = one sorted key. Writes 1 where a key differs from the one before it. */
+/* One work-item = one sorted key. Writes 1 if the key differs from the one before it. */
 __kernel void mcor_unique_count(__global const ulong* keys, const int count, __global int* flags)
 {
   MCOR_ITEM(i, i < count);

@@ -4,7 +4,7 @@
 /* A box of cells of the lattice; see mcor_box.c. */
 
 #if MCOR_OF_LATTICE
-/* Cells from the first to before the last, by axis. */
+/* Cells from `first` to before `last`, by axis. */
 #define MCOR_BOX_PARAMS                                                                            \
   const int first_x, const int first_y, const int first_z, const int last_x, const int last_y,     \
     const int last_z
@@ -17,7 +17,7 @@ bool mcor_box_reaches(MCOR_BOX_PARAMS, int4 node, int size)
     node.y <= last_y && node.z + size > first_z && node.z <= last_z;
 }
 
-/* One work-item = one cube, 32 << level nodes long. Makes void what has no node of the box. */
+/* One work-item = one cube, 32 << level nodes long. Makes it void if it has no node of the box. */
 __kernel void mcor_box_void_cubes(const int count, __global const mcor_rung* rungs,
   __global const ulong* keys, MCOR_BOX_PARAMS, __global uchar* states)
 {
@@ -30,7 +30,8 @@ __kernel void mcor_box_void_cubes(const int count, __global const mcor_rung* run
   }
 }
 
-/* One work-item = one brick of a block. The same; and what is void gets no slot. */
+/* One work-item = one brick of a block. Makes it void, and without a slot, if it has no node of
+ * the box. */
 __kernel void mcor_box_void_bricks(const int block_count, __global const mcor_rung* rungs,
   __global const ulong* block_keys, MCOR_BOX_PARAMS, __global uchar* states,
   __global uint* brick_bits)
@@ -44,8 +45,9 @@ __kernel void mcor_box_void_bricks(const int block_count, __global const mcor_ru
   }
 }
 
-/* One work-item = one brick, of any level. Writes those of its cells that are in the box, or in a ring around it:
- * that would be in it if they were so many cells larger all around. */
+/* One work-item = one brick, of any level. Writes which of its cells are in the box, or in the
+ * ring around it. The ring has the cells that would be in the box if they were so many cells
+ * larger on all sides. */
 __kernel void mcor_box_clip(const int brick_count, __global const int4* bricks, MCOR_SIDES_PARAMS,
   const int ring, __global const ulong* cells, __global ulong* clipped)
 {

@@ -1,18 +1,19 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Marching squares, on the lowest layer of the lattice's cells: a square is the lower face of one. Its
- * nodes above are as those in the plane, so that all that finds cells and nodes holds for squares.
+/* Marching squares, on the lowest layer of the lattice's cells: a square is the lower face of a
+ * cell. Its nodes above have the signs of the nodes in the plane, so all code that finds cells
+ * and nodes works for squares.
  *
- * A square's sides are halved where a finer one touches them, so that it is a polygon of 4 to 8 nodes. Each crossed
- * piece of a side has one vertex, which the squares on both sides of it share; one line in the square begins, or
- * ends, there. */
+ * A square's sides are halved where a finer square touches them, so it is a polygon of 4 to 8
+ * nodes. Each crossed piece of a side has one vertex, which the squares on both sides share. In
+ * each square, one line begins or ends there. */
 
 /* Nodes and cells of a brick that are in the plane, bits x + 4 y. */
 #define MCOR_PLANE_MASK 0xffffUL
 
-/* One work-item = one brick. Gives the signs of nodes in the plane to those above; of these, the next layer
- * alone is valid, which leaves one layer of cells. */
+/* One work-item = one brick. Copies the signs of nodes in the plane to the nodes above. Only the
+ * next layer of these is valid, which leaves one layer of cells. */
 __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __global ulong* valid)
 {
   const int slot = get_global_id(0);
@@ -23,14 +24,15 @@ __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __
   }
 }
 
-/* One work-item = one brick. Of its cells, leaves those that are squares. */
+/* One work-item = one brick. Keeps the cells that are squares. */
 __kernel void mcor_plane_squares(const int count, __global ulong* cells)
 {
   MCOR_ITEM(i, i < count);
   cells[i] &= MCOR_PLANE_MASK;
 }
 
-/* Corners of a square that are above: bits 0..3 (0, 0), (1, 0), (0, 1), (1, 1). m: of its cells. */
+/* Returns the corners of a square that are above: bits 0..3 (0, 0), (1, 0), (0, 1), (1, 1). m:
+ * masks of its brick's cells. */
 int mcor_plane_case(const ulong* corners, int cell)
 {
   int above = 0;
@@ -41,7 +43,7 @@ int mcor_plane_case(const ulong* corners, int cell)
   return above;
 }
 
-/* The number of lines in squares. */
+/* Returns the number of lines in squares. */
 int mcor_plane_count(const ulong* corners, ulong squares)
 {
   int lines = 0;
@@ -53,8 +55,8 @@ int mcor_plane_count(const ulong* corners, ulong squares)
   return lines;
 }
 
-/* Masks of the squares beside edges along an axis, as cells around them (see mcor_cell_around): a square is on the upper and
- * on the lower side of the plane. */
+/* Makes masks of the squares beside edges along an axis, as mcor_cell_around does for cells. A
+ * square counts on both the upper and the lower side of the plane. */
 void mcor_plane_around(int axis, ulong* q)
 {
   q[0] &= axis == 2 ? 0 : MCOR_PLANE_MASK;
@@ -63,7 +65,8 @@ void mcor_plane_around(int axis, ulong* q)
   q[3] = q[1];
 }
 
-/* The nodes around a square, run through with it on the left: bits of mcor_adaptive_cell.h. */
+/* The nodes around a square, in the order that keeps the square on the left. Bits as in
+ * mcor_adaptive_cell.h. */
 typedef struct
 {
   int node[8], count;
@@ -84,7 +87,7 @@ mcor_plane_ring mcor_plane_ring_of(uint split)
   return ring;
 }
 
-/* Whether side i goes from above to below, and whether its ends are unlike. */
+/* Whether side i goes from above to below, and whether its ends are on different sides. */
 bool mcor_plane_falls(const mcor_plane_ring* ring, uint above, int i)
 {
   return (above >> ring->node[i] & 1) && !(above >> ring->node[(i + 1) % ring->count] & 1);
@@ -94,20 +97,20 @@ bool mcor_plane_crosses(const mcor_plane_ring* ring, uint above, int i)
   return ((above >> ring->node[i] ^ above >> ring->node[(i + 1) % ring->count]) & 1) != 0;
 }
 
-/* Nodes of a plain square. corners: of its brick's cells. */
+/* Finds the nodes of a plain square. corners: masks of its brick's cells. */
 uint mcor_plane_corner_nodes(const ulong* corners, int cell)
 {
   return mcor_leaf_corner_nodes(mcor_plane_case(corners, cell));
 }
 
-/* Axis and lower node of side i, as a slot of mcor_adaptive_cell.h. */
+/* Returns axis and lower node of side i, as a slot of mcor_adaptive_cell.h. */
 int mcor_plane_side(const mcor_plane_ring* ring, int i)
 {
   return mcor_adaptive_slot(ring->node[i], ring->node[(i + 1) % ring->count]);
 }
 
-/* Notes which sides a square uses that finer ones touch: all around in space where squares are on both sides. Returns
- * the number of its lines. */
+/* Marks the sides that a square beside finer ones uses; a side with squares on both sides gets
+ * all quadrants, as in space. Returns the number of its lines. */
 int mcor_plane_mark(
   const mcor_leaf* leaf, int cell, mcor_adaptive_nodes_of nodes, __global uint* quadrants)
 {
@@ -132,8 +135,8 @@ int mcor_plane_mark(
   return lines;
 }
 
-/* Vertex of the edge along an axis from node (x, y) of a brick, or of one beyond it. upper: slots of its
- * upper neighbours. */
+/* Returns the vertex of the edge along an axis from node (x, y) of a brick, or of a brick beyond
+ * it. upper: slots of its upper neighbours. */
 int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   __global const int* vertex_base, int slot, int x, int y, int axis)
 {
@@ -143,11 +146,11 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   return vertex_base[owner] + mcor_edge_rank(e, n) + (axis == 1 && (e[0] >> n & 1) ? 1 : 0);
 }
 
-/* One work-item = one brick. Reads used squares, node masks, decisions and edge numbering. Writes lines, with
- * what is above on their left, as triangles whose last corner is given twice; and, if wanted, the keys of their
- * cells. A line begins where the border of the square, run through with the square on the left, goes from above
- * to below. On an ambiguous square it ends at the crossing before that, or the one after it where what is
- * above is joined. */
+/* One work-item = one brick. Reads used squares, node masks, decisions and edge numbering.
+ * Writes lines, with above on their left, as triangles whose last two corners are the same; and,
+ * if wanted, the keys of their cells. A line begins where the border of the square goes from
+ * above to below, run through with the square on the left. On an ambiguous square it ends at the
+ * crossing before that, or at the one after it if the nodes above are joined. */
 __kernel void mcor_plane_lines(MCOR_EMIT_PARAMS)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);

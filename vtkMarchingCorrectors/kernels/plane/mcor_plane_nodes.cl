@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Evaluation of the field at nodes in the plane. Each has the bits that mcor_node_values would give it. */
+/* Evaluation of the field at nodes in the plane. Each node has the bits that mcor_node_values
+ * would give it. */
 
-/* Work-items that a brick's 16 nodes are shared among; nodes of one along y. */
+/* Work-items that share a brick's 16 nodes; nodes of one along y. */
 #define MCOR_PLANE_ITEMS (16 / MCOR_LANES)
 #define MCOR_PLANE_ROWS (MCOR_LANES == 1 ? 1 : MCOR_LANES / 4)
 
@@ -40,7 +41,7 @@ void mcor_plane_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_plane
   }
 }
 
-/* Writes values and weights, as mcor_node_store, also to the nodes above. */
+/* Writes values and weights as mcor_node_store does, also to the nodes above. */
 void mcor_plane_store(const mcor_plane_sums* sums, __global real* value, __global real* weight)
 {
   for (int n = 0; n < MCOR_LANES; ++n)
@@ -54,7 +55,8 @@ void mcor_plane_store(const mcor_plane_sums* sums, __global real* value, __globa
   }
 }
 
-/* The query for places in the plane, so many cubes along x and y, from a brick's node on. */
+/* Returns the query for positions in the plane, so many cubes along x and y, from a brick's node
+ * on. */
 mcor_query mcor_plane_query(const mcor_grid* grid, int4 brick, int first, int x, int y)
 {
   const int corner[3] = { brick.x * MCOR_BRICK + (first & 3), brick.y * MCOR_BRICK + (first >> 2),
@@ -71,8 +73,8 @@ mcor_query mcor_plane_query(const mcor_grid* grid, int4 brick, int first, int x,
   return query;
 }
 
-/* Reads the particles that reach MCOR_LANES nodes of a brick from `first` on, and writes their values and
- * weights, and the same above them, see mcor_plane_spread. */
+/* Evaluates MCOR_LANES nodes of a brick from `first` on, and writes their values and weights,
+ * also to the nodes above them, see mcor_plane_spread. */
 void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global real* node_value,
   __global real* node_weight)
 {
@@ -97,7 +99,8 @@ void mcor_plane_evaluate(const mcor_grid* grid, int4 brick, int first, __global 
   mcor_plane_store(&sums, node_value + first, node_weight + first);
 }
 
-/* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. Evaluates them where they are needed. */
+/* One work-item = MCOR_LANES nodes of a brick, of `count` from `first` on. Evaluates them if
+ * they are needed. */
 __kernel void mcor_plane_nodes(MCOR_GRID_PARAMS, const int first, const int count,
   __global const int4* bricks, __global const ulong* need, __global real* node_value,
   __global real* node_weight)

@@ -3,18 +3,18 @@
 
 /* Other particle arrays at the surface's points [III-D.4]. */
 
-/* A lower sum of weights has no digits that could be divided by. */
+/* Least sum of weights that can be divided by: a lower one has no digits. */
 #define MCOR_LEAST_SUM ((real)1e-30f)
 
-/* Sorted arrays, `stride` elements long, one after the other, at most MCOR_ATTRIBUTE_LIMIT. Their
+/* At most MCOR_ATTRIBUTE_LIMIT sorted arrays, `stride` elements long, one after the other. Their
  * means at a point lie one after the other, too. */
 #define MCOR_ATTRIBUTE_PARAMS                                                                      \
   const int attribute_count, const int stride, __global const real *attributes, __global real *means
 
 #define MCOR_ATTRIBUTE_ARGS attribute_count, stride, attributes, means
 
-/* Writes the Shepard means of the attributes at a group of points; iso as for mcor_evaluate.
- * evaluated: that was last called for these points. */
+/* Writes the Shepard means of the attributes at a group of points. iso: as for mcor_evaluate.
+ * evaluated: mcor_evaluate was last called for these points. */
 MCOR_ONE_COPY void mcor_attribute_group(const mcor_grid* grid, mcor_query* query,
   const mcor_points* points, real iso, mcor_reach* reach, bool evaluated, MCOR_ATTRIBUTE_PARAMS)
 {
@@ -56,9 +56,9 @@ __kernel void mcor_attribute_means(MCOR_GRID_PARAMS, const int group_count,
   mcor_attribute_group(&grid, &query, &points, 0, &reach, false, MCOR_ATTRIBUTE_ARGS);
 }
 
-/* Updates each point's nearest fluid particle from those that reach it, or from all within the
- * query's radius and maybe more. Those that do not reach it may be too far away for positions that
- * count from the query's origin: differences are made first. */
+/* Updates each point's nearest fluid particle from the particles that reach it, or from all
+ * within the query's radius and maybe more. Particles that do not reach it may be too far from
+ * the query's origin for exact positions, so differences are made first. */
 MCOR_ONE_COPY void mcor_attribute_nearer(
   const mcor_grid* grid, mcor_query* query, const mcor_points* points, realv* least, fixv* index)
 {
@@ -85,10 +85,10 @@ MCOR_ONE_COPY void mcor_attribute_nearer(
   }
 }
 
-/* One work-item = one group of points. Writes the nearest fluid particle, among those that reach
- * the points first; where smoothing lengths differ, others may be nearer that do not. The weight's
- * iso value may be so low that none reaches a point: one then reaches an end of its lattice
- * edge. */
+/* One work-item = one group of points. Writes the nearest fluid particle. It first looks among
+ * particles that reach the points; if smoothing lengths differ, others may be nearer that do
+ * not. With a very low iso value of the weight, no particle may reach a point; one then reaches
+ * an end of its lattice edge. */
 __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)

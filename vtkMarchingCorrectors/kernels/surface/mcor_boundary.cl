@@ -64,11 +64,12 @@ void mcor_weight_second(const realv u[3], real inv_h, const realv e[3], realv g[
 #endif
 }
 
-/* Elements of M are about 1 where they are not 0. Smaller ones count as 0, so that no product is a
- * denormal number, which some devices do not know. */
+/* Least element of M that is not taken as 0; most are about 1. No product is then a denormal
+ * number, which some devices do not know. */
 #define MCOR_EIGEN_LEAST (MCOR_DOUBLE ? (real)1e-100 : (real)1e-9f)
 
-/* Jacobi's rotation in the plane of axes p and q, after which pq is 0; r is the third axis. */
+/* Makes Jacobi's rotation in the plane of axes p and q, after which pq is 0. r is the third
+ * axis. */
 void mcor_eigen_rotate(
   realv* pp, realv* qq, realv* pq, realv* rp, realv* rq, realv vp[3], realv vq[3])
 {
@@ -90,8 +91,8 @@ void mcor_eigen_rotate(
   }
 }
 
-/* Smallest eigenvalue of a symmetric matrix, and its eigenvector e. Nothing is divided by 0: any
- * matrix will do, with e some eigenvector where eigenvalues coincide. */
+/* Finds the smallest eigenvalue of a symmetric matrix, and its eigenvector e. It never divides
+ * by 0, so any matrix will do; e is some eigenvector if eigenvalues coincide. */
 realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
 {
   mcor_symmetric a = *m;
@@ -114,12 +115,12 @@ realv mcor_eigen_smallest(const mcor_symmetric* m, realv e[3])
   {
     e[c] *= scale;
   }
-  /* The Rayleigh quotient: to second order in what rounding did to e. */
+  /* The Rayleigh quotient removes the error of e to second order. */
   return m->xx * e[0] * e[0] + m->yy * e[1] * e[1] + m->zz * e[2] * e[2] +
     (real)2 * (m->xy * e[0] * e[1] + m->yz * e[1] * e[2] + m->zx * e[2] * e[0]);
 }
 
-/* M at all points, over the particles of the trimming weight. */
+/* Makes M at all points, over the particles of the trimming weight. */
 void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, mcor_symmetric* m)
 {
@@ -146,7 +147,7 @@ void mcor_boundary_matrix(const mcor_grid* grid, mcor_query* query, mcor_tile* t
 }
 
 /* Evaluates at all points. The gradient of an eigenvalue is e . (dM/dx_k) e, with e its unit
- * eigenvector; it is of no use where the two smallest coincide. plane: in two dimensions, those of the
+ * eigenvector; it is useless where the two smallest coincide. plane: in two dimensions, uses the
  * matrix of x and y. */
 void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile* tile,
   const mcor_points* points, bool plane, bool want_gradient, mcor_boundary_at* boundary)
@@ -154,7 +155,7 @@ void mcor_evaluate_boundary(const mcor_grid* grid, mcor_query* query, mcor_tile*
   mcor_symmetric m;
   realv at[3], e[3], u[3], g[3], d[3], sum[3] = { 0, 0, 0 };
   mcor_boundary_matrix(grid, query, tile, points, &m);
-  if (plane) /* the smallest is one of the two axes of the plane */
+  if (plane) /* excludes the third axis: the smallest is one of the two of the plane */
   {
     m.zz = (real)4 * (fabs(m.xx) + fabs(m.yy) + (real)1);
   }

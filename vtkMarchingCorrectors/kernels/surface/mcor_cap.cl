@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps, which close the surface at the sides of a period. */
+/* Caps, which close the surface at the sides of a period or a box. */
 
 /* One work-item = one group of points. Writes value, gradient, weight and attributes there. */
 __kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,

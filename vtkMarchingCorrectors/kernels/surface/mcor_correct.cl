@@ -1,17 +1,17 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, of MCOR_LANES edges at
- * a time. */
+/* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, for MCOR_LANES
+ * edges at a time. */
 
-/* x / y, or -1 (outside of every bracket) where y is 0. No kernel makes an infinite value or a NaN,
- * as compilers that relax arithmetic need not honour them. */
+/* Returns x / y, or -1 (outside of every bracket) if y is 0. No kernel makes an infinite value
+ * or a NaN, because compilers that relax arithmetic need not honour them. */
 realv mcor_correct_ratio(realv x, realv y)
 {
   return y != 0 ? x / (y != 0 ? y : (realv)1) : (realv)-1;
 }
 
-/* Root d of v + slope d + c2 d^2 + c3 d^3 near 0, by Newton steps. */
+/* Returns the root d of v + slope d + c2 d^2 + c3 d^3 near 0, by Newton steps. */
 realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
 {
   realv d = -mcor_correct_ratio(v, slope);
@@ -23,17 +23,18 @@ realv mcor_correct_root(realv v, realv slope, realv c2, realv c3)
   return d;
 }
 
-/* Root near t of the cubic through the values at 0, 1 and t and the slope at t. */
+/* Returns the root near t of the cubic through the values at 0, 1 and t with the slope at t. */
 realv mcor_correct_first(realv v0, realv v1, realv t, realv v, realv slope)
 {
   const realv a = ((v0 - v) / t + slope) / t;                   /* (p(0) - tangent) / t^2 */
-  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t); /* the same at 1 */
+  const realv b = ((v1 - v) / (1 - t) - slope) / ((real)1 - t); /* (p(1) - tangent) / (1 - t)^2 */
   const realv c3 = b - a, c2 = a + c3 * t;
   return t + mcor_correct_root(v, slope, c2, c3);
 }
 
-/* Root near t of the cubic through the values and slopes at t and where the last step began, which
- * `last` is from t; after a short one, or from a void, by the slope at t alone. */
+/* Returns the root near t of the cubic through the values and slopes at t and at the start of
+ * the last step. last: distance of that start from t. After a short step, or from a void, the
+ * slope at t alone is used. */
 realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v, realv last_slope)
 {
   const fixv two = fabs(last) > (real)1e-3f && fabs(last_v) < (real)1e20f;
@@ -43,8 +44,8 @@ realv mcor_correct_next(realv t, realv v, realv slope, realv last, realv last_v,
   return t + mcor_correct_root(v, slope, (real)3 * a - b, (b - (real)2 * a) * inv);
 }
 
-/* Writes point v = lane `lane` of a group: position, value, gradient and trimming weight; where there
- * are solids, the fluid's part of the weight goes with the gradient. */
+/* Writes lane `lane` of a group as point v: position, value, gradient and trimming weight. With
+ * solids, the fluid's part of the weight goes with the gradient. */
 MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* points,
   const mcor_field_at* at, int lane, int v, __global real4* offset, __global real* value,
   __global real4* gradient, __global real* weight)
@@ -62,15 +63,15 @@ MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* p
   weight[v] = MCOR_GET(at->weight, lane);
 }
 
-/* Where the gradient is small, a small residual alone may be far from the surface: along the edge,
- * a vertex is also to come this close. */
+/* Required accuracy along the edge. With a small gradient, a small residual alone may be far
+ * from the surface. */
 #define MCOR_EDGE_ERROR ((real)2e-5f)
 
-/* As far as rounding lets it: that of a sum, per its value. A Shepard mean's terms against the iso
- * value vanish at the surface. */
+/* Limit of that accuracy by the rounding of a sum, relative to its value. A Shepard mean's terms
+ * against the iso value vanish at the surface. */
 #define MCOR_SUM_ROUNDING (MCOR_FIELD == 0 ? (real)0 : MCOR_DOUBLE ? (real)1e-15 : (real)5e-7f)
 
-/* A bracket of this length is not halved any more. */
+/* A bracket of this length is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
 /* Edges: values at both ends, against iso, and vectors from end to end. */
@@ -79,10 +80,10 @@ typedef struct
   realv v0, v1, ax, ay, az;
 } mcor_edges;
 
-/* Most vertices are this close to where linear interpolation puts them, in cubes. */
+/* Most vertices are this close to their place by linear interpolation, in cubes. */
 #define MCOR_EDGE_SLACK ((real)0.15f)
 
-/* Loads group number `group` of edges: their lower nodes, and ends. */
+/* Loads group number `group` of edges: their lower nodes and their ends. */
 MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int group,
   __global const int4* vertex_edge, __global const real* vertex_ends, mcor_edges* edges,
   mcor_points* points)
@@ -110,9 +111,9 @@ void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, rea
   mcor_points_bound(grid, from, to, points, query);
 }
 
-/* A quantity with the sign of field minus iso value, except at a mean's pole, where a kernel with negative
- * lobes lets the weight pass 0: the sum of the terms against it. Between nodes of a positive weight it is
- * that which passes 0. */
+/* Returns a quantity with the sign of field minus iso value: the sum of the terms against the
+ * iso value. It differs in sign only at a mean's pole, where a kernel with negative lobes lets
+ * the weight pass 0. Between nodes of a positive weight, it is this quantity that passes 0. */
 realv mcor_correct_side(const mcor_field_at* at)
 {
 #if MCOR_FIELD == 0 && MCOR_TENSOR
@@ -126,8 +127,8 @@ realv mcor_correct_side(const mcor_field_at* at)
 #endif
 }
 
-/* Moves all vertices of a group along their edges, from t0, until each is on the surface or `limit`
- * steps were made. `evaluations` counts how many each needed. */
+/* Moves all vertices of a group along their edges, from t0, until each is on the surface or has
+ * made `limit` steps. evaluations: counts the evaluations that each needed. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
   real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
   mcor_field_at* at, realv* t, fixv* evaluations)
@@ -168,7 +169,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     last_t = *t;
     last_value = at->value;
     last_slope = slope;
-    /* Newton may creep where the field has a kink or no slope: from the 6th step on every other
+    /* Newton may creep if the field has a kink or no slope: from the 6th step on, every other
      * step halves the bracket. */
     const bool newton = i < 5 || (i & 1);
     next = (next > low && next < high && newton) ? next : (real)0.5 * (low + high);
@@ -184,9 +185,9 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
-/* One work-item = one group of vertices. Reads edges and end values (against iso). Writes position
- * (node, offset), linear less final position along the edge, value, gradient and trimming weight,
- * how many evaluations were made, and attributes. limit 0: no correction (preview). */
+/* One work-item = one group of vertices. Reads edges and end values (against iso). Writes
+ * position (node, offset), linear less final position along the edge, value, gradient and
+ * trimming weight, number of evaluations, and attributes. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const real iso, const real tolerance, const int limit, __global real4* offset,

@@ -37,7 +37,7 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
       }
       for (int i = begin; i < end; ++i)
       {
-        /* Again: to keep it takes longer. */
+        /* Made again: keeping it takes longer. */
         mcor_points_from(at_node, points, MCOR_REACH(reach, x, i), MCOR_REACH(reach, y, i),
           MCOR_REACH(reach, z, i), d);
         const realv k =
@@ -66,8 +66,8 @@ void mcor_evaluate(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
     }
   }
 #if MCOR_FIELD == 0
-  /* In a void between fluid particles, which solids keep valid, there is no value: a huge one makes
-   * the iteration look for the void's border. */
+  /* A void between fluid particles, kept valid by solids, has no value. A huge one makes the
+   * iteration look for the void's border. */
   const fixv none = fabs(w) < (real)1e-12f;
   const realv inv_w = (real)1 / (none ? (realv)1 : w);
   at->value = none ? (realv)1e30f : s * inv_w;

@@ -1,14 +1,15 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight (or the boundary
- * eigenvalue, or the margin, wherever "weight" is said here) passes the vertex threshold. A cut vertex belongs to
- * a mesh edge, key (lower vertex << 32 | higher vertex), and is shared by the two triangles
- * there. */
+/* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight passes the vertex
+ * threshold. "Weight" also stands for the boundary eigenvalue and for the margin here. A cut
+ * vertex belongs to a mesh edge, key (lower vertex << 32
+ *
+ * higher vertex), and is shared by the two triangles there. */
 
-/* Bits 0..2: corner above the threshold. One at the threshold is outside, for every triangle around
- * it, so that what remains is a manifold there, too, and one which merely touches the threshold
- * leaves nothing [Fig. 3 b]. */
+/* Returns bits 0..2 of the corners above the threshold. A corner at the threshold is outside,
+ * for every triangle around it: the rest is then a manifold there, too, and a triangle that
+ * merely touches the threshold leaves nothing [Fig. 3 b]. */
 int mcor_trim_case(__global const int* t, __global const real* weight, const real threshold)
 {
   int inside = 0;
@@ -19,8 +20,8 @@ int mcor_trim_case(__global const int* t, __global const real* weight, const rea
   return inside;
 }
 
-/* One work-item = one batch of triangles. Writes how many triangles remain of them, and their cut
- * edges. */
+/* One work-item = one batch of triangles. Writes how many triangles remain of them, and the
+ * number of their cut edges. */
 __kernel void mcor_trim_count(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, __global int* remaining, __global int* cuts)
 {
@@ -38,7 +39,7 @@ __kernel void mcor_trim_count(const int triangle_count, __global const int* tria
   cuts[batch] = cut;
 }
 
-/* The lone corner of a cut triangle: the one inside of one, or the one outside of two. */
+/* Returns the lone corner of a cut triangle: the only one inside, or the only one outside. */
 int mcor_trim_lone(int inside)
 {
   return inside == 1 || inside == 6 ? 0 : inside == 2 || inside == 5 ? 1 : 2;
@@ -70,7 +71,7 @@ __kernel void mcor_trim_edges(const int triangle_count, __global const int* tria
   }
 }
 
-/* Writes what remains of a cut triangle [Fig. 3 c, d, e], whose cut edges have these vertices; a
+/* Writes the rest of a cut triangle [Fig. 3 c, d, e], whose cut edges have these vertices; a
  * quad is split. Returns where the next triangle goes. */
 __global int* mcor_trim_cut(
   __global const int* t, int inside, int cut_next, int cut_last, __global int* to)
@@ -92,8 +93,8 @@ __global int* mcor_trim_cut(
   return to;
 }
 
-/* One work-item = one batch of triangles. Writes what remains of them [Fig. 3], and, if wanted, to each the cell
- * that the triangle was in. */
+/* One work-item = one batch of triangles. Writes what remains of them [Fig. 3], and, if wanted,
+ * the cell of each. */
 __kernel void mcor_trim_fill(const int triangle_count, __global const int* triangles,
   __global const real* weight, const real threshold, const int vertex_count,
   __global const int* remaining, __global const int* cuts, __global const int* cut_vertex,

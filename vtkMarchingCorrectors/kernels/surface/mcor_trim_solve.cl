@@ -1,22 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming [III-D.3]: by what a vertex is trimmed, and where cut vertices are. They are moved from linear cuts to where
- * the field is the iso value and what is trimmed by its threshold. */
+/* Trimming [III-D.3]: the quantity by which a vertex is trimmed, and the places of cut vertices.
+ * Cut vertices move from linear cuts to where the field equals the iso value and the quantity
+ * its threshold. */
 
-/* The fluid's own weight that a Shepard mean at a vertex needs. */
+/* Least weight of the fluid itself for a Shepard mean at a vertex. */
 #define MCOR_LEAST_FLUID ((real)MCOR_LEAST_VERTEX_WEIGHT(MCOR_TENSOR))
 
-/* The fluid's own weight at vertex v. */
+/* Returns the fluid's own weight at vertex v. */
 real mcor_trim_fluid(__global const real* weight, __global const real4* gradient, int v)
 {
   return MCOR_SOLIDS ? gradient[v].w : weight[v];
 }
 
-/* One work-item = one vertex. Writes what is trimmed by: `quantity`, or where the fluid needs a share of
- * the weight, how far the vertex is inside of that and of the threshold of `quantity`, whichever is
- * nearer, the threshold then being 0. A vertex where there is no mean is outside at any rate: at the
- * threshold, if it was inside. */
+/* One work-item = one vertex. Writes the quantity by which it is trimmed. This is `quantity`;
+ * or, if the fluid needs a share of the weight, the smaller of its distances inside of that
+ * limit and of the threshold of `quantity`, and the threshold is then 0. A vertex without a mean
+ * is always outside: at the threshold, if it was inside. */
 __kernel void mcor_trim_margin(const int count, __global const real* quantity, const real threshold,
   __global const real* weight, __global const real4* gradient, const real fluid_share,
   __global real* margin)
@@ -33,17 +34,18 @@ __kernel void mcor_trim_margin(const int count, __global const real* quantity, c
   margin[i] = m;
 }
 
-/* Where what is wa and wb at the ends of an edge, and linear between, is w: off the ends. */
+/* Returns where a quantity that is wa and wb at the ends of an edge, and linear between, equals
+ * w; kept off the ends. */
 real mcor_trim_fraction(real wa, real wb, real w)
 {
   return clamp((w - wa) / (wb - wa), MCOR_EDGE_MARGIN, 1 - MCOR_EDGE_MARGIN);
 }
 
-/* One work-item = one cut vertex. Writes its position where the weight, taken as linear along the
- * mesh edge, is the threshold, or that of the fluid is what a mean needs: node of the nearer end, offset. It
- * keeps off the ends, as cut vertices of several edges would meet there. Its bits do not depend on the order of
- * vertices. Writes in place of its gradient how far that end is, and whether
- * it is the fluid that ends. */
+/* One work-item = one cut vertex. Writes its position, as node of the nearer end and offset:
+ * where the weight, taken as linear along the mesh edge, equals the threshold, or the fluid's
+ * weight the least for a mean. It keeps off the ends, because cut vertices of several edges
+ * would meet there. Its bits do not depend on the order of vertices. In place of its gradient,
+ * writes the vector to the end inside, and whether the fluid ends. */
 __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
   const int vertex_count, const real threshold, __global int4* node, __global real4* offset,
   __global const real* trimmed_by, __global const real* weight, __global real4* gradient)
@@ -63,42 +65,43 @@ __kernel void mcor_trim_linear(const int cut_count, __global const ulong* keys,
     s = lacks ? t : s;
   }
 #endif
-  /* In cells of the lower level, which the lower vertex has. */
+  /* Lengths are in cells of the lower level, which the lower vertex has. */
   const int level = node[low].w >> MCOR_LEVEL_SHIFT;
   const int up = (node[a].w >> MCOR_LEVEL_SHIFT) - level;
   const int up_b = (node[b].w >> MCOR_LEVEL_SHIFT) - level;
   const int4 n = node[a] << up, m = node[b] << up_b, d = m - n;
   const real4 from = offset[a] * (real)(1 << up), to = offset[b] * (real)(1 << up_b);
   const real4 along = to + (real4)(d.x, d.y, d.z, 0) - from;
-  const bool is_near = s <= (real)0.5f; /* of two ends the nearer one: so near cuts do not meet by rounding */
+  const bool is_near = s <= (real)0.5f; /* from the nearer end: cuts near it stay apart */
   const int4 begin = is_near ? n : m;
   node[vertex_count + i] = (int4)(begin.x, begin.y, begin.z, level << MCOR_LEVEL_SHIFT);
   offset[vertex_count + i] = is_near ? from + s * along : to - ((real)1 - s) * along;
   gradient[vertex_count + i] = (real4)(-s * along.x, -s * along.y, -s * along.z, lacks);
 }
 
-/* How far a cut vertex may move from the linear cut, and in one iteration, in cubes. */
+/* Most that a cut vertex may move from the linear cut, and in one iteration, in cubes. */
 #define MCOR_TRIM_REACH ((real)0.75)
 #define MCOR_TRIM_STEP ((real)0.25)
 
-/* Steps back to where there is a mean, at most, each half of the way that is left to the edge's end, where
- * cuts would meet. */
+/* Most steps back to where there is a mean. Each goes half of the way left to the edge's end,
+ * where cuts would meet. */
 #define MCOR_TRIM_RETREATS 12
 
-/* |w - threshold| of a cut vertex, at most. */
+/* Greatest |w - threshold| of a cut vertex. */
 #define MCOR_TRIM_TOLERANCE ((real)1e-5f)
 
-/* Thresholds of trimming: of the weight or the boundary eigenvalue and, above 0, of the
- * fluid's share of the weight; where points lie on an edge whose one end lacks fluid, its weight. */
+/* Limits of trimming: the threshold of the weight or the boundary eigenvalue; the share of the
+ * weight that the fluid needs, if above 0; and the fluid's own weight at points on an edge with
+ * an end that lacks fluid. */
 typedef struct
 {
   real threshold, fluid_share;
   bool by_eigenvalue, plane;
   fixv lacking;
-  realv inside[3]; /* from the linear cut, the edge's end inside */
+  realv inside[3]; /* the edge's end inside, from the linear cut */
 } mcor_trim_limits;
 
-/* The fluid's own weight at all points. */
+/* Returns the fluid's own weight at all points. */
 realv mcor_fluid_of(const mcor_field_at* at)
 {
 #if MCOR_SOLIDS
@@ -108,7 +111,8 @@ realv mcor_fluid_of(const mcor_field_at* at)
 #endif
 }
 
-/* Where the weight is the threshold, the fluid's own may yet be too low. */
+/* Whether the fluid's own weight is too low for a mean. It may be, though the weight equals the
+ * threshold. */
 fixv mcor_lacks_fluid(const mcor_field_at* at)
 {
   return mcor_fluid_of(at) < MCOR_LEAST_FLUID - MCOR_TRIM_TOLERANCE;
@@ -133,7 +137,7 @@ void mcor_trim_bound_fluid(const mcor_field_at* at, fixv lacking, mcor_boundary_
 #endif
 
 #if MCOR_SOLIDS
-/* Where the fluid's share is the nearer limit, or the only one, it is the one that counts. */
+/* Replaces the limit by that of the fluid's share if this is nearer, or is the only one. */
 void mcor_trim_bound_share(const mcor_field_at* at, real fluid_share, mcor_boundary_at* bound)
 {
   const realv share = at->fluid - fluid_share * at->weight;
@@ -145,7 +149,7 @@ void mcor_trim_bound_share(const mcor_field_at* at, real fluid_share, mcor_bound
 }
 #endif
 
-/* How far all points, where the field was evaluated, are inside of the limits. */
+/* Finds how far all points, where the field was evaluated, are inside of the limits. */
 void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach,
   const mcor_points* points, const mcor_field_at* at, const mcor_trim_limits* limits,
   mcor_boundary_at* bound)
@@ -173,8 +177,8 @@ void mcor_trim_bound(const mcor_grid* grid, mcor_query* query, mcor_reach* reach
 #endif
 }
 
-/* Divides a value and its gradient by the gradient's length, whatever the unit. Returns where it has
- * none. */
+/* Divides a value and its gradient by the gradient's length, whatever the unit. Returns the
+ * lanes without a gradient. */
 fixv mcor_trim_normalize(realv* value, realv gradient[3])
 {
   const realv most = fmax(fabs(gradient[0]), fmax(fabs(gradient[1]), fabs(gradient[2])));
@@ -195,9 +199,9 @@ fixv mcor_trim_normalize(realv* value, realv gradient[3])
   return none;
 }
 
-/* Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J J^T)^-1
- * (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns where there is none, the
- * gradients being parallel. */
+/* Finds Newton's step of least norm towards field = iso and weight = threshold at once, -J^T (J
+ * J^T)^-1 (f, w) with J the two gradients, no longer than MCOR_TRIM_STEP. Returns the lanes
+ * without a step, because the gradients are parallel. */
 fixv mcor_trim_step(
   const mcor_field_at* at, const mcor_boundary_at* bound, realv* dx, realv* dy, realv* dz)
 {
@@ -220,8 +224,8 @@ fixv mcor_trim_step(
   return tangent;
 }
 
-/* Moves points of linear cuts, where there is no mean, towards the edge's end inside until there is one.
- * Returns which ones. */
+/* Moves points of linear cuts without a mean towards the edge's end inside until there is one.
+ * Returns which points. */
 fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
   const mcor_trim_limits* limits, fixv linear, mcor_points* points, mcor_reach* reach,
   mcor_field_at* at)
@@ -249,8 +253,8 @@ fixv mcor_trim_retreat(const mcor_grid* grid, mcor_query* query, real iso,
   return moved;
 }
 
-/* Moves those points of a group that are to be sought to where field = iso and weight = threshold. Returns
- * those for which that does not succeed near `start`; they may be anywhere. */
+/* Moves the sought points of a group to where field = iso and weight = threshold. Returns the
+ * points for which that fails near `start`; they may be anywhere. */
 fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
   mcor_trim_limits* limits, int steps, const realv start[3], fixv sought, mcor_points* points,
   mcor_reach* reach, mcor_field_at* at)
@@ -282,7 +286,7 @@ fixv mcor_trim_seek(const mcor_grid* grid, mcor_query* query, real iso, real tol
   }
 }
 
-/* Puts some points of a group where they were. */
+/* Moves some points of a group back to `start`. */
 void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const realv start[3],
   fixv back, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -292,9 +296,10 @@ void mcor_trim_return(const mcor_grid* grid, mcor_query* query, real iso, const 
   mcor_evaluate(grid, query, reach, points, iso, at);
 }
 
-/* Moves a group of points to where field = iso and weight = threshold; points for which that does
- * not succeed nearby stay where they were, or where there is a mean: from there they are sought once more,
- * as the field has no slope to follow where it has hardly any weight. Returns those that stay. */
+/* Moves a group of points to where field = iso and weight = threshold. If that fails nearby, a
+ * point goes back to its start. If it has no mean there, it goes on to where there is one, and
+ * is sought once more from there: the field has no slope to follow where it has hardly any
+ * weight. Returns the points that stay. */
 fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real tolerance,
   mcor_trim_limits* limits, int steps, mcor_points* points, mcor_reach* reach, mcor_field_at* at)
 {
@@ -381,8 +386,8 @@ void mcor_trim_solve_group(
 }
 
 /* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
- * equations hold. Writes position, value, gradient, weight and attributes; the flag 2 instead of 1
- * where the linear cut stays, the two surfaces being tangent or too far away. */
+ * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 2
+ * instead of 1 if the linear cut stays, because the two surfaces are tangent or too far away. */
 __kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
 {
   const mcor_grid grid = MCOR_GRID;

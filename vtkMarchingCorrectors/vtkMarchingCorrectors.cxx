@@ -64,7 +64,7 @@ void vtkMarchingCorrectors::SetSolids(int solids)
   }
 }
 
-// What is not a number, as an empty row of a panel's list, is none.
+// Lists the values that are numbers: an empty row of a panel's list is NaN.
 void vtkMarchingCorrectors::ListIsoValues(
   const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list)
 {
@@ -110,7 +110,8 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   if (this->UseBox)
   {
     std::copy(this->Box, this->Box + 6, options.box);
-    // Of zeros, it is no box to the core; here it is one that was not thought of, and is refused.
+    // The core takes a box of zeros for none. Here the user forgot to set it, so the core is made
+    // to refuse it.
     options.box[0] += mcor_has_box(&options) ? 0.0 : std::numeric_limits<double>::denorm_min();
   }
   options.filled = this->Filled;
@@ -197,7 +198,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
   }
 }
 
-// What the particles hold, and a fluid among them.
+// Whether the particles have all that is needed, and fluid among them.
 bool vtkMarchingCorrectors::IsTaken(
   vtkMarchingCorrectorsInput& input, vtkPointSet* particles, mcor_options& options)
 {
@@ -264,7 +265,7 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   return true;
 }
 
-// What an observer of the progress may change is read before the run.
+// Reads first what an observer of the progress may change during the run.
 void vtkMarchingCorrectors::Extract(
   vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
 {
@@ -361,8 +362,8 @@ vtkMarchingCorrectors::vtkAhead& vtkMarchingCorrectors::LookAhead()
   return this->Next;
 }
 
-// What is known does not wait for the rest: the range needs no smoothing length, the number of cells
-// no scalar. Of several blocks the first one's iso value.
+// Finds each answer as far as it is known: the range needs no smoothing length, the number of cells
+// no scalar. With several blocks, the iso value is that of the first one.
 void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options& options)
 {
   vtkAhead& next = this->Next;

@@ -192,7 +192,8 @@ public:
   ///@}
 
   /**
-   * ScalarComponent for ParaView's panel, whose range domains use 3 for the magnitude of a vector.
+   * The component as ParaView's panel has it: its range domains use 3 for the magnitude of a
+   * vector.
    */
   void SetPanelComponent(int component)
   {

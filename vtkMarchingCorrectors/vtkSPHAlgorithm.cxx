@@ -24,7 +24,7 @@
 #include <cstring>
 
 VTK_ABI_NAMESPACE_BEGIN
-// These are handed to the core as they are.
+// The core takes these values as they are.
 static_assert(static_cast<int>(vtkSPHAlgorithm::CUBIC_SPLINE) == MCOR_CUBIC_SPLINE &&
     static_cast<int>(vtkSPHAlgorithm::QUADRATIC) == MCOR_QUADRATIC &&
     static_cast<int>(vtkSPHAlgorithm::M_PRIME_4) == MCOR_M_PRIME_4 &&
@@ -152,7 +152,7 @@ vtkTypeBool vtkSPHAlgorithm::ProcessRequest(
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
 
-// Of the class that suits the input, or blocks of those as the input has.
+// Makes an output of the class that suits the input; blocks of that class if the input has blocks.
 int vtkSPHAlgorithm::RequestDataObject(
   vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -211,7 +211,7 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   {
     int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
     request.Array = this->GetInputAbstractArrayToProcess(index, particles, association);
-    // Arrays of cells may be those of the particles now, see TakeVertices().
+    // Arrays of cells may have become arrays of particles, see TakeVertices().
     request.OnPoints = association == vtkDataObject::FIELD_ASSOCIATION_POINTS;
     if (!request.Array && association == vtkDataObject::FIELD_ASSOCIATION_CELLS)
     {
@@ -222,7 +222,7 @@ vtkSPHRequest vtkSPHAlgorithm::FindRequest(int index, vtkPointSet* particles)
   return request;
 }
 
-// Nobody has chosen the active scalars of a file.
+// Active scalars of a file are nobody's choice.
 vtkSPHRequest vtkSPHAlgorithm::FindFirstRequest(
   vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
@@ -315,8 +315,8 @@ void vtkSPHAlgorithm::FillOptions(mcor_options& options) const
   options.precision = this->Precision == DOUBLE_PRECISION ? MCOR_FLOAT64 : MCOR_FLOAT32;
 }
 
-// An update that fails has an empty output, and succeeds for the pipeline: ParaView never again updates
-// what shows the output of one that failed.
+// An update that fails has an empty output but succeeds for the pipeline. Otherwise ParaView would
+// never again update a view of the output.
 int vtkSPHAlgorithm::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -366,9 +366,9 @@ int vtkSPHAlgorithm::RequestData(
   return 1;
 }
 
-// A mcor_status; `message` says why it is not MCOR_OK, unless that is because the user cancelled. What
-// an observer of the progress may change is read before the run. Of `count` processes on this machine
-// this is number `place`.
+// Returns a mcor_status; `message` says why it is not MCOR_OK, unless the user cancelled. It reads
+// first what an observer of the progress may change. This is number `place` of `count` processes on
+// this machine.
 int vtkSPHAlgorithm::RunCore(vtkSPHParticles& particles, mcor_options& options,
   const std::function<int(mcor_context*)>& call, std::string& message, int place, int count)
 {

@@ -61,7 +61,8 @@ struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
 /**
- * A setting of the filters, by VTK's macros: SetX() and GetX(); of a flag XOn() and XOff(), too.
+ * Declares a setting of the filters by VTK's macros: SetX() and GetX(), and for a flag XOn() and
+ * XOff().
  */
 #define vtkSPHValueMacro(name, type)                                                               \
   vtkSetMacro(name, type);                                                                         \
@@ -77,24 +78,29 @@ struct vtkSPHRequest;
   vtkBooleanMacro(name, vtkTypeBool)
 
 #ifndef __VTK_WRAP__
-/** A range that a point array must have values in, see vtkSPHAlgorithm::AddOnly(). */
+/** A range in which the values of a point array must be, see vtkSPHAlgorithm::AddOnly(). */
 struct vtkSPHOnly
 {
   std::string Name;
   double Low, High;
 };
 
-/** What each process that shares a run gives, but this one; empty: there is no other. */
+/**
+ * Sends the numbers `mine` to the other processes that share a run, and returns theirs; empty:
+ * there is no other.
+ */
 using vtkSPHGather =
   std::function<std::vector<std::vector<double>>(const std::vector<double>& mine)>;
 
-/** Arrays that were made of neighbours, by name, with what they were made of. */
+/**
+ * Arrays that were computed from neighbours, by name, and the data that they were computed from.
+ */
 using vtkSPHMade =
   std::map<std::string, std::pair<std::vector<std::uint64_t>, vtkSmartPointer<vtkDataArray>>>;
 
 /**
- * How particles are described, see the setters of vtkSPHAlgorithm. A run has a copy: an observer may change
- * the filter meanwhile.
+ * The description of particles, see the setters of vtkSPHAlgorithm. A run has a copy, because an
+ * observer may change the filter meanwhile.
  */
 struct vtkSPHParticlesChoice
 {
@@ -128,7 +134,10 @@ struct vtkSPHParticlesChoice
   bool IsBlock() const { return this->FluidArrayName.compare(0, 7, "Block: ") == 0; }
 };
 
-/** Makes ranges, each a least and a greatest value, those of all processes that share a run; empty: of one alone. */
+/**
+ * Turns ranges, each a least and a greatest value, into those of all processes that share a run;
+ * empty: the process is alone.
+ */
 using vtkSPHMergeRanges = std::function<void(double* ranges, int count)>;
 #endif
 
@@ -255,7 +264,8 @@ public:
   ///@}
 
   /**
-   * What volumes were in the last run, in words: "array Mass / array Density", "computed from the positions".
+   * The source of volumes in the last run, in words: "array Mass / array Density", "computed
+   * from the positions".
    */
   vtkGetCharFromStdStringMacro(UsedVolume);
 
@@ -330,7 +340,8 @@ public:
   vtkSPHFlagMacro(DetectFluid);
 
   /**
-   * What marked fluid in the last run, such as "ParticleType = 0"; empty: all particles were fluid.
+   * The array and value that marked fluid in the last run, such as "ParticleType = 0"; empty:
+   * all particles were fluid.
    */
   vtkGetCharFromStdStringMacro(UsedFluid);
 
@@ -353,14 +364,13 @@ public:
   ///@}
 
 #ifndef __VTK_WRAP__
-  /**
-   * The particles that these leave: the set itself where these are all.
-   */
+  /** Returns the particles within those limits: the set itself if all are. */
   vtkSmartPointer<vtkPointSet> TakePresent(vtkPointSet* particles) const;
 
   /**
-   * The box of the fluid's particles, without the few (0.1 %, or 8) that are farther from the others' box than it is
-   * long. Collective where processes share a run. False where no particle is fluid.
+   * Finds the box of the fluid's particles. It leaves out the few (0.1 %, or 8) that are farther
+   * from the others' box than it is long. Collective if processes share a run. False if no
+   * particle is fluid.
    */
   bool FindFluidBounds(vtkPointSet* particles, double bounds[6]);
 #endif
@@ -423,9 +433,7 @@ public:
    */
   vtkFieldData* GetRunStatistics();
 
-  /**
-   * The same as text, a line "Name: values" for each.
-   */
+  /** Returns the statistics as text, a line "Name: values" for each. */
   const char* GetStatistics();
 
   /**
@@ -434,15 +442,16 @@ public:
   static std::string ListDevices();
 
   /**
-   * Free what is kept on the device between runs. The next run takes as long as the first.
+   * Frees the memory that is kept on the device between runs. The next run takes as long as the
+   * first.
    */
   void ReleaseDeviceMemory();
 
   ///@{
   /**
-   * What a panel begins with, from the particles as they are now: FindFluidBounds(), 0 where it is not known; whether
-   * they have no smoothing length, by name or as chosen, so that it is to be estimated; and what there is to choose from
-   * as fluid array beside point arrays: the blocks, one a line.
+   * Defaults of a panel, from the particles as they are now: FindFluidBounds(), or 0 if unknown;
+   * whether smoothing lengths must be estimated, because the particles have none by name or as
+   * chosen; and the blocks that can be chosen as fluid array, beside point arrays, one a line.
    */
   double* GetNextBounds() VTK_SIZEHINT(6);
   int GetNextEstimate();
@@ -472,14 +481,12 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
-  /**
-   * Asks for all of an input, whatever part of the output is wanted.
-   */
+  /** Requests all of an input, whatever part of the output is wanted. */
   static void AskForAll(vtkInformation* input);
 
   /**
-   * The name of the class that Process() makes of a data object of this class, which is no
-   * composite one.
+   * Returns the class that Process() makes of a data object of this class, which is not
+   * composite.
    */
   virtual const char* GetOutputClassName(const char* inputClassName) = 0;
 
@@ -495,19 +502,19 @@ protected:
   virtual bool KeepsBlocks() const { return false; }
 
   /**
-   * An input, or what of it are particles, see vtkSPHTakeVertices(), kept as long as it is the same. Collective where
-   * processes share a run.
+   * Returns an input, or the particles in it, see vtkSPHTakeVertices(); kept while the input is
+   * the same. Collective if processes share a run.
    */
   vtkDataObject* TakeVertices(vtkDataObject* data);
-  /** Says how many points of the data are no particles. Collective likewise. */
+  /** Reports how many points of the data are no particles. Collective likewise. */
   void WarnOfMesh(vtkDataObject* data, vtkDataObject* taken);
 
   /**
-   * Particles that are one set: a point set itself, or all blocks of composite data, put together once
-   * and kept as long as they are the same. Null for others.
+   * Returns particles as one set: a point set itself, or all blocks of composite data, put
+   * together once and kept while they are the same. Null for other data.
    */
   vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
-  /** The same of what TakeVertices() has left. */
+  /** Does the same with the result of TakeVertices(). */
   vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);
 
   /**
@@ -521,19 +528,21 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Says that no particle is fluid, and so `consequence`; or that an array tells fluid from solids, and is not used.
+   * Warns that no particle is fluid, and so `consequence`; or that an array tells fluid from
+   * solids but is not used.
    */
   void WarnOfFluid(
     vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence);
 
   /**
-   * Keeps which arrays were found, and warns of the fluid. False, and reported, if the particles are not usable.
+   * Notes which arrays were found, and warns about the fluid. Returns false, after an error, if
+   * the particles are not usable.
    */
   bool Accept(vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
 
   /**
-   * Warns, naming the block: once in a run of each kind, however many blocks there are. Kinds are
-   * those of the core (mcor_warning) and these.
+   * Warns, naming the block; once in a run for each kind, however many blocks there are. Kinds
+   * are those of the core (mcor_warning) and these.
    */
   void WarnOnce(int kind, const std::string& message);
   enum
@@ -543,24 +552,22 @@ protected:
     WARN_SINGLE_POINTS     ///< single precision is too coarse for the output's points
   };
 
-  /** The warnings of the core that need no surface. */
+  /** Gives the warnings of the core that need no surface. */
   void WarnOfParticles(
     const mcor_input& core, const mcor_options& options, const mcor_statistics& statistics);
 
-  /**
-   * The array chosen by SetInputArrayToProcess(index, ...).
-   */
+  /** Returns the array chosen by SetInputArrayToProcess(index, ...). */
   vtkSPHRequest FindRequest(int index, vtkPointSet* particles);
 
   /**
-   * The first one. Where none was named, the active scalars if they are fit to be looked at, see
-   * mcor_view_priority(), else the array that is fittest.
+   * Returns the first array. If none was named, these are the active scalars if they are worth
+   * looking at, see mcor_view_priority(), else the array that is most so.
    */
   vtkSPHRequest FindFirstRequest(vtkPointSet* particles, const vtkSPHMergeRanges& merge = nullptr);
 
   /**
-   * Calls the core: `call` gets a context for the device and returns the core's status. False if
-   * that failed, which is reported, or was cancelled.
+   * Calls the core: `call` gets a context for the device, and returns the core's status. Returns
+   * false if the call failed, which is reported, or was cancelled.
    */
   bool CallCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call);
@@ -569,55 +576,59 @@ protected:
   int RunCore(vtkSPHParticles& particles, mcor_options& options,
     const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
 
-  /**
-   * Whether processes share a run, in a build that can.
-   */
+  /** Whether processes share a run; always false in a build without MPI. */
   bool IsShared() const;
 
   ///@{
   /**
-   * The steps of a run that ranks share, in their order. All are collective, and return the same everywhere: false
-   * where one rank failed, which all report, or the run was cancelled.
+   * Steps of a run that ranks share, in their order. All are collective, and return the same
+   * everywhere: false if one rank failed, which all report, or the run was cancelled.
    */
-  /** Takes this rank's particles; `taken`: which of these. */
+  /** Takes this rank's particles. taken: the ones of these that were chosen. */
   bool BeginDistributed(
     vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken = nullptr);
   /** Whether the particles, once collected, can be used on all ranks, and whether there is fluid on any. */
   bool AcceptDistributed(
     vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
-  /** WarnOfParticles(), of a rank's particles and what a call found of all. */
+  /** Calls WarnOfParticles() with a rank's particles and the findings of a call about all. */
   void WarnOfParticlesDistributed(
     vtkSPHRanksRun& run, mcor_input core, const mcor_statistics& statistics);
-  /** Measures all that is global, for a surface, or for mcor_probe and mcor_derive; the period and the dimension. */
+  /**
+   * Measures everything global, for a surface or for mcor_probe and mcor_derive; also finds the
+   * period and the dimension.
+   */
   bool MeasureDistributed(vtkSPHRanksRun& run, vtkSPHParticles& particles, bool forSamples);
-  /** Sends particles, which the core has as `input`, to the ranks whose boxes need them; a call is for its box then. */
+  /**
+   * Sends particles, which the core has as `input`, to the ranks whose boxes need them. Calls
+   * then run for the rank's box.
+   */
   void ShareDistributed(vtkSPHRanksRun& run, const mcor_input& input, vtkPolyData* particles,
     const vtkSPHRanksBalance& balance);
-  /** False where a rank has a problem. */
+  /** Returns false if a rank has a problem. */
   bool AgreeDistributed(vtkSPHRanks& ranks, std::string problem);
-  /** CallCore() with the run's options, on all ranks together. */
+  /** Does CallCore() with the run's options, on all ranks together. */
   bool CallCoreDistributed(
     vtkSPHRanksRun& run, vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
   ///@}
 
-  /** The input that has the particles, and its port. */
+  /** Returns the input that has the particles, and its port. */
   vtkDataObject* GetParticles();
   virtual int GetParticlesPort() { return 0; }
 
-  /** Names the fluid in the choice, where it is to be found, and is. */
+  /** Names the fluid in the choice, if it is to be detected and is found. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
     const vtkSPHMergeRanges& merge = nullptr);
   int FindDimensionDistributed(vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
   /**
-   * Gives the options the period of these particles. False if there should be one and is not, which is
-   * reported.
+   * Gives the options the period of these particles. Returns false, after an error, if there
+   * should be one and is not.
    */
   bool SetPeriod(vtkPointSet* particles, mcor_options& options);
-  /** Finds the period on all ranks together; these particles are one's own. */
+  /** Finds the period on all ranks together. Each passes its own particles. */
   bool SetPeriodDistributed(vtkPointSet* particles, mcor_options& options);
-  /** False, and reported, where none was found, or there is a problem. */
+  /** Returns false, after an error, if none was found or there is a problem. */
   bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles, bool isUsable = true);
   /** A line "Name: 1 2 3" of PrintSelf(). */

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What the data tell of particles: blocks of composite data, and which particles are fluid.
+// Blocks of composite data, and detection of the fluid among particles.
 #include "vtkSPHAlgorithm.h"
 
 #include "mcor.h"
@@ -38,7 +38,10 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** The lowest numbers of many, one more than may be far from the others. */
+/**
+ * The lowest of many numbers, one more than the count of particles that may be far from the
+ * others.
+ */
 struct Lowest
 {
   std::size_t Far = 0;
@@ -70,7 +73,7 @@ vtkIdType CountPoints(vtkDataObject* data)
 }
 }
 
-// Each block is a run that all processes take part in.
+// All processes take part in the run of each block.
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
   bool good = true;
@@ -90,7 +93,7 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
   return good;
 }
 
-// A block that fails leaves its place empty, and the others as they are.
+// A block that fails leaves its place empty, and does not touch the others.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
   output->CopyStructure(input);
@@ -114,7 +117,7 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   this->SetProgressShiftScale(0.0, 1.0);
   if (this->IsAborted())
   {
-    output->CopyStructure(input); // not some blocks of a result
+    output->CopyStructure(input); // a result has all blocks or none
   }
 }
 
@@ -136,7 +139,7 @@ void vtkSPHAlgorithm::WarnOfMesh(vtkDataObject* data, vtkDataObject* taken)
   }
 }
 
-// Ranks that have a mesh alone, or nothing, look for vertices on all.
+// A rank that has only a mesh, or nothing, needs to know whether any rank has vertices.
 vtkDataObject* vtkSPHAlgorithm::TakeVertices(vtkDataObject* data)
 {
   vtkInternals& kept = *this->Internals;
@@ -322,7 +325,7 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
   return true;
 }
 
-// Processes that share a run would all have to ask.
+// All processes that share a run would have to ask.
 double* vtkSPHAlgorithm::GetNextBounds()
 {
   const vtkSmartPointer<vtkPointSet> particles =

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: what outlives a run, the core's context and what the particles and the
- * scalar were that it keeps.
+ * Private to the module: data that outlive a run. These are the core's context, and the
+ * particles and the scalar that it keeps.
  */
 #ifndef vtkSPHAlgorithmInternals_h
 #define vtkSPHAlgorithmInternals_h
@@ -28,24 +28,25 @@ public:
   ~vtkInternals();
 
   /**
-   * A context for this device, the same one if there is one, for number `place` of `count` processes of
-   * this machine. Nothing if it is usable, else why not.
+   * Makes a context for this device, or keeps the present one if it fits. This is number `place`
+   * of `count` processes on this machine. Returns an empty string, or why the device is not
+   * usable.
    */
   std::string Prepare(const std::string& device, int place, int count);
 
-  /** Tells the core what is the same as in the run before. */
+  /** Tells the core which data are the same as in the last run. */
   void SetVersions(vtkSPHParticles& input);
 
-  /** After a failure nothing is assumed about what is on the device, or about the device itself. */
+  /** Forgets the data on the device, and the device itself, after a failure. */
   void Forget(mcor_status status);
 
-  /** Gives memory back: between a BeginRun() and an EndRun(), where it is in use, at the end. */
+  /** Gives memory back. Between BeginRun() and EndRun() it is in use, so this waits for the end. */
   void Release();
   void BeginRun();
   void EndRun();
 
   mcor_context* Context = nullptr;
-  vtkSmartPointer<vtkDataObject> Taken; // what of an input are particles
+  vtkSmartPointer<vtkDataObject> Taken; // particles taken from an input
   vtkWeakPointer<vtkDataObject> TakenFrom;
   std::int64_t TakenAmong = 0; // whether there were vertices on any rank
   vtkTimeStamp TakenTime;
@@ -55,17 +56,17 @@ public:
   vtkTimeStamp JoinedTime;
 
 private:
-  std::string Device; // what the context was created for
+  std::string Device; // settings that the context was created for
   int Place = 0, Count = 0;
   bool InRun = false;
   bool ReleaseAfterRun = false;
-  /** A value of the last run, and how many others it has been. */
+  /** A value of the last run, and how often it has changed. */
   struct Kept
   {
     std::vector<std::uint64_t> Signature;
     std::uint64_t Version = 0;
 
-    /** Whether this is another one. */
+    /** Keeps this value. Returns whether it is another one. */
     bool Take(const std::vector<std::uint64_t>& signature, bool isOther = false);
   };
   Kept Particles, Scalar, Attributes;

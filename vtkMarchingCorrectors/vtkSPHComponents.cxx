@@ -43,7 +43,10 @@ namespace
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 const char* const IdName = "ComponentId";
 
-/** The array of this name, or that of the most usual one for the quantity; nullptr: there is none. */
+/**
+ * Returns the array of this name, or the array with the most usual name of the quantity; nullptr
+ * if there is none.
+ */
 vtkDataArray* FindArray(
   vtkPointSet* particles, const std::string& name, mcor_quantity quantity, int components)
 {
@@ -51,7 +54,7 @@ vtkDataArray* FindArray(
                       : particles->GetPointData()->GetArray(name.c_str());
 }
 
-/** The tuples with these numbers, in their order. */
+/** Returns the tuples with these numbers, in this order. */
 void CopyTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to)
 {
   vtkNew<vtkIdList> places;
@@ -62,7 +65,10 @@ void CopyTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes
   to->CopyData(from, ids, places);
 }
 
-/** Adds the ids of the pieces that are not left out, as active scalars: most want to tell pieces by colour. */
+/**
+ * Adds the ids of the pieces that stay, as active scalars: most users want to tell pieces apart
+ * by colour.
+ */
 void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
 {
   vtkNew<vtkIdTypeArray> ids;
@@ -78,8 +84,10 @@ void AddIds(vtkDataSetAttributes* data, const std::vector<vtkIdType>& numbers)
   data->SetActiveScalars(IdName);
 }
 
-/** A sum whose bits do not depend on the order of its numbers, each of which is expected first: they are rounded to
- * a unit in which the sum is exact. */
+/**
+ * A sum whose bits do not depend on the order of its numbers. All numbers must be announced
+ * first: they are rounded to a unit in which the sum is exact.
+ */
 class OrderlessSum
 {
 public:
@@ -107,7 +115,7 @@ private:
 struct vtkSPHComponents::Content
 {
   double Particles = 0.0;
-  OrderlessSum Mass, Momentum[3]; ///< without masses, as if these were 1
+  OrderlessSum Mass, Momentum[3]; ///< without masses, as if each were 1
   bool HasMass = false, HasVelocity = false;
 
   double Velocity(int axis) const
@@ -220,7 +228,7 @@ std::vector<vtkSPHComponents::Content> vtkSPHComponents::Count(
   return contents;
 }
 
-// New numbers of the pieces; -1: left out. Cavities go with what is around them.
+// New numbers of the pieces; -1: left out. A cavity goes with the piece around it.
 std::vector<vtkIdType> vtkSPHComponents::Choose(
   const vtkSPHPieces& pieces, const std::vector<Content>& contents) const
 {
@@ -253,7 +261,8 @@ void vtkSPHComponents::FillTable(const vtkSPHPieces& pieces, const std::vector<C
     "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "diameter", "particles", "mass", "vx", "vy",
     "vz" };
   constexpr size_t columnCount = sizeof names / sizeof *names;
-  constexpr size_t withoutParticles = 15; // the others tell of particles, which may not be there
+  constexpr size_t withoutParticles =
+    15; // the other columns are about particles, which may be absent
   const size_t used = contents.empty() && !pieces.Pieces.empty() ? withoutParticles : columnCount;
   vtkDoubleArray* columns[columnCount];
   for (size_t c = 0; c < used; ++c)
@@ -306,7 +315,7 @@ vtkSPHComponents::Numbers vtkSPHComponents::Split(
   return numbers;
 }
 
-// Points and triangles of the pieces that stay, with all their arrays, in their order.
+// Copies points and triangles of the pieces that stay, with all their arrays, in their order.
 void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyData* output)
 {
   vtkNew<vtkIdList> points, cells;

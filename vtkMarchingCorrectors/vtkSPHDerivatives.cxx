@@ -18,7 +18,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** The gradients of vectors in a plane that have two components, as those of vectors in space. */
+/** Returns gradients of vectors of two components, in a plane, as gradients of vectors in space. */
 std::vector<double> InSpace(const mcor_derivatives& derivatives)
 {
   const double* extent = derivatives.statistics.fluid_extent;
@@ -66,7 +66,7 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   const double* gradients = inSpace.empty() ? derivatives.gradients[0] : inSpace.data();
   for (const Quantity& quantity : this->Quantities)
   {
-    const bool exists = // in two dimensions no eigenvalue is in the middle
+    const bool exists = // two dimensions have no middle eigenvalue
       !isPlane || quantity.Values != &mcor_flow::lambda2;
     if (quantity.IsWanted && exists && from.Components == (inSpace.empty() ? 3 : 2) &&
       !quantity.AddTo(data, derivatives, gradients, asFloat))
@@ -85,7 +85,7 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   {
     if (quantity.Values == &mcor_flow::vorticity && quantity.IsWanted && from.Components == 3)
     {
-      data->SetActiveScalars(quantity.Name.c_str()); // what most want to see
+      data->SetActiveScalars(quantity.Name.c_str()); // the array that most users want to see
     }
   }
   return true;
@@ -112,7 +112,7 @@ const char* vtkSPHDerivatives::GetOutputClassName(const char* inputClassName)
   return inputClassName;
 }
 
-// An array of a file may be another one of that name: made of another kernel, or by the solver.
+// A file may have another array of that name: made with another kernel, or by the solver.
 std::string vtkSPHDerivatives::NameResult(const std::string& name, vtkPointSet* particles) const
 {
   std::string free = name;
@@ -177,7 +177,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   this->Derive(input, particles, vtkPointSet::SafeDownCast(output));
 }
 
-// What an observer of the progress may change is read before the run.
+// Reads first what an observer of the progress may change during the run.
 void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output)
 {
   const vtkWanted wanted = this->ListWanted(particles);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: what a run of vtkSPHDerivatives adds to the particles, as it was asked for
- * when the run began.
+ * Private to the module: the arrays that a run of vtkSPHDerivatives adds to the particles, as
+ * they were wanted when the run began.
  */
 #ifndef vtkSPHDerivativesWanted_h
 #define vtkSPHDerivativesWanted_h
@@ -27,12 +27,15 @@ struct vtkSPHDerivatives::vtkWanted
     double* mcor_flow::*Values;
     bool IsWanted;
 
-    /** False if memory ran out. */
+    /** Returns false if memory ran out. */
     bool AddTo(vtkPointData* data, const mcor_derivatives& derivatives, const double* gradients,
       bool asFloat) const;
   };
 
-  /** Takes memory out of `derivatives`, which are of the array `from`. False if memory ran out. */
+  /**
+   * Takes over memory of `derivatives`, which were made from the array `from`. Returns false if
+   * memory ran out.
+   */
   bool AddTo(vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const;
 
   static std::string DescribeNoMemory(vtkIdType particles);

@@ -22,7 +22,7 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Triangles of polygons, and lines. */
+/** Triangles of polygons, or lines. */
 struct Shapes
 {
   std::string Name;
@@ -44,7 +44,7 @@ struct Shapes
   }
 };
 
-/** Of the cells with one name each, in the order in which names come. */
+/** Lists sections: the cells with one name each, in the order of their first cells. */
 std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
 {
   vtkAbstractArray* names = data->GetCellData()->GetAbstractArray("Name");
@@ -204,7 +204,7 @@ std::unique_ptr<vtkSPHMeter::Found> vtkSPHFlux::MakeFound() const
       mcor_input input = particles;
       mcor_array still = {};
       still.components = 3;
-      if (input.count == 0 && input.attribute_count == 0) // nothing is asked of no particles
+      if (input.count == 0 && input.attribute_count == 0) // without particles, no array is needed
       {
         input.attributes = &still;
         input.attribute_count = 1;

@@ -52,7 +52,8 @@ const char* vtkSPHMeter::GetOutputClassName(const char*)
   return "vtkTable";
 }
 
-// All of both, whatever piece of the table is wanted; of processes that share a run, all of the places.
+// Requests all of both inputs, whatever piece of the table is wanted; if processes share a run, all
+// of the places.
 int vtkSPHMeter::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
@@ -88,7 +89,7 @@ bool vtkSPHMeter::Collect(vtkSPHParticles& particles)
   return particles.CollectParticles();
 }
 
-// False, and reported, where two have one name.
+// Returns false, after an error, if two places have one name.
 bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
 {
   std::set<std::string> names;

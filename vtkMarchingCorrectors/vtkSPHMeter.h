@@ -71,7 +71,7 @@ protected:
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
 
-  /** What is measured; the numbers are the filter's own business. */
+  /** A place of measurement. Each filter gives the numbers their meaning. */
   struct Place
   {
     std::string Name;
@@ -81,8 +81,9 @@ protected:
 
   ///@{
   /**
-   * What filters differ in: the word for one place ("gauge"); what holds without fluid; the places of this process,
-   * whose second input is `more`, or null; the bounds of one; which particle arrays are needed.
+   * Differences of filters: the word for one place ("gauge"); the consequence of no fluid, in
+   * words; the places of this process, whose second input is `more`, or null; the bounds of a
+   * place; the particle arrays that are needed.
    */
   virtual const char* GetNoun() const = 0;
   virtual const char* GetConsequence() const = 0;
@@ -91,13 +92,13 @@ protected:
   virtual bool Collect(vtkSPHParticles& particles);
   ///@}
 
-  /** What the core has found; deleted before the next run. */
+  /** Results of the core. They are deleted before the next run. */
   class Found
   {
   public:
     virtual ~Found() = default;
     virtual const mcor_statistics& GetStatistics() const = 0;
-    /** Adds the columns behind those of time and name. */
+    /** Adds the columns after those of time and name. */
     virtual void Fill(vtkTable* table) const = 0;
     /** Whether no particle reaches the place. */
     virtual bool IsOutside(vtkIdType place) const = 0;
@@ -119,7 +120,7 @@ private:
     vtkTable* output);
   void Fill(vtkTable* output, const std::vector<Place>& places, const Found& found, bool hasFluid);
 
-  // For many processes together.
+  // Steps of a run that processes share.
   void ProcessDistributed(vtkPointSet* particles, vtkTable* output);
   void MeasureTogether(
     vtkSPHRanksRun& run, vtkSPHParticles& mine, const std::vector<Place>& places, vtkTable* output);

@@ -26,10 +26,10 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/** Points that the core gets at a time. */
+/** Most points that the core gets at a time. */
 constexpr vtkIdType ChunkSize = 1 << 20;
 
-/** The points of a data set, some at a time, as the core reads them. */
+/** The points of a data set, some at a time, in a form that the core reads. */
 class PointReader
 {
 public:
@@ -41,7 +41,7 @@ public:
     this->Stored = stored ? vtkSPHAsReal(stored) : nullptr;
   }
 
-  /** Valid until the next call. */
+  /** The result is valid until the next call. */
   mcor_array View(vtkIdType first, vtkIdType count)
   {
     mcor_array view = {};
@@ -77,7 +77,10 @@ public:
   }
 
 private:
-  /** Copies points as GetPoint() gives them, row by row: asking for each takes as long as sending it to the device. */
+  /**
+   * Copies points as GetPoint() gives them, but row by row: asking for each point takes as long
+   * as sending it to the device.
+   */
   static void CopyImagePoints(vtkImageData* image, vtkIdType first, vtkIdType count, double* to)
   {
     const int* extent = image->GetExtent();
@@ -109,7 +112,7 @@ private:
   vtkIdType Room = 0;
 };
 
-/** Progress of one chunk as part of that of the run. */
+/** Progress of one chunk, as a part of the progress of the run. */
 struct ChunkProgress
 {
   int (*Report)(void* user, double fraction, const char* phase);
@@ -124,8 +127,11 @@ struct ChunkProgress
   }
 };
 
-/** A version that no kept run has: without it, each of several chunks would make the search grid
- * anew. One chunk alone gets none, so that only particles near its points are taken to the device. */
+/**
+ * Version of the particles in a run of several chunks. No kept run has it; without it, each
+ * chunk would make the search grid anew. A single chunk gets none, so only particles near its
+ * points go to the device.
+ */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
 }
 
@@ -178,7 +184,7 @@ vtkDataObject* vtkSPHProbe::GetSource()
 
 int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
 {
-  // What is missing is told in words.
+  // Inputs are optional for VTK: the filter itself reports a missing one in words.
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), this->GetNumberOfInputPorts() > 1 ? 1 : 0);
   if (port == this->GetParticlesPort())
   {
@@ -194,7 +200,7 @@ const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
   return inputClassName;
 }
 
-// Each piece of the points needs all particles; ranks find them by themselves.
+// Each piece of the points needs all particles. Ranks find them by themselves.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
@@ -270,7 +276,7 @@ void vtkSPHProbe::FillProbeOptions(mcor_options& options) const
   options.outputs = this->ComputeGradients ? MCOR_OUT_GRADIENTS : 0;
 }
 
-// What an observer of the progress may change is read before the run.
+// Reads first what an observer of the progress may change during the run.
 void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output)
 {
   mcor_options options;
@@ -304,7 +310,8 @@ double vtkSPHProbe::GetNull() const
   return this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue;
 }
 
-// What varies among the particles, as points that are not valid have a value of their own.
+// Makes the best array active. The values of the particles decide: points that are not valid have a
+// value of their own.
 void vtkSPHProbe::FinishOutput(vtkDataSet* output) const
 {
   vtkNew<vtkPointData> found;

@@ -20,13 +20,16 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/** A share of the longest side of the fluid's box, added around it: the fluid ends somewhat beyond its particles. */
+/**
+ * Margin around the fluid's box, as a share of its longest side: the fluid ends somewhat beyond
+ * its particles.
+ */
 constexpr double Margin = 0.03;
 
-/** Points of a volume whose dimensions nobody has set. */
+/** Points of a volume whose dimensions are not set. */
 constexpr double UsualPoints = 1e6;
 
-/** The axis along which the fluid is flat, if there is one; else -1. */
+/** Returns the axis along which the fluid is flat, or -1. */
 int FindFlatAxis(const double bounds[6])
 {
   int axis = -1, count = 0;
@@ -55,8 +58,8 @@ const char* vtkSPHResample::GetOutputClassName(const char*)
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
 }
 
-// Origin and spacing depend on the particles, and come with the data; dimensions that follow the shape of the fluid are
-// those of the particles as they are now.
+// Origin and spacing depend on the particles, and come with the data. Dimensions that follow the
+// shape of the fluid are those of the particles as they are now.
 int vtkSPHResample::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -79,7 +82,7 @@ int vtkSPHResample::RequestInformation(
   return 1;
 }
 
-// About cubes, and one layer where the fluid is flat.
+// Makes cells that are about cubes; one layer if the fluid is flat.
 void vtkSPHResample::ChooseDimensions(vtkDataObject* data)
 {
   double bounds[6];
@@ -132,7 +135,8 @@ int vtkSPHResample::RequestData(
   return done;
 }
 
-// With a margin, but along the axis of a plane. False where no particle is fluid.
+// Finds the fluid's box with a margin, but without one along the axis of a plane. Returns false if
+// no particle is fluid.
 bool vtkSPHResample::FindBounds(double bounds[6])
 {
   if (!this->FindFluidBounds(this->Particles, bounds))
@@ -172,7 +176,7 @@ vtkSmartPointer<vtkDataSet> vtkSPHResample::MakePoints(const double b[6])
   auto made = vtkSmartPointer<vtkPolyData>::New();
   if (this->HasPoints && this->Shape == SLICE)
   {
-    // A plane of particles is cut by itself alone in more than a line.
+    // A slice cuts a plane of particles in a line, unless it is that plane.
     const bool isFlat = this->FlatAxis >= 0;
     const double along[3] = { this->FlatAxis == 0 ? 1.0 : 0.0, this->FlatAxis == 1 ? 1.0 : 0.0,
       this->FlatAxis == 2 ? 1.0 : 0.0 };

@@ -43,7 +43,7 @@ public:
     kept->ShallowCopy(taken);
   }
 
-  /** The first step that is asked for and not kept; nullptr if there is none. */
+  /** Returns the first requested step that is not kept, or nullptr. */
   const double* FirstLacking() const
   {
     const auto lacking = std::find_if(
@@ -61,7 +61,7 @@ public:
     }
   }
 
-  double Time = 0.0;                                     // asked for
+  double Time = 0.0;                                     // requested time
   std::vector<double> Times;                             // of its step, or of the two around it
   std::map<double, vtkSmartPointer<vtkDataObject>> Kept; // steps as they came
   std::vector<vtkSPHTemporalPair> Pairs;                 // one for each block
@@ -79,7 +79,7 @@ std::vector<double> TimesOf(vtkInformation* info)
                : std::vector<double>();
 }
 
-/** The stored time, or the two around it. */
+/** Finds the stored time, or the two around the requested one. */
 std::vector<double> StepsAround(const std::vector<double>& times, double time)
 {
   const auto after = std::lower_bound(times.begin(), times.end(), time);
@@ -163,7 +163,7 @@ vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
   return this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
 
-// A poly data, or blocks of them as the input has.
+// Makes a poly data as output, or blocks of them if the input has blocks.
 int vtkSPHTemporalInterpolator::RequestDataObject(vtkInformation* input, vtkInformation* output)
 {
   auto* blocks = vtkDataObjectTree::GetData(input);
@@ -199,7 +199,7 @@ int vtkSPHTemporalInterpolator::RequestInformation(vtkInformation* input, vtkInf
   return 1;
 }
 
-// Upstream is asked for the first step that is not kept, or, where all are, for nothing new.
+// Requests the first step that is not kept from upstream; if all are kept, nothing new.
 int vtkSPHTemporalInterpolator::RequestUpdateExtent(vtkInformation* input, vtkInformation* output)
 {
   const std::vector<double> stored = TimesOf(input);
@@ -224,8 +224,8 @@ int vtkSPHTemporalInterpolator::RequestUpdateExtent(vtkInformation* input, vtkIn
   return 1;
 }
 
-// Not by CONTINUE_EXECUTING: with that VTK's pipeline goes round for ever where the second step
-// cannot be read.
+// CONTINUE_EXECUTING is not used: with it VTK's pipeline loops for ever if the second step cannot
+// be read.
 bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
 {
   vtkInternals& steps = *this->Internals;

@@ -96,7 +96,8 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
   return true;
 }
 
-// The iso value leaves their names to computed arrays, which users look for by name.
+// The iso value's array takes another name if a computed array has this one, because users look for
+// computed arrays by name.
 void vtkMarchingCorrectorsInput::NameScalar()
 {
   this->IsoValueName = "IsoValue";

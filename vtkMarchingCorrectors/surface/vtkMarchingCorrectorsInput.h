@@ -17,7 +17,7 @@ struct vtkMarchingCorrectorsChoice : vtkSPHParticlesChoice
   int ScalarComponent = MCOR_MAGNITUDE;
   bool FreeSurface = false;
   bool InterpolateAttributes = true;
-  std::vector<std::string> ComputedArrays; // names that are taken in the output
+  std::vector<std::string> ComputedArrays; // names that the output already uses
   bool ComputeScalars = true;
 };
 
@@ -27,11 +27,11 @@ public:
   vtkMarchingCorrectorsInput(const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points);
 
   /**
-   * Fills all members. False if something is missing or not usable; Error then says what.
+   * Fills all members. Returns false if something is missing or not usable; Error then says why.
    */
   bool Collect();
 
-  /** The scalar and which particles are fluid alone: what the range of values depends on. */
+  /** Finds the scalar and the fluid particles alone: the range of values depends on these. */
   bool CollectContoured();
 
   const vtkMarchingCorrectorsChoice Choice;

@@ -31,16 +31,16 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/// Of an array's range among the particles: on a surface it varies by more, or it is noise.
+/// Least variation on a surface, as a share of an array's range among the particles; less is noise.
 constexpr double LeastShare = 0.03;
 
-// As it was when the run began.
+// Adds the array's name, as it was when the run began.
 void AddArrayName(vtkFieldData* data, const char* name, const mcor_array& array)
 {
   vtkSPHAddText(data, name, array.name ? array.name : "");
 }
 
-// The array's name, or the value for all particles where it was used.
+// Adds the array's name, or the value if one was used for all particles.
 void AddQuantity(vtkFieldData* data, const std::string& name, const mcor_array& array)
 {
   AddArrayName(data, (name + "Array").c_str(), array);
@@ -109,8 +109,8 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
 
 namespace
 {
-/// With ids of VTK's own type, as from vtkContourFilter: some filters take a mesh with others for
-/// non-manifold.
+/// Makes cells with ids of VTK's own type, as vtkContourFilter does: with others, some filters take
+/// a mesh for non-manifold.
 void BuildTriangles(mcor_surface& s, vtkPolyData* output)
 {
   const vtkIdType count = s.triangle_count;
@@ -136,7 +136,7 @@ void BuildTriangles(mcor_surface& s, vtkPolyData* output)
   output->SetPolys(triangles);
 }
 
-/// Of two dimensions.
+/// Builds the cells of two dimensions.
 void BuildLines(const mcor_surface& s, vtkPolyData* output)
 {
   if (!s.line_offsets)
@@ -154,7 +154,7 @@ void BuildLines(const mcor_surface& s, vtkPolyData* output)
   output->SetLines(lines);
 }
 
-/// Of lines, which come before triangles, and of these.
+/// Builds the bands of lines, which come first, and of triangles.
 void BuildBands(const mcor_surface& s, vtkPolyData* output)
 {
   if (!s.band_value)
@@ -257,8 +257,9 @@ void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
     vtkSPHAdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
 }
 
-// What the particles carry, if it varies on the surface, which what is contoured does by rounding alone; or the iso value
-// where there are several. Colours are those of magnitudes.
+// Chooses the active scalars: an attribute of the particles, if it varies on the surface (the
+// contoured one varies by rounding alone), or the iso value if there are several. Colours are those
+// of magnitudes.
 void vtkMarchingCorrectorsOutput::ChooseActive(
   vtkPolyData* output, const vtkSPHMergeRanges& merge) const
 {
@@ -351,7 +352,7 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 
 namespace
 {
-/// Its number, or the word that has this number.
+/// Adds a parameter: its number, or the word that has this number.
 template <typename T>
 void AddOption(vtkFieldData* data, const std::string& name, bool isWord, const char* words, T value)
 {
@@ -402,7 +403,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
     vtkSPHAddCount(fieldData, "IgnoreSolids", { this->Input.Core.ignore_solids });
     vtkSPHAddReal(fieldData, "WallShare", { this->Surface.statistics.wall_share });
   }
-  // Those in use are statistics: see AddStatistics.
+  // Values in use are statistics, see AddStatistics.
 #define WORD true
 #define FLAG false
 #define AT_LEAST_0 false

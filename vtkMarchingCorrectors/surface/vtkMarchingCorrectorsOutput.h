@@ -20,24 +20,30 @@ class vtkPolyData;
 class vtkMarchingCorrectorsOutput
 {
 public:
-  /**
-   * The surface's arrays are taken over where types agree, and are NULL in the surface then.
-   */
+  /** Takes over the surface's arrays if types agree; they are NULL in the surface then. */
   vtkMarchingCorrectorsOutput(
     const vtkMarchingCorrectorsInput& input, const mcor_options& options, mcor_surface& surface);
 
-  /** Names of the arrays that the core is asked to compute; their places in the output are theirs.
-   */
+  /** Names of the arrays that the core is asked to compute, in the output's order. */
   static std::vector<std::string> ComputedArrays(const mcor_options& options);
 
-  /** The surface, and its iso values. precision: of the points, as vtkAlgorithm has it. */
+  /** Fills in the surface, and its iso values. precision: of the points, as in vtkAlgorithm. */
   void BuildMesh(vtkPolyData* output, int precision, const vtkSPHMergeRanges& merge = nullptr);
-  /** The points' largest coordinate, in magnitude, where that mesh has them as floats; else 0. */
+  /**
+   * Returns the points' largest coordinate, in magnitude, if that mesh has them as floats; else
+   * 0.
+   */
   double FindLargestFloat(int precision) const;
-  /** Statistics and parameters: but for what it cost a function of the input and the options alone. */
+  /**
+   * Adds statistics and parameters. They depend on the input and the options alone, but for the
+   * costs.
+   */
   void AddRun(vtkFieldData* run) const;
 
-  /** Triangles, lines, and between which iso values they are. Takes the surface's triangles. */
+  /**
+   * Adds triangles, lines, and the iso values that they are between. Takes over the surface's
+   * triangles.
+   */
   static void BuildCells(mcor_surface& surface, vtkPolyData* output);
 
 private:

@@ -24,14 +24,14 @@ VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 const vtkIdType Grain = 8192;       // particles that are worth a thread
-const vtkIdType FewParticles = 100; // that say nothing of the unit of velocities
+const vtkIdType FewParticles = 100; // particles that tell nothing about the unit of velocities
 
 std::string NameOf(vtkAbstractArray* array)
 {
   return array && array->GetName() ? array->GetName() : "";
 }
 
-/** Empty where the array is to be found. */
+/** Empty if the array is to be found by its usual names. */
 std::string RealName(const std::string& name)
 {
   return name == "(automatic)" || name == "(none)" ? "" : name;
@@ -253,8 +253,9 @@ bool vtkSPHTemporalPair::AreVelocitiesFinite()
   return true;
 }
 
-// How far the particles moved along their mean velocities, over how far these would have moved
-// them. Summed slice by slice and then in order: the same whatever the number of threads.
+// Returns the distance that the particles moved along their mean velocities, over the distance that
+// these would have moved them. Sums are made slice by slice and then in order: they are the same
+// with any number of threads.
 void vtkSPHTemporalPair::CheckVelocities()
 {
   const Step &first = this->Steps[0], &second = this->Steps[1];

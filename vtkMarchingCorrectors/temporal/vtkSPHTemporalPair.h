@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: the same particles at two times, and between them.
- */
+/** Private to the module: the same particles at two times, and interpolation between them. */
 #ifndef vtkSPHTemporalPair_h
 #define vtkSPHTemporalPair_h
 
@@ -26,23 +24,23 @@ struct vtkSPHTemporalChoice
   double Times[2] = { 0.0, 1.0 };
 };
 
-/** The points and point arrays alone; a vertex for each point where the set has cells. */
+/** Copies the points and point arrays alone, with a vertex for each point if the set has cells. */
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output);
 
 class vtkSPHTemporalPair
 {
 public:
   /**
-   * Matches the particles of two steps; what is known of the same two stays. False if they cannot be
-   * matched; Error then says why.
+   * Matches the particles of two steps; keeps the match if the steps are the same. Returns false
+   * if they cannot be matched; Error then says why.
    */
   bool Match(vtkPointSet* first, vtkPointSet* second, const vtkSPHTemporalChoice& choice);
 
-  /** The particles at a time between the steps, after a Match(). */
+  /** Makes the particles at a time between the steps, after a Match(). */
   void Interpolate(double time, vtkPolyData* output) const;
 
   std::string Error;
-  std::vector<std::string> Warnings; // of the last Match(), none where nothing was new
+  std::vector<std::string> Warnings; // warnings of the last Match(); empty if it kept the match
   std::string IdName, VelocityName;  // of the arrays used
 
 private:
@@ -51,7 +49,7 @@ private:
     vtkSmartPointer<vtkPointSet> Particles;
     vtkSmartPointer<vtkDataArray> Ids, Velocities; // none: not used
     double Time = 0.0;
-    std::vector<vtkIdType> Partners; // of each particle in the other step; -1: it has none
+    std::vector<vtkIdType> Partners; // number of each particle in the other step; -1: it has none
   };
 
   void MatchNothing();
@@ -71,7 +69,7 @@ private:
   Step Steps[2];
   double TimeScale = 1.0;
   bool FollowsVelocities = false;
-  std::vector<std::uint64_t> Signature; // of what was matched
+  std::vector<std::uint64_t> Signature; // state of the data that were matched
 };
 VTK_ABI_NAMESPACE_END
 

@@ -18,7 +18,7 @@ namespace
 {
 const vtkIdType Grain = 8192; // particles that are worth a thread
 
-/** An array of the wider type of two, with value(tuple, component), in parallel. */
+/** Makes an array of the wider type of two, with value(tuple, component), in parallel. */
 template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(
   vtkDataArray* a, vtkDataArray* b, vtkIdType count, const ValueT& value)
@@ -65,9 +65,9 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   const double s = (time - this->Steps[0].Time) / (this->Steps[1].Time - this->Steps[0].Time);
   const bool early = s < 0.5;
   const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
-  const double share = early ? s : 1.0 - s; // of the way to the other step
+  const double share = early ? s : 1.0 - s; // share of the way to the other step
   vtkSPHTemporalCopy(near.Particles, output);
-  output->GetFieldData()->RemoveArray("TimeValue"); // that of the step
+  output->GetFieldData()->RemoveArray("TimeValue"); // the step's own time
   if (!near.Ids)
   {
     return; // one step has no particles, and the other nothing to interpolate with
@@ -76,11 +76,11 @@ void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
   this->InterpolateArrays(near, far, share, output);
 }
 
-// In double, from the step that is nearer, so that a particle at rest stays where it is.
+// Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
 void vtkSPHTemporalPair::InterpolatePositions(
   const Step& near, const Step& far, double share, double time, vtkPolyData* output) const
 {
-  const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 for the later half
+  const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 in the later half
   const double toTime = this->TimeScale * (time - near.Time);
   const auto x0 = vtkSPHAsReal(near.Particles->GetPoints()->GetData()),
              x1 = vtkSPHAsReal(far.Particles->GetPoints()->GetData());
@@ -88,7 +88,7 @@ void vtkSPHTemporalPair::InterpolatePositions(
   const auto v0 = curved ? vtkSPHAsReal(near.Velocities) : x0,
              v1 = curved ? vtkSPHAsReal(far.Velocities) : x1;
   const vtkSPHReals from(x0), to(x1), begun(v0), ended(v1);
-  // Hermite's cubic polynomials, of the far position and of both tangents.
+  // Hermite's cubic polynomials, for the far position and for both tangents.
   const double ofFar = share * share * (3.0 - 2.0 * share),
                ofBegun = share * (1.0 - share) * (1.0 - share),
                ofEnded = share * share * (share - 1.0);
@@ -109,7 +109,7 @@ void vtkSPHTemporalPair::InterpolatePositions(
   output->SetPoints(points);
 }
 
-// What the output has is that of the nearer step already.
+// The output already has the nearer step's data.
 void vtkSPHTemporalPair::InterpolateArrays(
   const Step& near, const Step& far, double share, vtkPolyData* output) const
 {

@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Compact contours. Marching leaves slivers where the surface passes close by a node. So vertices
- * of one node that edges join are merged to their mean [Moore and Warren], from where they are
- * moved along the gradient onto the surface. Triangles of which two corners are one go.
+/* Compact contours. Marching leaves slivers where the surface passes close by a node. Vertices
+ * of one node that edges join are therefore merged to their mean [Moore and Warren], which then
+ * moves along the gradient onto the surface. Triangles with two equal corners vanish.
  *
  * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart
- * again, which the bunches allow at any time. That may turn triangles beside them over, so there
- * are two rounds.
+ * again; bunches allow this at any time. It may turn triangles beside them over, so there are
+ * two rounds.
  *
- * Vertices stay sorted by node, as keys need them: so they are gathered once more at the end where
- * some were added behind. */
+ * Vertices stay sorted by node, because keys need this order. If vertices were added behind the
+ * others, all are gathered once more at the end. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -21,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Gives those that lean on a bunch another state. */
+/* Gives the bunches that lean on a bunch another state. */
 static void mcor_drop_leaning(mcor_bunches* bunches, int32_t first, int state)
 {
   for (int32_t e = bunches->leans[first] ? -1 : bunches->star[first]; e >= 0;
@@ -46,7 +46,7 @@ typedef struct mcor_sorted_bunch
   int32_t first;
 } mcor_sorted_bunch;
 
-/* The node that a bunch belongs to, as that of its merged vertex. */
+/* Finds the node of a bunch, in the form that its merged vertex has. */
 static void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, cl_int node[4])
 {
   const cl_int* from = mcor_marched_node(bunches, first);
@@ -58,7 +58,7 @@ static void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, cl_int n
   node[3] = from[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS;
 }
 
-/* In the order of vertices. */
+/* Returns a key that sorts nodes in the order of vertices. */
 static uint64_t mcor_order_key(const mcor_bunches* bunches, const cl_int node[4])
 {
   return mcor_node_key(&bunches->context->lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1;
@@ -71,14 +71,14 @@ static int mcor_compare_bunches(const void* x, const void* y)
                           : (a->first > b->first) - (a->first < b->first);
 }
 
-/* Takes a bunch apart before anything is placed, and those that lean on it. */
+/* Takes a bunch apart, and the bunches that lean on it, before anything is placed. */
 static void mcor_drop_bunch(mcor_bunches* bunches, int32_t first)
 {
   mcor_set_state(bunches, first, MCOR_BUNCH_APART);
   mcor_drop_leaning(bunches, first, MCOR_BUNCH_APART);
 }
 
-/* Sorts the merged bunches. There are keys for two of one node: others stay apart. */
+/* Sorts the merged bunches. A node has keys for two of them; others stay apart. */
 static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
 {
   mcor_sorted_bunch* sorted = NULL;
@@ -112,7 +112,7 @@ static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
   return MCOR_OK;
 }
 
-/* Lists the mesh's vertices in order, but for cuts and caps. Returns how many. */
+/* Lists the mesh's vertices in order, without cuts and caps. Returns their number. */
 static int mcor_order_vertices(mcor_bunches* bunches)
 {
   const mcor_sorted_bunch *merged = bunches->sorted, *end = merged + bunches->sorted_count;
@@ -122,7 +122,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
     const bool is_last = v == bunches->march_count;
     if (!is_last && mcor_is_merged(bunches, bunches->first[v]) && !bunches->held[v])
     {
-      continue; /* its bunch comes where the node is */
+      continue; /* its bunch is listed at the bunch's node */
     }
     const uint64_t key =
       is_last ? UINT64_MAX : mcor_order_key(bunches, mcor_marched_node(bunches, v));
@@ -141,7 +141,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   return count;
 }
 
-/* The vertex that an entry of the order is, or the first one of its bunch; and its place. */
+/* Return the vertex of an entry of the order, or the first one of its bunch; and its place. */
 static int32_t mcor_vertex_of(int32_t entry)
 {
   return entry < 0 ? -1 - entry : entry;
@@ -152,7 +152,7 @@ static int32_t* mcor_place_in(const mcor_bunches* bunches, int32_t entry)
   return (entry < 0 ? bunches->merged_place : bunches->place) + mcor_vertex_of(entry);
 }
 
-/* The mean of a bunch's vertices, from its node, in edges. */
+/* Finds the mean of a bunch's vertices, from its node, in edges. */
 static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean[3])
 {
   const mcor_context* context = bunches->context;
@@ -174,7 +174,7 @@ static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean
   }
 }
 
-/* Vertices on their way to the mesh, behind those it has. */
+/* Vertices that are being appended to the mesh. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
@@ -199,7 +199,7 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
       mcor_bunch_node(bunches, v, to->node + 4 * i);
       mcor_mean_of(bunches, v, start);
     }
-    for (int k = 0; k < 2; ++k) /* a merged one has no edge: any ends of different signs */
+    for (int k = 0; k < 2; ++k) /* a merged vertex has no edge: any ends of different signs do */
     {
       mcor_put_real(context, to->ends, 2 * i + k,
         merged ? 2 * k - 1 : mcor_get_real(context, bunches->ends, 2 * (int64_t)v + k));
@@ -212,7 +212,7 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Notes where the vertices will be, and where those of each level begin. */
+/* Notes the places of the new vertices, and the first one of each level. */
 static void mcor_note_added(mcor_bunches* bunches, const int32_t* list, int count)
 {
   mcor_mesh* mesh = &bunches->context->mesh;
@@ -252,7 +252,7 @@ static mcor_status mcor_write_added(
   return mcor_append_bytes(context, &mesh->offset, 4 * o * real, add->offset, 4 * n * real);
 }
 
-/* Adds vertices behind those of the mesh, and corrects them. */
+/* Appends vertices to the mesh, and corrects them. */
 static mcor_status mcor_add_vertices(mcor_bunches* bunches, const int32_t* list, int count)
 {
   mcor_context* context = bunches->context;
@@ -276,7 +276,7 @@ static mcor_status mcor_add_vertices(mcor_bunches* bunches, const int32_t* list,
   return mcor_launch_correction(context, MCOR_ON_BOUNDARY, "mcor_compact_vertices");
 }
 
-/* Makes the first vertices: all, or, where there are corrected ones, means alone. */
+/* Makes the first vertices: all, or, if the mesh has corrected ones, only the merged ones. */
 static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 {
   mcor_mesh* mesh = &bunches->context->mesh;
@@ -309,7 +309,7 @@ typedef struct mcor_facing
   int round;
   double edge[3];
   void *node, *offset, *linear, *gradient;
-  atomic_int bad; /* whether any bunch is */
+  atomic_int bad; /* whether any bunch is bad */
 } mcor_facing;
 
 static void mcor_make_bad(mcor_facing* facing, int32_t first)
@@ -321,7 +321,8 @@ static void mcor_make_bad(mcor_facing* facing, int32_t first)
   }
 }
 
-/* Whether a triangle, or line, does not face against the mean of its corners' unit gradients. */
+/* Whether a triangle, or line, is turned over: it does not face against the mean of its corners'
+ * unit gradients. */
 static bool mcor_is_turned(const mcor_facing* facing, const int32_t* place, int corners)
 {
   const mcor_context* context = facing->bunches->context;
@@ -424,8 +425,8 @@ static mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Takes the bad bunches apart, and those that lean on them; lists their vertices. Returns how many.
- */
+/* Takes the bad bunches apart, and the bunches that lean on them. Lists their vertices. Returns
+ * how many. */
 static int mcor_list_fresh(mcor_bunches* bunches, int32_t* fresh)
 {
   int count = 0;
@@ -516,8 +517,8 @@ static mcor_status mcor_gather(
   return status;
 }
 
-/* Notes where vertices are now, and those of each level begin; cuts and caps follow those on edges.
- */
+/* Notes the places of vertices, and the first one of each level. Cuts and caps follow the
+ * vertices on edges. */
 static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
 {
   const mcor_context* context = bunches->context;
@@ -549,7 +550,7 @@ static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
   mesh->vertex_count = count;
 }
 
-/* Cuts are on edges between vertices that have other numbers now. */
+/* Renumbers the edges that cuts are on, because vertices have other numbers now. */
 static mcor_status mcor_renumber_cuts(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -618,7 +619,7 @@ typedef struct mcor_filing
   int64_t gone[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 1]; /* owned ones that are not left, by level */
 } mcor_filing;
 
-/* Returns whether the triangle is left, with these corners. */
+/* Finds the corners of a triangle. Returns whether it is left. */
 static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3])
 {
   const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;

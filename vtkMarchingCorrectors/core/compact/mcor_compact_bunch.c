@@ -3,16 +3,17 @@
 
 /* Bunches of a marched mesh, and which of them may be merged.
  *
- * Merging must leave a manifold with the same pieces. It does if each bunch that is merged can be
- * drawn together to a point, and if two vertices of the mesh are then joined by one edge at most,
- * which becomes of edges beside each other and the triangles between. The latter is asked of pairs:
- * of two bunches, or a bunch and a vertex. So a bunch is
- *   - sure, where the triangles around it are one closed fan of three or more different vertices,
- * both where all bunches are merged and where no other one is;
- *   - leaning, where they are with the sure ones merged. It goes where a sure one beside it goes.
- * Of two that may not both be merged the first is. Thus a bunch depends on the cells near it alone,
- * whatever part of the surface a call makes, and may later be taken apart at any time. A closed
- * piece that would be left with fewer than 8 triangles stays as it is. */
+ * Merging must leave a manifold with the same pieces. It does if each merged bunch can be drawn
+ * together to a point, and if two vertices of the result are joined by one edge at most. That edge
+ * replaces edges beside each other and the triangles between them. The second condition is tested
+ * for pairs: of two bunches, or of a bunch and a vertex. A bunch is
+ *   - sure, if the triangles around it are one closed fan of three or more different vertices, both
+ *     with all bunches merged and with no other one merged;
+ *   - leaning, if they are so with the sure bunches merged. It is taken apart if a sure bunch beside
+ *     it is.
+ * Of two bunches that must not both be merged, the first one is. A bunch therefore depends on the
+ * cells near it alone, whatever part of the surface a call makes, and may be taken apart at any
+ * time. A closed piece that would keep fewer than 8 triangles stays as it is. */
 
 #include "mcor_cap.h"
 #include "mcor_compact.h"
@@ -21,18 +22,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In place of a node: the vertex stays. */
+/* Key of a vertex that stays, in place of a node. */
 #define MCOR_FROZEN UINT64_MAX
 
-/* Vertices that bunches with one fan have beside them, at most. */
+/* Most vertices around a bunch with one fan. */
 #define MCOR_FAN_LIMIT 48
 
-/* Triangles that a closed piece keeps at least; lines. */
+/* Least triangles that a closed piece keeps; least lines. */
 #define MCOR_LEAST_PIECE(corners) ((corners) == 3 ? 8 : 4)
 
 /* ---- Nodes ---- */
 
-/* Sides of periods and of caps, on which vertices stay, as nodes along an axis. */
+/* Sides of periods and of caps, on which vertices stay. node: along the axis. */
 typedef struct mcor_frozen
 {
   const mcor_bunches* bunches;
@@ -66,7 +67,7 @@ static void mcor_list_sides(const mcor_context* context, mcor_frozen* frozen)
   }
 }
 
-/* On a side, or on the border that the node threshold leaves. */
+/* Whether a node's edge is on a side, or on the border that the node threshold leaves. */
 static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
 {
   const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
@@ -79,9 +80,9 @@ static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
   return is;
 }
 
-/* A vertex belongs to the end of its edge that is nearer to where the field is linear; the lower
- * one of two. Beside each other are levels that differ by one, so that the last bit of theirs will
- * do. */
+/* Gives vertices the keys of their nodes. A vertex belongs to the end of its edge that is nearer
+ * by linear interpolation, the lower one if both are. Neighbouring levels differ by one, so the
+ * last bit of the level tells them apart. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_frozen* frozen = data;
@@ -100,7 +101,7 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Vertices of cuts and caps stay, and those beside caps; those beside cuts are held. */
+/* Freezes vertices of cuts and caps, and vertices beside caps; holds vertices beside cuts. */
 static mcor_status mcor_freeze_borders(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -139,7 +140,7 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
-/* The first vertex that this one is known to be joined with. */
+/* Returns the first vertex that this one is known to be joined with. */
 static int32_t mcor_first_of(int32_t* first, int32_t v)
 {
   while (first[v] != v)
@@ -169,7 +170,7 @@ static void mcor_join_vertices(mcor_bunches* bunches)
   }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    first[v] = first[first[v]]; /* the one before is first already */
+    first[v] = first[first[v]]; /* the one before is already first */
   }
   for (int32_t v = bunches->vertex_count - 1; v >= 0; --v)
   {
@@ -197,15 +198,15 @@ static void mcor_list_stars(mcor_bunches* bunches)
 
 /* ---- Whether they can be merged ---- */
 
-/* The edges opposite to a bunch in its triangles, as these go round. Of lines: one from the vertex
- * before to that behind. */
+/* Edges opposite to a bunch in its triangles, in their order around it. For lines: one edge from
+ * the vertex before to the one after. */
 typedef struct mcor_fan
 {
   int count;
   int32_t from[MCOR_FAN_LIMIT], to[MCOR_FAN_LIMIT];
 } mcor_fan;
 
-/* Corners of a triangle, as the first vertices of their bunches. */
+/* Finds the corners of a triangle, as the first vertices of their bunches. */
 static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3])
 {
   const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
@@ -215,10 +216,12 @@ static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3
   }
 }
 
-/* False where the bunch cannot be drawn together, or there is no fan around it. */
+/* Finds the fan around a bunch. Returns false if the bunch cannot be drawn together, or has no
+ * fan. */
 static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
 {
-  int size = 1, whole = 0, partly = 0; /* vertices; triangles within, and with two corners within */
+  int size = 1, whole = 0,
+      partly = 0; /* vertices; triangles with three, and with two corners in the bunch */
   for (int32_t v = bunch; bunches->next[v] >= 0; v = bunches->next[v])
   {
     ++size;
@@ -252,7 +255,7 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
   return 2 * size - whole - partly == 2;
 }
 
-/* Lines to and from a bunch. */
+/* Finds the fan of lines to and from a bunch. */
 static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
 {
   int size = 1, within = 0, before = 0, behind = 0;
@@ -275,8 +278,8 @@ static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_
   return size - within == 1 && before == 1 && behind == 1;
 }
 
-/* In place of vertices around a bunch, their bunches, or those of them that are sure; edges within
- * one go. */
+/* Replaces vertices around a bunch by their bunches, all or the sure ones. Edges within a bunch
+ * vanish. */
 static void mcor_merge_fan(
   const mcor_bunches* bunches, bool all, const mcor_fan* from, mcor_fan* to)
 {
@@ -294,8 +297,8 @@ static void mcor_merge_fan(
   }
 }
 
-/* Whether the edges are one closed ring through different vertices; of lines, whether the two ends
- * differ. */
+/* Whether the edges form one closed ring through different vertices; for lines, whether the two
+ * ends differ. */
 static bool mcor_is_ring(const mcor_fan* fan, int corners)
 {
   int steps = 0, at = 0;
@@ -325,8 +328,8 @@ static bool mcor_is_ring(const mcor_fan* fan, int corners)
   return at == 0 && steps == fan->count && steps >= 3;
 }
 
-/* Whether the triangles of a bunch and of those around it, where all are merged, are as many as a
- * closed piece must have. */
+/* Whether a closed piece would keep enough triangles: counts those of a bunch and of the bunches
+ * around it, with all merged. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* fan)
 {
   const int least = MCOR_LEAST_PIECE(bunches->corners);
@@ -362,7 +365,7 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return triangles >= least;
 }
 
-/* Which bunches are sure; others may be leaning, or clash with some bunch beside them. */
+/* Finds which bunches are sure. Others may be leaning, or clash with a bunch beside them. */
 static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
@@ -390,7 +393,7 @@ static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Of the others those that can be merged. */
+/* Merges those of the other bunches that can be. */
 static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;

@@ -3,12 +3,12 @@
 #ifndef mcor_adaptive_h
 #define mcor_adaptive_h
 
-/* Adaptive cubes: what takes the place of seeds, and what other phases see of it. Vertices are on
- * edges of their level's lattice: node, offset, gradient and correction are in its cells, 2^level cubes. */
+/* Adaptive cubes, as the other phases see them. Vertices are on edges of their level's lattice:
+ * node, offset, gradient and correction are in its cells, 2^level cubes. */
 
 #include "mcor_internal.h"
 
-/* Whether the cubes are of several levels. */
+/* Whether there are several levels. */
 static inline bool mcor_is_adaptive(const mcor_lattice* lattice)
 {
   return lattice->levels > 1;
@@ -21,16 +21,17 @@ static inline bool mcor_is_adaptive(const mcor_lattice* lattice)
     MCOR_BUFFER(&(c)->bricks.now.valid)
 #define MCOR_PLAIN_ARGS(c) MCOR_BUFFER(&(c)->bricks.plain), MCOR_BUFFER(&(c)->bricks.leaf_of)
 
-/* Vertices on lattice edges, of the trim boundary, or both. */
+/* Vertices on lattice edges, on the trim boundary, or both. */
 enum
 {
   MCOR_ON_EDGES = 1,
   MCOR_ON_BOUNDARY = 2,
   MCOR_ALL_VERTICES = 3
 };
-/* Launch heavy kernels level by level, each seen in its cells. They take MCOR_GRID_PARAMS, what is said here, and up to
- * MCOR_MORE_ARGS more. At vertices: the groups of these, and their nodes. By level: first and count, of what is
- * from first[l] to before end[l]; so many `items` for each. */
+/* Launch heavy kernels level by level, each with the search grid in cells of the level. Kernels
+ * take MCOR_GRID_PARAMS, the arguments named here, and up to MCOR_MORE_ARGS more. At vertices:
+ * groups of vertices, and their nodes. By level: first and count of the elements from first[l]
+ * to before end[l], with `items` work-items for each. */
 #define MCOR_MORE_ARGS 32
 #define MCOR_LAUNCH_BY_LEVEL(context, name, items, first, end, ...)                                \
   mcor_launch_by_level(context, name, items, first, end, (const mcor_arg[]){ __VA_ARGS__ },        \
@@ -43,17 +44,18 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
 mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
-/* mcor_correct.c. Corrects vertices by a kernel; see above. */
+/* mcor_correct.c. Corrects vertices by a kernel, level by level. */
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel);
 
-/* From now on MCOR_GRID_ARGS are in cells of a level. */
+/* Makes MCOR_GRID_ARGS count in cells of a level from now on. */
 mcor_status mcor_view_level(mcor_context* context, int level);
 
-/* mcor_leaf.c. Makes the leaves, and takes their blocks to the device, unless they are there. */
+/* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless they are there. */
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
 /* Lists the leaves that may have surface. */
 mcor_status mcor_choose_leaves(mcor_context* context);
-/* Places the bricks whose nodes these need, evaluates what is needed of them, and finds which leaves have surface. */
+/* Places the bricks whose nodes the listed leaves need, evaluates the needed nodes, and finds
+ * which leaves have surface. */
 mcor_status mcor_complete_leaves(mcor_context* context);
 void mcor_release_adaptive(mcor_context* context);
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: level by level. What evaluates the field at vertices of a level sees the search grid in
- * cells of that level. */
+/* Adaptive cubes, level by level: kernels that evaluate the field at vertices of a level see the
+ * search grid in cells of that level. */
 
 #include "mcor_adaptive.h"
 
@@ -35,7 +35,7 @@ mcor_status mcor_view_level(mcor_context* context, int level)
     MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
 }
 
-/* Launches a heavy kernel with the search grid, `own` arguments and more. */
+/* Launches a heavy kernel with the search grid, its `own` arguments, and `more`. */
 static mcor_status mcor_launch_joined(mcor_context* context, const char* name, size_t items,
   const mcor_arg own[3], const mcor_arg* more, size_t count)
 {
@@ -70,7 +70,7 @@ mcor_status mcor_launch_at_vertices(
   {
     const int level = i / 2, boundary = i % 2;
     const int begin = boundary ? mesh->march_count : 0;
-    const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with those of caps */
+    const int end = boundary ? mesh->vertex_count : mesh->march_count; /* with vertices of caps */
     const int* of_levels = mesh->level_first[boundary];
     const int first = level > 0 ? of_levels[level] : begin;
     const int last = level + 1 < context->lattice.levels ? of_levels[level + 1] : end;

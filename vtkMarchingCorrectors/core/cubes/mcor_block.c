@@ -1,18 +1,19 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The blocks in which there may be surface [III-B], found by dividing larger cubes. */
+/* The blocks that may have surface [III-B], found by dividing larger cubes. */
 
 #include "mcor_box.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* The first size has the smallest cubes of which no more than this many cover the lattice. */
+/* Most cubes that may cover the lattice at first. The first size is the smallest that keeps to
+ * this. */
 #define MCOR_FIRST_CUBES 32768
 
-/* Larger cubes are the blocks of higher levels, 32 << level nodes long. Numbers those of all levels up to the first
- * size; returns that level. */
+/* Numbers the cubes of all levels up to the first size. Larger cubes are the blocks of higher
+ * levels, 32 << level nodes long. Returns the level of the first size. */
 static int mcor_make_rungs(mcor_lattice* lattice)
 {
   mcor_rung* rungs = lattice->rungs;
@@ -32,8 +33,8 @@ static int mcor_make_rungs(mcor_lattice* lattice)
   return level;
 }
 
-/* Blocks that are there because they are kept, in cubes that are inactive now, become void: as if
- * they were not there. children: the first keys of those that became the blocks. */
+/* Makes kept blocks void that lie in cubes that are inactive now, as if they did not exist.
+ * children: number of keys, the first ones, of blocks that were made by dividing. */
 static mcor_status mcor_void_kept(mcor_context* context, int children)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -62,8 +63,8 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
   return status;
 }
 
-/* States of the cubes whose keys are the block keys now, and which of them are inactive. children:
- * see mcor_void_kept, 0 where no blocks are kept. */
+/* Finds the states of the cubes in block_keys, and which of them are inactive. children: see
+ * mcor_void_kept; 0 if no blocks are kept. */
 static mcor_status mcor_test_cubes(mcor_context* context, int level, int children)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -84,20 +85,20 @@ static mcor_status mcor_test_cubes(mcor_context* context, int level, int childre
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* So many blocks at most: surface in a fourth of them has as many triangles as there can be. */
+/* Most blocks: surface in a fourth of them has as many triangles as there can be. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
-/* Blocks that these cubes will become, at least. Where cubes are small against the particles' supports a
- * surface is nearly flat in them: dividing them makes fewer than four times as many, but more than three
- * times. */
+/* Returns the least number of blocks that these cubes will become. A surface is nearly flat in
+ * cubes that are small against the particles' supports: dividing them makes fewer than four
+ * times as many, but more than three times. */
 static double mcor_foresee_blocks(const mcor_context* context, int64_t count, int doublings)
 {
   const double edge = ldexp(context->lattice.cube, doublings) * MCOR_BLOCK_CUBES;
   return (double)count * (edge < 0.25 * context->measure.h_median ? pow(3, doublings) : 1);
 }
 
-/* Replaces the cubes by the *children parts of those that are active, and by the blocks `kept` where
- * these are blocks already. */
+/* Replaces the cubes by the parts of the active ones, *children in number, and adds the blocks
+ * `kept` when the parts are blocks. */
 static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
   const mcor_buffer* kept, int kept_count, int* children)
 {
@@ -126,7 +127,7 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     context, keys, *children + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
-/* The active blocks, and those of bricks that are known. */
+/* Makes the active blocks, and the blocks of bricks whose nodes are known. */
 mcor_status mcor_make_blocks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

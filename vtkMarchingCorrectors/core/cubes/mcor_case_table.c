@@ -23,14 +23,14 @@ static int mcor_corner_above(int cube_case, int corner)
   return cube_case >> corner & 1;
 }
 
-/* The edge between two neighbouring corners. */
+/* Returns the edge between two neighbouring corners. */
 static int mcor_edge_between(int a, int b)
 {
   const int axis = (a ^ b) == 1 ? 0 : (a ^ b) == 2 ? 1 : 2;
   return axis << 3 | (a & b);
 }
 
-/* Corners of a face, counter-clockwise seen from outside. */
+/* Lists the corners of a face, counter-clockwise seen from outside. */
 static void mcor_face_corners(int axis, int side, int corners[4])
 {
   const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = side << axis;
@@ -50,9 +50,9 @@ static int mcor_face_ambiguous(int cube_case, int face)
     mcor_corner_above(cube_case, corner[3]) != first;
 }
 
-/* next[edge]: the edge that follows on the loop, -1 where the edge is not crossed. The
- * direction makes triangles face the corners below. joined: bit axis * 2 + side of the ambiguous
- * faces whose corners above are joined. */
+/* Sets next[edge] to the edge that follows on the loop, or to -1 if the edge is not crossed. The
+ * direction makes triangles face the corners below. joined: bits axis * 2 + side of the
+ * ambiguous faces whose corners above are joined. */
 static void mcor_link_edges(int cube_case, int joined, int next[MCOR_CELL_EDGES])
 {
   for (int e = 0; e < MCOR_CELL_EDGES; ++e)
@@ -75,7 +75,7 @@ static void mcor_link_edges(int cube_case, int joined, int next[MCOR_CELL_EDGES]
         next[mcor_edge_between(from, to)] = mcor_edge_between(corner[(i + 3) % 4], from);
         continue;
       }
-      int last = i + 1; /* of the run of corners above that begins at `to` */
+      int last = i + 1; /* end of the run of corners above that begins at `to` */
       while (mcor_corner_above(cube_case, corner[(last + 1) % 4]))
       {
         ++last;
@@ -86,7 +86,7 @@ static void mcor_link_edges(int cube_case, int joined, int next[MCOR_CELL_EDGES]
   }
 }
 
-/* The face that both edges lie in, axis * 2 + side; -1 if there is none. */
+/* Returns the face that both edges lie in, axis * 2 + side, or -1. */
 static int mcor_common_face(int edge_a, int edge_b)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -102,10 +102,10 @@ static int mcor_common_face(int edge_a, int edge_b)
 #define MCOR_NO_DIAGONALS (-1)
 
 /* Whether triangles of a cell may have a side between the vertices of two edges, besides the
- * loops. With a case, also between two opposite edges of an ambiguous face: of the face's two
- * such sides, the cell below may use one and the cell above the other, so that none is used by
- * both. Which one depends on the face's lowest corner; this makes the three faces around a
- * corner alike, without which few tunnels could be made. */
+ * sides on loops. With a case, opposite edges of an ambiguous face are allowed, too. Of the
+ * face's two such sides, the cell below may use one and the cell above the other, so no side is
+ * used by both. The face's lowest corner decides which one. This makes the three faces around a
+ * corner alike; otherwise few tunnels could be made. */
 static int mcor_allow_side(int edge_a, int edge_b, int cube_case)
 {
   const int face = mcor_common_face(edge_a, edge_b), axis = edge_a >> 3, side = face & 1;
@@ -125,7 +125,7 @@ static void mcor_add_triangle(mcor_cell_row* row, int a, int b, int c)
   triangle[2] = (uint8_t)c;
 }
 
-/* Cuts loop[first..last] into triangles, see mcor_allow_side; 0 if there is no way. */
+/* Cuts loop[first..last] into triangles, see mcor_allow_side. Returns 0 if there is no way. */
 static int mcor_cut_loop(const int* loop, int first, int last, int cube_case, mcor_cell_row* row)
 {
   if (last - first < 2)
@@ -209,7 +209,7 @@ void mcor_make_case_table(uint8_t table[256][16])
 
 /* ---- tunnels ---- */
 
-/* region[corner]: the same number for corners that the cell's surface connects on their side. */
+/* Gives corners the same number in `region` if the cell's surface connects them on their side. */
 static void mcor_find_regions(int cube_case, int joined, int region[8])
 {
   for (int c = 0; c < 8; ++c)
@@ -238,8 +238,8 @@ static void mcor_find_regions(int cube_case, int joined, int region[8])
   }
 }
 
-/* A way around two loops: from side (a, b) on, a step along the first loop or back along the second
- * adds a triangle each. */
+/* A way around two loops. From side (a, b) on, a step along the first loop or back along the
+ * second adds a triangle each. */
 typedef struct mcor_strip
 {
   int cube_case;
@@ -250,7 +250,8 @@ typedef struct mcor_strip
   int best_cost, best_start, best_step[24];
 } mcor_strip;
 
-/* Square of the distance between edge middles, in half cubes; much more for a side in a face. */
+/* Returns the squared distance between edge middles, in half cubes; much more for a side in a
+ * face. */
 static int mcor_side_cost(int edge_a, int edge_b)
 {
   int cost = mcor_allow_side(edge_a, edge_b, MCOR_NO_DIAGONALS) ? 0 : 1000;
@@ -263,7 +264,7 @@ static int mcor_side_cost(int edge_a, int edge_b)
   return cost;
 }
 
-/* Tries all ways that go on from a steps along the first and b along the second loop. */
+/* Tries all ways that go on from step a along the first loop and step b along the second. */
 static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
 {
   if (cost >= strip->best_cost || a > strip->first_length || b > strip->second_length)
@@ -294,7 +295,7 @@ static void mcor_search_strip(mcor_strip* strip, int a, int b, int cost)
   strip->used[i][j] = 0;
 }
 
-/* Adds the shortest tunnel between two loops; 0 if there is none. */
+/* Adds the shortest tunnel between two loops. Returns 0 if there is none. */
 static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor_cell_row* row)
 {
   const int limit = 1 << 20;
@@ -331,9 +332,9 @@ static int mcor_fill_tunnel(const mcor_loops* loops, int first, int second, mcor
   return 1;
 }
 
-/* Looks for the one pair of loops that a tunnel may connect such that it joins two regions on a
- * side (1 above), the region between the loops being on the other side. 0 if there is none, or
- * more. */
+/* Finds the pair of loops that a tunnel may connect. The tunnel must join two regions on a side
+ * (1 above), with the region between the loops on the other side. Returns 0 unless there is
+ * exactly one pair. */
 static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* first, int* second)
 {
   int region[8], around[4], pairs = 0;
@@ -355,8 +356,8 @@ static int mcor_find_pair(const mcor_loops* loops, int joined, int side, int* fi
   return pairs == 1;
 }
 
-/* The rows of a case for one set of decisions: discs in all loops to `row`; then, from `to` on,
- * those with a tunnel. Returns how many these are. */
+/* Makes the rows of a case for one set of decisions: discs in all loops go to `row`; rows with a
+ * tunnel follow from `to` on. Returns the number of the latter. */
 static int mcor_fill_rows(
   int cube_case, int joined, mcor_cell_row* first_row, mcor_cell_row* row, mcor_cell_row* to)
 {

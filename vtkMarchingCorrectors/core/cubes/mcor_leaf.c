@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the leaves that are marched, and the slots of the nodes that they need. The seeds (mcor_seed.c) find
- * the states of all leaves; those that may have surface are listed. All cells of these are examined, and no more.
- * Nodes that are certain have a side without a value; it is evaluated where a cell is crossed that has them. */
+/* Adaptive cubes: the leaves that are marched, and the slots of the nodes that they need. The
+ * seeds (mcor_seed.c) find the states of all leaves. Leaves that may have surface are listed;
+ * all their cells are examined, and no others. Nodes whose side is certain have no value at
+ * first; they are evaluated if a crossed cell has them. */
 
 #include "mcor_adaptive.h"
 #include "mcor_plane.h"
@@ -65,13 +66,14 @@ mcor_status mcor_choose_leaves(mcor_context* context)
     MCOR_BUFFER(&adaptive->cells), MCOR_BUFFER(&adaptive->finer));
 }
 
-/* Evaluates the nodes of all slots that are neither known nor certain; then the signs of all are known. */
+/* Evaluates the nodes of all slots that are neither known nor certain. The signs of all are
+ * known then. */
 static mcor_status mcor_evaluate_slots(mcor_context* context)
 {
   const mcor_options* options = context->run.options;
   const mcor_bricks* bricks = &context->bricks;
   const mcor_brick_data* now = &bricks->now;
-  /* The proof is tried where a work-item evaluates whole bricks, see MCOR_PROVES_INSIDE. */
+  /* The proof is tried if a work-item evaluates whole bricks, see MCOR_PROVES_INSIDE. */
   const bool proves = options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
     context->cl.lanes > 1 && !mcor_is_plane(context);
   if (proves)

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction [III-D.1], of cubes of one size and of several. Slots are sorted by level, and so are vertices. */
+/* Extraction [III-D.1], for uniform and adaptive cubes. Slots are sorted by level, and so are
+ * vertices. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -11,7 +12,7 @@
 
 /* ---- Cells ---- */
 
-/* Finds, among the cells that finer ones touch, those that are used, and their edges. */
+/* Finds the used ones of the cells that touch finer leaves, and their edges. */
 static mcor_status mcor_find_hanging(mcor_context* context)
 {
   mcor_adaptive* adaptive = &context->adaptive;
@@ -31,14 +32,14 @@ static mcor_status mcor_find_hanging(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Element `at` of an array of ints. */
+/* Reads element `at` of an array of ints. */
 static mcor_status mcor_read_int(
   mcor_context* context, const mcor_buffer* buffer, int at, cl_int* element)
 {
   return mcor_read(context, buffer, (size_t)at * sizeof *element, element, sizeof *element);
 }
 
-/* The used cells, among those of the box and its ring. */
+/* Finds the used cells in the box and its ring. */
 static mcor_status mcor_find_used(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -72,7 +73,7 @@ static mcor_status mcor_find_used(mcor_context* context)
 
 /* ---- Vertices and triangles ---- */
 
-/* Edges with vertices; numbers of vertices and of triangles. */
+/* Finds the edges with vertices, and counts vertices and triangles. */
 static mcor_status mcor_count_edges(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -98,7 +99,7 @@ static mcor_status mcor_count_edges(mcor_context* context)
   {
     MCOR_TRY(mcor_read_int(
       context, &mesh->vertex_base, bricks->first_slot[l + 1], &mesh->level_first[0][l + 1]));
-    mesh->level_first[1][l] = mesh->march_count; /* until some are cut */
+    mesh->level_first[1][l] = mesh->march_count; /* no vertices are cut yet */
   }
   return MCOR_OK;
 }
@@ -118,7 +119,7 @@ static mcor_status mcor_emit_vertices(mcor_context* context)
     MCOR_BUFFER(&mesh->ends));
 }
 
-/* Triangles, or lines, and their cells, of which those between the sides are owned. */
+/* Writes triangles, or lines, and their cells. Cells between the sides are owned. */
 static mcor_status mcor_emit_triangles(
   mcor_context* context, const int sides[6], mcor_buffer* cells)
 {
@@ -136,7 +137,7 @@ static mcor_status mcor_emit_triangles(
     MCOR_BUFFER(&mesh->triangles));
 }
 
-/* Counts the triangles of each level, in the box where there is one. */
+/* Counts the triangles of each level; with a box, the owned ones. */
 static mcor_status mcor_count_triangles(mcor_context* context)
 {
   mcor_statistics* s = context->run.statistics;
@@ -153,7 +154,7 @@ static mcor_status mcor_count_triangles(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Vertices and triangles. */
+/* Makes vertices and triangles. */
 mcor_status mcor_march(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;

@@ -1,19 +1,19 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes of the virtual grid: their values, and on which side of the iso value they are. */
+/* Nodes of the virtual grid: their values, and the sides of the iso value that they are on. */
 
 #include "mcor_adaptive.h"
 #include "mcor_plane.h"
 
-/* Values of all nodes of the bricks of which they are needed and not known yet. */
+/* Evaluates all nodes of the bricks whose nodes are needed and not known yet. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count, lanes = context->cl.lanes;
   const bool plane = mcor_is_plane(context);
-  /* One item per brick where one gathers for many lanes, else one per node; in the plane 16 nodes, an item for all
-   * lanes. */
+  /* One item does a brick if particles are gathered for many lanes, else a node. In the plane a
+   * brick has 16 nodes, and one item does as many as there are lanes. */
   const int items = plane ? 16 / lanes : lanes == 1 ? 64 : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),
@@ -24,7 +24,8 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }
 
-/* Signs of the nodes of bricks with bits in `evaluated`: just now, or for another iso value. */
+/* Finds the signs of the nodes of bricks with bits in `evaluated`. Their values were made just
+ * now, or for another iso value. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -36,7 +37,7 @@ mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
   return mcor_spread_signs(context);
 }
 
-/* Gives back values, which only another call could use any more. */
+/* Gives back node values, which only another call could still use. */
 void mcor_release_nodes(mcor_context* context)
 {
   MCOR_RELEASE(context, &context->bricks.now.value, &context->bricks.now.weight);

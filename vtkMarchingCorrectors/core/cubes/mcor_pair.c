@@ -3,15 +3,18 @@
 
 /* The paper's seed selection by particle pairs [III-C].
  *
- * The cells on the line between the particles of a pair are marked. From there the surface grows through crossed
- * faces, and from one end of a period to the other. So what is marked, and reached, depends on nothing but the
- * particles. Only bricks with nodes of reached cells are evaluated.
+ * The cells on the line between the particles of a pair are marked. From there the surface grows
+ * through crossed faces, and from one end of a period to the other. The marked and reached cells
+ * therefore depend on the particles alone. Only bricks with nodes of reached cells are
+ * evaluated.
  *
- * Pairs are for comparisons with the paper: all cubes have one size, and the surface is whole, in one process. */
+ * Pairs are for comparisons with the paper: all cubes have one size, and the surface is whole,
+ * in one process. */
 
 #include "mcor_box.h"
 
-/* Bricks of all blocks: cells are noted by their numbers, as most have no slot. */
+/* Number of bricks in all blocks. Cells are noted by these numbers, because most bricks have no
+ * slot. */
 static size_t mcor_count_places(const mcor_context* context)
 {
   return (size_t)context->bricks.block_count * MCOR_BLOCK_BRICKS;
@@ -23,7 +26,7 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
   mcor_pairs* pairs = &context->pairs;
   const size_t bytes = mcor_count_places(context) * sizeof(cl_ulong);
   const int particles =
-    context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes); /* of an item */
+    context->cl.lanes * MCOR_PAIR_VECTORS_OF(context->cl.lanes); /* particles of an item */
   MCOR_TRY(mcor_fill(context, &pairs->reached, 0, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_pair_seed", MCOR_HEAVY,
     (context->grid.count + particles - 1) / particles, MCOR_GRID_ARGS(context),
@@ -35,8 +38,8 @@ static mcor_status mcor_mark_pairs(mcor_context* context)
   return mcor_fill(context, &pairs->grown, 0, bytes);
 }
 
-/* Gives slots to the bricks that have nodes of reached cells, and evaluates these. *placed: whether
- * some had none. */
+/* Gives slots to the bricks that have nodes of reached cells, and evaluates these bricks.
+ * *placed: whether some had no slot. */
 static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* placed)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -58,7 +61,7 @@ static mcor_status mcor_place_reached(mcor_context* context, bool first, bool* p
   return mcor_sign_nodes(context, &bricks->need);
 }
 
-/* One round of growth; *grown is false when no cell was added. */
+/* Grows once. *grown is false if no cell was added. */
 static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -76,7 +79,7 @@ static mcor_status mcor_grow_reached(mcor_context* context, bool* grown)
   return MCOR_OK;
 }
 
-/* Reaches the images of reached cells at whole periods; *reached is false when none is new. */
+/* Reaches the periodic images of reached cells. *reached is false if none is new. */
 static mcor_status mcor_wrap_reached(mcor_context* context, bool* reached)
 {
   const mcor_lattice* lattice = &context->lattice;
@@ -111,8 +114,8 @@ mcor_status mcor_find_reached(mcor_context* context)
     MCOR_TRY(mcor_place_reached(context, first, &placed));
     if (placed)
     {
-      /* Growth stays where nodes have right values: in the period, whose particles are on the device, and the ring
-       * around it. */
+      /* Growth stays where nodes have right values: in the period, whose particles are on the
+       * device, and in the ring around it. */
       MCOR_TRY(mcor_find_neighbours(context));
       MCOR_TRY(
         mcor_fill(context, &pairs->domain, 0xff, (size_t)bricks->now.count * sizeof(cl_ulong)));

@@ -10,9 +10,10 @@
 #include <float.h>
 #include <math.h>
 
-/* How far rounding may move a Shepard mean of values that are all on one side: of n particles that
- * reach a point, the two sums are off by (n + 3) and (n + 1) unit roundoffs of their absolute terms
- * at most, the quotient by another one. A point is reached from 27 cells of each level. */
+/* Returns the greatest change by rounding of a Shepard mean of values that are all on one side.
+ * With n particles that reach a point, the two sums are off by at most (n + 3) and (n + 1) unit
+ * roundoffs of their absolute terms, the quotient by another one. A point is reached from 27
+ * cells of each level. */
 double mcor_side_margin(const mcor_context* context)
 {
   const mcor_grid* grid = &context->grid;
@@ -22,7 +23,7 @@ double mcor_side_margin(const mcor_context* context)
   return share < 0.5 ? share / (1 - share) : 1e30;
 }
 
-/* The sides of the iso value on which particles are, where the field has values at particles. */
+/* Finds the sides of the iso value on which particles are, if the field has values at particles. */
 static mcor_status mcor_find_side_flags(mcor_context* context)
 {
   mcor_grid* grid = &context->grid;
@@ -36,7 +37,7 @@ static mcor_status mcor_find_side_flags(mcor_context* context)
         MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&grid->side_flags));
 }
 
-/* Requests bricks beside those with `fresh` nodes, which these show to be needed. */
+/* Requests bricks beside bricks with `fresh` nodes, if these nodes show that they are needed. */
 static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer* fresh)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -48,13 +49,14 @@ static mcor_status mcor_request_beside(mcor_context* context, const mcor_buffer*
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->bits), MCOR_BUFFER(grown));
 }
 
-/* Regions by level: those listed of a level are from first[l] to before end[l]. */
+/* Listed regions by level: from first[l] to before end[l]. */
 typedef struct mcor_region_list
 {
   int first[MCOR_TREE_LEVEL_LIMIT + 2], end[MCOR_TREE_LEVEL_LIMIT + 2];
 } mcor_region_list;
 
-/* Requests the bricks that the regions leave uncertain, which are the seeds, and lists these regions. */
+/* Requests the bricks that the regions leave uncertain, which are the seeds. Lists these
+ * regions. */
 static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* listed)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -81,7 +83,7 @@ static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* li
   return MCOR_OK;
 }
 
-/* Requests the bricks of which nodes are known. */
+/* Requests the bricks whose nodes are known. */
 static mcor_status mcor_request_known(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -90,7 +92,7 @@ static mcor_status mcor_request_known(mcor_context* context)
     MCOR_BUFFER(&bricks->now.known), MCOR_BUFFER(&bricks->bits));
 }
 
-/* Counts the seeds, of which those that the surface uses are taken off later. */
+/* Counts the seed cells. The ones that the surface uses are subtracted later. */
 static mcor_status mcor_count_seeds(mcor_context* context)
 {
   mcor_buffer* seeds = &context->bricks.seeds;
@@ -102,9 +104,9 @@ static mcor_status mcor_count_seeds(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Places all bricks that the regions leave uncertain, whose cells are the seeds, and those that are known from earlier
- * iso values. Finds states of the former, and evaluates most of them; none in a plane, where bounds on bricks cost
- * more than their few nodes. */
+/* Places all bricks that the regions leave uncertain, whose cells are the seeds, and all bricks
+ * that are known from earlier iso values. Finds states of the uncertain bricks, and evaluates
+ * most of them. In a plane it finds none: bounds on bricks cost more than their few nodes. */
 static mcor_status mcor_test_seeds(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -116,7 +118,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(mcor_request_known(context));
   MCOR_TRY(mcor_place_bricks(context));
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
-  /* One item per region where one gathers for many lanes, and evaluates bricks, else one per brick. */
+  /* One item does a region if particles are gathered for many lanes, and evaluates bricks; else
+   * a brick. */
   return mcor_is_plane(context)
     ? MCOR_OK
     : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1,
@@ -127,8 +130,8 @@ static mcor_status mcor_test_seeds(mcor_context* context)
         MCOR_BUFFER(&bricks->now.valid));
 }
 
-/* Evaluates, of cubes of one size, the bricks whose states show that they must be, and those that evaluated ones
- * show to be needed; see mcor_seed.cl. */
+/* Evaluates, for uniform cubes, the bricks whose states require it, and then the bricks that
+ * evaluated ones show to be needed; see mcor_seed.cl. */
 static mcor_status mcor_complete_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -148,7 +151,8 @@ static mcor_status mcor_complete_bricks(mcor_context* context)
   return MCOR_OK;
 }
 
-/* Ends with the bricks in place, and the values of their nodes; which cells may be used, and are plain. */
+/* Places the bricks, makes the values of their nodes, and finds which cells may be used, and
+ * which are plain. */
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input)
 {
   mcor_bricks* bricks = &context->bricks;

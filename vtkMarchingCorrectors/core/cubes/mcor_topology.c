@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Topology by the field: what Marching Cubes leaves ambiguous is decided by samples of the
- * field. */
+/* Topology by the field: samples of the field decide what Marching Cubes leaves ambiguous. */
 
 #include "mcor_adaptive.h"
 #include "mcor_plane.h"
@@ -46,7 +45,7 @@ static mcor_status mcor_find_sides(mcor_context* context)
   return mcor_view_level(context, 0);
 }
 
-/* Makes room for the samples that sample_base counts and lets `locate` place them; evaluates
+/* Makes room for the samples that sample_base counts, lets `locate` place them, and evaluates
  * them. */
 static mcor_status mcor_evaluate_samples(
   mcor_context* context, const char* locate, int* sample_count)
@@ -101,8 +100,8 @@ static mcor_status mcor_resolve_cells(mcor_context* context)
     MCOR_BUFFER(&topology->decisions));
 }
 
-/* Decides on the ambiguous faces between cells that no finer ones touch; then on those of these cells whose loops may
- * be a tunnel. */
+/* Decides on the ambiguous faces between plain cells, then on the plain cells whose loops may be
+ * a tunnel. */
 mcor_status mcor_resolve_topology(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
@@ -121,7 +120,7 @@ mcor_status mcor_resolve_topology(mcor_context* context)
   return mcor_resolve_cells(context);
 }
 
-/* The tables stay. */
+/* Keeps the tables. */
 void mcor_release_topology(mcor_context* context)
 {
   mcor_topology_data* t = &context->topology;

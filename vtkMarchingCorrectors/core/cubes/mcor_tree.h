@@ -3,20 +3,20 @@
 #ifndef mcor_tree_h
 #define mcor_tree_h
 
-/* Adaptive cubes: which leaves the lattice is divided into. A brick of level L is 4^3 cells of the edge
- * 2^L cubes. Leaves are the largest bricks that only particles with h >= 2^L x the smallest h reach,
- * then as many smaller ones as it takes for leaves that touch to differ by one level at most. What
- * they are depends on nothing but the particles. */
+/* Adaptive cubes: the leaves that the lattice is divided into. A brick of level L is 4^3 cells
+ * of edge 2^L cubes. Leaves are the largest bricks that only particles with h >= 2^L x the
+ * smallest h reach; more are split until leaves that touch differ by one level at most. They
+ * depend on the particles alone. */
 
 #include "mcor_internal.h"
 
-/* More leaves than this are not made. Of the parts of each split brick, 8, all but those that are split
- * are leaves: seven more for each brick at least. */
+/* Most leaves. A split brick has 8 parts, which are leaves unless they are split themselves:
+ * each split brick adds at least seven leaves. */
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
-/* mcor_tree_brick.c. Adds bricks of a cluster to a set. False where memory ran out, or there would be too many
- * leaves: before the sets take much of either. */
+/* mcor_tree_brick.c. Adds bricks of a cluster to a set. Returns false if memory ran out or there
+ * would be too many leaves, before the sets take much memory. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
 bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other);
 /* Whether the sets of all levels together make too many leaves. */
@@ -25,7 +25,8 @@ bool mcor_are_too_many(const mcor_brick_set* levels);
 /* Bricks of a cluster along an axis. */
 #define MCOR_CLUSTER 4
 
-/* The key of a brick's cluster among those of its level, and the brick's bit there. */
+/* Return the key of a brick's cluster among the clusters of its level, and the brick's bit
+ * there. */
 static inline uint64_t mcor_cluster_key(const mcor_rung* rung, const int brick[3])
 {
   const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
@@ -37,7 +38,7 @@ static inline int mcor_cluster_bit(const int brick[3])
   return (brick[0] & 3) | (brick[1] & 3) << 2 | (brick[2] & 3) << 4;
 }
 
-/* The first brick of a cluster with a key. */
+/* Finds the first brick of the cluster with a key. */
 static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, int brick[3])
 {
   const uint64_t nx = 2 * (uint64_t)rung->n[0], ny = 2 * (uint64_t)rung->n[1];
@@ -46,51 +47,55 @@ static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, in
   brick[2] = MCOR_CLUSTER * (int)(key / nx / ny);
 }
 
-/* The level of a particle: the largest one up to `top` whose smallest h it has. */
+/* Returns the level of a particle: the largest one up to `top` whose smallest h is not above its
+ * h. */
 int mcor_tree_level_of(double h, double h_min, int top);
 
-/* The highest level of a run's leaves, 0 where its cubes are uniform. */
+/* Returns the highest level of a run's leaves, 0 if its cubes are uniform. */
 int mcor_tree_top(const mcor_measure* measure, const mcor_options* options);
 
-/* Clusters, or pieces of work alike, of the host between two looks at whether to go on. */
+/* Clusters, or other units of work, that the host does between two reports of progress. */
 #define MCOR_TREE_STEP 4096
 
-/* Begins a tree of the lattice, and numbers the blocks of all levels up to the one above the highest leaves'. */
+/* Begins a tree of the lattice, and numbers the blocks of all levels up to the one above the
+ * highest leaves. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree);
-/* Behind the keys of all bricks. */
+/* Returns the end of the keys of all bricks. */
 static inline uint64_t mcor_tree_key_limit(const mcor_tree* tree)
 {
   return tree->lattice->rungs[tree->top + 2].base * MCOR_BLOCK_BRICKS;
 }
-/* Where a brick is, or with a period its image there; false: it is off the lattice. */
+/* Finds the place of a brick, or, with a period, of its image there. Returns false if it is off
+ * the lattice. */
 bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int placed[3]);
 bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3]);
 /* Whether all bricks of a cluster are on the lattice, or in its first period. */
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3]);
-/* Says that there are too many leaves, or no memory for more. */
+/* Fails: there are too many leaves, or no memory for more. */
 mcor_status mcor_fail_leaves(mcor_context* context);
 
-/* mcor_tree_split.c. All bricks that are to be split, by the particles of all ranks. */
+/* mcor_tree_split.c. Finds all bricks to split, by the particles of all ranks. */
 mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mcor_tree* tree);
 
-/* mcor_tree_key.c. The keys of all split bricks, ascending; to be freed. */
+/* mcor_tree_key.c. Lists the keys of all split bricks, ascending. Free them with free(). */
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
-/* Sorts keys; `other` has as much room. The result is in *keys. */
+/* Sorts keys. other: has as much room. The result is in *keys. */
 mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** other, size_t count);
-/* The position of a brick with a key. */
+/* Finds the position of the brick with a key. */
 void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 /* Splits the bricks with these keys. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
 
-/* Of keys, where points or triangles have keys: the rest holds an edge, or a cell, of the brick. */
+/* Bits of a brick's key in keys of points or triangles; the rest is an edge or a cell of the
+ * brick. */
 #define MCOR_TREE_KEY_BITS 55
 
-/* Which bricks are split, over the particles of all ranks; none with one level. */
+/* Finds which bricks are split, over the particles of all ranks; none with one level. */
 mcor_status mcor_measure_splits(
   mcor_context* context, const mcor_input* input, mcor_globals* globals);
-/* The leaves in the box, and the blocks of all bricks whose nodes they may need. */
+/* Makes the leaves in the box, and the blocks of all bricks whose nodes they may need. */
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input);
 void mcor_release_tree(mcor_tree* tree);
 

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the bricks of all levels: their numbers, places and sets. */
+/* Adaptive cubes: numbers, places and sets of the bricks of all levels. */
 
 #include "mcor_plane.h"
 #include "mcor_tree.h"
@@ -23,15 +23,15 @@ int mcor_tree_top(const mcor_measure* measure, const mcor_options* options)
   return mcor_tree_level_of(measure->h_max, measure->h_min, options->level_limit);
 }
 
-/* Of level 0. Those of all levels are a seventh more. */
+/* Most bricks of level 0. All levels together have a seventh more. */
 #define MCOR_BRICK_LIMIT 0x1p63
 
-/* The lattice is a whole number of the largest ones. */
+/* The lattice is a whole number of the largest bricks. */
 mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
 {
   mcor_lattice* lattice = &context->lattice;
   uint64_t base = 0;
-  double most = MCOR_BLOCK_BRICKS; /* bricks of all levels, nearly */
+  double most = MCOR_BLOCK_BRICKS; /* nearly the bricks of all levels */
   tree->lattice = lattice;
   tree->top = lattice->levels - 1;
   tree->is_plane = mcor_is_plane(context);
@@ -67,7 +67,7 @@ bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int 
   {
     placed[a] = brick[a];
     const int edge = MCOR_BRICK << level;
-    if (tree->lattice->period[a] >= edge) /* divisions cost much here */
+    if (tree->lattice->period[a] >= edge) /* avoids divisions, which cost much here */
     {
       const int period = tree->lattice->period[a] / edge;
       const int first = tree->lattice->period_first[a] / edge, from = brick[a] - first;

@@ -1,14 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: split bricks as keys, numbers of all levels' bricks, as other ranks and calls are told
- * of them. */
+/* Adaptive cubes: keys of split bricks, which are numbers of the bricks of all levels. Other
+ * ranks and calls get split bricks as keys. */
 
 #include "mcor_tree.h"
 
 #include <stdlib.h>
 
-/* Keys that are sorted at once. */
+/* Keys in one qsort. */
 #define MCOR_SORTED_KEYS 65536
 
 static int mcor_compare_keys(const void* a, const void* b)
@@ -17,7 +17,7 @@ static int mcor_compare_keys(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* Writes both of two sorted runs of keys, the second one from `middle` on. */
+/* Merges two sorted runs of keys, the second one from `middle` on. */
 static void mcor_merge_keys(const uint64_t* keys, size_t middle, size_t end, uint64_t* to)
 {
   size_t i = 0, j = middle;
@@ -28,7 +28,7 @@ static void mcor_merge_keys(const uint64_t* keys, size_t middle, size_t end, uin
   }
 }
 
-/* In runs that become longer. */
+/* Sorts runs, then merges them into longer ones. */
 mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** other, size_t count)
 {
   for (size_t i = 0; i < count; i += MCOR_SORTED_KEYS)
@@ -54,7 +54,7 @@ mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** ot
   return MCOR_OK;
 }
 
-/* Writes the keys of a level's split bricks; returns their number. */
+/* Writes the keys of a level's split bricks. Returns their number. */
 static size_t mcor_write_keys(const mcor_tree* tree, int level, uint64_t* keys)
 {
   const mcor_brick_set* set = &tree->split[level];

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: the leaves, those parts of split bricks (mcor_tree_split.c) that are not split
- * themselves. Which bricks are split is global; leaves are in the box alone. They are kept as bits of blocks: the parts
- * of a cluster's bricks are those of a block of the level below. */
+/* Adaptive cubes: the leaves, which are the parts of split bricks (mcor_tree_split.c) that are
+ * not split themselves. All ranks know all split bricks; leaves are made in the box alone. They
+ * are bits of blocks: the parts of a cluster's bricks form a block of the level below. */
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
@@ -12,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* So many blocks have numbers for their bricks. */
+/* Most blocks whose bricks have numbers. */
 #define MCOR_TREE_BLOCK_LIMIT (INT32_MAX / MCOR_BLOCK_BRICKS)
 
-/* Whether a brick, with a ring of cells around it, is in the box. */
+/* Whether a brick, with a ring of cells around it, touches the box. */
 static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const int brick[3])
 {
   bool wanted = true;
@@ -29,13 +29,14 @@ static bool mcor_is_wanted(const mcor_box* box, int level, int cell_level, const
   return wanted;
 }
 
-/* Adds a block of a level to a table of them, by their keys, if it is on the lattice and near the box. */
+/* Adds a block of a level to a table by keys, if it is on the lattice and near the box. */
 static mcor_status mcor_add_block(
   mcor_context* context, const mcor_tree* tree, int level, const int block[3], mcor_table* blocks)
 {
   const mcor_rung* rung = &tree->lattice->rungs[level];
   const int brick[3] = { 8 * block[0], 8 * block[1], 8 * block[2] };
-  bool exists = mcor_is_wanted(&context->box, level + 3, level + 4, block); /* of so large bricks */
+  bool exists = mcor_is_wanted(&context->box, level + 3, level + 4,
+    block); /* a brick of this level is as large as the block */
   for (int a = 0; a < 3; ++a)
   {
     exists = exists && block[a] >= 0 && block[a] < rung->n[a];
@@ -49,8 +50,9 @@ static mcor_status mcor_add_block(
   return MCOR_OK;
 }
 
-/* Adds the blocks of one level that have parts of split bricks of the next, or of their images, and all blocks around
- * these: so leaves find there what is finer beside them, and the bricks whose nodes they need. */
+/* Adds the blocks of one level that have parts of split bricks of the next level, or of their
+ * images, and all blocks around these. Leaves find there the finer leaves beside them, and the
+ * bricks whose nodes they need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {
@@ -89,7 +91,7 @@ static mcor_status mcor_add_parts(
   return MCOR_OK;
 }
 
-/* Which bricks of a cluster are split. */
+/* Returns which bricks of a cluster are split. */
 static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const int first[3])
 {
   if (level == 0 || mcor_has_cluster(tree, level, first))
@@ -107,7 +109,7 @@ static uint64_t mcor_split_of_cluster(const mcor_tree* tree, int level, const in
   return split;
 }
 
-/* Finds which bricks of a block are leaves, and which are split; returns the number of leaves. */
+/* Finds which bricks of a block are leaves, and which are split. Returns the number of leaves. */
 static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, int level, uint64_t key,
   cl_uint leaves[MCOR_BLOCK_WORDS], cl_uint split[MCOR_BLOCK_WORDS])
 {

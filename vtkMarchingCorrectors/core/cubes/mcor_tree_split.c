@@ -1,15 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Adaptive cubes: which bricks are split. One is where a particle of a lower level reaches it: each
- * particle splits those of the level above its own that it reaches, and a split brick those of the
- * next level that touch it. So all around it are leaves no more than a level above its parts.
+/* Adaptive cubes: the bricks that are split. A particle splits the bricks of the level above its
+ * own that it reaches. A split brick splits the bricks of the next level that touch it. Leaves
+ * around a split brick are therefore at most one level above its parts.
  *
- * This is global: all particles decide, of all ranks (mcor_measure_splits), and around a period, which
- * is a whole number of bricks of all levels: a brick is known by its image in the first period.
+ * The result is global: the particles of all ranks decide (mcor_measure_splits). A period is a
+ * whole number of bricks of all levels, and a brick stands for its periodic images by its image
+ * in the first period.
  *
- * Sets of bricks are kept, and filled, in clusters of 4^3: what a particle reaches, and what is above a
- * cluster, are masks. */
+ * Sets of bricks are kept and filled in clusters of 4^3: the bricks that a particle reaches, and
+ * the bricks above a cluster, are masks. */
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
@@ -24,8 +25,8 @@
 
 /* ---- Clusters ---- */
 
-/* Adds bricks of a cluster, `first` being a multiple of 4, not necessarily on the lattice. False where
- * memory ran out, or there are too many. */
+/* Adds bricks of a cluster. first: a multiple of 4, which may be off the lattice. Returns false
+ * if memory ran out, or there are too many bricks. */
 static bool mcor_split_cluster(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {
@@ -47,7 +48,7 @@ static bool mcor_split_cluster(
   return made;
 }
 
-/* The first `count` of four layers of a cluster's bricks across an axis. */
+/* Returns the mask of the first `count` of a cluster's four layers across an axis. */
 static uint64_t mcor_layers(int axis, int count)
 {
   static const uint64_t layers[3][5] = { { 0, 0x1111111111111111, 0x3333333333333333,
@@ -57,7 +58,7 @@ static uint64_t mcor_layers(int axis, int count)
   return layers[axis][count];
 }
 
-/* Bits of 4^3 bricks from any one on. */
+/* Adds 4^3 bricks, given as bits, from any brick `first` on. */
 static bool mcor_split_cube(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
 {
@@ -89,20 +90,25 @@ typedef struct mcor_tree_job
   const mcor_context* context;
   const mcor_input* input;
   const mcor_tree* tree;
-  int64_t begin; /* the first particle of this loop */
-  double reach;  /* of a support radius in smoothing lengths, in cubes */
-  bool is_cube;  /* the support */
-  double edge[MCOR_TREE_LEVEL_LIMIT + 2][3]; /* of a level's bricks, in cubes */
+  int64_t begin;                             /* first particle of this loop */
+  double reach;                              /* support radius of h = 1, in cubes */
+  bool is_cube;                              /* the support is a cube */
+  double edge[MCOR_TREE_LEVEL_LIMIT + 2][3]; /* edges of a level's bricks, in cubes */
   mcor_brick_set split[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 2];
   bool failed[MCOR_SLICES];
-  /* Of bricks with particles, by all slices. A place may be lost to another brick. */
-  _Atomic uint64_t* around; /* key << 27 | which of the 3^3 bricks around it are split */
-  _Atomic uint64_t* done;   /* of 2^3 bricks, key << 8 | around which of them all are */
+  /* Tables of bricks with particles, shared by all slices. A brick may take the place of another
+   * one. */
+  _Atomic uint64_t* around; /* key << 27
+                             *
+                             * which of the 3^3 bricks around the brick are split */
+  _Atomic uint64_t* done;   /* for 2^3 bricks: key << 8
+                             *
+                             * which of them have all bricks around them split */
   uint64_t around_mask, done_mask;
-  int64_t spared[MCOR_SLICES]; /* particles that split nothing, less others */
+  int64_t spared[MCOR_SLICES]; /* particles that split nothing new, less all others */
 } mcor_tree_job;
 
-/* Distance from x to the brick's interval along an axis, squared; edge: of the brick. */
+/* Returns the squared distance from x to the brick's interval along an axis. edge: of the brick. */
 static double mcor_interval_distance2(double x, int brick, double edge)
 {
   const double below = brick * edge - x, above = x - (brick + 1) * edge;
@@ -110,15 +116,15 @@ static double mcor_interval_distance2(double x, int brick, double edge)
   return d * d;
 }
 
-/* A particle in a level's bricks: those from `first` to `last` that are within its reach. */
+/* A particle and the bricks of a level within its reach: from `first` to `last`. */
 typedef struct mcor_reached
 {
-  double x[3], edge[3], reach; /* cubes from the lattice's origin */
+  double x[3], edge[3], reach; /* in cubes, x from the lattice's origin */
   bool is_cube;
   int first[3], last[3];
 } mcor_reached;
 
-/* Bricks of a cluster that are reached. */
+/* Returns the bricks of a cluster that are reached. */
 static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int cluster[3])
 {
   double square[3][MCOR_CLUSTER];
@@ -151,13 +157,13 @@ static uint64_t mcor_reached_bricks(const mcor_reached* reached, const int clust
   return bricks;
 }
 
-/* Which place a key has among mask + 1. */
+/* Returns the place of a key in a table of mask + 1 places. */
 static uint64_t mcor_place_of(uint64_t key, uint64_t mask)
 {
   return (key * UINT64_C(0x9E3779B97F4A7C15)) >> 32 & mask;
 }
 
-/* Which of the 3^3 bricks around one are within `reach` of x, which is in it. */
+/* Returns which of the 3^3 bricks around `home` are within `reach` of x, which lies in `home`. */
 static uint32_t mcor_reached_around(
   const double x[3], const int home[3], const double edge[3], double reach, bool plane)
 {
@@ -184,7 +190,7 @@ static uint32_t mcor_reached_around(
   return bricks;
 }
 
-/* 3^3 bricks as the first of 4^3. */
+/* Turns a mask of 3^3 bricks into the lowest ones of 4^3. */
 static uint64_t mcor_widen_27(uint32_t bricks)
 {
   uint64_t wide = 0;
@@ -195,9 +201,10 @@ static uint64_t mcor_widen_27(uint32_t bricks)
   return wide;
 }
 
-/* Splits the bricks of a level that are within `reach` of x. Nearly all particles reach no farther than the bricks
- * around the one they are in, and these are split already, on behalf of others in it. Where
- * particles follow each other in no order, looking that up costs more than it saves, and ends. */
+/* Splits the bricks of a level that are within `reach` of x. Nearly all particles reach no
+ * farther than the bricks around their own, and other particles there have split these already;
+ * the tables tell. If successive particles are far apart, looking this up costs more than it
+ * saves, and stops. */
 static bool mcor_split_reached(
   mcor_tree_job* job, int slice, int level, const double x[3], double reach)
 {
@@ -296,7 +303,8 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
       {
         continue;
       }
-      /* As far as was measured, whatever other threads write to the arrays meanwhile. */
+      /* The reach is limited to the longest measured one, in case other threads write to the
+       * arrays meanwhile. */
       const int level = mcor_tree_level_of(h[i], h_min, job->tree->top) + 1;
       const double support = length[i] * job->reach;
       const double reach = support <= longest ? support : longest;
@@ -316,12 +324,12 @@ static void mcor_split_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Particles of a slice: of all slices of a loop as many as are split by in some 0.1 s. */
+/* Returns the particles of a slice: all slices of a loop together take about 0.1 s. */
 static int64_t mcor_split_grain(const mcor_tree_job* job)
 {
   const mcor_measure* measure = &job->context->measure;
   const double largest = fmax(2 * measure->h_min, ldexp(measure->h_max, -job->tree->top));
-  const double cluster = 2 * MCOR_BRICK * MCOR_CLUSTER; /* of the level above the lowest */
+  const double cluster = 2 * MCOR_BRICK * MCOR_CLUSTER; /* edge, at the level above the lowest */
   const double widest =
     measure->support_max / job->context->lattice.cube / (job->reach * measure->h_max);
   const double along = 2 * job->reach * widest * largest / cluster + 2;
@@ -329,7 +337,7 @@ static int64_t mcor_split_grain(const mcor_tree_job* job)
   return grain < 1 ? 1 : grain < MCOR_HEAVY_GRAIN ? (int64_t)grain : MCOR_HEAVY_GRAIN;
 }
 
-/* The bricks that particles split, found in slices. */
+/* Finds the bricks that particles split, in slices. */
 static mcor_status mcor_split_in_slices(mcor_context* context, mcor_tree_job* job)
 {
   const int64_t grain = mcor_split_grain(job), step = MCOR_SLICES * grain;
@@ -377,7 +385,7 @@ static mcor_status mcor_split_by_particles(
   {
     job->edge[i / 3][i % 3] = ldexp(MCOR_BRICK * mcor_edge_of(&context->lattice, i % 3), i / 3);
   }
-  /* A mere speed-up, so it may fail. */
+  /* The tables only save time, so they may be missing. */
   const uint64_t places = input->count < 1 << 20 ? 1 << 16 : 1 << 18;
   const bool fits = mcor_tree_key_limit(tree) >> (64 - 27) == 0;
   job->around = fits ? calloc(places, sizeof *job->around) : NULL;
@@ -401,8 +409,8 @@ static mcor_status mcor_split_by_particles(
 
 /* ---- Bricks above split ones ---- */
 
-/* Which of the four bricks above along an axis, from the one below the first parent on, touch bricks of a
- * cluster: of brick i, those of i / 2 and the nearest other one. */
+/* Returns which of four bricks above along an axis touch bricks of a cluster. The first of the
+ * four is the one below the first parent. Brick i touches brick i / 2 and the nearest other one. */
 static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
 {
   const int step = 1 << 2 * axis;
@@ -413,8 +421,8 @@ static uint64_t mcor_spread_layers(int axis, uint64_t bricks)
     high << 3 * step;
 }
 
-/* Splits the bricks above that touch a split one: its parent, and those beyond the parent's sides that it
- * lies at. */
+/* Splits the bricks above that touch a split one: its parent, and the bricks beyond the sides of
+ * the parent at which it lies. */
 static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int level)
 {
   const mcor_brick_set* set = &tree->split[level];
@@ -440,8 +448,8 @@ static mcor_status mcor_split_above(mcor_context* context, mcor_tree* tree, int 
 
 /* ---- All ---- */
 
-/* Fails where there will be too many leaves: a particle has about the volume of (h / 1.3)^3, in the plane the area
- * of (h / 1.3)^2, and the cubes of its level there. */
+/* Fails if there will be too many leaves. A particle has about the volume (h / 1.3)^3, in the
+ * plane the area (h / 1.3)^2, filled with cubes of its level. */
 static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* input)
 {
   const double brick = MCOR_BRICK * context->lattice.cube;
@@ -468,7 +476,7 @@ static mcor_status mcor_guess_leaves(mcor_context* context, const mcor_input* in
   return MCOR_OK;
 }
 
-/* Adds those that other ranks' particles split. */
+/* Adds the bricks that other ranks' particles split. */
 static mcor_status mcor_join_ranks(mcor_context* context, mcor_tree* tree)
 {
   uint64_t* own = NULL;

@@ -22,7 +22,7 @@ void mcor_release_bricks(mcor_context* context)
   mcor_release_brick_data(context, &b->now);
 }
 
-/* Fills the new set, and moves what is known of the last one there. */
+/* Fills the new set, and moves the data of the last one there. */
 static mcor_status mcor_fill_bricks(
   mcor_context* context, const mcor_brick_data* last, int count, int words)
 {
@@ -53,7 +53,7 @@ static mcor_status mcor_fill_bricks(
   return MCOR_OK;
 }
 
-/* Gives slots to all bricks that were asked for, and keeps what is known of those that had one. */
+/* Gives slots to all requested bricks, and keeps the data of bricks that had one. */
 mcor_status mcor_place_bricks(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
@@ -78,7 +78,7 @@ mcor_status mcor_place_bricks(mcor_context* context)
   return status;
 }
 
-/* Slots of the bricks beside each; also of adaptive cubes. */
+/* Finds the slots of the bricks beside each brick; also for adaptive cubes. */
 mcor_status mcor_find_neighbours(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;

@@ -1,16 +1,16 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Correction of a compact contour: of vertices that stay on their edges, as without, and of merged
- * ones, which the axis 3 marks, along the gradient where they start. */
+/* Correction of a compact contour. Ordinary vertices move along their edges, as in
+ * mcor_correct.cl. Merged vertices, which have axis 3, move along the gradient at their start. */
 
-/* How far a merged vertex may move in one step, in cubes; in all it is one cube. */
+/* Most that a merged vertex may move in one step, in cubes; in all it may move one cube. */
 #define MCOR_COMPACT_STEP ((real)0.5)
 
 /* Most merged vertices move less, in cubes. */
 #define MCOR_COMPACT_SLACK ((real)0.3f)
 
-/* Where vertices begin, and the lines along which they move: edges, or, as soon as the gradient is
+/* Starts of vertices, and the lines along which they move: edges, or, once the gradient is
  * known, a cube along it. */
 typedef struct
 {
@@ -40,7 +40,7 @@ MCOR_ONE_COPY void mcor_compact_load(const mcor_grid* grid, __global const int* 
   lines->merged = axis == 3;
 }
 
-/* Fits the query to edges from t = low to high, and to what is `margin` around merged vertices. */
+/* Fits the query to edges from t = low to high, and to a box of `margin` around merged vertices. */
 void mcor_compact_bound(const mcor_grid* grid, const mcor_compact_lines* lines, realv low,
   realv high, real margin, mcor_points* points, mcor_query* query)
 {
@@ -55,7 +55,7 @@ void mcor_compact_bound(const mcor_grid* grid, const mcor_compact_lines* lines, 
   mcor_points_bound(grid, from, to, points, query);
 }
 
-/* Lets merged vertices move along the gradient, to the side where the iso value is. */
+/* Makes merged vertices move along the gradient, towards the iso value. */
 void mcor_compact_aim(const mcor_field_at* at, mcor_compact_lines* lines)
 {
   const realv most = fmax(fmax(fabs(at->gx), fabs(at->gy)), fabs(at->gz));
@@ -70,7 +70,7 @@ void mcor_compact_aim(const mcor_field_at* at, mcor_compact_lines* lines)
   e->v0 = lines->merged ? at->value : e->v0;
 }
 
-/* As mcor_correct_group does. missed: merged vertices that are not on the surface. */
+/* Does what mcor_correct_group does. missed: merged vertices that did not reach the surface. */
 void mcor_compact_group(const mcor_grid* grid, mcor_compact_lines* lines, realv t0, real iso,
   real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
   mcor_field_at* at, realv* t, fixv* evaluations, fixv* missed)
@@ -134,9 +134,9 @@ void mcor_compact_group(const mcor_grid* grid, mcor_compact_lines* lines, realv 
   }
 }
 
-/* One work-item = one group of vertices. Reads and writes what mcor_correct_vertices does; reads
- * where merged vertices begin in `offset`. Writes to `linear` how far these have moved, in cubes,
- * as a number below 0, and 1 where they did not reach the surface. */
+/* One work-item = one group of vertices. Reads and writes what mcor_correct_vertices does, and
+ * reads the starts of merged vertices from `offset`. Writes to `linear` of merged vertices how
+ * far they have moved, in cubes, as a number below 0, or 1 if they did not reach the surface. */
 __kernel void mcor_compact_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
   const real iso, const real tolerance, const int limit, __global real4* offset,

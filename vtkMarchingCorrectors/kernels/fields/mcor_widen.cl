@@ -1,21 +1,25 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Widening: by how much each particle's smoothing length may grow so that the particle stays inside of the surface.
+/* Widening: finds how much each particle's smoothing length may grow while the particle stays
+ * inside of the surface.
  *
- * c(s) = sum V_k W(x_j - x_k, s h_j) is the weight sum at particle j with its own length s h_j. The factor is the
- * greatest s in [1, widest] for which c(s) is at least `least`, between steps of 0.2 by linear interpolation; then
- * 1 + (s - 1) times a share that falls to 0 where few neighbours are near, as lone drops and threads would shrink;
- * then no more than the Shepard mean of these factors at h. `least` is the iso value and a margin, without which
- * sheets would get holes; not at the surface of deep water, where all neighbours are on one side. */
+ * c(s) = sum V_k W(x_j - x_k, s h_j) is the weight sum at particle j with its own length s h_j.
+ * The factor is the greatest s in [1, widest] with c(s) of at least `least`, between steps of
+ * 0.2 by linear interpolation. It is then changed to 1 + (s - 1) times a share, which falls to 0
+ * where few neighbours are near, because lone drops and threads would shrink. At last it is
+ * limited to the Shepard mean of these factors at h.
+ *
+ * `least` is the iso value and a margin, without which sheets would get holes. There is no
+ * margin at the surface of deep water, where all neighbours are on one side. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
-/* Distances of the middle of the neighbours, in smoothing lengths: below, there is water on both sides; beyond, on
- * one. */
+/* Distance of the neighbours' middle, in smoothing lengths: below the first there is water on
+ * both sides, beyond the second on one. */
 #define MCOR_SIDED_FROM ((real)0.15f)
 #define MCOR_SIDED_TO ((real)0.35f)
 
-/* Particles j in the lanes, the first `count` of these; x: as in the grid. */
+/* Particles j in the lanes; the first `count` count. x: positions as in the grid. */
 typedef struct
 {
   fixv x[3];
@@ -23,7 +27,8 @@ typedef struct
   int count, plane;
 } mcor_widen_at;
 
-/* One work-item = one sorted particle. Writes what its weight is made of, V_k norm; in the plane V_k norm / h_k. */
+/* One work-item = one sorted particle. Writes V_k norm, of which its weight is made; in the
+ * plane V_k norm / h_k. */
 __kernel void mcor_widen_sizes(const int count, const int plane, __global const real* inv_h,
   __global const real* weight, __global real* size)
 {
@@ -32,8 +37,9 @@ __kernel void mcor_widen_sizes(const int count, const int plane, __global const 
   size[i] = weight[i] * h * h * (plane ? (real)1 : h);
 }
 
-/* Fits the query's box to the particles of the lanes from `from` on, up to one that is far from the first or, as
- * where a row ends, before the one before it. Returns which lane that is. */
+/* Fits the query's box to the particles of the lanes from `from` on, up to one that is far from
+ * the first, or that comes before the one before it, as at the end of a row. Returns the lane of
+ * that one. */
 int mcor_widen_place(
   const mcor_grid* grid, mcor_query* query, const mcor_widen_at* at, int from, real support)
 {
@@ -62,10 +68,10 @@ int mcor_widen_place(
   return next;
 }
 
-/* Offsets of particle k, in the unit of positions. */
+/* Finds the offsets of particle k, in the unit of positions. */
 #define MCOR_WIDEN_OFFSET(axis, position) MCOR_CONVERT_REALV(grid->position[k] - at->x[axis])
 
-/* Values of s that one walk over the particles is for. */
+/* Values of s in one walk over the particles. */
 #define MCOR_WIDEN_LEVELS 3
 
 /* The crowd: the sum of n = max(0, 1 - (r / 2 h_j)^3) over particles, and of n times their offsets. */
@@ -74,8 +80,9 @@ typedef struct
   realv count, offset[3];
 } mcor_crowd;
 
-/* c(s) for each s of `levels`, the first of which is the largest, by the particles within `reach` h_j; and, unless
- * NULL, the crowd. Each lane has its own reach, so that its sum does not depend on the others. */
+/* Finds c(s) for each s of `levels`, the largest first, from the particles within `reach` h_j,
+ * and the crowd if it is not NULL. Each lane has its own reach, so its sum does not depend on
+ * the others. */
 __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   __global const real* sizes, const mcor_widen_at* at, const int levels, const real* s, real reach,
   realv* c, mcor_crowd* crowd)
@@ -140,16 +147,16 @@ __attribute__((always_inline)) void mcor_widen_sum(const mcor_grid* grid,
   }
 }
 
-/* From 0 to 1 between two values. */
+/* Rises smoothly from 0 to 1 between two values. */
 realv mcor_widen_ramp(realv x, real from, real to)
 {
   const realv t = clamp((x - from) / (to - from), (realv)0, (realv)1);
   return t * t * (3 - 2 * t);
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factors of those for which the
- * widest one will do, or for which 1 is known; to `wanted` 1 for the others, with shares in place of factors, and the
- * least weight sum of each. */
+/* One work-item = MCOR_LANES sorted particles. Reads the grid and sizes. Writes the factor of
+ * particles for which the widest one suffices, or 1 is known. For the others, writes 1 to
+ * `wanted`, and their share in place of the factor. Writes the least weight sum of each. */
 __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
   const real margin, const real crowd_from, const real crowd_to, __global const real* sizes,
   __global real* factor, __global real* least, __global int* wanted)
@@ -165,7 +172,7 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
     { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv_h,
     grid.unit * inv_h, min(MCOR_LANES, particle_count - begin), plane
   };
-  /* Terms are not negative, so that inside of the fluid a part of the particles will do. */
+  /* Terms are not negative, so inside of the fluid a part of the particles suffices. */
   const real reach = MCOR_TENSOR ? MCOR_SUPPORT * widest
                                  : fmax(MCOR_SUPPORT * widest * (real)0.54f, (real)2);
   mcor_crowd crowd = { 1, { 0, 0, 0 } };
@@ -188,7 +195,7 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   }
 }
 
-/* One work-item = one sorted particle. Reads `wanted` as scanned. Lists the particles that were wanted. */
+/* One work-item = one sorted particle. Reads `wanted`, scanned. Lists the wanted particles. */
 __kernel void mcor_widen_list(
   const int count, __global const int* scanned, __global int* list)
 {
@@ -271,8 +278,8 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   }
 }
 
-/* Whether all particles that may reach the query's box have the widest factor: nearly all groups are that deep
- * inside, and their means are known. */
+/* Whether all particles that may reach the query's box have the widest factor. Nearly all groups
+ * are that deep inside, so their means are known. */
 bool mcor_widen_is_plain(
   const mcor_grid* grid, mcor_query* query, __global const real* factor, real widest)
 {
@@ -290,8 +297,9 @@ bool mcor_widen_is_plain(
   return plain;
 }
 
-/* One work-item = MCOR_LANES sorted particles. Reads factors. Writes the lower of each one and the mean there; as that
- * is the widest one less a mean of what others lack, it is exact where none lacks anything. */
+/* One work-item = MCOR_LANES sorted particles. Reads factors. Writes the lower of each factor
+ * and the mean there. The mean is the widest factor less a mean of what factors lack, so it is
+ * exact if none lacks anything. */
 __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global const real* factor,
   __global real* limited)
 {

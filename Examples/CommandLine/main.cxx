@@ -177,7 +177,7 @@ void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
     });
 }
 
-/// False if a step failed, of which all was said.
+/// Makes the outputs. Returns false if a step failed; its error was printed.
 bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
   if (job.Has("--project"))
@@ -230,7 +230,7 @@ bool MakeOnRanks(Job& job, MessageCapture* messages)
 }
 #endif
 
-/// False if something failed, of which all was said.
+/// Does the job. Returns false if something failed; its error was printed.
 bool Execute(Job& job)
 {
   vtkNew<MessageCapture> messages;

@@ -39,10 +39,10 @@ GaugeLine ToGauge(const std::string& option, const std::string& text);
 /// nx,ny:x0,x1,y0,y1,z0,z1. Throws UsageError.
 GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
 
-/// Its lines, from z0 to z1, x fastest.
+/// Returns the grid's lines, from z0 to z1, x fastest.
 std::vector<GaugeLine> LinesOf(const GaugeGrid& grid);
 
-/// Throws UsageError where two have one name. nouns: what they are.
+/// Throws UsageError if two have one name. nouns: the word for them.
 void CheckNames(const std::vector<std::string>& names, const std::string& nouns);
 
 #endif

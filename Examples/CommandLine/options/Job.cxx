@@ -76,7 +76,7 @@ const std::vector<Rule> OfFluxes = {
     "fluxes need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
 };
 
-/// For all but tables.
+/// Rules of all modes but tables.
 const std::vector<Rule> OfOthers = {
   { IF(!j.Has("--screenshot")), "without --screenshot there is no picture", { "--view", "--up" } },
   { IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),

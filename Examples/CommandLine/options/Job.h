@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-/// How pictures are made.
+/// Settings of pictures.
 struct PictureOptions
 {
   std::string File;               ///< empty: none; with %04d in it, one for each step of a film
@@ -49,7 +49,7 @@ struct Job
   vtkNew<vtkSPHFlux> Flux;               ///< where IsFlux()
   vtkNew<vtkSPHProjection> Projection;   ///< with --project
 
-  /// For settings that all of them have.
+  /// Lists all filters, for settings that they share.
   std::array<vtkSPHAlgorithm*, 6> All() const
   {
     return { this->Surface, this->Derivatives, this->Probe, this->Gauge, this->Flux,
@@ -67,7 +67,7 @@ struct Job
   {
     return !this->Gauges.empty() || !this->GaugeFile.empty() || this->Grid.Counts[0] > 0;
   }
-  /// All files that are read, but for those that they list.
+  /// Lists all files that are read, but not the files that these list.
   std::vector<std::string> InputFiles() const;
   /// The first option that asks for a projection, gauges, fluxes, or a probe.
   const char* Mode() const;

@@ -31,7 +31,7 @@ void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T), T value)
   }
 }
 
-/// Where NAME=... is divided.
+/// Returns where NAME=... is divided.
 std::size_t NameEnd(Text option, Text text, const char* form)
 {
   const std::size_t equals = text.rfind('=');

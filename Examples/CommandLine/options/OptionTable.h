@@ -18,7 +18,7 @@ struct Option
   bool Repeats = false; ///< whether it may be given more than once
 };
 
-/// Every option, in the order of the help. An option without a name starts a group.
+/// Lists every option, in the order of the help. An option without a name starts a group.
 const std::vector<Option>& AllOptions();
 
 #endif

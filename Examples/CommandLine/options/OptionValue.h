@@ -43,7 +43,7 @@ std::vector<double> ToBox(const std::string& option, const std::string& text);
 std::vector<double> ToPeriod(const std::string& option, const std::string& text);
 /// The axis, 0 to 2, and the place on it: z=0.1.
 void ToSlice(const std::string& option, const std::string& text, int& axis, double& place);
-/// From and to, which are not the same.
+/// Reads two points, which must differ.
 std::vector<double> ToLine(const std::string& option, const std::string& text);
 /// The lower one first.
 std::vector<double> ToRange(const std::string& option, const std::string& text);

@@ -19,10 +19,11 @@ std::string QuotedForJson(const std::string& text);
 /// files have put into the sentence.
 void Say(const std::string& sentence);
 
-/// Why the work failed, in one sentence; empty if it did not.
+/// Returns why the work failed, in one sentence; empty if it did not fail.
 std::string FailureOf(const std::function<void()>& work);
 
-/// Says each sentence of many steps once, with the first step's name, and at the end how often it came.
+/// Prints each sentence of many steps once, with the first step's name, and at the end how often it
+/// came.
 class Sentences
 {
 public:
@@ -33,7 +34,7 @@ private:
   std::map<std::string, int> Counts;
 };
 
-/// As it stands in the attribute of an XML element.
+/// Returns the text as it stands in the attribute of an XML element.
 std::string EscapedForXml(const std::string& text);
 
 #endif

@@ -8,7 +8,7 @@
 namespace
 {
 
-/// Where the letter behind the percent sign is; npos where there is no number to put in.
+/// Returns the place of the letter after the percent sign; npos if there is no number to put in.
 std::size_t EndOfPlace(const std::string& name, std::size_t percent)
 {
   const std::size_t letter =

@@ -186,7 +186,8 @@ vtkSmartPointer<vtkPointSet> RankSession::Read(
                        : this->Share([&] { return Sharing::Read(file, walls, messages); }, false);
 }
 
-// One that is stored as that of a single surface is; between two, it is the first process's.
+// Reads a stored time as for a single surface; a time between two steps is read by the first
+// process.
 vtkSmartPointer<vtkPointSet> RankSession::Read(
   ParticleTimes& times, double time, std::vector<std::string>& warnings)
 {
@@ -257,7 +258,7 @@ vtkSmartPointer<vtkPointSet> RankSession::Complete(vtkPointSet* particles, bool 
     vtkNew<vtkPolyData> form;
     if (from == this->GetRank())
     {
-      // With one particle: of none, VTK does not send the arrays.
+      // One particle is needed: VTK does not send the arrays of none.
       vtkNew<vtkPoints> points;
       vtkPointData* arrays = form->GetPointData();
       points->InsertNextPoint(particles->GetPoint(0));

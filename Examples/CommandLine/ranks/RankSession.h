@@ -28,7 +28,7 @@ public:
     MessageCapture* messages) override;
   vtkSmartPointer<vtkPointSet> Read(
     ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
-  /// In the order of GlobalPointIds and GlobalCellIds, without these arrays.
+  /// Puts the parts in the order of GlobalPointIds and GlobalCellIds, and drops these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override;
 
 private:

@@ -19,8 +19,9 @@ struct CollectionEntry
 /// Whether the name ends as that of a .pvd file.
 bool IsCollectionFile(const std::string& file);
 
-/// In the order of time; several of one time in that of the file, but a file once, and of one part the last. Throws
-/// std::runtime_error with one sentence; `warnings` gets others.
+/// Reads entries in the order of time. Entries of one time keep the order of the file; a file
+/// counts once, and of one part the last entry. Throws std::runtime_error with one sentence;
+/// `warnings` gets others.
 std::vector<CollectionEntry> ReadCollection(
   const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings);
 

@@ -65,7 +65,7 @@ private:
   std::size_t Size = 0;
 };
 
-/// Its whole numbers. What is none ends them.
+/// Returns the whole numbers of a text, up to the first word that is none.
 std::vector<double> Numbers(View text)
 {
   std::vector<double> numbers;

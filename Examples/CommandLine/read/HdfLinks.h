@@ -5,9 +5,9 @@
 
 #include <string>
 
-/// Throws std::runtime_error where an HDF5 file points to other files, by links, external storage or
-/// virtual data sets: it could name any file of the reader's, whose bytes would come out as an array.
-/// One that is no HDF5 passes.
+/// Throws std::runtime_error if an HDF5 file points to other files, by links, external storage or
+/// virtual data sets. It could name any file that the reader may open, and its bytes would come out
+/// as an array. A file that is no HDF5 passes.
 void RefuseHdfLinks(const std::string& file);
 
 #endif

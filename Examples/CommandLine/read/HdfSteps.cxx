@@ -163,7 +163,7 @@ public:
     return array;
   }
 
-  /// Whole numbers.
+  /// Returns whole numbers.
   std::vector<long long> Numbers(const std::string& name) const
   {
     const vtkSmartPointer<vtkDataArray> read = this->Read(name);

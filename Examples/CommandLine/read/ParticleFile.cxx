@@ -177,8 +177,8 @@ vtkSmartPointer<vtkDataObject> ReadSurfaceWith(const std::string& file)
   return reader->GetOutputDataObject(0);
 }
 
-/// Every format that is read; all that is known of one stands here. Without a function: a list of
-/// files that hold parts of the particles.
+/// Every format that is read, with all that is known of it. A format without a function is a list
+/// of files that hold parts of the particles.
 using Reader =
   std::function<vtkSmartPointer<vtkDataObject>(const std::string& file, std::size_t step)>;
 
@@ -222,7 +222,8 @@ const std::vector<FileFormat<Reader>> DataFormats = {
 
 const FileFormat<Reader> Gadget = { "", ReadOne<ReadGadget> };
 
-/// By the ending, or, of particles, by how a file begins; nullptr if there is none.
+/// Finds a format by the ending, or, for particles, by the beginning of the file; nullptr if there
+/// is none.
 const FileFormat<Reader>* FormatOf(
   const std::vector<FileFormat<Reader>>& formats, const std::string& file)
 {
@@ -277,8 +278,8 @@ vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file,
     file + " cannot be read: it needs more memory than is available; it may be damaged");
 }
 
-/// Names go into sentences and into the surface's file, where not all bytes may stand that a legacy
-/// file can hold.
+/// Makes names fit for sentences and for the surface's file; a legacy file can hold bytes that
+/// these cannot.
 void MakePrintable(vtkAbstractArray* array)
 {
   array->SetName(Printable(array->GetName() ? array->GetName() : "").c_str());
@@ -356,7 +357,7 @@ void TakeStep(std::string& file, std::size_t& step)
   }
 }
 
-/// Throws std::runtime_error; may have no points.
+/// Reads a file, which may have no points. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadFile(std::string file, MessageCapture* messages)
 {
   std::size_t step = 0;

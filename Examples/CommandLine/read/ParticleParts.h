@@ -9,8 +9,8 @@
 
 class vtkPointSet;
 
-/// One set of particles from its parts, with the arrays that all of them have. Particles that a part
-/// marks as copies of another part's ("vtkGhostType") are left out.
+/// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles
+/// that a part marks as copies of another part's ("vtkGhostType").
 vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts);
 
 /// The array that AddWalls() makes: 0 for fluid, 1 for walls.

@@ -81,8 +81,8 @@ struct NumberedName
   }
 };
 
-/// In the order of the numbers in their names, where these differ in nothing else: shells list tank_10 before
-/// tank_9.
+/// Sorts files by the numbers in their names, if the names differ in nothing else: shells list
+/// tank_10 before tank_9.
 std::vector<std::string> InOrder(std::vector<std::string> files)
 {
   const NumberedName first(files.front());
@@ -168,7 +168,7 @@ void AddListedWalls(const std::string& file, bool haveTimes, Steps& steps, Messa
   }
 }
 
-/// One --walls: a file of all steps, of each by its number, or a list.
+/// Adds one --walls: a file for all steps, a file for each by its number, or a list.
 void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages,
   std::vector<std::string>& warnings)
 {

@@ -25,10 +25,10 @@ public:
   static ParticleSteps* New();
   vtkTypeMacro(ParticleSteps, vtkPolyDataAlgorithm);
 
-  /// In the order of time; steps and messages must outlive this.
+  /// Sets the steps, in the order of time. Steps and messages must outlive this.
   void SetSteps(const std::vector<Step>* steps, MessageCapture* messages);
 
-  /// Why the last step could not be read, one sentence; empty if it could.
+  /// Returns why the last step could not be read, in one sentence; empty if it could.
   const std::string& GetError() const { return this->Error; }
   void ClearError() { this->Error.clear(); }
 

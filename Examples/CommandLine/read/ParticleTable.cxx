@@ -117,7 +117,7 @@ public:
   {
   }
 
-  /// False at the end.
+  /// Reads the next line. Returns false at the end.
   bool Next()
   {
     if (!std::getline(this->Stream, this->Line))
@@ -426,7 +426,7 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
   return particles;
 }
 
-/// Names of columns, without units in brackets; no two are the same.
+/// Returns names of columns, without units in brackets; no two are the same.
 std::vector<std::string> NamesOf(const std::vector<View>& cells)
 {
   std::vector<std::string> names;
@@ -531,7 +531,7 @@ void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<doub
   particles->GetFieldData()->AddArray(array);
 }
 
-/// Six bounds; of axes without a period 0.
+/// Adds the period as six bounds, which are 0 for axes without a period.
 void AddPeriod(vtkPolyData* particles, const std::array<double, 6>& bounds, const bool periodic[3])
 {
   std::vector<double> period(6);
@@ -616,7 +616,7 @@ std::vector<std::string> PropertiesOf(const std::string& file, const std::string
   return names;
 }
 
-/// One step of an .xyz file, from the line behind its count on.
+/// Reads one step of an .xyz file, from the line after its count on.
 vtkSmartPointer<vtkPolyData> ReadXyzStep(Lines& lines, vtkTypeInt64 count)
 {
   lines.Need("the second line of a step");
@@ -677,8 +677,8 @@ vtkSmartPointer<vtkPolyData> ReadXyzStep(Lines& lines, vtkTypeInt64 count)
   return particles;
 }
 
-/// To the next step of an .xyz file; returns how many particles it has, and its second line is still to be read. Below
-/// 0: there is none.
+/// Goes to the next step of an .xyz file. Returns its number of particles, below 0 if there is
+/// none; its second line is still to be read.
 vtkTypeInt64 FindXyzStep(Lines& lines)
 {
   while (lines.Next())
@@ -711,7 +711,8 @@ bool StartsWith(View text, View start)
   return text.substr(0, start.size()) == start;
 }
 
-/// To the next step of a dump; its particles are still to be read. False: there is none.
+/// Goes to the next step of a dump; its particles are still to be read. Returns false if there is
+/// none.
 bool FindDumpStep(Lines& lines, DumpHead& head)
 {
   head = {};

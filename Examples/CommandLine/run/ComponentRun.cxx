@@ -38,7 +38,7 @@ void SetNumber(vtkFieldData* statistics, const char* name, double value)
   statistics->AddArray(array);
 }
 
-/// How many pieces there are; where some are to be left out, area and volume are those of the others.
+/// Adds the number of pieces. If some are left out, area and volume are those of the others.
 void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
 {
   SetNumber(statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));

@@ -19,8 +19,9 @@ public:
   {
   }
 
-  /// Nothing where no table is asked for. Else the run's surface gets the array ComponentId, without the
-  /// pieces that are to be left out, and the table a row for each piece. Throws std::runtime_error.
+  /// Does nothing if no table is wanted. Else gives the run's surface the array ComponentId,
+  /// without the pieces that are to be left out, and the table a row for each piece. Throws
+  /// std::runtime_error.
   void Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time = 0.0);
 
   const std::string& Text() const { return this->Lines; }

@@ -46,7 +46,8 @@ void FindAwaited()
 }
 
 #ifdef __ELF__
-/// Before libraries begin: UCX, which comes with some MPI, takes hangups for itself when it is loaded.
+/// Runs before libraries begin: UCX, which comes with some MPI, takes hangups for itself when it is
+/// loaded.
 __attribute__((section(".preinit_array"), used)) void (*const FindAwaitedFirst)() = FindAwaited;
 #else
 const bool FoundAwaited = (FindAwaited(), true);
@@ -177,7 +178,8 @@ void PrepareForEnding()
       std::signal(number, SIG_IGN); // whatever libraries have made of it
     }
   }
-  // All threads to come leave these signals to one that waits for them: it may lock and allocate.
+  // All later threads leave these signals to one thread that waits for them: it may lock and
+  // allocate.
   pthread_sigmask(SIG_BLOCK, &Awaited, nullptr);
   try
   {

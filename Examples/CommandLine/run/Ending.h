@@ -5,21 +5,24 @@
 
 #include <string>
 
-/// Before any thread: from here on the program says a sentence where it crashes, and removes its
-/// temporary files where a crash, or a signal that people and batch systems send, ends it.
+/// Must be called before any thread starts. From then on the program prints a sentence if it
+/// crashes, and removes its temporary files if a crash, or a signal that people and batch systems
+/// send, ends it.
 void PrepareForEnding();
 
-/// Once more, after drivers were loaded: LLVM, which PoCL brings, has handlers of its own.
+/// Must be called again after drivers were loaded: LLVM, which PoCL brings, has handlers of its
+/// own.
 void KeepWatchOfCrashes();
 
-/// All is done: a driver that crashes later, when it is unloaded, changes this status no more.
+/// Ends the program's work. A driver that crashes later, when it is unloaded, does not change this
+/// status.
 int Finish(int status);
 
-/// Names what a crash may be blamed on. A file that PoCL has kept half-written makes it crash whenever it
-/// loads that: its folder is named where there is one, and `device` does not name the built-in one.
+/// Names possible causes of a crash. A file that PoCL has kept half-written makes it crash whenever
+/// it loads that. Its folder is named if there is one and `device` does not name the built-in one.
 std::string FaultsOfDrivers(const std::string& device);
 
-/// For as long as it lives, what is said if the program crashes: "FAILURE: ...; HINT".
+/// The sentence if the program crashes while this object lives: "FAILURE: ...; HINT".
 class Activity
 {
 public:
@@ -37,7 +40,7 @@ private:
 /// device is named, which may need none.
 void LoadDriversAhead(const std::string& device);
 
-/// Before a device is used.
+/// Must be called before a device is used.
 void AwaitDrivers();
 
 /// While one lives, nothing but the program's own sentence about a crash reaches standard error: libraries
@@ -56,7 +59,7 @@ public:
 class TemporaryFile
 {
 public:
-  /// Its name is `begin` and six more characters. Where it could not be made, errno tells why.
+  /// Makes a file named `begin` and six more characters. If that fails, errno tells why.
   explicit TemporaryFile(const std::string& begin);
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;

@@ -161,7 +161,7 @@ private:
     }
   }
 
-  /// Without its statistics.
+  /// Describes a step without its statistics.
   FilmStep Describe(std::size_t i) const
   {
     FilmStep step;

@@ -7,8 +7,8 @@ class MessageCapture;
 class Sharing;
 struct Job;
 
-/// One surface for each time of a film, and the .pvd file that lists them. A step that fails is named and
-/// the others done: then this is false. Throws where there can be no film at all.
+/// Makes one surface for each time of a film, and the .pvd file that lists them. Names a step that
+/// fails, does the others, and returns false then. Throws if there can be no film at all.
 bool MakeFilm(const Job& job, MessageCapture* messages, Sharing& sharing);
 
 #endif

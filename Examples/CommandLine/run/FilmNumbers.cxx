@@ -28,7 +28,7 @@ void AddNumber(vtkTable* row, const std::string& name, double value)
   row->AddColumn(column);
 }
 
-/// One number of a run's statistics; not a number where it does not apply.
+/// Returns one number of a run's statistics; NaN if it does not apply.
 double NumberOf(vtkFieldData* statistics, const char* name)
 {
   vtkDataArray* array = statistics->GetArray(name);

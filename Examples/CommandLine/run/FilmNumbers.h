@@ -18,7 +18,7 @@ class FilmNumbers
 public:
   explicit FilmNumbers(const Job& job);
 
-  /// Nothing where no table is asked for. Throws std::runtime_error.
+  /// Adds a row. Does nothing if no table is wanted. Throws std::runtime_error.
   void Add(const Run& run, vtkPointSet* particles, MessageCapture* messages, double time,
     std::vector<std::string>& warnings);
 

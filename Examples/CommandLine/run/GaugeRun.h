@@ -14,7 +14,7 @@ struct Job;
 /// Gauges of the options, in their order. Throws UsageError or std::runtime_error with one sentence.
 std::vector<GaugeLine> ListGauges(const Job& job);
 
-/// To the job's filter.
+/// Adds gauges to the job's filter.
 void AddGauges(const Job& job, const std::vector<GaugeLine>& gauges);
 
 /// Measures the free surface along lines at each time of the input, and writes the table, or, of a grid

@@ -36,7 +36,7 @@ public:
   /// Whether that time is one of the series, and not between two.
   bool IsStored(double time) const;
 
-  /// All that are read.
+  /// Lists all files that are read.
   std::vector<std::string> ListFiles() const;
 
   /// Files that a time is made of, without walls.
@@ -45,7 +45,8 @@ public:
   /// The walls of a time that is stored, or of all times.
   const std::vector<std::string>& ListWalls(double time) const;
 
-  /// Throws std::runtime_error; Reset() then, so that nothing is left of what failed halfway.
+  /// Returns the particles at a time. Throws std::runtime_error; call Reset() then, so that nothing
+  /// is left of the failure.
   vtkSmartPointer<vtkPointSet> At(double time, std::vector<std::string>& warnings);
   void Reset();
 

@@ -74,7 +74,7 @@ vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bo
   return image;
 }
 
-/// With the way from its beginning, to plot by.
+/// Makes points on a line, with their distance from its beginning, for plots.
 vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
 {
   const std::vector<double>& ends = slice.Line;

@@ -162,7 +162,7 @@ std::string Format(vtkFieldData* run, const char* name, vtkIdType index = 0)
   return Format(Number(run, name, index));
 }
 
-/// Its array, or the value for all particles; empty if there is neither.
+/// Describes a quantity: its array, or the value for all particles; empty if there is neither.
 std::string DescribeQuantity(vtkFieldData* run, const char* name)
 {
   const std::string array = Text(run, (std::string(name) + "Array").c_str());
@@ -357,7 +357,7 @@ void WriteList(JsonText& json, const char* key, const std::vector<std::string>& 
   json.EndList();
 }
 
-/// Tells who made it, of which files. Opens the outermost braces.
+/// Writes the program and its input files. Opens the outermost braces.
 void WriteBeginning(JsonText& json, const Job& job)
 {
   json.Begin("");

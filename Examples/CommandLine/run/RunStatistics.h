@@ -11,7 +11,7 @@
 struct Job;
 class vtkFieldData;
 
-/// Tells a run's field data in a few lines to read; empty if the run had no particles to use.
+/// Describes a run's field data in a few lines; empty if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run);
 
 /// "seconds     input 0.010, search grid 0.020, ..., total 0.500\n", or empty as above.

@@ -27,7 +27,7 @@ public:
   /// The one that writes, and tells.
   bool IsFirst() const { return this->GetRank() == 0; }
 
-  /// All do this, which may differ.
+  /// Does work on all processes, which may differ.
   virtual void OnAll(const std::function<void()>& work) { work(); }
 
   void OnFirst(const std::function<void()>& work)
@@ -39,7 +39,7 @@ public:
   virtual vtkSmartPointer<vtkPointSet> Read(
     const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages);
 
-  /// As Read() above, of a time.
+  /// Reads a time, as Read() above reads files.
   virtual vtkSmartPointer<vtkPointSet> Read(
     ParticleTimes& times, double time, std::vector<std::string>& warnings);
 
@@ -49,7 +49,7 @@ public:
 
 /// The environment tells of mpirun before MPI is asked. Built without MPI, there is none.
 
-/// How many processes mpirun started; 1 where it did not.
+/// Returns the number of processes that mpirun started; 1 without mpirun.
 int LaunchedCount();
 
 /// The number of this process, 0 where it was started alone.

@@ -114,7 +114,7 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(const Job& job, vtkPointSet* parti
   return derived;
 }
 
-/// All arrays, or those that are named, as far as there is a place for them.
+/// Lets the filter carry all arrays, or the named ones, if the output has a place for them.
 void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   const std::vector<std::string>& names = job.AttributeNames;
@@ -149,7 +149,7 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
   }
 }
 
-/// Why there is none, as far as the ranges tell.
+/// Returns why there is no surface, as far as the ranges tell.
 std::string ReasonForNoSurface(vtkFieldData* statistics)
 {
   vtkDataArray* values = statistics->GetArray("IsoValues");
@@ -182,7 +182,8 @@ std::string ReasonForNoSurface(vtkFieldData* statistics)
   return stream.str();
 }
 
-/// Where none was given, the one that the filter has chosen is told, and stays for the next steps.
+/// Prints the iso value that the filter has chosen, if none was given, and keeps it for the next
+/// steps.
 void KeepIsoValue(const Job& job, vtkFieldData* statistics)
 {
   vtkDataArray* values = statistics->GetArray("IsoValues");
@@ -202,7 +203,8 @@ void KeepIsoValue(const Job& job, vtkFieldData* statistics)
   }
 }
 
-/// Says so, once, where an update that shows no progress has waited for a driver for a few seconds.
+/// Prints a notice, once, if an update that shows no progress has waited for a driver for a few
+/// seconds.
 class BuildNotice
 {
 public:
@@ -250,7 +252,7 @@ private:
   std::thread Waiting;
 };
 
-/// How a run's progress is told.
+/// Settings of a run's progress line.
 struct Progress
 {
   std::string Before; ///< the words before it

@@ -23,7 +23,7 @@ bool ShowsProgress(const Job& job);
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
 
-/// As SetUpParticles(), for the surface, which gets the particles as its input.
+/// Does SetUpParticles() for the surface, which gets the particles as its input.
 void SetUpSurface(const Job& job, vtkPointSet* input);
 
 /// Arrays of the particles that are not interpolated because the surface's file could not hold them.
@@ -36,12 +36,12 @@ struct Run
   double WallSeconds = 0.0;
 };
 
-/// One run of a filter, which shows its progress behind the words `before`; returns its seconds. Throws
+/// Runs a filter once, and shows its progress after the words `before`. Returns its seconds. Throws
 /// std::runtime_error with the filter's sentence.
 double Update(vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages,
   const std::string& before = "");
 
-/// One run of the surface. Throws as Update().
+/// Runs the surface once. Throws as Update().
 Run Extract(const Job& job, MessageCapture* messages, const std::string& before = "");
 
 /// The particles of the last run with the factors of their smoothing lengths. Throws std::runtime_error.
@@ -50,7 +50,7 @@ vtkSmartPointer<vtkPolyData> Widen(const Job& job, MessageCapture* messages);
 /// Sentences that the user should know of a run that went well.
 std::vector<std::string> Warnings(const Run& run, MessageCapture* messages);
 
-/// Where --periodic is not given, and the particles' field data may tell of a period: that.
+/// Adds a hint if --periodic is not given and the particles' field data tell of a period.
 void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings);
 
 #endif

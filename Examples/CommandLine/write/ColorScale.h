@@ -27,7 +27,8 @@ public:
   vtkDataArray* ArrayOf(vtkDataSet* data) const;
   vtkDataArray* CellArrayOf(vtkDataSet* data) const;
 
-  /// Where no array was asked for: what tells several iso values of the surface apart, if there are several.
+  /// Suggests an array if none was wanted: the one that tells several iso values of the surface
+  /// apart, if there are several.
   void Suggest(vtkDataSet* surface, const std::string& isoValueArray);
 
   const std::string& GetName() const { return this->Name; } ///< empty: no array was asked for

@@ -115,7 +115,7 @@ struct Writer
   bool (*Write)(vtkDataSet*, std::string& bytes);
 };
 
-/// Every format that is written; all that is known of one stands here.
+/// Every format that is written, with all that is known of it.
 const std::vector<FileFormat<Writer>> Formats = {
   { ".vti", { "vtkImageData", WriteXml<vtkXMLImageDataWriter> } },
   { ".vtr", { "vtkRectilinearGrid", WriteXml<vtkXMLRectilinearGridWriter> } },

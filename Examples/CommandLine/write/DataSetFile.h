@@ -9,8 +9,8 @@ class MessageCapture;
 class vtkDataSet;
 class vtkXMLWriter;
 
-/// In memory, as on a full disk the writer of VTK 9.1 crashes; not appended, VTK's default, which ParaView 5.11
-/// as Debian 12 has it cannot read. Returns false where VTK gave up.
+/// Writes to memory, because the writer of VTK 9.1 crashes on a full disk. Does not append data,
+/// VTK's default, which ParaView 5.11 of Debian 12 cannot read. Returns false if VTK gave up.
 bool WriteXmlInline(vtkXMLWriter* writer, vtkDataSet* data, std::string& bytes);
 
 /// Throws std::runtime_error with one sentence if the ending of the name is not that of a format which

@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
   Fail(file, std::strerror(errno));
 }
 
-/// Where an output goes.
+/// The target of an output.
 struct Target
 {
   std::string Name;    ///< as given
@@ -140,7 +140,8 @@ Target Find(const std::string& name)
   return target;
 }
 
-/// Equal for all names of one file; of one that does not exist yet, its folder and its name there.
+/// An identity that is equal for all names of one file. For a file that does not exist yet, it is
+/// its folder and its name there.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 Identity Identify(const struct stat& status, const std::string& name = "")
@@ -178,7 +179,7 @@ void WriteAll(int descriptor, const std::string& bytes, const std::string& file)
   }
 }
 
-/// To a device, a FIFO or an open descriptor.
+/// Writes to a device, a FIFO or an open descriptor.
 void WriteStraight(const Target& target, const std::string& bytes)
 {
   if (target.Descriptor >= 0)
@@ -206,7 +207,8 @@ void WriteStraight(const Target& target, const std::string& bytes)
   }
 }
 
-/// As those of the file that is replaced; for a new one, as the umask says.
+/// Sets mode, owner and group as those of the file that is replaced; for a new one, as the umask
+/// says.
 void SetAttributes(int descriptor, const Target& target)
 {
   const struct stat& old = target.Status;

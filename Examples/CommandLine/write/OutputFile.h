@@ -35,7 +35,7 @@ private:
   std::vector<std::unique_ptr<Replacement>> Files;
 };
 
-/// One file by itself.
+/// Writes one file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
 /// A file of all steps so far, that can be looked at while there are more and more of them, and where the program is ended.

@@ -68,7 +68,7 @@ public:
   DisplayConnection(const DisplayConnection&) = delete;
   void operator=(const DisplayConnection&) = delete;
 
-  /// True only where it is certain that an X server is needed and cannot be reached.
+  /// Whether it is certain that an X server is needed and cannot be reached.
   bool IsMissing() const { return this->Needed && !this->Display; }
 
 private:
@@ -122,7 +122,7 @@ View MakeView(Vector up, Vector toEye)
   return view;
 }
 
-/// From the front and a little from above and the left.
+/// Looks from the front, a little from above and from the left.
 View ObliqueView(const Vector& up)
 {
   const Vector right = { std::abs(up[1]) + std::abs(up[2]), std::abs(up[0]), 0.0 };
@@ -138,7 +138,7 @@ View ObliqueView(const Vector& up)
   return MakeView(up, toEye);
 }
 
-/// Straight upon a slice.
+/// Looks straight at a slice.
 View ViewOfSlice(const Vector& up, int axis)
 {
   Vector toEye = { 0.0, 0.0, 0.0 };
@@ -177,7 +177,8 @@ std::array<Vector, 8> CornersIn(const View& view, const vtkBoundingBox& box, con
   return seen;
 }
 
-/// As near as all corners of the box are in the picture, and with as much space below as above.
+/// Places the camera as near as possible with all corners of the box in the picture, and as much
+/// space below as above.
 void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& box, double aspect)
 {
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -313,7 +314,7 @@ public:
     this->Renderer->AddActor(actor);
   }
 
-  /// Beside the picture, with a place of its own.
+  /// Shows the colour bar beside the picture, in a place of its own.
   void ShowBar(const ColorScale& colors)
   {
     this->Renderer->SetViewport(0.0, 0.0, 1.0 - WidthOfBar, 1.0);

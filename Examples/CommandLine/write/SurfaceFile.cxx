@@ -139,7 +139,7 @@ bool WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   return true;
 }
 
-/// Not by VTK's writer, which leaves the normals out.
+/// Writes .ply without VTK's writer, which leaves the normals out.
 bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
@@ -239,7 +239,7 @@ bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   return true;
 }
 
-/// Every format that is written; all that is known of one stands here.
+/// Every format that is written, with all that is known of it.
 using Writer = std::function<bool(vtkPolyData*, const ColorScale&, std::string& bytes)>;
 const std::vector<FileFormat<Writer>> Formats = { { ".vtp", WriteXml }, { ".stl", WriteStl },
   { ".ply", WritePly }, { ".obj", WriteObj }, { ".csv", WriteCsv } };

@@ -22,7 +22,7 @@ std::string SurfaceFileEndings();
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
   MessageCapture* messages);
 
-/// As SurfaceBytes(), for a step of a film as .vtp, with a mark.
+/// Returns SurfaceBytes() for a step of a film as .vtp, with a mark.
 std::string FilmSurfaceBytes(
   const std::string& file, vtkPolyData* surface, MessageCapture* messages);
 

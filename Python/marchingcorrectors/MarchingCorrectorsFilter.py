@@ -45,7 +45,7 @@ from marchingcorrectors._warnings import describe_warnings, take_text
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
 CONVERT = {"IntVectorProperty": int, "DoubleVectorProperty": float, "StringVectorProperty": lambda text: text or ""}
-# Of the panel: two that the class sets by methods of its own, and one that means nothing in one process.
+# Properties of the panel that are left out: the class sets two by own methods, one means nothing in one process.
 OTHERS = "PanelComponent", "FreeSurfaceValue", "Partition"
 
 
@@ -70,7 +70,7 @@ def read_properties():
 
 
 PROPERTIES = read_properties()
-# What a run has found and used; told again by the panel.
+# Findings of a run, which the panel shows again.
 NOTHING = {"FluidScalarRange": (0.0, 0.0), "UsedIsoValues": "", "IsoValueArrayName": "", "UsedSmoothingLength": "",
            "UsedVolume": "", "UsedCubeSize": 0.0, "EstimatedCells": 0.0, "SurfaceMeasures": "", "UsedNames": {}, "UsedFluid": ""}
 

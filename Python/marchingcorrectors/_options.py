@@ -14,7 +14,7 @@ from ._library import lib
 
 Function = TypeVar("Function", bound=Callable)  # type checkers see it as it is written
 
-# What a surface carries is a bit set of mcor_options; here each bit is a member of its own.
+# Outputs are a bit set in mcor_options; here each bit is a member of its own.
 OUTPUTS = {name[len("MCOR_OUT_"):].lower(): bit for name, bit in c.ENUMS["mcor_output"].items()}
 
 
@@ -50,7 +50,7 @@ def of_panel(name):
 
 
 PANEL = ElementTree.parse(Path(__file__).with_name("MarchingCorrectors.xml"))
-# What options mean; of the others, what the panel says.
+# Meanings of options; the panel's words serve for the others.
 WORDS = {
     "field": "what is contoured: Shepard's mean of the particles around, the plain SPH sum, or the sum of the "
              "weights, which is the free surface and needs no scalar. probe(): the mean or the sum.",
@@ -95,7 +95,7 @@ WORDS = {
 }
 WORDS = {**{name: of_panel(panel) for name, (_, _, panel) in c.OPTIONS.items() if panel and name not in WORDS}, **WORDS}
 
-# Those that each function takes.
+# Options that each function takes.
 ISOSURFACE = tuple(Options.__annotations__)
 FREE_SURFACE = tuple(name for name in ISOSURFACE if name not in (
     "field", "seeds", "node_threshold", "boundary_detection", "vertex_threshold", "scalar_component",
@@ -142,7 +142,7 @@ def did_you_mean(name, known):
     return f" Did you mean '{close[0]}'?" if close else ""
 
 
-# What other packages call things, and what people try first.
+# Names in other packages, and names that people try first.
 SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoothing_length",
             "support_radius": "smoothing_length_is_support_radius", "spacing": "volume", "dp": "volume", "dx": "volume",
             "rho": "density", "m": "mass", "value": "iso", "isovalue": "iso", "level": "iso", "threshold": "iso",

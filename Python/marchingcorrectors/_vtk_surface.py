@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 from . import _structs as c
 from ._arrays import camel
 
-# Those of mcor_options whose names users do not look for, or which statistics tell.
+# Options of mcor_options that are left out: users do not look for them, or statistics tell them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Columns of an SPH kernel: a table of their sums over rectangles, made by quadrature. Only operations that all
- * processors round alike. */
+/* Columns of an SPH kernel: a table of their integrals over rectangles, made by quadrature. It
+ * uses only operations that all processors round alike. */
 
 #include "mcor_column.h"
 #include "mcor_input.h"
@@ -52,7 +52,8 @@ double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])
                                 : support;
 }
 
-/* The integral of w(sqrt(r^2 + z^2)) over z > 0: in pieces that grow with z, and end where w changes. */
+/* Returns the integral of w(sqrt(r^2 + z^2)) over z > 0. Its pieces grow with z, and end where w
+ * changes. */
 static double mcor_integrate_radial(const mcor_column_job* job, double r)
 {
   const double support = job->support, least = fmax(r, support / 4096);
@@ -82,7 +83,7 @@ static int mcor_compare_kinks(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* The integral of w(|x|) w(|y|) w(|z|) along a line of sight. */
+/* Returns the integral of w(|x|) w(|y|) w(|z|) along a line of sight. */
 static double mcor_integrate_tensor(const mcor_column_job* job, double x, double y)
 {
   double from[3], kinks[MCOR_KINKS], sum = 0;
@@ -115,7 +116,7 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
   return sum;
 }
 
-/* The column density, of any scale. */
+/* Returns the column density, of any scale. */
 static double mcor_density_at(const mcor_column_job* job, double x, double y)
 {
   if (job->is_tensor)
@@ -192,7 +193,7 @@ static void mcor_column_slice(void* data, int slice, int64_t first, int64_t last
   (void)slice;
 }
 
-/* Sums along x; then all becomes parts of the whole. */
+/* Sums along x, then divides all by the whole. */
 static void mcor_fill_nodes(const mcor_column_job* job)
 {
   mcor_column* column = job->column;

@@ -8,8 +8,9 @@
 
 #include "mcor_internal.h"
 
-/* E(x, y): what projects onto the rectangle from a corner of the table, or the centre, to (x, y). A rectangle has the
- * mixed difference of E at its corners, so rectangles side by side add up to 1 exactly, but for rounding. */
+/* E(x, y): the share of the kernel that projects onto the rectangle from a corner of the table,
+ * or the centre, to (x, y). A rectangle has the mixed difference of E at its corners, so
+ * rectangles side by side add up to 1 exactly, but for rounding. */
 typedef struct mcor_column
 {
   bool is_radial;  /* as all kernels but products are */
@@ -27,7 +28,7 @@ typedef struct mcor_column_side
   double weight[4];
 } mcor_column_side;
 
-/* How far a kernel of h = 1 reaches along a unit vector. */
+/* Returns the reach of a kernel of h = 1 along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
 /* axes: unit vectors along x and y of the image and the line of sight. is_plane: the kernel of two dimensions, as it
@@ -36,9 +37,9 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
   const double axes[3][3], double least_pixel, mcor_column* column);
 void mcor_free_column(mcor_column* column);
 
-/* A side at `at` along x (axis 0) or y. */
+/* Finds a side at `at` along x (axis 0) or y. */
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at);
-/* E at the corners that `count` sides along x share with one along y. */
+/* Finds E at the corners that `count` sides along x share with one along y. */
 void mcor_sum_corners(const mcor_column* column, const mcor_column_side* sides, int count,
   const mcor_column_side* side, double* sums);
 

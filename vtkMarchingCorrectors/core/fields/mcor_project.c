@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Column integrals of the SPH sum, averaged over the pixels of an image: what the image shows, and the call. */
+/* Column integrals of the SPH sum, averaged over the pixels of an image: the image's content,
+ * and the call. */
 
 #include "mcor_project.h"
 #include "mcor_plane.h"
@@ -19,8 +20,8 @@
 
 /* ---- the image ---- */
 
-/* The axes of the image: with a line of sight along x, y or z the other two, in this order. Otherwise z points up, or y
- * where one looks along z, nearly. */
+/* Chooses the axes of the image. With a line of sight along x, y or z they are the other two, in
+ * this order. Otherwise z points up, or y if the line of sight is nearly along z. */
 static mcor_status mcor_choose_axes(mcor_project_job* job)
 {
   mcor_context* context = job->context;
@@ -89,7 +90,7 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Where particles are, and how far their supports go. */
+/* Finds the range of the particles' positions and supports. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -124,7 +125,8 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* The sides of the image: of the box or the period as it is seen, else of all that particles reach. */
+/* Finds the sides of the image: of the box or the period as it is seen, else of all that
+ * particles reach. */
 static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 {
   mcor_context* context = job->context;
@@ -201,7 +203,7 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
       to[k] += fmax(job->axes[k][a] * side[0], job->axes[k][a] * side[1]);
     }
   }
-  /* Without particles there is an image only where the box tells of it. */
+  /* Without particles, there is an image only if the box determines it. */
   const double extent[2] = { to[0] - from[0], to[1] - from[1] };
   *is_empty = !(extent[0] > 0 && extent[1] > 0 && isfinite(extent[0]) && isfinite(extent[1]));
   const int longer = extent[1] > extent[0];
@@ -223,7 +225,8 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
 
 /* ---- the call ---- */
 
-/* What the search grid is needed for: volumes that are computed, an estimated smoothing length. */
+/* Makes the search grid if it is needed: for volumes that are computed, or an estimated
+ * smoothing length. */
 static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_options* options)
 {
   mcor_context* context = job->context;
@@ -233,7 +236,7 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
   const bool computes = needs_volume && mcor_needs_density(input) && !job->places_only;
   if (!computes && !input->estimate_smoothing_length)
   {
-    mcor_check_reuse(context, input, options); /* what is kept may be of other particles */
+    mcor_check_reuse(context, input, options); /* kept data may be of other particles */
     return MCOR_OK;
   }
   if (mcor_has_box(options))
@@ -276,7 +279,7 @@ static mcor_status mcor_run_project(
     .places_only = job->places_only,
     .h_scale = options->h_scale,
     .channels = view->weight.data ? 2 : 1 };
-  mcor_free_projection(job->out); /* of an attempt before */
+  mcor_free_projection(job->out); /* results of an earlier attempt */
   mcor_options checked = *options;
   checked.field = mcor_projects_density(input) || job->places_only ? MCOR_WEIGHT_SUM : MCOR_SUM;
   MCOR_TRY(mcor_check_input(context, input, &checked));

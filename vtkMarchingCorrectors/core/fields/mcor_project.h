@@ -3,26 +3,26 @@
 #ifndef mcor_project_h
 #define mcor_project_h
 
-/* A projection's image, and the particles that are spread over it. */
+/* The image of a projection, and the particles that are spread over it. */
 
 #include "mcor_column.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
-/* A particle, or an image of it, in the image of the call. */
+/* A particle, or a periodic image of it, in the pixels of the call. */
 typedef struct mcor_splat
 {
   double at[2];          /* from the corner, in pixels */
-  double pixel[2];       /* in h */
+  double pixel[2];       /* side of a pixel, in h */
   double amount[2];      /* V A, or V B A and V B */
-  int first[2], last[2]; /* the pixels that it reaches */
+  int first[2], last[2]; /* pixels that it reaches */
 } mcor_splat;
 
-/* What one thread needs to spread particles. */
+/* Work space of one thread that spreads particles. */
 typedef struct mcor_brush
 {
   mcor_column_side* sides;
-  double* corners[2]; /* on the row's lower and upper side */
+  double* corners[2]; /* at the row's lower and upper side */
 } mcor_brush;
 
 typedef struct mcor_project_job
@@ -32,12 +32,12 @@ typedef struct mcor_project_job
   const mcor_view* view;
   mcor_projection* out;
   double axes[3][3]; /* out->axes, turned as the particles are */
-  bool is_aligned;   /* with the axes of the particles */
+  bool is_aligned;   /* the axes are along those of the particles */
   bool is_plane;
   bool places_only; /* no values are wanted */
-  double box[6];    /* turned; sides that nobody gave are infinite */
+  double box[6];    /* turned; sides that are not given are infinite */
   double period[3]; /* 0: open */
-  double* volumes;  /* where they are computed; else NULL */
+  double* volumes;  /* computed volumes; else NULL */
   double h_scale;
   mcor_column column;
   int channels; /* 2: a mean */
@@ -45,13 +45,13 @@ typedef struct mcor_project_job
     unit[2][2]; /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine */
   double* sums; /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
   int64_t* splats_before; /* [blocks + 1] */
-  int64_t first_block;    /* of those spread together */
+  int64_t first_block;    /* first of the blocks spread together */
   mcor_splat* splats;
   int bands, first_row[MCOR_SLICES + 1], *band_of_row;
   int64_t* listed; /* indices of the splats that reach each band */
   int64_t first_listed[MCOR_SLICES + 1];
   mcor_brush brushes[MCOR_SLICES];
-  /* What each slice found. */
+  /* Findings of each slice. */
   double low[MCOR_SLICES][6], high[MCOR_SLICES][6]; /* along the axes of the image, then x, y, z */
   double most[MCOR_SLICES][2];
   double h_range[MCOR_SLICES][2];
@@ -66,7 +66,7 @@ typedef struct mcor_project_chunk
   int64_t source[MCOR_CHUNK];
 } mcor_project_chunk;
 
-/* Whether the column density is that of the mass, or V times density. */
+/* Whether the column density is wanted: of the mass, or of V times density. */
 static inline bool mcor_projects_density(const mcor_input* input)
 {
   return !input->scalar.data;
@@ -77,10 +77,10 @@ static inline double mcor_dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* mcor_project_spread.c. At most MCOR_CHUNK particles, with or without amounts. */
+/* mcor_project_spread.c. Reads at most MCOR_CHUNK particles, with or without amounts. */
 void mcor_read_project_chunk(
   const mcor_project_job* job, int64_t first, int count, bool amounts, mcor_project_chunk* chunk);
-/* Spreads all particles over the image, of which all but the values is known, in steps of a call. */
+/* Spreads all particles over the image, whose sides are known, in steps of a call. */
 mcor_status mcor_spread_particles(mcor_project_job* job);
 void mcor_release_spread(mcor_project_job* job);
 

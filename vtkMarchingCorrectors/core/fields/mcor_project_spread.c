@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Spreading particles over an image, on the host, in double precision, band by band of the image. What one adds to a
- * pixel is rounded to a multiple of a number that is the same for all, and what that leaves to a multiple of a second
- * one, so that sums are exact: they have the same bits in any order, for any number of threads and ranks. */
+/* Spreads particles over an image, on the host, in double precision, band by band of the image.
+ * The contribution of a particle to a pixel is rounded to a multiple of a number that is the
+ * same for all, and the rest to a multiple of a second one. Sums are therefore exact: they have
+ * the same bits in any order, for any number of threads and ranks. */
 
 #include "mcor_project.h"
 #include "mcor_ranks.h"
@@ -12,14 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Particles that are read by one thread at a time, and images of them that are spread together. */
+/* Particles that one thread reads at a time, and images of particles that are spread together. */
 #define MCOR_BLOCK_PARTICLES (4 * MCOR_CHUNK)
 #define MCOR_SPLATS_TOGETHER (1 << 18)
 /* Numbers that a reduction over ranks takes at a time. */
 #define MCOR_REDUCED_TOGETHER (1 << 20)
 
-/* Volume times scalar (of the density, the mass) and, for a mean, both times the weight. By the masses' array, a
- * particle weighs what its mass is. */
+/* Reads volume times scalar (for the density: the mass) and, for a mean, both times the weight.
+ * If the weight is the masses' array, a particle weighs its mass. */
 static void mcor_read_amounts(
   const mcor_project_job* job, int64_t first, int count, double amount[2][MCOR_CHUNK])
 {
@@ -89,8 +90,9 @@ void mcor_read_project_chunk(
 
 /* ---- particles in the image ---- */
 
-/* The images of a particle that count, [first, last] along each axis: those in the box, and across the line of sight
- * also those that reach into it. Moves the particle into the first period of the box. */
+/* Finds the images of a particle that count, [first, last] along each axis: those in the box,
+ * and, across the line of sight, those beside it that reach into it. Moves the particle into the
+ * first period of the box. */
 static bool mcor_find_splats(
   const mcor_project_job* job, double x[3], double h, int first[3], int last[3])
 {
@@ -116,7 +118,7 @@ static bool mcor_find_splats(
   return any;
 }
 
-/* Where it is in the image; whether it reaches it. */
+/* Finds the position of a particle in the image. Returns whether it reaches the image. */
 static bool mcor_make_splat(
   const mcor_project_job* job, const double x[3], double h, mcor_splat* splat)
 {
@@ -135,8 +137,8 @@ static bool mcor_make_splat(
   return reaches;
 }
 
-/* Goes through the images of the particles of blocks; only counts them, and what they add to a pixel at most, where
- * there is no room for them yet. */
+/* Lists the images of the particles of blocks. Without room for them, only counts them, and
+ * finds the most that they add to a pixel. */
 static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
@@ -192,7 +194,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
             }
           }
         }
-        /* No pixel has more of a kernel than twice all of it, as M'4 is partly negative. */
+        /* No pixel has more than twice a whole kernel: M'4 is partly negative. */
         const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
         for (int c = 0; c < job->channels && reaches; ++c)
         {
@@ -208,7 +210,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
   memcpy(job->most[slice], most, sizeof most);
 }
 
-/* 3/2 of a power of 2 that is at least four times the number. */
+/* Returns 3/2 of a power of 2 that is at least four times the number. */
 static double mcor_rounding_unit(double number)
 {
   int exponent;
@@ -276,7 +278,7 @@ static void mcor_spread_splat(
   const int* size = job->out->size;
   const int64_t pixels = (int64_t)size[0] * size[1];
   const int first = s->first[0], count = s->last[0] - first + 1;
-  /* A kernel that is nowhere negative has no share below 0, as rounding may. */
+  /* Rounding must not make a share negative, unless the kernel is. */
   const double lowest = mcor_is_tensor(job->context->run.options->sph_kernel) ? -DBL_MAX : 0;
   for (int i = 0; i <= count; ++i)
   {
@@ -311,7 +313,8 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-/* Bands of rows with about the same work, and the images that reach each. */
+/* Divides the image into bands of rows with about the same work, and lists the images that reach
+ * each band. */
 static mcor_status mcor_make_bands(mcor_project_job* job, int64_t count)
 {
   const int rows = job->out->size[1];
@@ -369,7 +372,7 @@ static mcor_status mcor_make_bands(mcor_project_job* job, int64_t count)
   return MCOR_OK;
 }
 
-/* Blocks together, as many as make a load. */
+/* Treats blocks together, as many as make a load. */
 static mcor_status mcor_spread_all(mcor_project_job* job, int64_t blocks)
 {
   mcor_context* context = job->context;
@@ -408,7 +411,7 @@ static mcor_status mcor_spread_all(mcor_project_job* job, int64_t blocks)
   return MCOR_OK;
 }
 
-/* Sums over all ranks; then what they come to. */
+/* Sums over all ranks, and makes the values of the sums. */
 static mcor_status mcor_finish_image(mcor_project_job* job)
 {
   const int64_t pixels = (int64_t)job->out->size[0] * job->out->size[1];

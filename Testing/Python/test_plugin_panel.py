@@ -22,6 +22,8 @@ PAUSE = (WINDOW, "pause", "600")  # longer than what the panel waits before it l
 FILTERS = (f"{WINDOW}/menubar/menuFilters/Alphabetical", "activate", "MarchingCorrectors")
 ADVANCED = (f"{PANEL}/SearchBox/AdvancedButton", "set_boolean", "true")  # what is not shown is not greyed out
 APPLY = (f"{PANEL}/Accept", "activate", "")
+DELETE = (f"{PANEL}/Delete", "activate", "")
+COLOUR = f"{WINDOW}/variableToolbar/displayColor/Variables"
 UNDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditUndo")
 REDO = (f"{WINDOW}/menubar/menu_Edit", "activate", "actionEditRedo")
 OF_SCALARS = ("SelectInputScalars", "ContourValues", "DotProductWith", "ShepardNormalization", "Trim", "NodeThreshold",
@@ -75,7 +77,7 @@ def run(paraview, events, folder):
 def first_apply(folder):
     """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
     return [
-        APPLY, FILTERS, ADVANCED, PAUSE,
+        FILTERS, ADVANCED, PAUSE,
         *greyed("ContourValues", "Filled"),  # walls are found, so the water is what is shown first
         change("FreeSurface/CheckBox", "set_boolean", "false"), PAUSE,
         shown("SelectInputScalars/ComboBox", "currentText", "Velocity"),
@@ -104,11 +106,14 @@ def first_apply(folder):
 
 
 def empty_first():
-    """A first output that is empty is told of, in the panel, too: of the surface's own points, which fill no space."""
+    """A first output that is empty is told of, in the panel, too; what is drawn at last has the colours that it would have had at first."""
+    value = "FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit"
     return [
-        FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),
-        change("FreeSurfaceValue/DoubleRangeWidget/DoubleLineEdit", "set_string", "1000"), PAUSE, APPLY, PAUSE,
+        APPLY, FILTERS, PAUSE, change("FreeSurface/CheckBox", "set_boolean", "true"),
+        change(value, "set_string", "1000"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Solid Color"),
         shown("sph_in_use/Show", "text", "The output is empty: what was found, and what is used"),
+        change(value, "set_string", "0.5"), PAUSE, APPLY, PAUSE, (COLOUR, CHECK, "currentText", "Velocity"),
+        DELETE, PAUSE,
     ]
 
 
@@ -171,7 +176,7 @@ def check_states(states):
 
 def main(paraview):
     with tempfile.TemporaryDirectory() as folder:
-        run(paraview, first_apply(folder) + later_applies(folder) + empty_first(), folder)
+        run(paraview, empty_first() + first_apply(folder) + later_applies(folder), folder)
         check_states({name[:-5]: properties(os.path.join(folder, name))
                       for name in os.listdir(folder) if name.endswith(".pvsm")})
     print("the panel works")

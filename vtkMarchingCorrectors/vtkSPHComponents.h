@@ -160,7 +160,7 @@ private:
 
   struct Content;
 
-  /// Of points and triangles the number of their piece; -1: it is left out.
+  /// The piece of each point and of each triangle, by number; -1: it is left out.
   struct Numbers
   {
     std::vector<vtkIdType> OfPoint, OfTriangle;

@@ -98,7 +98,7 @@ int vtkSPHProjection::RequestInformation(
   return 1;
 }
 
-// What is wrong is for the run to say.
+// Finds the image without values. Errors are left to the run.
 void vtkSPHProjection::Place(vtkPointSet* particles, mcor_projection& placed)
 {
   if (!particles || particles->GetNumberOfPoints() == 0)

@@ -83,9 +83,7 @@ public:
    */
   vtkSPHTextMacro(ScalarArrayName);
 
-  /**
-   * Of a scalar with several components, the one that counts; -1 (the default): the magnitude.
-   */
+  /** The component of a scalar that counts, if it has several; -1 (the default): the magnitude. */
   vtkSPHValueMacro(ScalarComponent, int);
 
   /**

@@ -46,9 +46,7 @@ public:
   };
 
   ///@{
-  /**
-   * What the points are, see ShapeType; SLICE by default.
-   */
+  /** The kind of points, see ShapeType; SLICE by default. */
   vtkSPHClampMacro(Shape, int, SLICE, VOLUME);
   void SetShapeToSlice() { this->SetShape(SLICE); }
   void SetShapeToLine() { this->SetShape(LINE); }

@@ -734,7 +734,7 @@ extern "C"
   void mcor_free_gauges(mcor_gauges* gauges);
   const char* mcor_gauge_state_name(mcor_gauge_state state); /* "dry", "wet", "full" */
 
-  /* What mcor_section.points are. */
+  /* Shapes of sections, and the meaning of mcor_section.points. */
   typedef enum mcor_section_shape
   {
     /* a corner, then the ends of the two edges that begin there; the normal is the cross product of the edges */
@@ -762,8 +762,8 @@ extern "C"
     const char* name; /* for messages; may be NULL */
   } mcor_section;
 
-  /* What flows through the part of a section that is in fluid. A: the area of that part, v and rho: the Shepard means of
-   * velocity and density there, n: the normal. */
+  /* Flow through the part of a section that is in fluid. A: the area of that part, v and rho:
+   * the Shepard means of velocity and density there, n: the normal. */
   typedef struct mcor_flux_reading
   {
     int outside;        /* 1: no particle's support reaches the section */
@@ -793,7 +793,8 @@ extern "C"
   /* An image of column integrals: where it looks. */
   typedef struct mcor_view
   {
-    /* Of the line of sight; its length and sign do not matter. All 0: the constant axis of a plane, else z. */
+    /* Direction of the line of sight; its length and sign do not matter. All 0: the constant
+     * axis of a plane, else z. */
     double direction[3];
     /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, and all that particles reach where there is none. Sides may
      * be infinite. The image is the box as it is seen. Along x, y or z, particles count whose positions are in the box
@@ -828,7 +829,7 @@ extern "C"
    * particle counts once. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
-  /* The same image, without its values. */
+  /* Finds the image without its values. */
   mcor_status mcor_place_view(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   void mcor_free_projection(mcor_projection* projection);

@@ -36,7 +36,7 @@ bool vtkSPHParticles::CollectSolids()
   return this->CollectAbsent();
 }
 
-// Of several ranges of one array, any may hold.
+// Finds the absent particles. With several ranges of one array, any may hold.
 bool vtkSPHParticles::CollectAbsent()
 {
   if (!vtkSPHLeavesOut(this->Description) || this->Core.count == 0)

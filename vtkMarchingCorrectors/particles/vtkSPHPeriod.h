@@ -31,8 +31,9 @@ VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
   const std::vector<double>& period, const double extent[6]);
 
 /**
- * The same if many processes hold the particles: that of the first one whose field data tell a
- * period. `problem` becomes a sentence if another one tells a different period. Collective.
+ * Finds the period if many processes hold the particles: that of the first one whose field data
+ * tell a period. `problem` becomes a sentence if another one tells a different period.
+ * Collective.
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
   vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);

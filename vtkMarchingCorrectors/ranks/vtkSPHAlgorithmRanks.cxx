@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// What all filters do that ranks can share. Every function here is collective.
+// Steps that all filters share when ranks share a run. Every function here is collective.
 #include "vtkSPHAlgorithm.h"
 
 #include "mcor.h"

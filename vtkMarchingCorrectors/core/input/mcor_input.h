@@ -98,7 +98,8 @@ static inline double mcor_largest_of(double low, double high)
 {
   return low > high ? 0 : fmax(-low, high);
 }
-/* Of the particles that are not absent, and of ignored solids what is finite. */
+/* Returns the largest magnitude of a component, over particles that are not absent, and over
+ * finite values of ignored solids. */
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
@@ -114,10 +115,11 @@ struct mcor_far
   double place[3];
 };
 mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, mcor_far* far);
-/* The same particles in a call with globals: those beyond the bounds of the others. */
+/* Marks the same particles in a call with globals: those beyond the bounds of the others. */
 mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far);
-/* Of a lattice that is cut, the bounds: `low` and `high` of the positions of all that is used. */
+/* Finds the bounds of a lattice that is cut: `low` and `high` of the positions of all that is
+ * used. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
 /* Where what failed is for a lattice that is too large, and one smoothing length is far from the others: adds

@@ -97,7 +97,7 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
   r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
 }
 
-/* What a factor may add to their sum. */
+/* Greatest contribution of one factor to their sum. */
 #define MCOR_MOST_FACTOR 256.0
 
 /* The lengths of kernels; and of fluid the factors. */

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What all ranks do together in a call. They exchange only what does not depend on how particles
- * are spread over them: least and greatest values, exact sums, and records that are
- * then sorted or used as a set. */
+/* Exchange between ranks in a call. Ranks exchange only data that do not depend on how particles
+ * are spread over them: least and greatest values, exact sums, and records that are then sorted
+ * or used as a set. */
 
 #include "mcor_ranks.h"
 

@@ -58,7 +58,7 @@ static inline double mcor_round_term(double term, double large)
   return (term + large) - large;
 }
 
-/* What each slice of the triangles adds; as exact as the sums over parts. */
+/* Sums of each slice of the triangles, as exact as the sums over parts. */
 typedef struct mcor_measure_job
 {
   const mcor_surface* surface;

@@ -110,7 +110,7 @@ typedef struct mcor_cap_face
   int32_t* tile; /* [tiles[1]][tiles[0]] */
   int tile_count;
   int32_t* place; /* [tile_count + 1] */
-  /* Of the nodes, and of those one further in; see mcor_cap_index. */
+  /* States of the nodes, and of the nodes one further in; see mcor_cap_index. */
   int64_t node_count;
   uint8_t *state, *within;
   double* margin; /* trim margin of nodes above */

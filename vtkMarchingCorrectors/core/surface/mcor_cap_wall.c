@@ -27,7 +27,7 @@ typedef struct mcor_wall_edge
   int32_t triangle, from, to;
 } mcor_wall_edge;
 
-/* What caps at walls are made from. */
+/* Data of caps at walls. */
 typedef struct mcor_wall_job
 {
   mcor_cap_job* cap;

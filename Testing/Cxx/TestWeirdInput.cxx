@@ -71,9 +71,9 @@ std::vector<Case> MissingOrMistyped()
       { data->GetPointData()->RemoveArray("Radius"); } }, // no other one varies
     { "unknown scalar", { "'NoSuch'", "scalar", "Radius" }, [](Filter* f) { Scalar(f, "NoSuch"); },
       Nothing },
-    { "cell scalar", { "scalar", "point array" },
+    { "cell scalar", { "'NoSuch'", "scalar" },
       [](Filter* f)
-      { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Radius"); },
+      { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "NoSuch"); },
       Nothing },
     { "text scalar", { "'Text'", "numbers" }, [](Filter* f) { Scalar(f, "Text"); }, AddText },
     { "short scalar", { "'Short'", "9261 points" }, [](Filter* f) { Scalar(f, "Short"); },

@@ -304,18 +304,19 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
       n->dimension == 2 ? "lines" : "triangles");
   }
   /* Whole bricks may lie below the threshold, and are not looked at. */
+  const double* extent = n->fluid_extent; /* 0: all particles are at one point */
   bool is_between = false;
   for (int i = 0; i < o->iso_count; ++i)
   {
     is_between =
       is_between || (n->scalar_min < o->iso_values[i] && o->iso_values[i] < n->scalar_max);
   }
-  return is_between && o->field != MCOR_WEIGHT_SUM && !mcor_has_box(o) && o->node_threshold > 0 &&
+  return is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
+    !mcor_has_box(o) && o->node_threshold > 0 &&
     mcor_say(s,
       "The field reaches the iso value nowhere that the weight sum is above the node threshold %g. "
       "If the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as "
-      "the "
-      "node threshold and the vertex threshold.",
+      "the node threshold and the vertex threshold.",
       o->node_threshold);
 }
 

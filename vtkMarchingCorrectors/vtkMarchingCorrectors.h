@@ -571,6 +571,9 @@ private:
 
   void ProcessDistributed(vtkPointSet* particles, vtkPolyData* output);
   void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
+  bool WidenDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& mine);
+  void ContourDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsChoice& choice,
+    vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
   void ExtractDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsChoice& choice,
     const mcor_input& own, vtkPolyData* output);
   void FinishDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& input,

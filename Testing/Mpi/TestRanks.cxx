@@ -186,6 +186,30 @@ const std::vector<Case> Cases = {
       f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
       f->SetCubeSizeFactor(1.0);
     } },
+  { "smooth", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      f->FreeSurfaceOn();
+      f->SmoothOn();
+    } },
+  { "widened, computed volumes, periods", "double_dam_break_small",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourSpeed(f);
+      f->DetectArraysOff();
+      f->EstimateSmoothingLengthOn();
+      f->SetWidening(1.7);
+      f->SetPeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+    } },
+  { "widened, adaptive cubes", "dam_break_45k",
+    [](vtkMarchingCorrectors* f)
+    {
+      ContourDamBreak(f);
+      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      f->SetCubeSizeFactor(0.8);
+      f->SetCubeSizeModeToAdaptive();
+      f->SetWidening(2.0);
+    } },
   { "computed volumes of large particles beside small ones", TwoSizes,
     [](vtkMarchingCorrectors* f)
     {

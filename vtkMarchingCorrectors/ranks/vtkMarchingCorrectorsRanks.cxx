@@ -11,6 +11,7 @@
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
@@ -20,6 +21,7 @@
 #include "vtkSPHRanksPoints.h"
 #include "vtkSPHRanksRun.h"
 #include "vtkSPHRanksStatistics.h"
+#include "vtkSPHRanksTuples.h"
 #include "vtkSPHRanksWork.h"
 
 #include <algorithm>
@@ -67,6 +69,77 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   calls.End(isoValues.empty());
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
+  if (options.smooth)
+  {
+    options.widen = options.widen > 1.0 ? options.widen : 2.0;
+    options.compact = 1;
+    options.smooth = 0;
+  }
+  if (!(options.widen > 1.0))
+  {
+    this->ContourDistributed(run, choice, mine, output);
+    return;
+  }
+  if (this->WidenDistributed(run, mine))
+  {
+    options.widen = 1.0;
+    choice.IsWidened = true;
+    choice.Scalar = this->FindFirstRequest(run.Own, merge);
+    vtkMarchingCorrectorsInput widened(choice, run.Own);
+    widened.Collect(); // as before
+    this->ContourDistributed(run, choice, widened, output);
+  }
+}
+
+// The rank that owns a particle's place finds its factor, which then travels to where the particle came from.
+bool vtkMarchingCorrectors::WidenDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& mine)
+{
+  vtkSPHRanksRun sums(this->Controller);
+  sums.Own = run.Own;
+  sums.Options = run.Options;
+  sums.Options.level_limit = 0;
+  std::fill(sums.Options.box, sums.Options.box + 6, 0.0);
+  if (!this->MeasureDistributed(sums, mine, false))
+  {
+    return false;
+  }
+  this->ShareDistributed(sums, mine.Core, vtkSPHKeepUsed(sums.Own, mine), {});
+  vtkSPHParticles input(mine.Description, sums.Near);
+  if (!this->AgreeDistributed(sums.Ranks, input.CollectParticles() ? "" : input.Error))
+  {
+    return false;
+  }
+  mcor_widening widening = {};
+  if (!this->CallCoreDistributed(sums, input,
+        [&](mcor_context* context)
+        { return mcor_widen(context, &input.Core, &sums.Options, &widening); }))
+  {
+    mcor_free_widening(&widening);
+    return false;
+  }
+  const vtkIdType near = sums.Near->GetNumberOfPoints();
+  vtkNew<vtkPointData> found;
+  const bool hasVolumes = !mcor_is_given(&mine.Core.volume) &&
+    !(mcor_is_given(&mine.Core.mass) && mcor_is_given(&mine.Core.density));
+  vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, near));
+  if (hasVolumes)
+  {
+    vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, near));
+  }
+  mcor_free_widening(&widening);
+  for (const auto& array :
+    vtkSPHReturnTuples(sums.Ranks, vtkSPHListArrays(found), vtkSPHListOwned(sums),
+      sums.Route.ListOwners(run.Own), run.Own->GetNumberOfPoints()))
+  {
+    run.Own->GetPointData()->AddArray(array);
+  }
+  return true;
+}
+
+void vtkMarchingCorrectors::ContourDistributed(vtkSPHRanksRun& run,
+  vtkMarchingCorrectorsChoice& choice, vtkMarchingCorrectorsInput& mine, vtkPolyData* output)
+{
+  mcor_options& options = run.Options;
   options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   options.outputs |= mine.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
   if (this->MeasureDistributed(run, mine, false))

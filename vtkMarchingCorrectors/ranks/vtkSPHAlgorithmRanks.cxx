@@ -17,6 +17,24 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+vtkSPHRanksLists vtkSPHListOwned(const vtkSPHRanksRun& run)
+{
+  vtkSPHRanksLists owned;
+  vtkIdType next = 0;
+  for (const vtkIdType count : run.From)
+  {
+    owned.emplace_back();
+    for (const vtkIdType end = next + count; next < end; ++next)
+    {
+      if (run.Route.FindOwner(run.Near->GetPoint(next)) == run.Ranks.GetRank())
+      {
+        owned.back().push_back(next);
+      }
+    }
+  }
+  return owned;
+}
+
 bool vtkSPHAlgorithm::BeginDistributed(
   vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken)
 {

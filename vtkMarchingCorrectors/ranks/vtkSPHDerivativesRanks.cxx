@@ -21,28 +21,6 @@
 #include <memory>
 
 VTK_ABI_NAMESPACE_BEGIN
-namespace
-{
-/** Lists, for each rank, the particles that came from it and that this rank owns. */
-vtkSPHRanksLists ListOwned(const vtkSPHRanksRun& run)
-{
-  vtkSPHRanksLists owned;
-  vtkIdType next = 0;
-  for (const vtkIdType count : run.From)
-  {
-    owned.emplace_back();
-    for (const vtkIdType end = next + count; next < end; ++next)
-    {
-      if (run.Route.FindOwner(run.Near->GetPoint(next)) == run.Ranks.GetRank())
-      {
-        owned.back().push_back(next);
-      }
-    }
-  }
-  return owned;
-}
-}
-
 // No rank may return here while another goes on: all agree first on what one of them has found.
 void vtkSPHDerivatives::ProcessDistributed(vtkPointSet* particles, vtkPointSet* output)
 {
@@ -120,7 +98,7 @@ void vtkSPHDerivatives::DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& 
   }
   const vtkSPHRanksLists home = vtkSPHListAt(run.Route.ListOwners(run.Own), numbers);
   const vtkSPHRanksArrays came = vtkSPHReturnTuples(run.Ranks, vtkSPHListArrays(found),
-    ListOwned(run), home, particles ? particles->GetNumberOfPoints() : 0);
+    vtkSPHListOwned(run), home, particles ? particles->GetNumberOfPoints() : 0);
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
   vtkSPHAddSampleShares(run.Ranks, this->RunStatistics, run.Route, run.Route.OwnedParticles);
   this->WarnOfParticlesDistributed(run, input.Core, derivatives.statistics);

@@ -182,7 +182,7 @@ private:
   {
     std::vector<double> radii(static_cast<std::size_t>(ranks.GetCount()), 0.0);
     const mcor_options& o = this->Options;
-    if (this->ComputesVolumes || (o.outputs & MCOR_OUT_NEAREST_PARTICLE))
+    if (this->ComputesVolumes || o.widen > 1.0 || (o.outputs & MCOR_OUT_NEAREST_PARTICLE))
     {
       std::vector<int> found;
       this->ForEach(
@@ -203,7 +203,10 @@ private:
       const double cubes = this->LeastMargin;
       const double volumes = this->ComputesVolumes ? radius * (1.0 + 1.0 / o.h_scale) + cubes : 0.0;
       const double nearest = (o.outputs & MCOR_OUT_NEAREST_PARTICLE) ? radius + cubes : 0.0;
-      radius = radius > 0.0 ? std::max(volumes, nearest) : 0.0;
+      // Sums at particles whose lengths are widened: see mcor_widen.
+      const double widened =
+        o.widen > 1.0 ? std::max(volumes, radius) * (1.0 + o.widen) + cubes : 0.0;
+      radius = radius > 0.0 ? std::max({ volumes, nearest, widened }) : 0.0;
     }
     return radii;
   }

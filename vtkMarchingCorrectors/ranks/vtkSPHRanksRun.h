@@ -44,6 +44,9 @@ struct vtkSPHRanksRun
   vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
   std::vector<vtkIdType> From;       ///< how many of them came from each rank
 };
+
+/** Lists, for each rank, the particles that came from it and that this rank owns. */
+vtkSPHRanksLists vtkSPHListOwned(const vtkSPHRanksRun& run);
 VTK_ABI_NAMESPACE_END
 
 #endif

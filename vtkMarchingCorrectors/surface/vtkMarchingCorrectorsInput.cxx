@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsInput.h"
 
+#include "vtkPointData.h"
+
 VTK_ABI_NAMESPACE_BEGIN
 vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
   const vtkMarchingCorrectorsChoice& choice, vtkPointSet* points)
@@ -22,9 +24,17 @@ bool vtkMarchingCorrectorsInput::Collect()
     return false;
   }
   this->NameScalar();
+  if (this->Choice.IsWidened)
+  {
+    vtkPointData* data = this->Points->GetPointData();
+    this->Core.widening = this->View(data->GetArray("Widening"));
+    vtkDataArray* volumes = data->GetArray("WideningVolume");
+    this->Core.volume = volumes ? this->View(volumes) : this->Core.volume;
+  }
   if (this->Choice.InterpolateAttributes)
   {
     std::vector<std::string> taken = this->Choice.ComputedArrays;
+    taken.push_back("WideningVolume");
     if (this->Choice.ComputeScalars)
     {
       taken.push_back(this->IsoValueName);

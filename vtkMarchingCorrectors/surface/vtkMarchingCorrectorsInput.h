@@ -19,6 +19,7 @@ struct vtkMarchingCorrectorsChoice : vtkSPHParticlesChoice
   bool InterpolateAttributes = true;
   std::vector<std::string> ComputedArrays; // names that the output already uses
   bool ComputeScalars = true;
+  bool IsWidened = false; // the particles have the arrays of vtkMarchingCorrectors::Widen()
 };
 
 class vtkMarchingCorrectorsInput : public vtkSPHParticles

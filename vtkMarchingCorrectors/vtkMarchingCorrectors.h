@@ -348,14 +348,14 @@ public:
   vtkSPHFlagMacro(Compact);
 
   /**
-   * For pictures: Compact, and a Widening of 2 unless another one is set. Off by default. Not over ranks.
+   * For pictures: Compact, and a Widening of 2 unless another one is set. Off by default.
    */
   vtkSPHFlagMacro(Smooth);
 
   /**
    * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the particle stays inside of
    * the free surface: flat water becomes flat, drops, threads and sheets stay. Cubes and volumes are those of the
-   * original lengths; the array Widening is the factor. From 1 (off, the default) to 4; 2 is usual. Not over ranks.
+   * original lengths; the array Widening is the factor. From 1 (off, the default) to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double);
 

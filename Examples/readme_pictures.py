@@ -84,6 +84,7 @@ def need_surface(surface):
 def free_surface_actor(reader, opacity=1.0):
     surface = surface_filter(reader)
     surface.FreeSurfaceOn()
+    surface.SmoothOn()
     need_surface(surface)
     actor = colored_by_speed(surface)
     actor.GetProperty().SetOpacity(opacity)
@@ -169,7 +170,7 @@ def main(directory):
     third = 1 / 3
     save([
         panel(reader, [particle_actor(reader)], "particles", (0, 0, third, 1)),
-        panel(reader, [free_surface_actor(reader)], "free surface", (third, 0, 2 * third, 1)),
+        panel(reader, [free_surface_actor(reader)], "free surface, smooth", (third, 0, 2 * third, 1)),
         panel(reader, [isosurface_actor(reader), free_surface_actor(reader, 0.2)],
               "isosurface of the speed, 1 m/s", (2 * third, 0, 1, 1)),
     ], (1950, 520), os.path.join(directory, "dam_break.png"))

@@ -5,7 +5,6 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
-#include "vtkCellTypes.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkIdList.h"
@@ -52,11 +51,9 @@ struct Cells
     {
       this->List = grid->GetCells();
       this->Types = grid->GetCellTypesArray();
-      vtkNew<vtkCellTypes> kinds;
-      grid->GetCellTypes(kinds);
-      for (vtkIdType i = 0; i < kinds->GetNumberOfTypes(); ++i)
+      for (vtkIdType i = 0; i < this->Types->GetNumberOfTuples(); ++i)
       {
-        (IsVertex(kinds->GetCellType(i)) ? this->HasVertices : this->HasOthers) = true;
+        (IsVertex(this->Types->GetValue(i)) ? this->HasVertices : this->HasOthers) = true;
       }
     }
   }

@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pyvista
-from test_files import SPACING, X, write_gadget, write_phantom
+from test_files import DENSITY, MASS, SPACING, X, write_gadget, write_phantom
 
 SOURCES = Path(os.environ["MCOR_TEST_SOURCES"])
 FENCE = re.compile(r"^```python(?: (\S+))?\n(.*?)^```$", re.M | re.S)

@@ -215,9 +215,8 @@ class Warned(unittest.TestCase):
                                 ({"smoothing_length": 0.5}, "neighbours within its support radius.*support radius"),
                                 ({"volume": V / 1000}, "node threshold 0.1")):
             found = caught(sphere, **words)
-            self.assertEqual(len(found), 1, [str(w.message) for w in found])
-            self.assertIs(found[0].category, mc.InputWarning)
-            self.assertRegex(str(found[0].message), sentence)
+            self.assertEqual({w.category for w in found}, {mc.InputWarning})
+            self.assertRegex(str(found[0].message), sentence)  # a further one tells that the surface is empty
         with warnings.catch_warnings():
             warnings.simplefilter("error", mc.InputWarning)
             with self.assertRaises(mc.InputWarning):

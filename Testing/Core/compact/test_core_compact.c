@@ -232,6 +232,16 @@ static void check_triangles(
   mesh_free_report(&after);
 }
 
+static mcor_input input_of(const compact_case* at, const core_set* set, const mcor_array* attribute)
+{
+  mcor_input input = core_input(set);
+  input.volume =
+    at->make == make_smooth || at->make == make_rough ? (mcor_array){ 0 } : input.volume;
+  input.attributes = attribute;
+  input.attribute_count = 1;
+  return input;
+}
+
 static void surfaces(void** state)
 {
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
@@ -239,11 +249,7 @@ static void surfaces(void** state)
     const compact_case* at = cases + i;
     core_set set = at->make();
     const mcor_array attribute = core_array(set.position, 3);
-    mcor_input input = core_input(&set);
-    input.volume =
-      at->make == make_smooth || at->make == make_rough ? (mcor_array){ 0 } : input.volume;
-    input.attributes = &attribute;
-    input.attribute_count = 1;
+    const mcor_input input = input_of(at, &set, &attribute);
     mcor_options options = options_of(at);
     mcor_surface without = core_extract(*state, &input, &options);
     options.compact = 1;
@@ -279,11 +285,7 @@ static void boxes(void** state)
     const compact_case* at = cases + i;
     core_set set = at->make();
     const mcor_array attribute = core_array(set.position, 3);
-    mcor_input input = core_input(&set);
-    input.volume =
-      at->make == make_smooth || at->make == make_rough ? (mcor_array){ 0 } : input.volume;
-    input.attributes = &attribute;
-    input.attribute_count = 1;
+    const mcor_input input = input_of(at, &set, &attribute);
     mcor_options options = options_of(at);
     options.compact = 1;
     if (at->period[1] == 0 && at->make != make_plane)

@@ -135,6 +135,15 @@ static void mcor_count_below_threshold(mcor_context* context, const mcor_input* 
   context->kept.value = context->kept.nodes = false;
 }
 
+mcor_options mcor_spell_out(const mcor_options* options)
+{
+  mcor_options own = *options;
+  own.widen = options->smooth && options->widen == 1 ? 2 : options->widen;
+  own.compact = options->smooth ? 1 : options->compact;
+  own.smooth = 0;
+  return own;
+}
+
 mcor_status mcor_extract(mcor_context* context, const mcor_input* input,
   const mcor_options* asked, mcor_surface* surface)
 {

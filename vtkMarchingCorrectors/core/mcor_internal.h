@@ -112,16 +112,6 @@ static inline bool mcor_wants(const mcor_context* context, mcor_output output)
   return context->run.options->outputs & output;
 }
 
-/* Returns the options without `smooth`, which stands for others. */
-static inline mcor_options mcor_spell_out(const mcor_options* options)
-{
-  mcor_options own = *options;
-  own.widen = options->smooth && options->widen == 1 ? 2 : options->widen;
-  own.compact = options->smooth ? 1 : options->compact;
-  own.smooth = 0;
-  return own;
-}
-
 /* Returns the wall share that the options ask for. */
 static inline double mcor_asked_share(const mcor_options* options)
 {

@@ -69,12 +69,7 @@ void vtkMarchingCorrectors::ProcessDistributed(vtkPointSet* particles, vtkPolyDa
   calls.End(isoValues.empty());
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
-  if (options.smooth)
-  {
-    options.widen = options.widen > 1.0 ? options.widen : 2.0;
-    options.compact = 1;
-    options.smooth = 0;
-  }
+  options = mcor_spell_out(&options);
   if (!(options.widen > 1.0))
   {
     this->ContourDistributed(run, choice, mine, output);
@@ -119,10 +114,8 @@ bool vtkMarchingCorrectors::WidenDistributed(vtkSPHRanksRun& run, vtkMarchingCor
   }
   const vtkIdType near = sums.Near->GetNumberOfPoints();
   vtkNew<vtkPointData> found;
-  const bool hasVolumes = !mcor_is_given(&mine.Core.volume) &&
-    !(mcor_is_given(&mine.Core.mass) && mcor_is_given(&mine.Core.density));
   vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, near));
-  if (hasVolumes)
+  if (vtkSPHComputesVolumes(mine.Core))
   {
     vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, near));
   }

@@ -22,9 +22,8 @@ namespace
 {
 bool ComputesVolumes(const mcor_input& input, const mcor_view& view)
 {
-  const bool hasMass = mcor_is_given(&input.mass);
-  return (input.scalar.data || view.weight.data || !hasMass) && !mcor_is_given(&input.volume) &&
-    !(hasMass && mcor_is_given(&input.density));
+  return (input.scalar.data || view.weight.data || !mcor_is_given(&input.mass)) &&
+    vtkSPHComputesVolumes(input);
 }
 
 /** A smoothing length that was estimated from all particles, as if it had been given. */

@@ -51,8 +51,7 @@ public:
     this->LeastMargin = mcor_reach_margin(&options, &globals, 0.0);
     this->HasLevels =
       mcor_reach_margin(&options, &globals, globals.measured.h_max) > this->LeastMargin;
-    this->ComputesVolumes = !mcor_is_given(&input.volume) &&
-      !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
+    this->ComputesVolumes = vtkSPHComputesVolumes(input);
     this->Route.Period = vtkSPHRanksPeriod(options, globals);
   }
 

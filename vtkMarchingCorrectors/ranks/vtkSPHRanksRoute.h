@@ -15,6 +15,13 @@
 VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
+/** Whether the core computes the particles' volumes. */
+inline bool vtkSPHComputesVolumes(const mcor_input& input)
+{
+  return !mcor_is_given(&input.volume) &&
+    !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
+}
+
 /** One period, as the core has it: it begins at a node of the lattice. */
 struct vtkSPHRanksPeriod
 {

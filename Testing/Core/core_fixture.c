@@ -255,14 +255,6 @@ mesh_report core_check_pinched_mesh(const mcor_surface* surface)
   return check_mesh(surface, true);
 }
 
-void core_check_decisions(const mcor_statistics* s)
-{
-  CORE_CHECK(s->ambiguous_faces > 200 && s->joined_faces > 50 && s->ambiguous_cells > 30 &&
-      s->tunnels > 0 && s->joined_faces < s->ambiguous_faces && s->tunnels < s->ambiguous_cells,
-    "%lld faces, %lld joined, %lld cells, %lld tunnels", (long long)s->ambiguous_faces,
-    (long long)s->joined_faces, (long long)s->ambiguous_cells, (long long)s->tunnels);
-}
-
 void core_check_flags(const mcor_surface* surface)
 {
   mesh_report report = core_check_mesh(surface);

@@ -98,8 +98,6 @@ mcor_surface core_extract(
 mesh_report core_check_mesh(const mcor_surface* surface);
 /* The same; but the two vertices of an edge at which only two opposite cells are valid coincide. */
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
-/* Fails unless topology by the field has decided on noise: both ways, and on many faces and cells. */
-void core_check_decisions(const mcor_statistics* s);
 /* The same; and points of the mesh's boundary, and no others, must be flagged. */
 void core_check_flags(const mcor_surface* surface);
 /* Of nothing, for a start; and with more bytes, if data is not NULL. */

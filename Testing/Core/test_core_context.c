@@ -116,7 +116,7 @@ typedef struct permuted_case
   mcor_type precision;
   mcor_seed_mode seeds;
   int volumes; /* 0 array, 1 mass / density, 2 mass alone, 3 none */
-  int solids, coincident, estimate;
+  int solids, coincident, estimate, topology, levels;
   mcor_boundary_detection boundary;
   double wall_share;
 } permuted_case;
@@ -132,6 +132,7 @@ static const permuted_case permuted_cases[] = { { .name = "volume array" },
   { .name = "coincident fluid and solid", .solids = 1, .coincident = 1 },
   { .name = "estimated smoothing length", .estimate = 1 },
   { .name = "free surface at solids", .field = MCOR_WEIGHT_SUM, .solids = 1, .wall_share = 0.3 },
+  { .name = "topology by the field", .topology = 1 }, { .name = "adaptive", .levels = 1 },
   { .name = "eigenvalue", .solids = 1, .boundary = MCOR_BOUNDARY_EIGENVALUE },
   { .name = "eigenvalue, coincident, double",
     .coincident = 1,
@@ -144,7 +145,8 @@ static core_set make_permuted_set(const permuted_case* at)
   uint64_t seed = 17;
   for (int64_t i = 0; i < set.count; ++i)
   {
-    set.smoothing_length[i] *= 1 + 0.7 * random_unit(&seed);
+    set.smoothing_length[i] *= 1 + (at->levels ? 3 : 0.7) * random_unit(&seed);
+    set.scalar[i] += at->topology ? 9 * random_unit(&seed) : 0;
     set.volume[i] *= 1 + 0.3 * random_unit(&seed);
     set.solid[i] = random_bits(&seed) % 7 == 0;
     const int64_t twin = i - 1 - (int64_t)(random_bits(&seed) % 40);
@@ -161,7 +163,7 @@ static core_set make_permuted_set(const permuted_case* at)
 
 static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, const core_set* set)
 {
-  const double inside = at->boundary == MCOR_BOUNDARY_EIGENVALUE ? -10 : 1;
+  const double inside = at->boundary == MCOR_BOUNDARY_EIGENVALUE || at->levels ? -10 : 1;
   const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : inside;
   const mcor_array none = { 0 };
   mcor_input input = core_input(set);
@@ -177,6 +179,8 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
   options.seeds = at->seeds;
   options.boundary_detection = at->boundary;
   options.wall_share = at->wall_share;
+  options.topology = at->topology ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
+  options.level_limit = at->levels ? MCOR_CUBE_LEVELS - 1 : 0;
   return hash_of(context, &input, &options);
 }
 

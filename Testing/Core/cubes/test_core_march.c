@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction: bit masks of bricks against naive twins, closed surfaces of known topology. */
+/* Extraction: bit masks of bricks against naive twins, and cells in any pattern, node by node. */
 
 #include "core_fixture.h"
 
@@ -110,113 +110,6 @@ static void test_masks(void** state)
   mcor_release(context, &results);
 }
 
-/* Extracts a closed surface and compares its topology. Returns its volume. */
-static double check_closed(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, int64_t components, int64_t euler)
-{
-  mcor_surface surface = core_extract(context, input, options);
-  mesh_report report = core_check_mesh(&surface);
-  CORE_CHECK(report.boundary_edges == 0, "%lld boundary edges", (long long)report.boundary_edges);
-  CORE_CHECK(report.components == components, "%lld components", (long long)report.components);
-  CORE_CHECK(report.euler == euler, "Euler number %lld", (long long)report.euler);
-  const double volume = report.volume;
-  mesh_free_report(&report);
-  mcor_free_surface(&surface);
-  return volume;
-}
-
-/* A sphere, through few and through many bricks and blocks; the volume settles. */
-static void test_sphere(void** state)
-{
-  core_set set = core_make_block(11, 0.2, 2, core_ball);
-  const double iso = 0, factors[] = { 2, 1, 0.5, 0.13 };
-  double volume[4];
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  for (int i = 0; i < 4; ++i)
-  {
-    options.cube_size_factor = factors[i];
-    volume[i] = check_closed(*state, &input, &options, 1, 2);
-  }
-  CORE_CHECK(volume[3] > 70 && volume[3] < 130, "volume %g", volume[3]);
-  CORE_CHECK(
-    fabs(volume[2] - volume[3]) < 0.03 * volume[3], "volumes %g and %g", volume[2], volume[3]);
-  core_free_set(&set);
-}
-
-static double torus(const double x[3])
-{
-  const double r = sqrt(x[0] * x[0] + x[1] * x[1]) - 4;
-  return 4 - r * r - x[2] * x[2];
-}
-
-static double two_balls(const double x[3])
-{
-  const double at[3] = { fabs(x[0]) - 3.6, x[1], x[2] };
-  return core_ball(at) - 4;
-}
-
-static void test_torus_and_two_balls(void** state)
-{
-  const double iso = 0;
-  const mcor_options options = core_options(&iso);
-  core_set set = core_make_block(15, 0.1, 2, torus);
-  mcor_input input = core_input(&set);
-  check_closed(*state, &input, &options, 1, 0);
-  core_free_set(&set);
-  set = core_make_block(15, 0.1, 2, two_balls);
-  input = core_input(&set);
-  check_closed(*state, &input, &options, 2, 4);
-  core_free_set(&set);
-}
-
-/* The free surface of scattered particles is closed whatever its shape, with every kernel. */
-static void test_free_surface_is_closed(void** state)
-{
-  static const mcor_sph_kernel kernels[] = { MCOR_CUBIC_SPLINE, MCOR_M_PRIME_4 };
-  for (uint64_t seed = 1; seed <= 6; ++seed)
-  {
-    core_set set = core_make_random(80, 3, 0.2, seed % 2 ? 0.2 : 0.9, seed);
-    const double iso = 0.1 + 0.05 * (double)seed;
-    const mcor_input input = core_input(&set);
-    mcor_options options = core_options(&iso);
-    options.field = MCOR_WEIGHT_SUM;
-    options.sph_kernel = kernels[seed / 2 % 2];
-    mcor_surface surface = core_extract(*state, &input, &options);
-    mesh_report report = core_check_mesh(&surface);
-    CORE_CHECK(report.triangles > 100 && report.boundary_edges == 0, "seed %d: %lld boundary edges",
-      (int)seed, (long long)report.boundary_edges);
-    mesh_free_report(&report);
-    mcor_free_surface(&surface);
-    core_free_set(&set);
-  }
-}
-
-/* Values exactly at the iso value: they count as above, and nothing tears or degenerates. */
-static void test_nodes_at_iso(void** state)
-{
-  core_set set = core_make_block(9, 0, 1, core_ball);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.scalar[i] = set.scalar[i] > 2 ? 1 : 0; /* constant on either side */
-  }
-  for (int i = 0; i < 3; ++i)
-  {
-    const double iso = i == 0 ? 1 : i == 1 ? 0.5 : 1e-3;
-    const mcor_input input = core_input(&set);
-    mcor_options options = core_options(&iso);
-    options.vertex_threshold = 0;
-    mcor_surface surface = core_extract(*state, &input, &options);
-    mesh_report report = core_check_mesh(&surface);
-    CORE_CHECK(report.triangles >= 8 && report.boundary_edges == 0,
-      "iso %g: %lld triangles, %lld boundary edges", iso, (long long)report.triangles,
-      (long long)report.boundary_edges);
-    mesh_free_report(&report);
-    mcor_free_surface(&surface);
-  }
-  core_free_set(&set);
-}
-
 /* The surface around one huge value is found, and ends where the support does. */
 static void test_outlier(void** state)
 {
@@ -303,25 +196,6 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   mcor_free_surface(&b);
   core_free_set(&part);
   core_free_set(&whole);
-}
-
-/* Triangles face lower values. */
-static void test_orientation(void** state)
-{
-  core_set set = core_make_block(11, 0.2, 2, core_ball);
-  const double iso = 0;
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  const double volume = check_closed(*state, &input, &options, 1, 2);
-  CORE_CHECK(volume > 0, "a ball of high values has volume %g", volume);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.scalar[i] = -set.scalar[i];
-  }
-  const double inside_out = check_closed(*state, &input, &options, 1, 2);
-  CORE_CHECK(inside_out < 0, "a ball of low values has volume %g", inside_out);
-  CORE_CHECK(fabs(volume + inside_out) < 1e-4 * volume, "%g and %g", volume, inside_out);
-  core_free_set(&set);
 }
 
 /* ---- Node by node: a particle on a node reaches no other one, so that the value there is its own,
@@ -487,10 +361,8 @@ static void test_node_by_node(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks), cmocka_unit_test(test_sphere),
-    cmocka_unit_test(test_torus_and_two_balls), cmocka_unit_test(test_free_surface_is_closed),
-    cmocka_unit_test(test_nodes_at_iso), cmocka_unit_test(test_outlier),
-    cmocka_unit_test(test_parts_have_the_bits_of_the_whole), cmocka_unit_test(test_orientation),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks),
+    cmocka_unit_test(test_outlier), cmocka_unit_test(test_parts_have_the_bits_of_the_whole),
     cmocka_unit_test(test_node_by_node) };
   return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
 }

@@ -1,102 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Seeds: complete ones miss no cell, the digital line misses none between a pair. */
+/* Seeds: bricks between both sides are requested, the digital line misses no cell between a pair. That complete
+ * ones miss no edge, the oracle knows. */
 
 #include "core_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Lattice edges that have a point. Where discarded cells leave two cells that touch in an edge
- * only, the edge has two points, one behind the other. */
-static int64_t count_edges(const mcor_surface* surface)
-{
-  int64_t count = 0;
-  for (int64_t i = 0; i < surface->point_count; ++i)
-  {
-    const double* x = surface->points + 3 * i;
-    count += i == 0 || memcmp(x, x - 3, 3 * sizeof *x) != 0;
-  }
-  return count;
-}
-
-/* All nodes, evaluated one by one in double precision: cells and edges of the whole surface. */
-static void check_complete(
-  mcor_context* context, const core_set* set, mcor_options* options, const char* name)
-{
-  const double iso = options->iso_values[0];
-  const mcor_input input = core_input(set);
-  options->precision = MCOR_FLOAT64; /* no node is close enough to the iso value to be excused */
-  options->node_threshold = 0.02;
-  options->vertex_threshold = 0;
-  mcor_surface surface = core_extract(context, &input, options);
-  const oracle_particles particles = core_oracle(set);
-  const oracle_limits limits = { .iso = iso, .node_threshold = 0.02 };
-  oracle_field field;
-  oracle_lattice lattice;
-  oracle_surface expected;
-  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)options->sph_kernel,
-    (oracle_kind)options->field, options->h_scale));
-  assert_true(oracle_create_lattice(&lattice, &field, surface.statistics.cube_edges, 10000000));
-  oracle_classify(&lattice, field.kind, &limits);
-  assert_true(oracle_create_surface(&expected, &lattice));
-  CORE_CHECK(expected.cell_count > 10, "%s, kernel %s, field %d: %lld cells say little", name,
-    mcor_sph_kernel_name(options->sph_kernel), (int)options->field, (long long)expected.cell_count);
-  CORE_CHECK(surface.statistics.cells_used == expected.cell_count,
-    "%s, kernel %s, field %d: %lld cells used, %lld by brute force", name,
-    mcor_sph_kernel_name(options->sph_kernel), (int)options->field,
-    (long long)surface.statistics.cells_used, (long long)expected.cell_count);
-  /* M'4 may have weights below 0 between valid nodes; trimming then changes the count. */
-  CORE_CHECK(surface.statistics.trim_vertices > 0 || count_edges(&surface) == expected.edge_count,
-    "%s, kernel %s, field %d: %lld, not %lld edges", name,
-    mcor_sph_kernel_name(options->sph_kernel), (int)options->field,
-    (long long)count_edges(&surface), (long long)expected.edge_count);
-  oracle_free_surface(&expected);
-  oracle_free_lattice(&lattice);
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-}
-
-static void test_complete(void** state)
-{
-  static const mcor_sph_kernel kernels[] = { MCOR_CUBIC_SPLINE, MCOR_M_PRIME_4, MCOR_QUINTIC_SPLINE,
-    MCOR_QUADRATIC, MCOR_WENDLAND_C2, MCOR_QUARTIC_SPLINE, MCOR_WENDLAND_C4, MCOR_WENDLAND_C6,
-    MCOR_SINC_6 };
-  enum
-  {
-    all = sizeof kernels / sizeof kernels[0]
-  };
-  assert_int_equal(all, MCOR_SPH_KERNEL_COUNT);
-  static const int fields[][2] = { { MCOR_SHEPARD, all }, { MCOR_SUM, 3 },
-    { MCOR_WEIGHT_SUM, 3 } }; /* field, how many kernels of the list */
-  for (int f = 0; f < 3; ++f)
-  {
-    for (int k = 0; k < fields[f][1]; ++k)
-    {
-      for (uint64_t seed = 1; seed <= 4; ++seed)
-      {
-        core_set set = core_make_random(
-          seed == 4 ? 3 : 60, 4, seed == 3 ? 0.2 : 0.6, seed == 2 ? 0.6 : 1.2, seed);
-        const double iso = f == 2 ? (seed == 4 ? 0.08 : 0.3) : seed == 4 ? 0.05 : 0.1;
-        set.scalar[0] = fabs(set.scalar[0]) + 0.3;
-        set.scalar[1] = -set.scalar[0];
-        for (int i = 0; seed == 4 && i < 3; ++i)
-        {
-          set.volume[i] *= 5;
-        }
-        mcor_options options = core_options(&iso);
-        options.field = (mcor_field)fields[f][0];
-        options.sph_kernel = kernels[k];
-        options.cube_size = seed == 3 ? 0.17 : 0.23;
-        options.h_scale = seed == 2 ? 0.9 : 1;
-        check_complete(*state, &set, &options, seed == 4 ? "three particles" : "random");
-        core_free_set(&set);
-      }
-    }
-  }
-}
 
 #define NO_BRICK 4
 
@@ -316,26 +228,6 @@ static void test_pairs_in_each_form(void** state)
   (void)state;
 }
 
-/* Where pairs find everything, both modes give the same bits. */
-static void test_modes_agree(void** state)
-{
-  core_set set = core_make_block(9, 0.1, 5, core_ball);
-  const double iso = 1;
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  uint64_t hash[2];
-  for (int mode = 0; mode < 2; ++mode)
-  {
-    options.seeds = mode ? MCOR_PAIRS : MCOR_COMPLETE;
-    mcor_surface surface = core_extract(*state, &input, &options);
-    CORE_CHECK(surface.triangle_count > 500, "%lld triangles", (long long)surface.triangle_count);
-    hash[mode] = core_hash(&surface);
-    mcor_free_surface(&surface);
-  }
-  CORE_CHECK(hash[0] == hash[1], "pairs and complete seeds give different surfaces");
-  core_free_set(&set);
-}
-
 /* Bricks along an edge of a made-up lattice, of 3 x 3 x 3 blocks without the middle one and the last. */
 #define BRICKS 24
 
@@ -454,8 +346,7 @@ static void test_request(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_request),
-    cmocka_unit_test(test_complete), cmocka_unit_test(test_line), cmocka_unit_test(test_pairs),
-    cmocka_unit_test(test_pairs_in_each_form), cmocka_unit_test(test_modes_agree) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_request), cmocka_unit_test(test_line),
+    cmocka_unit_test(test_pairs), cmocka_unit_test(test_pairs_in_each_form) };
   return cmocka_run_group_tests_name("seed", tests, core_set_up, core_tear_down);
 }

@@ -5,7 +5,7 @@
  * threads. */
 
 #if defined(__linux__) && !defined(_GNU_SOURCE)
-#define _GNU_SOURCE /* for sched_setaffinity, setenv */
+#define _GNU_SOURCE /* for setenv */
 #endif
 
 #include "core_fixture.h"
@@ -18,7 +18,6 @@
 
 #ifndef _WIN32
 #include <pthread.h>
-#include <sched.h>
 #endif
 
 /* How often the elements and slices of a loop were visited. */
@@ -231,34 +230,6 @@ static void expect_same(const outcome* a, const outcome* b)
   assert_true(x->scalar_min == y->scalar_min && x->scalar_max == y->scalar_max);
 }
 
-/* The calling thread decides on which processors its threads run. */
-static void test_one_processor(void** state)
-{
-#ifdef __linux__
-  core_set set = make_large_set();
-  outcome all = extract(*state, &set);
-  cpu_set_t before, one;
-  assert_int_equal(sched_getaffinity(0, sizeof before, &before), 0);
-  size_t processor = 0;
-  while (!CPU_ISSET(processor, &before))
-  {
-    ++processor;
-  }
-  CPU_ZERO(&one);
-  CPU_SET(processor, &one);
-  assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
-  outcome alone = extract(*state, &set);
-  assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
-  expect_same(&all, &alone);
-  mcor_free_surface(&all.surface);
-  mcor_free_surface(&alone.surface);
-  core_free_set(&set);
-#else
-  (void)state;
-  skip();
-#endif
-}
-
 /* Particles that are left out leave the others in order. */
 static void test_solids_left_out(void** state)
 {
@@ -343,7 +314,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_element_once),
     cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_cancelled),
-    cmocka_unit_test(test_one_processor), cmocka_unit_test(test_solids_left_out),
-    cmocka_unit_test(test_first_bad_particle), cmocka_unit_test(test_ranges) };
+    cmocka_unit_test(test_solids_left_out), cmocka_unit_test(test_first_bad_particle),
+    cmocka_unit_test(test_ranges) };
   return cmocka_run_group_tests_name("parallel", tests, core_set_up, core_tear_down);
 }

@@ -165,58 +165,6 @@ static void test_too_few_neighbours(void** state)
   core_free_set(&set);
 }
 
-/* A Taylor-Green vortex: the errors of the vorticity fall with the spacing, by at least its first
- * power. */
-static double derive_taylor_green(mcor_context* context, int n)
-{
-  core_set set = core_make_block(n, 0, 3, core_slope);
-  const double k = 6.283185307179586 / n;
-  double* v = malloc((size_t)set.count * 3 * sizeof(double));
-  double* vorticity = malloc((size_t)set.count * 3 * sizeof(double));
-  double* lambda2 = malloc((size_t)set.count * sizeof(double));
-  double* q = malloc((size_t)set.count * sizeof(double));
-  assert_true(v && vorticity && lambda2 && q);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    const double *x = set.position + 3 * i, p = k * x[0], r = k * x[1], s = k * x[2];
-    v[3 * i] = sin(p) * cos(r) * cos(s) / k;
-    v[3 * i + 1] = -cos(p) * sin(r) * cos(s) / k;
-    v[3 * i + 2] = 0;
-  }
-  mcor_derivatives d = derive(context, &set, v, 3, MCOR_FLOAT32, MCOR_GRADIENT_CORRECTED);
-  const mcor_flow flow = { .vorticity = vorticity, .lambda2 = lambda2, .q_criterion = q };
-  assert_int_equal(mcor_decompose_gradients(d.gradients[0], set.count, &flow), MCOR_OK);
-  double worst = 0;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    const double *x = set.position + 3 * i, p = k * x[0], r = k * x[1], s = k * x[2];
-    if (fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2]))) > 0.3 * n)
-    {
-      continue;
-    }
-    const double expected[3] = { -cos(p) * sin(r) * sin(s), -sin(p) * cos(r) * sin(s),
-      2 * sin(p) * sin(r) * cos(s) };
-    for (int a = 0; a < 3; ++a)
-    {
-      worst = fmax(worst, fabs(vorticity[3 * i + a] - expected[a]));
-    }
-  }
-  mcor_free_derivatives(&d);
-  free(v);
-  free(vorticity);
-  free(lambda2);
-  free(q);
-  core_free_set(&set);
-  return worst;
-}
-
-static void test_taylor_green(void** state)
-{
-  const double coarse = derive_taylor_green(*state, 16), fine = derive_taylor_green(*state, 32);
-  const double order = log2(coarse / fine);
-  CORE_CHECK(order > 1.8, "errors %g and %g: order %g", coarse, fine, order);
-}
-
 /* Of matrices of which the answer is known. */
 static void test_decomposition(void** state)
 {
@@ -245,6 +193,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_linear_is_exact),
     cmocka_unit_test(test_standard_form), cmocka_unit_test(test_too_few_neighbours),
-    cmocka_unit_test(test_taylor_green), cmocka_unit_test(test_decomposition) };
+    cmocka_unit_test(test_decomposition) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

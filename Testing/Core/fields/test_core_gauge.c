@@ -209,25 +209,6 @@ static void test_noise(void** state)
   core_free_set(&set);
 }
 
-/* A lattice's level: half a spacing above its upper layer. */
-static void test_still_pool(void** state)
-{
-  core_set set = make_pool(0);
-  const mcor_gauge_line line = { .from = { 12.3, 8.1, 3 }, .to = { 12.3, 8.1, 15 } };
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(NULL);
-  options.iso_count = 0;
-  mcor_gauges gauges;
-  CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
-  const mcor_gauge_reading* r = &gauges.readings[0];
-  assert_int_equal(r->state, MCOR_GAUGE_WET);
-  assert_int_equal(r->crossing_count, 1);
-  CORE_CHECK(fabs(r->place[2] - 10) < 0.05, "level %g", r->place[2]);
-  assert_true(fabs(r->depth - (r->place[2] - 3)) < 1e-9);
-  mcor_free_gauges(&gauges);
-  core_free_set(&set);
-}
-
 /* With computed volumes, too, though upper layers lack half of their neighbours: with any kernel and usual smoothing
  * length, with masses or without, in space and in a plane. */
 static void test_still_pool_of_computed_volumes(void** state)
@@ -367,8 +348,7 @@ static void test_weird(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_pool_with_waves),
-    cmocka_unit_test(test_noise), cmocka_unit_test(test_still_pool),
-    cmocka_unit_test(test_still_pool_of_computed_volumes), cmocka_unit_test(test_period),
-    cmocka_unit_test(test_same_bits), cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_noise), cmocka_unit_test(test_still_pool_of_computed_volumes),
+    cmocka_unit_test(test_period), cmocka_unit_test(test_same_bits), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Search grid: queries against all particles one by one, volumes against the oracle's. */
+/* Search grid: queries against all particles one by one, its order, estimates. */
 
 #include "core_fixture.h"
 #include "mcor_input.h"
@@ -194,133 +194,6 @@ static void test_query(void** state)
   }
 }
 
-/* mass: NULL for 1 each. */
-static void compute_volumes(
-  core_set* set, mcor_sph_kernel kernel, const double* mass, int leave_out_solids)
-{
-  oracle_particles particles = core_oracle(set);
-  particles.ignore_solids = leave_out_solids;
-  assert_true(oracle_compute_volumes(&particles, (oracle_kernel)kernel, 3, mass, NULL));
-}
-
-/* The weight sums at the surface's points against those of `set`, which has its volumes. */
-static void check_weights(mcor_context* context, const core_set* set, const mcor_input* input,
-  const mcor_options* options, const char* rule)
-{
-  const oracle_particles particles = core_oracle(set);
-  oracle_field field;
-  assert_true(oracle_create_field(
-    &field, &particles, (oracle_kernel)options->sph_kernel, ORACLE_WEIGHT, options->h_scale));
-  mcor_surface surface = core_extract(context, input, options);
-  CORE_CHECK(surface.point_count > 50, "%lld points", (long long)surface.point_count);
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    oracle_sample sample;
-    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
-    const double error = fabs((double)surface.weight_sum[i] - sample.trim_weight);
-    CORE_CHECK(error < 1e-5 * (1 + sample.trim_weight), "%s, h scale %g: weight %.9g, not %.9g",
-      rule, options->h_scale, (double)surface.weight_sum[i], sample.trim_weight);
-  }
-  mcor_free_surface(&surface);
-  oracle_free_field(&field);
-}
-
-static void check_volumes(mcor_context* context, double h_scale, double ratio)
-{
-  core_set set = core_make_random(200, 3, 0.8 / ratio, 0.8, 9);
-  double* mass = core_copy(set.volume, 200 * sizeof(double));
-  double* density = core_copy(set.volume, 200 * sizeof(double));
-  const double iso = 0;
-  for (int i = 0; i < 200; ++i)
-  {
-    density[i] = 0.5 + i * 0.01;
-    set.volume[i] *= 0.1;
-  }
-  mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  options.h_scale = h_scale;
-  options.outputs |= MCOR_OUT_WEIGHT_SUM;
-  options.node_threshold = 0;
-  options.vertex_threshold = 0;
-  check_weights(context, &set, &input, &options, "array");
-  input.mass = core_array(mass, 1);
-  input.density = core_array(density, 1);
-  input.volume = (mcor_array){ 0 };
-  for (int i = 0; i < 200; ++i)
-  {
-    set.volume[i] = mass[i] / density[i];
-  }
-  check_weights(context, &set, &input, &options, "mass / density");
-  input.density = (mcor_array){ 0 };
-  compute_volumes(&set, MCOR_CUBIC_SPLINE, mass, 0);
-  check_weights(context, &set, &input, &options, "mass alone");
-  input.mass = (mcor_array){ 0 };
-  compute_volumes(&set, MCOR_CUBIC_SPLINE, NULL, 0);
-  check_weights(context, &set, &input, &options, "neither");
-  core_free_set(&set);
-  free(mass);
-  free(density);
-}
-
-static void test_volumes(void** state)
-{
-  check_volumes(*state, 1, 1);
-  check_volumes(*state, 1, 20);
-  check_volumes(*state, 0.5, 4);
-  check_volumes(*state, 1.5, 4);
-}
-
-/* Computed volumes next to solids, and of solids, which have volumes of their own in the trimming
- * weight; or which are left out. The field tells the fluid's volumes, the weight all of them. */
-static void check_volumes_of_solids(mcor_context* context, int with_mass, int ignored)
-{
-  core_set set = core_make_block(8, 0.3, 4, core_slope);
-  double* mass = core_copy(set.volume, (size_t)set.count * sizeof(double));
-  const double iso = 0;
-  set.has_solids = 1;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.solid[i] = i % 3 == 0;
-    mass[i] = 1 + 0.01 * (double)(i % 50);
-  }
-  mcor_input input = core_input(&set);
-  input.volume = (mcor_array){ 0 };
-  input.mass = with_mass ? core_array(mass, 1) : input.volume;
-  input.ignore_solids = ignored;
-  mcor_options options = core_options(&iso);
-  options.outputs |= MCOR_OUT_WEIGHT_SUM;
-  compute_volumes(&set, MCOR_CUBIC_SPLINE, with_mass ? mass : NULL, ignored);
-  oracle_particles particles = core_oracle(&set);
-  particles.ignore_solids = ignored;
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
-  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
-  mcor_surface surface = core_extract(context, &input, &options);
-  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    oracle_sample sample;
-    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
-    CORE_CHECK(fabs((double)surface.weight_sum[i] - sample.trim_weight) < 1e-5,
-      "mass %d, ignored %d: weight %.9g, not %.9g", with_mass, ignored,
-      (double)surface.weight_sum[i], sample.trim_weight);
-    CORE_CHECK(surface.boundary_flag[i] == 2 || fabs(sample.value) < 1e-4,
-      "mass %d, ignored %d: value %g", with_mass, ignored, sample.value);
-  }
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-  free(mass);
-}
-
-static void test_volumes_of_solids(void** state)
-{
-  for (int kind = 0; kind < 4; ++kind)
-  {
-    check_volumes_of_solids(*state, kind & 1, kind >> 1);
-  }
-}
-
 /* Of cubes exactly, else to two units of rounding, and with the bits that IEEE's operations give. */
 static void test_cube_root(void** state)
 {
@@ -363,33 +236,6 @@ static void test_estimate(void** state)
     mcor_free_surface(&surface);
     core_free_set(&set);
   }
-}
-
-/* A smoothing length given as support radius, and one given as a constant. */
-static void test_smoothing_lengths(void** state)
-{
-  core_set set = core_make_block(8, 0.2, 3, core_ball);
-  const double iso = 1;
-  mcor_input input = core_input(&set);
-  const mcor_options options = core_options(&iso);
-  mcor_surface surface = core_extract(*state, &input, &options);
-  const uint64_t expected = core_hash(&surface);
-  mcor_free_surface(&surface);
-  input.smoothing_length = (mcor_array){ .constant = 1.3 };
-  surface = core_extract(*state, &input, &options);
-  CORE_CHECK(core_hash(&surface) == expected, "constant smoothing length");
-  mcor_free_surface(&surface);
-  input.smoothing_length.constant = 2.6;
-  input.smoothing_length_is_support_radius = 1;
-  surface = core_extract(*state, &input, &options);
-  CORE_CHECK(core_hash(&surface) == expected, "support radius");
-  mcor_free_surface(&surface);
-  input.estimate_smoothing_length = 1;
-  surface = core_extract(*state, &input, &options);
-  const double h = surface.statistics.smoothing_length_min;
-  CORE_CHECK(h > 1.3 * 0.8 && h < 1.3 * 1.4, "estimated smoothing length %g", h);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
 }
 
 /* What of the grid must not depend on the order of the input: a row for each array. */
@@ -519,9 +365,8 @@ static void test_crowds(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_query), cmocka_unit_test(test_volumes),
-    cmocka_unit_test(test_volumes_of_solids), cmocka_unit_test(test_cube_root),
-    cmocka_unit_test(test_estimate), cmocka_unit_test(test_smoothing_lengths),
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_query),
+    cmocka_unit_test(test_cube_root), cmocka_unit_test(test_estimate),
     cmocka_unit_test(test_crowds) };
   return cmocka_run_group_tests_name("grid", tests, core_set_up, core_tear_down);
 }

@@ -227,34 +227,9 @@ static void test_names(void** state)
   assert_null(mcor_sph_kernel_name((mcor_sph_kernel)99));
 }
 
-/* A lone particle: the weight sum is V W, so its free surface is a sphere of known radius. */
-static void test_lone_particle(void** state)
-{
-  mcor_context* context = *state;
-  core_set set = core_make_set(1);
-  set.smoothing_length[0] = 0.5;
-  set.volume[0] = 0.125;
-  const mcor_input input = core_input(&set);
-  const double offset[3] = { 0.4, 0, 0 };
-  const double iso = 0.125 * oracle_kernel_value(ORACLE_CUBIC_SPLINE, 0.5, offset, NULL);
-  mcor_options options = core_options(&iso);
-  options.field = MCOR_WEIGHT_SUM;
-  options.tolerance = 1e-6;
-  mcor_surface surface = core_extract(context, &input, &options);
-  CORE_CHECK(surface.point_count > 50, "%lld points", (long long)surface.point_count);
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    const double* x = surface.points + 3 * i;
-    const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-    CORE_CHECK(fabs(r - 0.4) < 1e-5, "radius %.9g of point %lld", r, (long long)i);
-  }
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-}
-
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels), cmocka_unit_test(test_names),
-    cmocka_unit_test(test_lone_particle) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels),
+    cmocka_unit_test(test_names) };
   return cmocka_run_group_tests_name("sph_kernel", tests, core_set_up, core_tear_down);
 }

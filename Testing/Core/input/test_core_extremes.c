@@ -245,35 +245,11 @@ static void test_no_density(void** state)
   core_free_set(&set);
 }
 
-/* What did not fit leaves nothing behind: something smaller fits then. */
-static void test_after_no_memory(void** state)
-{
-  const double iso = 0;
-  core_set set = core_make_block(16, 0.2, 3, core_slope);
-  for (int keep = 0; keep < 2; ++keep)
-  {
-    mcor_input input = keep ? core_input_to_keep(&set) : core_input(&set);
-    mcor_options fine = core_options(&iso), coarse = core_options(&iso);
-    fine.cube_size = 0.15;
-    coarse.cube_size = 1.3;
-    mcor_release_memory(*state);
-    mcor_surface surface = core_extract(*state, &input, &coarse);
-    fine.memory_limit = coarse.memory_limit = surface.statistics.device_bytes_peak + 100000;
-    mcor_free_surface(&surface);
-    assert_int_equal(mcor_extract(*state, &input, &fine, &surface), MCOR_OUT_OF_CAPACITY);
-    surface = core_extract(*state, &input, &coarse);
-    CORE_CHECK(surface.triangle_count > 100, "%lld triangles", (long long)surface.triangle_count);
-    mcor_free_surface(&surface);
-  }
-  core_free_set(&set);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_apart),
     cmocka_unit_test(test_far_reach), cmocka_unit_test(test_magnitude),
     cmocka_unit_test(test_exact_threshold), cmocka_unit_test(test_coincident),
-    cmocka_unit_test(test_plateau), cmocka_unit_test(test_no_density),
-    cmocka_unit_test(test_after_no_memory) };
+    cmocka_unit_test(test_plateau), cmocka_unit_test(test_no_density) };
   return cmocka_run_group_tests_name("extremes", tests, core_set_up, core_tear_down);
 }

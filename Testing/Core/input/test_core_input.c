@@ -120,6 +120,7 @@ static void test_options(void** state)
   ARGUMENT("iteration limit|-1|255", call.options.iteration_limit = -1);
   ARGUMENT("iteration limit|0|255", call.options.iteration_limit = 0);
   ARGUMENT("iteration limit|256|255", call.options.iteration_limit = 256);
+  ARGUMENT("level limit", call.options.level_limit = MCOR_CUBE_LEVELS);
   ARGUMENT("iso_count is -1", call.options.iso_count = -1);
   ARGUMENT("iso_count is 1", call.options.iso_values = NULL);
   ARGUMENT("attribute_count is -1", call.input.attribute_count = -1);

@@ -61,6 +61,8 @@ static void rough_surfaces(void** state)
   options.node_threshold = 0.6;
   options.vertex_threshold = 0.62;
   core_check_cuts(*state, "noise, computed volumes", &input, &options);
+  options.topology = MCOR_TOPOLOGY_FIELD;
+  core_check_cuts(*state, "topology by the field", &input, &options);
   options.preview = 1;
   options.sph_kernel = MCOR_M_PRIME_4;
   core_check_cuts(*state, "M'4, preview", &input, &options);

@@ -270,32 +270,6 @@ static void shifts(void** state)
   core_free_set(&set);
 }
 
-/* Boxes within a period, on its sides too, make up the whole. */
-static void boxes(void** state)
-{
-  const double iso = 0.2;
-  const int cube[3] = { 8, 8, 8 };
-  const double around[6] = { 0, 8, 0, 8, 0, 8 };
-  core_set set = core_make_period(cube, 5);
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_period_options(&iso, around);
-  mcor_surface surface = core_extract(*state, &input, &options);
-  int64_t triangles = 0, cells = 0;
-  for (int part = 0; part < 2; ++part)
-  {
-    const double box[6] = { part ? 3.3 : -5, part ? 50 : 3.3, -5, 50, -5, 50 };
-    memcpy(options.box, box, sizeof box);
-    mcor_surface half = core_extract(*state, &input, &options);
-    triangles += half.triangle_count;
-    cells += half.statistics.virtual_cells;
-    mcor_free_surface(&half);
-  }
-  assert_int_equal(triangles, surface.triangle_count);
-  assert_int_equal(cells, surface.statistics.virtual_cells);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-}
-
 /* Cubes fit periods of different lengths; what cannot be is said. */
 static void lengths(void** state)
 {
@@ -482,7 +456,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(images_count),
     cmocka_unit_test(adaptive_cubes), cmocka_unit_test(adaptive_unequal),
-    cmocka_unit_test(shifts), cmocka_unit_test(boxes),
-    cmocka_unit_test(lengths), cmocka_unit_test(rounded_length), cmocka_unit_test(large_sides) };
+    cmocka_unit_test(shifts), cmocka_unit_test(lengths), cmocka_unit_test(rounded_length),
+    cmocka_unit_test(large_sides) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

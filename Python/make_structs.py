@@ -52,7 +52,9 @@ class Header:
         self.structs = {}
         for tag, body, name in re.findall(r"struct (\w+) \{ (.*?) \}(?: (\w+))? ;", tokens):
             self.structs[name or tag] = self.read_struct(body)
-        self.functions = sorted(set(re.findall(r"(?<=[;{}]) [\w *]+? (mcor_\w+) \(", code)))
+        self.functions = {name: [self.parameter_type(each) for each in (result, *parameters.split(" , "))]
+                          for result, name, parameters in
+                          re.findall(r"(?<=[;{}]) ([\w *]+?) (mcor_\w+) \( (.*?) \) ;", code)}
 
     def read_enum(self, body):
         values, next_value = {}, 0
@@ -97,11 +99,24 @@ class Header:
             fields.append((name, base, stars.count("*"), length, comment))
         return fields
 
+    def parameter_type(self, text):
+        """As ctype() has it. A text that a function returns for the caller to free keeps its address."""
+        base, stars = re.match(r"(?:const )?(\w+)((?: \*)*)", text).groups()
+        pointers = stars.count("*") + ("[" in text)
+        if (base, pointers) == ("void", 0):
+            return "None"
+        if base not in {*NUMBERS, *self.enums, *self.structs} or base == "char" and (
+                pointers == 2 or text == "char *"):  # mcor_context is a handle
+            base, pointers = "void", max(pointers, 1)
+        return self.ctype(base, pointers, None)
+
     def ctype(self, base, pointers, length):
         if base == "callback":
             return "Progress"
-        if (base, pointers) in (("void", 1), ("char", 1)):
-            return "ctypes.c_void_p" if base == "void" else "ctypes.c_char_p"
+        if base == "void":
+            base, pointers = "ctypes.c_void_p", pointers - 1
+        if (base, pointers) == ("char", 1):
+            return "ctypes.c_char_p"
         kind = f"ctypes.{NUMBERS[base]}" if base in NUMBERS else \
             "ctypes.c_int" if base in self.enums else base
         for _ in range(pointers):
@@ -171,6 +186,9 @@ def python_module(header, rows):
     for label, value in (("ENUMS", header.enums), ("SHAPES", results), ("KINDS", kinds),
                          ("STATISTICS", rows.statistics), ("OPTIONS", rows.options)):
         lines += ["", f"{label} = {value!r}"]
+    lines += ["", "# {name: (type of the result, types of the parameters)}", "FUNCTIONS = {",
+              *(f"    {name!r}: ({result}, [{', '.join(parameters)}])," for name, (result, *parameters) in
+                sorted(header.functions.items())), "}"]
     return "\n".join(lines) + "\n"
 
 
@@ -195,7 +213,7 @@ def main():
     module = python_module(header, Rows(Path(sys.argv[1]).parent, header))
     (folder / "_structs.py").write_text(module, encoding="utf-8")
     (folder / "check_structs.c").write_text(c_checks(module, header), encoding="utf-8")
-    exports = header.functions
+    exports = sorted(header.functions)
     (folder / "exports.map").write_text(
         "{ global: " + "; ".join(exports) + "; local: *; };\n", encoding="utf-8")
     (folder / "exports.def").write_text("\n".join(["EXPORTS", *exports, ""]), encoding="utf-8")

@@ -31,7 +31,8 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
 from marchingcorrectors._arrays import camel
-from marchingcorrectors._functions import called, take_surface
+from marchingcorrectors._call import called
+from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import devices as list_devices
 from marchingcorrectors._library import lib
 from marchingcorrectors._options import OUTPUTS
@@ -446,7 +447,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.EstimatedCells = particles.estimate_cells(arguments, options)
         self._warn_once("cells of " + self.BlockName, take_text(lib.mcor_describe_estimate(self.EstimatedCells)))
         with self._called(particles, arguments) as surface:
-            found = take_surface(surface, arguments, [name_of(array) for array in particles.interpolated])
+            found = take_surface(surface, arguments)
             self._summarize(particles, arguments, surface)
             for name, particle in found.left_out.items():
                 self._say(f"The point array '{name}' is NaN or infinite at particle {particle} and was left out of the "
@@ -466,8 +467,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
             if choice.KeepDeviceData:
                 self._set_versions(particles, arguments)
-            with called(lib.mcor_extract, c.mcor_surface, arguments,
-                        {"context": self._context, "progress": self._report}) as surface:
+            arguments.context, arguments.progress = self._context, self._report
+            with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
                 yield surface
         except BaseException as failure:
             self._signatures = (None, None)

@@ -3,32 +3,26 @@
 """PyVista's particles.sph, which PyVista finds by the package's entry point."""
 from __future__ import annotations
 
-import inspect
+import functools
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, Tuple, Union, cast
 
 import numpy as np
 import pyvista
 
-from . import _flux, _functions, _gauge
+from . import _flux, _functions, _gauge, _project
 from ._arrays import SUMMED, choose
-from ._context import Context
+from ._call import QUANTITIES, Shared, own_keywords
 from ._library import InvalidArgument
-from ._options import (DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, Function, Options, check_names,
-                       did_you_mean, with_options)
+from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
-from ._vtk_particles import (GHOSTS, NO_PERIOD, QUANTITIES, WALL_BLOCK, describe_missing_length, describe_unused_types, detect,
+from ._vtk_particles import (GHOSTS, NO_PERIOD, WALL_BLOCK, describe_missing_length, describe_unused_types, detect,
                              find_period, join_velocity, name_of)
 from ._warnings import warn
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from numpy.typing import ArrayLike
-
-    from ._functions import Only, Progress
-
-Quantity = Union[None, str, float, np.ndarray]
 ABOUT_PARTICLES = '''
         smoothing_length, volume, mass, density: the name of a point array, an array, or one value
             for all; by default the point array with a usual name (SmoothingLength, hsml, h; Mass;
@@ -46,36 +40,24 @@ ABOUT_PARTICLES = '''
 '''
 
 
-class Particles(Options, total=False):
-    """Keywords of all methods, beside those of the functions for NumPy."""
+class Particles(Shared, total=False):
+    """Keywords of all methods."""
 
-    smoothing_length: Quantity
-    volume: Quantity
-    mass: Quantity
-    density: Quantity
     fluid: Optional[Tuple[str, float]]
-    within: Optional[ArrayLike]
-    only: Optional[Only]
     attributes: Optional[Iterable[str]]
-    context: Optional[Context]
-    device: Union[None, str, int]
-    progress: Optional[Progress]
 
 
-OWN = tuple(name for name in Particles.__annotations__ if name not in Options.__annotations__)
-
-
-def _method(names: Sequence[str]) -> Callable[[Function], Function]:
-    """Decorator: the keywords of all methods, and these options, in signature and text."""
+def _method(options: Sequence[str]) -> Callable[[Function], Function]:
+    """Decorator: the method takes the keywords of Particles, and these options; all stand in its signature and text."""
     def decorate(function: Function) -> Function:
-        function.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
-        signature = inspect.signature(function)
-        own = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
-        own += [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None,
-                                  annotation=Particles.__annotations__[name])
-                for name in OWN if name not in signature.parameters]
-        function.__signature__ = signature.replace(parameters=own)  # type: ignore[attr-defined]
-        return with_options(names)(function)
+        @functools.wraps(function)
+        def call(self: Any, *arguments: Any, **words: Any) -> Any:
+            check_names(call, words, options)
+            return function(self, *arguments, **words)
+
+        call.__doc__ = (function.__doc__ or "").rstrip() + "\n" + ABOUT_PARTICLES
+        show(call, own_keywords(Particles), options)
+        return cast(Function, call)
 
     return decorate
 
@@ -115,7 +97,7 @@ class SphAccessor:
     @_method(ISOSURFACE)
     def isosurface(self, scalar: Union[str, np.ndarray], iso: Union[float, Sequence[float]], *,
                    scalar_dot: Union[None, str, np.ndarray] = None,
-                   **options: Unpack[Particles]) -> pyvista.PolyData:
+                   **words: Unpack[Particles]) -> pyvista.PolyData:
         """Where a point array (its magnitude, or scalar_component=0, 1, ...) has the value `iso`.
 
         Example: particles.sph.isosurface("Velocity", 1.0).plot()
@@ -126,28 +108,24 @@ class SphAccessor:
         iso: the value of the scalar on the surface, or a list of values.
         scalar_dot: a second vector; the scalar is then the dot product.
         """
-        check_names(SphAccessor.isosurface, options, ISOSURFACE + OWN)
-        words = self._words(options)
-        dot = None if scalar_dot is None else self._array(scalar_dot)
         is_summed = isinstance(scalar, str) and scalar == SUMMED and SUMMED not in self._particles.point_data
-        return _functions.isosurface(self._particles.points, scalar if is_summed else self._array(scalar), iso, scalar_dot=dot,
-                                     **words).to_pyvista()
+        return _functions.isosurface(self._particles.points, scalar if is_summed else self._array(scalar), iso,
+                                     scalar_dot=self._array(scalar_dot), **self._words(words)).to_pyvista()
 
     @_method(FREE_SURFACE)
     def free_surface(self, iso: Union[float, Sequence[float]] = 0.5,
-                     **options: Unpack[Particles]) -> pyvista.PolyData:
+                     **words: Unpack[Particles]) -> pyvista.PolyData:
         """The surface of the fluid: where the sum of the particles' weights (no unit) is `iso`.
 
         Example: particles.sph.free_surface(fluid=("ParticleType", 0)).plot()
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
         """
-        check_names(SphAccessor.free_surface, options, FREE_SURFACE + OWN)
-        return _functions.free_surface(self._particles.points, iso, **self._words(options)).to_pyvista()
+        return _functions.free_surface(self._particles.points, iso, **self._words(words)).to_pyvista()
 
     @_method(PROBE)
     def probe(self, points: Union[pyvista.DataSet, np.ndarray],
-              **options: Unpack[Particles]) -> pyvista.DataSet:
+              **words: Unpack[Particles]) -> pyvista.DataSet:
         """The field at the points of another data set.
 
         Example: particles.sph.probe(pyvista.Line((0, 0, 0), (1, 0, 0)))["Velocity"]
@@ -157,11 +135,10 @@ class SphAccessor:
 
         points: a data set, or an array (points, 3).
         """
-        check_names(SphAccessor.probe, options, PROBE + OWN)
-        words = self._words(options)
-        words["attributes"] = {k: v for k, v in words["attributes"].items() if v.dtype.kind in "fiub"}
+        keywords = self._words(words)
+        keywords["attributes"] = {k: v for k, v in keywords["attributes"].items() if v.dtype.kind in "fiub"}
         result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(np.asarray(points))
-        found = _functions.probe(self._particles.points, result.points, **words)
+        found = _functions.probe(self._particles.points, result.points, **keywords)
         for name, values in found.values.items():
             result.point_data[name] = values
         for name, values in found.gradients.items():
@@ -171,7 +148,7 @@ class SphAccessor:
         return result
 
     @_method(DERIVATIVES)
-    def derivatives(self, array: str, *, form: str = "corrected", **options: Unpack[Particles]) -> pyvista.DataSet:
+    def derivatives(self, array: str, *, form: str = "corrected", **words: Unpack[Particles]) -> pyvista.DataSet:
         """SPH gradients at the particles.
 
         Example: particles.sph.derivatives("Velocity")["Vorticity"]
@@ -182,10 +159,8 @@ class SphAccessor:
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
         """
-        check_names(SphAccessor.derivatives, options, DERIVATIVES + OWN)
-        words = self._words({**options, "attributes": []})
-        words["attributes"] = {"array": self._array(array)}
-        found = _functions.derivatives(self._particles.points, form=form, **words)
+        found = _functions.derivatives(self._particles.points, {"array": self._array(array)}, form=form,
+                                       **self._words(words, with_attributes=False))
         gradients = found.gradients.get("array")
         if gradients is None:
             raise InvalidArgument(f"The point array '{array}' is NaN or infinite at a particle.")
@@ -202,7 +177,7 @@ class SphAccessor:
         return result
 
     @_method(GAUGE)
-    def gauge(self, lines: Any, iso: float = 0.5, **options: Unpack[Particles]) -> _gauge.Gauges:
+    def gauge(self, lines: Any, iso: float = 0.5, **words: Unpack[Particles]) -> _gauge.Gauges:
         """Water levels: where straight lines cross the free surface, every crossing.
 
         Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
@@ -212,14 +187,11 @@ class SphAccessor:
         lines: (lines, 2, 3): from and to of each; or one line, (2, 3); or {name: (from, to)}.
         iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
         """
-        check_names(SphAccessor.gauge, options, GAUGE + OWN)
-        words = self._words({**options, "attributes": []})
-        del words["attributes"]
-        return _gauge.gauge(self._particles.points, lines, iso, **words)
+        return _gauge.gauge(self._particles.points, lines, iso, **self._words(words, with_attributes=False))
 
     @_method(GAUGE)
     def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
-             **options: Unpack[Particles]) -> _flux.Fluxes:
+             **words: Unpack[Particles]) -> _flux.Fluxes:
         """What flows through sections.
 
         Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
@@ -230,15 +202,29 @@ class SphAccessor:
         velocity: the name of a point array, or an array; by default the point array with a usual name.
         iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
         """
-        check_names(SphAccessor.flux, options, GAUGE + OWN)
-        words = self._words({**options, "attributes": []})
-        del words["attributes"]
+        keywords = self._words(words, with_attributes=False, masses=True)
         if velocity is None:
             found = detect(self._particles.GetPointData(), self._particles.n_points, "velocity", 3)
             velocity = "Velocity" if found is None else name_of(found)
-        if words.get("density") is None:
-            self._detect(words, "density")
-        return _flux.flux(self._particles.points, self._array(velocity), _triangles_in(sections), iso, **words)
+        return _flux.flux(self._particles.points, self._array(velocity), _triangles_in(sections), iso, **keywords)
+
+    @_method(PROJECT)
+    def project(self, scalar: Union[None, str, np.ndarray] = None, *, direction: Union[None, str, Sequence[float]] = None,
+                resolution: int = 512, weighted_by: Union[None, str, np.ndarray] = None,
+                box: Optional[Sequence[float]] = None, **words: Unpack[Particles]) -> _project.Projection:
+        """Column densities, or integrals of another scalar along lines of sight, as an image.
+
+        Example: image = particles.sph.project(direction="z"); plt.imshow(image.values, extent=image.extent, origin="lower")
+
+        Returns a Projection, as marchingcorrectors.project() does.
+
+        scalar: the name of a point array, or an array; without it, the density.
+        direction, resolution, box: as in marchingcorrectors.project().
+        weighted_by: the name of a point array, or an array: the image is the mean of the scalar, with these weights.
+        """
+        return _project.project(self._particles.points, self._array(scalar), direction=direction, resolution=resolution,
+                                weighted_by=self._array(weighted_by), box=box,
+                                **self._words(words, with_attributes=False, masses=True))
 
     def _array(self, thing):
         if not isinstance(thing, str):
@@ -253,10 +239,12 @@ class SphAccessor:
                                   f"{', '.join(data.keys()) or 'none'}.")
         return np.asarray(data[thing])
 
-    def _words(self, options):
-        """Keywords for the functions of NumPy."""
-        words = dict(options)
+    def _words(self, given, with_attributes=True, masses=False):
+        """Keywords for the functions of NumPy. masses: masses and densities also beside volumes."""
+        words = dict(given)
         self._set_quantities(words)
+        for quantity in ("mass", "density") if masses else ():
+            self._detect(words, quantity)
         fluid: Optional[Tuple[str, float]] = words.pop("fluid", None)
         if fluid is not None:
             words["solid"] = np.asarray(self._array(fluid[0])) != fluid[1]
@@ -269,6 +257,8 @@ class SphAccessor:
         if isinstance(words.get("periodic"), str):
             words["periodic"] = self._period(words["periodic"])
         names: Optional[Iterable[str]] = words.pop("attributes", None)
+        if not with_attributes:
+            return words
         if names is None:
             data = self._particles.GetPointData()
             names = [name for name in self._particles.point_data.keys() if name not in (GHOSTS, WALL_BLOCK)]

@@ -20,8 +20,6 @@ WORDS = {int: "whole number", float: "number"}
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},
                "sph_kernel": dict(zip((name[len("MCOR_"):].lower() for name in c.ENUMS["mcor_sph_kernel"]),
                                       words_of("sph_kernel")))}
-_double = ctypes.POINTER(ctypes.c_double)
-lib.mcor_place_period.restype, lib.mcor_place_period.argtypes = None, [_double, _double, _double]
 
 
 def camel(name):
@@ -113,7 +111,7 @@ class Arguments:
     """Structures filled for one call. Keeps the arrays alive, which the core borrows."""
 
     def __init__(self, positions):
-        self.kept, self.present = [], None
+        self.kept, self.present, self.kinds = [], None, {}
         self.input, self.options = c.mcor_input(), c.mcor_options()
         lib.mcor_set_default_options(ctypes.byref(self.options))
         self.input.scalar_component = -1  # the magnitude
@@ -191,15 +189,14 @@ class Arguments:
         return inside if only is None else inside & only
 
     def set_attributes(self, attributes):
-        """{name: array}; returns the names in the order of the core's results."""
+        """{name: array}, in the order of the core's results."""
         views = [self.per_particle(values, f"attribute '{name}'", str(name))
                  for name, values in attributes.items()]
         array = (c.mcor_array * max(len(views), 1))(*views)
         self.kept.append(array)
         self.input.attributes, self.input.attribute_count = array, len(views)
-        self.kinds = [(() if np.ndim(values) == 1 else (view.components,), view.type)
-                      for view, values in zip(views, attributes.values())]
-        return list(attributes)
+        self.kinds = {name: (() if np.ndim(values) == 1 else (view.components,), view.type)
+                      for view, (name, values) in zip(views, attributes.items())}
 
     def set_iso_values(self, values):
         values = contiguous(values, "list of iso values").astype(np.float64)
@@ -347,19 +344,19 @@ def take_lines(surface):
             "line_points": take(surface.line_points, (surface.line_point_count,))}
 
 
-def take_each(pointers, names, kinds, shape, more=()):
+def take_each(pointers, arguments, shape, more=()):
     """One array per attribute, float32 as the attribute was; those that the core left out are missing."""
     arrays = {}
-    for i, (name, (components, kind)) in enumerate(zip(names, kinds)):
+    for i, (name, (components, kind)) in enumerate(arguments.kinds.items()):
         if pointers and pointers[i]:
             values = take(pointers[i], shape + components + more)
             arrays[name] = values.astype(np.float32) if kind == FLOATS[np.dtype(np.float32)] else values
     return arrays
 
 
-def left_out(result, names):
+def left_out(result, arguments):
     """{name: the first particle at which the attribute is not finite}."""
-    return {name: int(result.attribute_not_finite[i]) for i, name in enumerate(names)
+    return {name: int(result.attribute_not_finite[i]) for i, name in enumerate(arguments.kinds)
             if result.attribute_not_finite and result.attribute_not_finite[i] >= 0}
 
 

@@ -6,16 +6,15 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping
 from dataclasses import dataclass, field as dataclass_field
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
+from typing import TYPE_CHECKING, Any, Dict, List
 
 import numpy as np
 
 from . import _structs as c
 from ._arrays import as_bytes, contiguous, statistics
-from ._context import Context
-from ._functions import called, of_files, prepare
+from ._call import called, of_particles, prepare
 from ._library import InvalidArgument, lib
-from ._options import GAUGE, check_names, with_options
+from ._options import GAUGE
 from ._surface import Result
 from ._units import Units
 
@@ -23,8 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from ._functions import Only, Positions, Progress
-    from ._options import Options
+    from ._call import Keywords, Positions
 
 FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, radius); '
          '("box", (x0, x1, y0, y1, z0, z1)); (n, 3, 3): triangles; (2, 3) or (n, 2, 3): lines in two dimensions')
@@ -88,32 +86,20 @@ def _as_sections(sections, units):
     return names, made, kept
 
 
-def _density(given, count):
-    """Of each particle, or None; and the quantities that tell volumes."""
-    volume, mass, density = (given[name] for name in ("volume", "mass", "density"))
+def _take_density(words, count):
+    """The density of each particle, or None; and the keywords, of which those stay that tell volumes."""
+    volume, mass, density = map(words.get, ("volume", "mass", "density"))
     known = volume is not None and not isinstance(volume, str)
-    words = {"mass": None, "density": None} if known else {} if mass is not None else {"density": None}
+    unused = {"mass": None, "density": None} if known else {} if mass is not None else {"density": None}
     if density is None and known and mass is not None:
         density = np.asarray(mass) / np.asarray(volume)
     if density is not None and np.ndim(density) == 0:
         density = np.full(count, density)
-    return density, {**given, **words}
+    return density, {**words, **unused}
 
 
-@of_files
-@with_options(GAUGE)
-def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, *,
-         smoothing_length: Optional[ArrayLike] = None,
-         volume: Optional[ArrayLike] = None,
-         mass: Optional[ArrayLike] = None,
-         density: Optional[ArrayLike] = None,
-         solid: Optional[ArrayLike] = None,
-         within: Optional[ArrayLike] = None,
-         only: Optional[Only] = None,
-         context: Optional[Context] = None,
-         device: Union[None, str, int] = None,
-         progress: Optional[Progress] = None,
-         **options: Unpack[Options]) -> Fluxes:
+@of_particles(GAUGE, masses=True)
+def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
     """What flows through sections, to 1e-6 of the largest flux that the velocities there allow.
 
     Example: flux(x, v, {"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}, smoothing_length=h, mass=m, density=rho).mass_flux
@@ -133,14 +119,13 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
 
     {options}
     """
-    check_names(flux, options, GAUGE)
-    given, units = locals(), Units(positions)
-    densities, given = _density(given, len(positions))
-    attributes = {"velocity": velocity} if densities is None else {"velocity": velocity, "density": densities}
-    arguments, _ = prepare(units, attributes, given, options)
+    units = Units(positions)
+    density, words = _take_density(words, len(positions))
+    arguments = prepare(units, words, {"velocity": velocity} if density is None else
+                        {"velocity": velocity, "density": density})
     names, array, _kept = _as_sections(sections, units)
     arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
-    with called(lib.mcor_flux, c.mcor_fluxes, arguments, given, array, len(names)) as found:
+    with called(lib.mcor_flux, c.mcor_fluxes, arguments, array, len(names)) as found:
         readings = [found.readings[i] for i in range(found.count)]
         columns = {name: np.array([getattr(reading, name) for reading in readings], np.float64)
                    for name in ("area", "volume_flux", "mass_flux", "velocity")}

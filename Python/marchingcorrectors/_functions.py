@@ -3,197 +3,33 @@
 """isosurface, free_surface, probe, derivatives: one call of the core each."""
 from __future__ import annotations
 
-import contextlib
 import ctypes
-import functools
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Sequence, Tuple, Union, cast
+from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _structs as c
-from ._arrays import (SUMMED, Arguments, as_bytes, as_named, as_points, choose, contiguous, is_real, left_out, number, statistics,
-                      take, take_all, take_each, take_lines)
-from ._context import Context, default_context
-from ._library import ERRORS, InvalidArgument, InvalidData, lib
-from ._options import (DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, WIDENING, Function, check_names, did_you_mean,
-                       with_options)
+from ._arrays import (as_named, as_points, contiguous, is_real, left_out, number, statistics, take, take_all, take_each,
+                      take_lines)
+from ._call import called, of_particles, prepare, warn_of_missing
+from ._library import ERRORS, InvalidArgument, lib
+from ._options import DERIVATIVES, FREE_SURFACE, ISOSURFACE, PROBE, WIDENING
 from ._surface import Derivatives, Samples, Surface
 from ._units import Units, scalar_and_iso, without_unit
-from ._warnings import describe_unused_type, describe_warnings, warn, warn_of_particles
+from ._warnings import describe_warnings, warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-    from typing_extensions import Literal, Protocol, Unpack
+    from typing_extensions import Literal, Unpack
 
-    from ._options import Options
-    from .io import Particles
-
-    class Frame(Protocol):
-        """A table of columns, as of pandas."""
-
-        @property
-        def columns(self) -> Any: ...
-
-        def __getitem__(self, name: Any, /) -> Any: ...
-
-    Positions = Union[ArrayLike, Particles]
-    Progress = Union[bool, Callable[[float, str], Any]]
-    Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
-    Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
-
-QUANTITIES = ("smoothing_length", "volume", "mass", "density")
+    from ._call import Attributes, Keywords, Positions
 
 
-def prepare(units, attributes, given, options):
-    """given: the arguments of the function that was called."""
-    if isinstance(given["volume"], str) and given["volume"] == "computed":
-        given = {**given, "volume": None, "mass": None, "density": None}
-    _warn_of_ignored(given, options)
-    arguments = Arguments(units.positions)
-    arguments.set_quantities(units.quantities(given))
-    only = given["only"]
-    if isinstance(only, Mapping):
-        only = choose(only, functools.partial(_attribute, as_named(given.get("attributes"))))
-    present = arguments.find_present(units.lengths(given["within"], "within"), only)
-    if present is not None and arguments.count and not present.any():
-        names = " and ".join(name for name in ("within", "only") if given[name] is not None)
-        raise InvalidData(f"None of the {arguments.count} particles is left by {names}. Give wider bounds or other values.")
-    arguments.set_solid(given["solid"], present)
-    names = arguments.set_attributes(attributes)
-    estimate = options.get("estimate_smoothing_length")
-    if isinstance(estimate, str):
-        options = {**options, "estimate_smoothing_length": False}
-    arguments.set_options(units.options(options))
-    if isinstance(estimate, str):
-        arguments.estimate_by_neighbours(estimate)
-    return arguments, names
-
-
-def _attribute(attributes, name):
-    if name not in attributes:
-        raise InvalidArgument(f"only names '{name}', which is not among the attributes.{did_you_mean(name, attributes)} "
-                              f"Attributes: {', '.join(attributes) or 'none'}.")
-    return attributes[name]
-
-
-def _warn_of_ignored(given, options):
-    """What was given, but has no effect beside something else."""
-    has = {name for name in QUANTITIES if given[name] is not None}
-    if options.get("estimate_smoothing_length") and "smoothing_length" in has:
-        warn("smoothing_length is not used, because estimate_smoothing_length takes its place. Leave one of them out.")
-    if "volume" in has and has & {"mass", "density"}:
-        unused = " and ".join(name for name in ("mass", "density") if name in has)
-        warn(f"{unused} {'are' if 'and' in unused else 'is'} not used, because volume is given. Leave volume out to use "
-             "mass / density.")
-    elif "density" in has and "mass" not in has:
-        warn("density is not used, because volumes are mass / density, and there is no mass. Give mass, too.")
-    versions = [name for name in options if name.endswith("_version") and options[name]]
-    if versions and given["context"] is None:
-        warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")
-
-
-def _describe_empty(arguments, found):
-    """A sentence for a surface of nothing that the core does not explain; "" where a box may just be elsewhere."""
-    values, options, n = arguments.options.iso_values, arguments.options, found.statistics
-    if len(found.points) or not arguments.count or any(options.box):
-        return ""
-    iso = ", ".join(f"{values[i]:.6g}" for i in range(options.iso_count))
-    if options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
-        return (f"There is no surface: the sum of the weights crosses {iso} nowhere. It is about 1 in the fluid and falls to "
-                "0 outside, so an iso value of 0.5 is usual. A periodic box full of fluid has no free surface.")
-    if n["scalar_min"] == n["scalar_max"]:
-        return f"There is no surface: the scalar is {n['scalar_min']:.6g} at all fluid particles."
-    return (f"There is no surface: the field crosses {iso} nowhere, although the scalar goes from {n['scalar_min']:.6g} to "
-            f"{n['scalar_max']:.6g}. Perhaps the particles there are too few or too far apart for the node threshold.")
-
-
-def _warn_of(missing):
-    for name, particle in missing.items():
-        warn(f"The attribute '{name}' is NaN or infinite at particle {particle} and was left out. "
-             "Correct its values, or do not ask for it.")
-
-
-@contextlib.contextmanager
-def called(function, kind, arguments, given, *more):
-    """What a function of the core returns, which is freed at the end. given: the arguments of the function that was
-    called, of which context, device and progress are read."""
-    context = given["context"]
-    own = context is None
-    if not own and not isinstance(context, Context):
-        raise InvalidArgument(f"The context is a {type(context).__name__}; it must be a Context.")
-    context, result = default_context(given["device"]) if own else context, kind()
-    try:
-        try:
-            context.run(lambda handle: function(handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options),
-                                                *more, ctypes.byref(result)), arguments.options, given["progress"])
-        finally:
-            if own:
-                context.release_memory()
-        if kind is not c.mcor_surface:
-            warn_of_particles(arguments, result.statistics)
-        yield result
-    finally:
-        getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))
-
-
-def _warn_of_unused_type(particles):
-    for name in particles.arrays:
-        if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
-            sentence = describe_unused_type(name, particles.arrays[name])
-            if sentence:
-                warn(sentence.replace("select it together with the value of the fluid", f"say solid=particles['{name}'] != "
-                                      f"VALUE (in a shell --fluid {name}=VALUE)"))
-                return
-
-
-def of_files(function: Function) -> Function:
-    """Decorator: particles of io.read() may stand in place of positions. An array's name is then an array, and what the
-    file says of h, mass, walls, kernel and period is taken, unless it is given."""
-    @functools.wraps(function)
-    def call(positions: Any, *arguments: Any, **words: Any) -> Any:
-        if not hasattr(positions, "words"):
-            return function(positions, *arguments, **words)
-        if function.__name__ == "derivatives" and arguments:
-            words["attributes"], arguments = arguments[0], arguments[1:]
-
-        def array_of(name, thing):
-            stays = not isinstance(thing, str) or (name, thing) == ("volume", "computed") or (
-                (name, thing) == ("scalar", SUMMED) and SUMMED not in positions)
-            return thing if stays else positions.array(thing)
-
-        given = [array_of("scalar", thing) for thing in arguments]
-        named = ("scalar", "scalar_dot", "weighted_by", "solid", *QUANTITIES)
-        words = {name: array_of(name, thing) if name in named else thing for name, thing in words.items()}
-        words, only = positions.words(words), words.get("only")
-        if function.__name__ == "project":  # which sees masses even where volumes are others'
-            for name in ("mass", "density"):
-                words[name] = positions.quantity(name) if words.get(name) is None else words[name]
-        if isinstance(only, Mapping):
-            words["only"] = choose(only, positions.array)
-        if words.get("solid") is None and only is None:
-            _warn_of_unused_type(positions)
-        return function(positions.positions, *given, **words)
-
-    return cast(Function, call)
-
-
-@of_files
-@with_options(ISOSURFACE)
+@of_particles(ISOSURFACE)
 def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[float, Sequence[float]], *,
-               smoothing_length: Optional[ArrayLike] = None,
-               volume: Optional[ArrayLike] = None,
-               mass: Optional[ArrayLike] = None,
-               density: Optional[ArrayLike] = None,
                attributes: Optional[Attributes] = None,
                scalar_dot: Optional[ArrayLike] = None,
-               solid: Optional[ArrayLike] = None,
-               within: Optional[ArrayLike] = None,
-               only: Optional[Only] = None,
-               context: Optional[Context] = None,
-               device: Union[None, str, int] = None,
-               progress: Optional[Progress] = None,
-               **options: Unpack[Options]) -> Surface:
+               **words: Unpack[Keywords]) -> Surface:
     """The isosurface of a quantity that particles carry.
 
     Example: surface = isosurface(x, speed, 1.0, smoothing_length=h, mass=m, density=rho, attributes={"speed": speed})
@@ -237,25 +73,23 @@ def isosurface(positions: Positions, scalar: Optional[ArrayLike], iso: Union[flo
     Raises an Error (InvalidArgument, InvalidData, OutOfCapacity, DeviceError, Cancelled). What is
     legal, but hardly meant, gives an InputWarning. Other threads go on meanwhile; Ctrl-C ends the run.
     """
-    check_names(isosurface, options, ISOSURFACE)
-    return _extract(locals(), options)
+    return _extract(positions, iso, attributes, words, scalar, scalar_dot)
 
 
-def _extract(given, options):
-    """given: the arguments of isosurface()."""
-    attributes, units = as_named(given["attributes"]), Units(given["positions"])
+def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
+    attributes = as_named(attributes)
     real = {name: array for name, array in attributes.items() if is_real(array)}
-    scalar, scalar_dot, iso = scalar_and_iso(given["scalar"], given["scalar_dot"], given["iso"])
-    arguments, names = prepare(units, real, given, options)
-    free_surface_wanted = arguments.options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
-    _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted)
+    scalar, scalar_dot, iso = scalar_and_iso(scalar, scalar_dot, iso)
+    arguments = prepare(Units(positions), words, real, attributes)
+    if arguments.options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
+        _set_scalar(arguments, scalar, scalar_dot)
     if iso is None:
         raise InvalidArgument("Give the iso value: a number, or a list of them.")
     arguments.set_iso_values(iso)
     wanted = bool(arguments.options.nearest_particle)
     from_nearest = _from_nearest(attributes, real, arguments)
-    with called(lib.mcor_extract, c.mcor_surface, arguments, given) as surface:
-        found = take_surface(surface, arguments, names)
+    with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
+        found = take_surface(surface, arguments)
         sentences = describe_warnings(arguments, surface)
     found.points = found.points.astype(arguments.positions.dtype, copy=False)
     for name in from_nearest:
@@ -263,16 +97,29 @@ def _extract(given, options):
     found.attributes = {name: found.attributes[name] for name in attributes if name in found.attributes}
     if not wanted:
         found.nearest_particle = None
-    _warn_of(found.left_out)
+    warn_of_missing(found.left_out)
     for sentence in list(sentences.values()) or [_describe_empty(arguments, found)]:
         if sentence:
             warn(sentence)
     return found
 
 
-def _set_scalar(arguments, scalar, scalar_dot, free_surface_wanted):
-    if free_surface_wanted:
-        return
+def _describe_empty(arguments, found):
+    """A sentence for a surface of nothing that the core does not explain; "" where a box may just be elsewhere."""
+    values, options, n = arguments.options.iso_values, arguments.options, found.statistics
+    if len(found.points) or not arguments.count or any(options.box):
+        return ""
+    iso = ", ".join(f"{values[i]:.6g}" for i in range(options.iso_count))
+    if options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
+        return (f"There is no surface: the sum of the weights crosses {iso} nowhere. It is about 1 in the fluid and falls to "
+                "0 outside, so an iso value of 0.5 is usual. A periodic box full of fluid has no free surface.")
+    if n["scalar_min"] == n["scalar_max"]:
+        return f"There is no surface: the scalar is {n['scalar_min']:.6g} at all fluid particles."
+    return (f"There is no surface: the field crosses {iso} nowhere, although the scalar goes from {n['scalar_min']:.6g} to "
+            f"{n['scalar_max']:.6g}. Perhaps the particles there are too few or too far apart for the node threshold.")
+
+
+def _set_scalar(arguments, scalar, scalar_dot):
     if scalar is None:
         raise InvalidArgument('Give the scalar to contour, or call free_surface().')
     if isinstance(scalar, str):
@@ -296,8 +143,8 @@ def _from_nearest(attributes, real, arguments):
     return names
 
 
-def take_surface(surface, arguments, names):
-    """A Surface of the core's, with the attributes of these names."""
+def take_surface(surface, arguments):
+    """A Surface of the core's."""
     count = surface.point_count
     arrays = take_all("mcor_surface", surface,
                       {"point_count": count, "triangle_count": surface.triangle_count})
@@ -305,25 +152,14 @@ def take_surface(surface, arguments, names):
         arrays["points"] = np.empty((0, 3))
     if arrays["triangles"] is None:
         arrays["triangles"] = np.empty((0, 3), np.int32)
-    return Surface(**arrays, **take_lines(surface), attributes=take_each(surface.attributes, names, arguments.kinds, (count,)),
-                   left_out=left_out(surface, names), statistics=statistics(surface.statistics))
+    return Surface(**arrays, **take_lines(surface), attributes=take_each(surface.attributes, arguments, (count,)),
+                   left_out=left_out(surface, arguments), statistics=statistics(surface.statistics))
 
 
-@of_files
-@with_options(FREE_SURFACE)
+@of_particles(FREE_SURFACE)
 def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5, *,
-                 smoothing_length: Optional[ArrayLike] = None,
-                 volume: Optional[ArrayLike] = None,
-                 mass: Optional[ArrayLike] = None,
-                 density: Optional[ArrayLike] = None,
                  attributes: Optional[Attributes] = None,
-                 solid: Optional[ArrayLike] = None,
-                 within: Optional[ArrayLike] = None,
-                 only: Optional[Only] = None,
-                 context: Optional[Context] = None,
-                 device: Union[None, str, int] = None,
-                 progress: Optional[Progress] = None,
-                 **options: Unpack[Options]) -> Surface:
+                 **words: Unpack[Keywords]) -> Surface:
     """The surface of the fluid: where the sum of the particles' weights is `iso`.
 
     Example: free_surface(x, smoothing_length=h, mass=m, density=rho).save("water.ply")
@@ -335,25 +171,13 @@ def free_surface(positions: Positions, iso: Union[float, Sequence[float]] = 0.5,
 
     {options}
     """
-    check_names(free_surface, options, FREE_SURFACE)
-    return _extract({**locals(), "scalar": None, "scalar_dot": None}, {**options, "field": "weight_sum"})
+    return _extract(positions, iso, attributes, {**words, "field": "weight_sum"})
 
 
-@of_files
-@with_options(PROBE)
+@of_particles(PROBE)
 def probe(positions: Positions, points: ArrayLike, *,
-          smoothing_length: Optional[ArrayLike] = None,
-          volume: Optional[ArrayLike] = None,
-          mass: Optional[ArrayLike] = None,
-          density: Optional[ArrayLike] = None,
           attributes: Optional[Attributes] = None,
-          solid: Optional[ArrayLike] = None,
-          within: Optional[ArrayLike] = None,
-          only: Optional[Only] = None,
-          context: Optional[Context] = None,
-          device: Union[None, str, int] = None,
-          progress: Optional[Progress] = None,
-          **options: Unpack[Options]) -> Samples:
+          **words: Unpack[Keywords]) -> Samples:
     """The field of the attributes, and with gradients=True its gradients, at any points.
 
     Example: probe(x, grid, smoothing_length=h, attributes={"speed": speed}).values["speed"]
@@ -368,27 +192,26 @@ def probe(positions: Positions, points: ArrayLike, *,
 
     {options}
     """
-    check_names(probe, options, PROBE)
-    given, attributes, units = locals(), as_named(attributes), Units(positions)
-    arguments, names = prepare(units, attributes, given, options)
+    units = Units(positions)
+    arguments = prepare(units, words, as_named(attributes))
     where = contiguous(units.lengths(points, "array of points"), "array of points")
     is_whole = where.shape[-1:] == (3,)
     shape = where.shape[:-1] if is_whole else (0,)
     where = as_points(where.reshape(-1, 3) if is_whole else where, "points", "(..., 3)")
     view = arguments.view(where, "points")
-    with called(lib.mcor_probe, c.mcor_samples, arguments, given, ctypes.byref(view), len(where)) as samples:
+    with called(lib.mcor_probe, c.mcor_samples, arguments, ctypes.byref(view), len(where)) as samples:
         arrays = take_all("mcor_samples", samples, {"count": samples.count})
         valid = _or_zeros(arrays["valid"], len(where)).astype(bool).reshape(shape)
         result = Samples(
             weight_sum=_or_zeros(arrays["weight_sum"], len(where)).reshape(shape), valid=valid,
-            values=take_each(samples.values, names, arguments.kinds, shape),
-            gradients=take_each(samples.gradients, names, arguments.kinds, shape, (3,)),
+            values=take_each(samples.values, arguments, shape),
+            gradients=take_each(samples.gradients, arguments, shape, (3,)),
             weight_gradient=None if arrays["weight_gradient"] is None else arrays["weight_gradient"].reshape(*shape, 3),
-            left_out=left_out(samples, names),
+            left_out=left_out(samples, arguments),
             statistics=statistics(samples.statistics))
     for values in [*result.values.values(), *result.gradients.values()]:
         values[~valid] = np.nan
-    _warn_of(result.left_out)
+    warn_of_missing(result.left_out)
     return result
 
 
@@ -396,20 +219,9 @@ def _or_zeros(array, count):
     return np.zeros(count) if array is None else array
 
 
-@of_files
-@with_options(DERIVATIVES)
+@of_particles(DERIVATIVES)
 def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["corrected", "standard"] = "corrected",
-                smoothing_length: Optional[ArrayLike] = None,
-                volume: Optional[ArrayLike] = None,
-                mass: Optional[ArrayLike] = None,
-                density: Optional[ArrayLike] = None,
-                solid: Optional[ArrayLike] = None,
-                within: Optional[ArrayLike] = None,
-                only: Optional[Only] = None,
-                context: Optional[Context] = None,
-                device: Union[None, str, int] = None,
-                progress: Optional[Progress] = None,
-                **options: Unpack[Options]) -> Derivatives:
+                **words: Unpack[Keywords]) -> Derivatives:
     """SPH gradients of the attributes at the particles themselves.
 
     Example: flow(derivatives(x, {"v": velocity}, smoothing_length=h).gradients["v"])["vorticity"]
@@ -424,35 +236,22 @@ def derivatives(positions: Positions, attributes: Attributes, *, form: Literal["
 
     {options}
     """
-    check_names(derivatives, options, DERIVATIVES)
-    given = locals()
-    arguments, names = prepare(Units(positions), as_named(attributes), given, options)
+    arguments = prepare(Units(positions), words, as_named(attributes))
     chosen = number("form", "mcor_gradient", form)
-    with called(lib.mcor_derive, c.mcor_derivatives, arguments, given, chosen) as result:
+    with called(lib.mcor_derive, c.mcor_derivatives, arguments, chosen) as result:
         corrected = take(result.corrected, (result.count,))
         found = Derivatives(
-            gradients=take_each(result.gradients, names, arguments.kinds, (result.count,), (3,)),
-            corrected=_or_zeros(corrected, arguments.count).astype(bool), left_out=left_out(result, names),
+            gradients=take_each(result.gradients, arguments, (result.count,), (3,)),
+            corrected=_or_zeros(corrected, arguments.count).astype(bool), left_out=left_out(result, arguments),
             statistics=statistics(result.statistics))
-    _warn_of(found.left_out)
+    warn_of_missing(found.left_out)
     return found
 
 
-@of_files
-@with_options(WIDENING)
+@of_particles(WIDENING)
 def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float = 2,
-             smoothing_length: Optional[ArrayLike] = None,
-             volume: Optional[ArrayLike] = None,
-             mass: Optional[ArrayLike] = None,
-             density: Optional[ArrayLike] = None,
-             solid: Optional[ArrayLike] = None,
-             within: Optional[ArrayLike] = None,
-             only: Optional[Only] = None,
              return_volume: bool = False,
-             context: Optional[Context] = None,
-             device: Union[None, str, int] = None,
-             progress: Optional[Progress] = None,
-             **options: Unpack[Options]) -> Any:
+             **words: Unpack[Keywords]) -> Any:
     """The factors of smoothing lengths with which isosurface() and free_surface() contour where widen is above 1.
 
     Example: s = widening(x, smoothing_length=h, volume=v, widen=2)
@@ -468,13 +267,11 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
 
     {options}
     """
-    check_names(widening, options, WIDENING)
-    given = locals()
-    arguments, _ = prepare(Units(positions), {}, given, {**options, "widen": widen})
+    arguments = prepare(Units(positions), {**words, "widen": widen})
     if iso is not None:
         arguments.options.field = c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]
         arguments.set_iso_values(iso)
-    with called(lib.mcor_widen, c.mcor_widening, arguments, given) as result:
+    with called(lib.mcor_widen, c.mcor_widening, arguments) as result:
         factors = take(result.factor, (result.count,))
         return (factors, take(result.volume, (result.count,))) if return_volume else factors
 

@@ -5,25 +5,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field as dataclass_field
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
+from typing import TYPE_CHECKING, Any, Dict, List
 
 import numpy as np
 
 from . import _structs as c
 from ._arrays import as_bytes, contiguous, statistics
-from ._context import Context
-from ._functions import called, of_files, prepare
+from ._call import called, of_particles, prepare
 from ._library import InvalidArgument, lib
-from ._options import GAUGE, check_names, with_options
+from ._options import GAUGE
 from ._surface import Result
 from ._units import Units
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from ._functions import Only, Positions, Progress
-    from ._options import Options
+    from ._call import Keywords, Positions
 
 STATES = np.array(["dry", "wet", "full"])
 
@@ -85,20 +82,8 @@ def _gauges(found, names):
         statistics=statistics(found.statistics))
 
 
-@of_files
-@with_options(GAUGE)
-def gauge(positions: Positions, lines: Any, iso: float = 0.5, *,
-          smoothing_length: Optional[ArrayLike] = None,
-          volume: Optional[ArrayLike] = None,
-          mass: Optional[ArrayLike] = None,
-          density: Optional[ArrayLike] = None,
-          solid: Optional[ArrayLike] = None,
-          within: Optional[ArrayLike] = None,
-          only: Optional[Only] = None,
-          context: Optional[Context] = None,
-          device: Union[None, str, int] = None,
-          progress: Optional[Progress] = None,
-          **options: Unpack[Options]) -> Gauges:
+@of_particles(GAUGE)
+def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Gauges:
     """Water levels: where straight lines cross the free surface, every crossing.
 
     Example: gauge(x, {"mast": ((0.5, 0, 0), (0.5, 1, 0))}, smoothing_length=h, mass=m, density=rho).last
@@ -112,10 +97,9 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, *,
 
     {options}
     """
-    check_names(gauge, options, GAUGE)
-    given, units = locals(), Units(positions)
-    arguments, _ = prepare(units, {}, given, options)
+    units = Units(positions)
+    arguments = prepare(units, words)
     names, array = _as_lines(lines, units)
     arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
-    with called(lib.mcor_gauge, c.mcor_gauges, arguments, given, _structures(names, array), len(array)) as found:
+    with called(lib.mcor_gauge, c.mcor_gauges, arguments, _structures(names, array), len(array)) as found:
         return _gauges(found, names)

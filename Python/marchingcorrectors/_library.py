@@ -45,61 +45,7 @@ ERRORS = {c.ENUMS["mcor_status"][name]: error for name, error in ERRORS.items()}
 
 def _open():
     library = ctypes.CDLL(str(Path(__file__).with_name("_mcor.dll" if os.name == "nt" else "_mcor.so")))
-    context, pointer = ctypes.c_void_p, ctypes.POINTER
-    signatures = {
-        "mcor_create_context": (ctypes.c_int, [ctypes.c_char_p, pointer(context)]),
-        "mcor_free_context": (None, [context]),
-        "mcor_release_memory": (None, [context]),
-        "mcor_list_devices": (ctypes.c_int, [pointer(ctypes.c_void_p)]),
-        "mcor_last_error": (ctypes.c_char_p, [context]),
-        "mcor_phase_name": (ctypes.c_char_p, [ctypes.c_int]),
-        "mcor_sph_kernel_name": (ctypes.c_char_p, [ctypes.c_int]),
-        "mcor_find_sph_kernel": (ctypes.c_int, [ctypes.c_char_p]),
-        "mcor_support_factor": (ctypes.c_double, [ctypes.c_int]),
-        "mcor_set_default_options": (None, [pointer(c.mcor_options)]),
-        "mcor_extract": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                        pointer(c.mcor_surface)]),
-        "mcor_free_surface": (None, [pointer(c.mcor_surface)]),
-        "mcor_probe": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                      pointer(c.mcor_array), ctypes.c_int64, pointer(c.mcor_samples)]),
-        "mcor_free_samples": (None, [pointer(c.mcor_samples)]),
-        "mcor_derive": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                       ctypes.c_int, pointer(c.mcor_derivatives)]),
-        "mcor_free_derivatives": (None, [pointer(c.mcor_derivatives)]),
-        "mcor_widen": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                      pointer(c.mcor_widening)]),
-        "mcor_free_widening": (None, [pointer(c.mcor_widening)]),
-        "mcor_gauge": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                      pointer(c.mcor_gauge_line), ctypes.c_int64, pointer(c.mcor_gauges)]),
-        "mcor_free_gauges": (None, [pointer(c.mcor_gauges)]),
-        "mcor_flux": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                     pointer(c.mcor_section), ctypes.c_int64, pointer(c.mcor_fluxes)]),
-        "mcor_free_fluxes": (None, [pointer(c.mcor_fluxes)]),
-        "mcor_project": (ctypes.c_int, [context, pointer(c.mcor_input), pointer(c.mcor_options),
-                                        pointer(c.mcor_view), pointer(c.mcor_projection)]),
-        "mcor_free_projection": (None, [pointer(c.mcor_projection)]),
-        "mcor_decompose_gradients": (ctypes.c_int, [pointer(ctypes.c_double), ctypes.c_int64,
-                                                    pointer(c.mcor_flow)]),
-        "mcor_name_priority": (ctypes.c_int, [ctypes.c_int, ctypes.c_char_p]),
-        "mcor_find_fluid_value": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_double, ctypes.c_double,
-                                                 pointer(ctypes.c_double)]),
-        "mcor_view_priority": (ctypes.c_int, [ctypes.c_char_p, ctypes.c_int, ctypes.c_int, ctypes.c_int]),
-        "mcor_find_smoothing_lengths": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_options), ctypes.c_double,
-                                                       ctypes.c_int64, pointer(ctypes.c_double), pointer(ctypes.c_void_p)]),
-        "mcor_sum_densities": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_options), ctypes.c_int64,
-                                              pointer(ctypes.c_double), pointer(ctypes.c_void_p)]),
-        "mcor_find_dimension": (ctypes.c_int, [pointer(c.mcor_input), ctypes.c_void_p, ctypes.c_int]),
-        "mcor_least_smoothing_length": (ctypes.c_double, [pointer(c.mcor_input)]),
-        "mcor_estimate_cells": (ctypes.c_double, [pointer(c.mcor_input), pointer(c.mcor_options), ctypes.c_double]),
-        "mcor_describe_estimate": (ctypes.c_void_p, [ctypes.c_double]),
-        "mcor_describe_smoothing_length": (ctypes.c_void_p, [pointer(c.mcor_input), pointer(c.mcor_statistics)]),
-        "mcor_describe_volume": (ctypes.c_void_p, [pointer(c.mcor_input)]),
-        "mcor_describe_single_points": (ctypes.c_void_p, [ctypes.c_double, ctypes.c_double]),
-        "mcor_describe_measures": (ctypes.c_void_p, [pointer(c.mcor_statistics)]),
-        "mcor_find_iso_value": (ctypes.c_int, [pointer(c.mcor_input), pointer(c.mcor_ranks),
-                                               pointer(ctypes.c_double), pointer(ctypes.c_double)]),
-    }
-    for name, (result, arguments) in signatures.items():
+    for name, (result, arguments) in c.FUNCTIONS.items():
         function = getattr(library, name)
         function.restype, function.argtypes = result, arguments
     return library

@@ -4,9 +4,10 @@
 import ctypes
 import difflib
 import inspect
+import re
 import textwrap
 from pathlib import Path
-from typing import Callable, Literal, Sequence, TypeVar, Union
+from typing import Callable, Literal, TypeVar, Union
 from xml.etree import ElementTree
 
 from . import _structs as c
@@ -149,16 +150,16 @@ SYNONYMS = {"h": "smoothing_length", "hsml": "smoothing_length", "radius": "smoo
             "walls": "solid", "boundary": "solid", "arrays": "attributes", "fields": "attributes", "period": "periodic"}
 
 
-def check_names(function, given, known):
+def check_names(function, given, options):
     """TypeError, as Python raises it, for a keyword that there is not."""
-    parameters = [p.name for p in inspect.signature(function).parameters.values() if p.kind != p.VAR_KEYWORD]
+    parameters = inspect.signature(function).parameters
     for name in given:
-        if name not in known:
+        if name not in parameters:
             meant = SYNONYMS.get(name.lower())
-            hint = f" Did you mean '{meant}'{', which is spacing**3' * (meant == 'volume')}?" \
-                if meant in parameters or meant in known else did_you_mean(name, dict.fromkeys([*parameters, *known]))
+            hint = f" Did you mean '{meant}'{', which is spacing**3' * (meant == 'volume')}?" if meant in parameters \
+                else did_you_mean(name, parameters)
             raise TypeError(f"{function.__name__}() has no option '{name}'."
-                            + (hint or f" Its options are {', '.join(known)}."))
+                            + (hint or f" Its options are {', '.join(options)}."))
 
 
 def describe(names):
@@ -171,20 +172,19 @@ def describe(names):
     return lines
 
 
-def with_options(names: Sequence[str]) -> Callable[[Function], Function]:
-    """Decorator: the options stand in the function's signature and in its text, in place of {options}."""
-    def decorate(function: Function) -> Function:
-        signature = inspect.signature(function)
-        own = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
-        more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=Options.__annotations__[name],
-                                  default=default_of(name)) for name in names if name not in signature.parameters]
-        function.__signature__ = signature.replace(parameters=own + more)  # type: ignore[attr-defined]
-        lines = (function.__doc__ or "").split("\n")
-        at = [i for i, line in enumerate(lines) if line.strip() == "{options}"]
-        for i in at:
-            indent = lines[i][:-len("{options}")]
-            lines[i:i + 1] = [indent + line for line in describe(names)]
-        function.__doc__ = "\n".join(lines)
-        return function
+def show(function, keywords, options):
+    """Puts keywords, {name: type}, and options, names, into the function's signature, and the options' meanings into its
+    text, in place of {options}."""
+    def parameter(name, default, kind):
+        return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default,
+                                 annotation=getattr(kind, "__forward_arg__", kind))
 
-    return decorate
+    signature = inspect.signature(function)
+    shown = {name: p for name, p in signature.parameters.items() if p.kind != p.VAR_KEYWORD}
+    for name, kind in keywords.items():
+        shown.setdefault(name, parameter(name, None, kind))
+    for name in options:
+        shown.setdefault(name, parameter(name, default_of(name), Options.__annotations__[name]))
+    function.__signature__ = signature.replace(parameters=list(shown.values()))
+    function.__doc__ = re.sub(r"^( *)\{options\}$", lambda found: textwrap.indent("\n".join(describe(options)), found[1]),
+                              function.__doc__ or "", flags=re.M)

@@ -11,10 +11,9 @@ import numpy as np
 
 from . import _structs as c
 from ._arrays import SUMMED, contiguous, number, set_option, statistics, take
-from ._context import Context
-from ._functions import called, of_files, prepare
+from ._call import called, of_particles, prepare
 from ._library import InvalidArgument, lib
-from ._options import PROJECT, check_names, with_options
+from ._options import PROJECT
 from ._surface import Result
 from ._units import Units, without_unit
 
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from ._functions import Only, Positions, Progress
-    from ._options import Options
+    from ._call import Keywords, Positions
 
 
 @dataclass(eq=False, repr=False)
@@ -58,24 +56,13 @@ def _direction(direction):
     return numbers.tolist()
 
 
-@of_files
-@with_options(PROJECT)
+@of_particles(PROJECT, masses=True)
 def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
             direction: Union[None, str, Sequence[float]] = None,
             resolution: int = 512,
             weighted_by: Optional[ArrayLike] = None,
             box: Optional[Sequence[float]] = None,
-            smoothing_length: Optional[ArrayLike] = None,
-            volume: Optional[ArrayLike] = None,
-            mass: Optional[ArrayLike] = None,
-            density: Optional[ArrayLike] = None,
-            solid: Optional[ArrayLike] = None,
-            within: Optional[ArrayLike] = None,
-            only: Optional[Only] = None,
-            context: Optional[Context] = None,
-            device: Union[None, str, int] = None,
-            progress: Optional[Progress] = None,
-            **options: Unpack[Options]) -> Projection:
+            **words: Unpack[Keywords]) -> Projection:
     """Column densities, or integrals of another scalar along lines of sight, as an image.
 
     Example: image = project(x, smoothing_length=h, mass=m, direction="z"); plt.imshow(image.values, origin="lower", extent=image.extent)
@@ -97,15 +84,15 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
 
     {options}
     """
-    check_names(project, options, PROJECT)
-    given, units = locals(), Units(positions)
+    units = Units(positions)
+    volume, mass, density = map(words.get, ("volume", "mass", "density"))
     if isinstance(scalar, str) and scalar == SUMMED:  # of particles without that array: the sum of their masses
         scalar = None
     # Masses and densities that volumes are not made of.
     is_made = volume is None and mass is not None or isinstance(volume, str) and scalar is not None
-    own = {} if is_made else {"mass": None, "density": None}
-    arguments, _ = prepare(units, {}, {**given, **own}, options)
-    arguments.set_quantities({name: without_unit(given[name]) for name in own})
+    arguments = prepare(units, words if is_made else {**words, "mass": None, "density": None})
+    if not is_made:
+        arguments.set_quantities({"mass": without_unit(mass), "density": without_unit(density)})
     if scalar is not None:
         arguments.input.scalar = arguments.per_particle(without_unit(scalar), "scalar")
         if arguments.input.scalar.components == 1:
@@ -116,7 +103,7 @@ def project(positions: Positions, scalar: Optional[ArrayLike] = None, *,
     view.resolution = number("resolution", "int", resolution)
     if weighted_by is not None:
         view.weight = arguments.input.mass if weighted_by is mass else arguments.per_particle(without_unit(weighted_by), "weight")
-    with called(lib.mcor_project, c.mcor_projection, arguments, given, ctypes.byref(view)) as found:
+    with called(lib.mcor_project, c.mcor_projection, arguments, ctypes.byref(view)) as found:
         columns, rows = found.size
         values = take(found.values, (rows, columns))
         low, pixel = found.low, found.pixel

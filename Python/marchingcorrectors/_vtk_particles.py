@@ -13,12 +13,6 @@ from ._arrays import SUMMED, Arguments, camel, place_period
 from ._library import lib
 from ._warnings import describe_unused_type
 
-lib.mcor_find_layout.restype, lib.mcor_find_layout.argtypes = ctypes.c_char_p, [ctypes.c_char_p]
-lib.mcor_find_period.restype = lib.mcor_tells_of_period.restype = ctypes.c_int
-lib.mcor_tells_of_period.argtypes = [ctypes.c_char_p]
-lib.mcor_find_period.argtypes = [ctypes.POINTER(c.mcor_field_data), ctypes.c_int, ctypes.POINTER(ctypes.c_double),
-                                 ctypes.POINTER(ctypes.c_int)]
-
 GHOSTS = "vtkGhostType"
 QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 NO_PERIOD = ("The field data of the particles give no period: there is no array PeriodicBounds, BoxSize, or box "

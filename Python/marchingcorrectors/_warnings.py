@@ -10,14 +10,6 @@ import numpy as np
 from . import _structs as c
 from ._library import _free, lib
 
-_pointer = ctypes.POINTER
-lib.mcor_describe_warning.restype = ctypes.c_void_p
-lib.mcor_describe_warning.argtypes = [ctypes.c_int, _pointer(c.mcor_input), _pointer(c.mcor_options),
-                                      _pointer(c.mcor_surface)]
-lib.mcor_describe_unused_type.restype = ctypes.c_void_p
-lib.mcor_describe_unused_type.argtypes = [ctypes.c_char_p, _pointer(ctypes.c_double), _pointer(ctypes.c_int64),
-                                          ctypes.c_int]
-
 
 class InputWarning(UserWarning):
     """Something about the particles or options is legal, but hardly what was meant."""

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """flux(): of uniform flow by hand, of others against what probe() finds, and what is no section."""
+import os
+import tempfile
 import unittest
 
 import numpy as np
@@ -66,6 +68,15 @@ class Flux(unittest.TestCase):
         for surface in (sphere, inwards):
             found = particles.sph.flux({"ball": surface}, X - 0.5, **WORDS)
             self.assertLess(abs(found.volume_flux[0] - 3 * sphere.volume), 1e-3)  # outwards
+
+    def test_a_file(self):
+        """Its masses and volumes make densities."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "particles.csv")
+            np.savetxt(path, np.column_stack([X, UNIFORM, np.tile([H, V, 1000 * V], (len(X), 1))]), delimiter=",", comments="",
+                       header="x,y,z,vx,vy,vz,h,Volume,Mass")
+            found = mc.flux(mc.io.read(path), "Velocity", WALL)
+        np.testing.assert_allclose([found.volume_flux[0], found.mass_flux[0]], [0.3, 300], rtol=1e-5)
 
     def test_what_is_no_section(self):
         for sections, sentence in (([WALL[0]], "'0' has the shape"), ({"bow": WALL * 0}, "'bow' has no area"),

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The functions for NumPy: shapes, types, what is copied, errors, interrupts."""
-import inspect
 import os
 import signal
 import threading

@@ -6,6 +6,7 @@ import tempfile
 import unittest
 
 import numpy as np
+import pyvista
 
 import marchingcorrectors as mc
 
@@ -58,6 +59,16 @@ class Project(unittest.TestCase):
             mean = mc.project(mc.io.read(path), "Mass", weighted_by="Mass", resolution=10)
         self.assertAlmostEqual(image.values.sum() * image.pixel_area / M.sum(), 1, delta=1e-8)
         self.assertTrue(0.4 < np.nanmean(mean.values) < 0.8)
+
+    def test_accessor(self):
+        """Whose masses count even where there are volumes."""
+        particles = pyvista.PolyData(X)
+        x = np.asarray(particles.points)
+        particles["Mass"], particles["h"], particles["Volume"] = M, H + 0.1, H + 1
+        words = {"smoothing_length": H + 0.1, "mass": M, "volume": H + 1, "direction": "x", "resolution": 20}
+        self.assertEqual(particles.sph.project(direction="x", resolution=20), mc.project(x, **words))
+        self.assertEqual(particles.sph.project("Mass", weighted_by="Mass", direction="x", resolution=20),
+                         mc.project(x, M, weighted_by=M, **words))
 
     def test_what_is_refused(self):
         for words, sentence in (({"direction": "w"}, "direction is 'w'"), ({"direction": (0, 0, 0)}, "not all 0"),

@@ -26,7 +26,7 @@ import unyt
 
 import marchingcorrectors as mc
 from marchingcorrectors import _options, _structs
-from test_numpy import DISTANCE, H, N, POSITIONS, V, quietly, sphere
+from test_numpy import DISTANCE, H, POSITIONS, V, quietly, sphere
 
 COUNT = len(POSITIONS)
 
@@ -41,8 +41,8 @@ def caught(function, *arguments, **words):
 class Signatures(unittest.TestCase):
     def functions(self):
         sph = pyvista.PolyData(POSITIONS).sph
-        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives, mc.gauge, mc.flux, mc.widening,
-                sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge, sph.flux]
+        return [mc.isosurface, mc.free_surface, mc.probe, mc.derivatives, mc.gauge, mc.flux, mc.project,
+                mc.widening, sph.isosurface, sph.free_surface, sph.probe, sph.derivatives, sph.gauge, sph.flux, sph.project]
 
     def test_options_are_those_of_the_header(self):
         """All but what only ranks need, and what is said in another way."""

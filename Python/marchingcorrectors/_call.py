@@ -1,0 +1,195 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the functions share: their keywords, particles of files in place of positions, and one call of the core."""
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import functools
+import inspect
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Union, cast
+
+from . import _structs as c
+from ._arrays import SUMMED, Arguments, as_bytes, choose
+from ._context import Context, default_context
+from ._library import InvalidArgument, InvalidData, lib
+from ._options import Function, Options, check_names, did_you_mean, show
+from ._warnings import describe_unused_type, warn, warn_of_particles
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from typing_extensions import Protocol
+
+    from .io import Particles
+
+    class Frame(Protocol):
+        """A table of columns, as of pandas."""
+
+        @property
+        def columns(self) -> Any: ...
+
+        def __getitem__(self, name: Any, /) -> Any: ...
+
+    Positions = Union[ArrayLike, Particles]
+    Progress = Union[bool, Callable[[float, str], Any]]
+    Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
+    Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
+
+QUANTITIES = ("smoothing_length", "volume", "mass", "density")
+# Arguments for which particles of a file take the name of an array.
+ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIES)
+
+
+class Shared(Options, total=False):
+    """Keywords of all functions, and of PyVista's methods."""
+
+    smoothing_length: Optional[ArrayLike]
+    volume: Optional[ArrayLike]
+    mass: Optional[ArrayLike]
+    density: Optional[ArrayLike]
+    within: Optional[ArrayLike]
+    only: Optional[Only]
+    context: Optional[Context]
+    device: Union[None, str, int]
+    progress: Optional[Progress]
+
+
+class Keywords(Shared, total=False):
+    solid: Optional[ArrayLike]
+
+
+def own_keywords(kind: Any) -> dict[str, Any]:
+    """{name: type} of a class of keywords, without the options."""
+    return {name: each for name, each in kind.__annotations__.items() if name not in Options.__annotations__}
+
+
+def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Function], Function]:
+    """Decorator: the function takes Keywords, and these options; all stand in its signature and its text.
+
+    Particles of io.read() may stand in place of positions. An array's name is then an array, and what the file says of
+    h, mass, walls, kernel and period is taken, unless it is given. masses: masses and densities also beside volumes.
+    """
+    def decorate(function: Function) -> Function:
+        signature = inspect.signature(function)
+
+        @functools.wraps(function)
+        def call(positions: Any, *arguments: Any, **words: Any) -> Any:
+            check_names(call, words, options)
+            if hasattr(positions, "words"):
+                given = signature.bind(positions, *arguments, **words).arguments
+                words = {**given, **given.get("words", {})}
+                words.pop("words", None)
+                return function(**_words_of_file(words.pop("positions"), words, masses))
+            return function(positions, *arguments, **words)
+
+        show(call, own_keywords(Keywords), options)
+        return cast(Function, call)
+
+    return decorate
+
+
+def _words_of_file(particles, given, masses):
+    words, only = dict(given), given.get("only")
+    for name in ARRAYS:
+        text = words.get(name)
+        if isinstance(text, str) and (name, text) != ("volume", "computed") and not (
+                (name, text) == ("scalar", SUMMED) and SUMMED not in particles):
+            words[name] = particles.array(text)
+    words = particles.words(words)
+    for name in ("mass", "density") if masses else ():
+        words[name] = particles.quantity(name) if words.get(name) is None else words[name]
+    if isinstance(only, Mapping):
+        words["only"] = choose(only, particles.array)
+    if words.get("solid") is None and only is None:
+        _warn_of_unused_type(particles)
+    return {**words, "positions": particles.positions}
+
+
+def _warn_of_unused_type(particles):
+    for name in particles.arrays:
+        if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
+            sentence = describe_unused_type(name, particles.arrays[name])
+            if sentence:
+                warn(sentence.replace("select it together with the value of the fluid", f"say solid=particles['{name}'] != "
+                                      f"VALUE (in a shell --fluid {name}=VALUE)"))
+                return
+
+
+def prepare(units, words, attributes=None, named=None):
+    """The core's arguments. words: Keywords. named: what `only` may name, where that is more than the attributes."""
+    options, attributes = dict(words), attributes or {}
+    given = {name: options.pop(name, None) for name in own_keywords(Keywords)}
+    if isinstance(given["volume"], str) and given["volume"] == "computed":
+        given.update(volume=None, mass=None, density=None)
+    _warn_of_ignored(given, options)
+    arguments = Arguments(units.positions)
+    arguments.context, arguments.device, arguments.progress = given["context"], given["device"], given["progress"]
+    arguments.set_quantities(units.quantities(given))
+    only = given["only"]
+    if isinstance(only, Mapping):
+        only = choose(only, functools.partial(_attribute, attributes if named is None else named))
+    present = arguments.find_present(units.lengths(given["within"], "within"), only)
+    if present is not None and arguments.count and not present.any():
+        names = " and ".join(name for name in ("within", "only") if given[name] is not None)
+        raise InvalidData(f"None of the {arguments.count} particles is left by {names}. Give wider bounds or other values.")
+    arguments.set_solid(given["solid"], present)
+    arguments.set_attributes(attributes)
+    estimate = options.get("estimate_smoothing_length")
+    if isinstance(estimate, str):
+        options["estimate_smoothing_length"] = False
+    arguments.set_options(units.options(options))
+    if isinstance(estimate, str):
+        arguments.estimate_by_neighbours(estimate)
+    return arguments
+
+
+def _attribute(attributes, name):
+    if name not in attributes:
+        raise InvalidArgument(f"only names '{name}', which is not among the attributes.{did_you_mean(name, attributes)} "
+                              f"Attributes: {', '.join(attributes) or 'none'}.")
+    return attributes[name]
+
+
+def _warn_of_ignored(given, options):
+    """What was given, but has no effect beside something else."""
+    has = {name for name in QUANTITIES if given[name] is not None}
+    if options.get("estimate_smoothing_length") and "smoothing_length" in has:
+        warn("smoothing_length is not used, because estimate_smoothing_length takes its place. Leave one of them out.")
+    if "volume" in has and has & {"mass", "density"}:
+        unused = " and ".join(name for name in ("mass", "density") if name in has)
+        warn(f"{unused} {'are' if 'and' in unused else 'is'} not used, because volume is given. Leave volume out to use "
+             "mass / density.")
+    elif "density" in has and "mass" not in has:
+        warn("density is not used, because volumes are mass / density, and there is no mass. Give mass, too.")
+    versions = [name for name in options if name.endswith("_version") and options[name]]
+    if versions and given["context"] is None:
+        warn(f"{versions[0]} is not used without a context, which keeps particles between calls. Give context=Context().")
+
+
+def warn_of_missing(missing):
+    for name, particle in missing.items():
+        warn(f"The attribute '{name}' is NaN or infinite at particle {particle} and was left out. "
+             "Correct its values, or do not ask for it.")
+
+
+@contextlib.contextmanager
+def called(function, kind, arguments, *more):
+    """What a function of the core returns, which is freed at the end."""
+    context = arguments.context
+    own = context is None
+    if not own and not isinstance(context, Context):
+        raise InvalidArgument(f"The context is a {type(context).__name__}; it must be a Context.")
+    context, result = default_context(arguments.device) if own else context, kind()
+    try:
+        try:
+            context.run(lambda handle: function(handle, ctypes.byref(arguments.input), ctypes.byref(arguments.options),
+                                                *more, ctypes.byref(result)), arguments.options, arguments.progress)
+        finally:
+            if own:
+                context.release_memory()
+        if kind is not c.mcor_surface:
+            warn_of_particles(arguments, result.statistics)
+        yield result
+    finally:
+        getattr(lib, kind.__name__.replace("mcor_", "mcor_free_"))(ctypes.byref(result))

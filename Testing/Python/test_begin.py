@@ -4,30 +4,11 @@
 import unittest
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_STRING, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 
 from marchingcorrectors import (vtkMarchingCorrectors, vtkSPHComponents, vtkSPHDerivatives, vtkSPHGauge, vtkSPHProbe,
                                 vtkSPHResample)
-
-SPACING = 0.1
-
-
-def particles_of(points, **arrays):
-    result = vtkPolyData()
-    result.SetPoints(vtkPoints())
-    result.GetPoints().SetData(numpy_to_vtk(numpy.asarray(points, float), deep=1))
-    for name, values in arrays.items():
-        array = numpy_to_vtk(numpy.asarray(values, float), deep=1)
-        array.SetName(name)
-        result.GetPointData().AddArray(array)
-    return result
-
-
-def lattice(nx, ny, nz):
-    return SPACING * numpy.stack(numpy.meshgrid(range(nx), range(ny), range(nz), indexing="ij"), -1).reshape(-1, 3)
+from vtk_test import SPACING, blocks_of, lattice, particles_of, points_of, run, values_of
 
 
 def block(points=None, **arrays):
@@ -35,24 +16,6 @@ def block(points=None, **arrays):
     x = lattice(20, 12, 8) if points is None else points
     h = numpy.full(len(x), 1.3 * SPACING)
     return particles_of(x, h=h, Velocity=numpy.stack((-x[:, 1], x[:, 0], 0 * x[:, 0]), 1), Height=x[:, 2] + 2, **arrays)
-
-
-def run(made, particles, **settings):
-    """The output, and errors and warnings in the order in which they came."""
-    told = []
-
-    def keep(_, event, text):
-        told.append(text)
-
-    keep.CallDataType = VTK_STRING
-    for event in ("ErrorEvent", "WarningEvent"):
-        made.AddObserver(event, keep)
-    if particles is not None:
-        made.SetInputData(particles)
-    for name, value in settings.items():
-        getattr(made, "Set" + name)(*(value if isinstance(value, tuple) else (value,)))
-    made.Update()
-    return made.GetOutputDataObject(0), told
 
 
 def active(data):
@@ -83,10 +46,10 @@ class TestPlaces(unittest.TestCase):
                 cut, told = run(vtkSPHResample(), block(points), Resolution=60, FitBounds=fit)
                 self.assertEqual(told, [])
                 self.assertGreater(cut.GetNumberOfCells(), 500)
-                self.assertEqual(set(vtk_to_numpy(cut.GetPoints().GetData())[:, axis]), {0.25})
+                self.assertEqual(set(points_of(cut)[:, axis]), {0.25})
             image, _ = run(vtkSPHResample(), block(points), Shape=2)
             self.assertEqual(image.GetDimensions()[axis], 1)
-            self.assertGreater(vtk_to_numpy(image.GetPointData().GetArray("vtkValidPointMask")).mean(), 0.5)
+            self.assertGreater(values_of(image, "vtkValidPointMask").mean(), 0.5)
 
     def test_resolution_follows_the_shape(self):
         image, _ = run(vtkSPHResample(), block(), Shape=2)
@@ -101,7 +64,7 @@ class TestColours(unittest.TestCase):
     def test_not_what_is_contoured(self):
         """On an isosurface of the speed the speed is noise, as an array of its own, too."""
         particles = block()
-        speed = numpy.linalg.norm(vtk_to_numpy(particles.GetPointData().GetArray("Velocity")), axis=1)
+        speed = numpy.linalg.norm(values_of(particles, "Velocity"), axis=1)
         particles = block(Speed=speed)
         surface = vtkMarchingCorrectors()
         surface.SetInputArrayToProcess(0, 0, 0, 0, "Velocity")
@@ -163,10 +126,7 @@ class TestChoices(unittest.TestCase):
         """A block of any name is the fluid where it is chosen."""
         x = lattice(20, 12, 8)
         wall = x[:, 2] < 0.25
-        blocks = vtkMultiBlockDataSet()
-        for i, (name, points) in enumerate((("water", x[~wall]), ("tank", x[wall]))):
-            blocks.SetBlock(i, block(points))
-            blocks.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
+        blocks = blocks_of(water=block(x[~wall]), tank=block(x[wall]))
         surface = vtkMarchingCorrectors()
         surface.SetInputData(blocks)
         self.assertEqual(surface.GetNextBlocks().split(), ["Block:", "water", "Block:", "tank"])
@@ -181,7 +141,7 @@ class TestChoices(unittest.TestCase):
 
     def test_velocity_of_three_arrays(self):
         particles = block()
-        velocity = vtk_to_numpy(particles.GetPointData().GetArray("Velocity"))
+        velocity = values_of(particles, "Velocity")
         apart = particles_of(lattice(20, 12, 8), h=numpy.full(1920, 0.13), rho=numpy.arange(1920.0),
                              **{name: velocity[:, a].copy() for a, name in enumerate(("vx", "vy", "vz"))})
         surface = vtkMarchingCorrectors()
@@ -189,7 +149,7 @@ class TestChoices(unittest.TestCase):
         self.assertEqual((surface.GetNextArray(), surface.GetNextComponents()), ("Velocity", 3))
         derived, told = run(vtkSPHDerivatives(), apart)
         self.assertEqual(told, [])
-        self.assertTrue(numpy.allclose(vtk_to_numpy(derived.GetPointData().GetArray("Vorticity")), [0, 0, 2], atol=1e-4))
+        self.assertTrue(numpy.allclose(values_of(derived, "Vorticity"), [0, 0, 2], atol=1e-4))
 
     def test_dimension(self):
         surface = vtkMarchingCorrectors()

@@ -3,47 +3,26 @@
 """The surface in filters that users put behind it: a closed one, and one with a trimmed border."""
 import unittest
 
-from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane, vtkPolyData
-from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkClipPolyData, vtkContourFilter,
-                                       vtkDecimatePro, vtkFeatureEdges, vtkMassProperties,
-                                       vtkPolyDataConnectivityFilter, vtkQuadricDecimation,
-                                       vtkSmoothPolyDataFilter, vtkStripper, vtkTriangleFilter,
-                                       vtkWindowedSincPolyDataFilter)
-from vtkmodules.vtkFiltersModeling import (vtkButterflySubdivisionFilter, vtkFillHolesFilter,
-                                           vtkLinearSubdivisionFilter, vtkLoopSubdivisionFilter)
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPlane
+from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkClipPolyData, vtkContourFilter, vtkDecimatePro, vtkFeatureEdges,
+                                       vtkMassProperties, vtkPolyDataConnectivityFilter, vtkQuadricDecimation,
+                                       vtkSmoothPolyDataFilter, vtkStripper, vtkTriangleFilter, vtkWindowedSincPolyDataFilter)
+from vtkmodules.vtkFiltersModeling import (vtkButterflySubdivisionFilter, vtkFillHolesFilter, vtkLinearSubdivisionFilter,
+                                           vtkLoopSubdivisionFilter)
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
 from marchingcorrectors import vtkMarchingCorrectors
+from vtk_test import SPACING, lattice, particles_of, run
 
-COUNT, SPACING = 11, 0.1
-
-
-def make_particles():
-    """A lattice of COUNT^3 particles around the origin, and Height, their z."""
-    points = vtkPoints()
-    height = vtkDoubleArray()
-    height.SetName("Height")
-    half = (COUNT - 1) / 2
-    for i in range(COUNT ** 3):
-        x = [(n - half) * SPACING for n in (i % COUNT, i // COUNT % COUNT, i // COUNT ** 2)]
-        points.InsertNextPoint(x)
-        height.InsertNextValue(x[2])
-    particles = vtkPolyData()
-    particles.SetPoints(points)
-    particles.GetPointData().AddArray(height)
-    return particles
+COUNT = 11
 
 
 def extract(free_surface):
+    places = lattice(COUNT, COUNT, COUNT, around_origin=True)
     source = vtkMarchingCorrectors()
-    source.SetInputData(make_particles())
     source.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "Height")
-    source.SetSmoothingLength(1.3 * SPACING)
-    source.SetValue(0, 0.05)  # elsewhere vtkFillHolesFilter gives up where the border is nearly straight
-    source.SetFreeSurface(free_surface)
-    source.Update()
-    return source.GetOutput()
+    return run(source, particles_of(places, Height=places[:, 2]), SmoothingLength=1.3 * SPACING, FreeSurface=free_surface,
+               Value=(0, 0.05))[0]  # elsewhere vtkFillHolesFilter gives up where the border is nearly straight
 
 
 class TestDownstream(unittest.TestCase):
@@ -53,16 +32,12 @@ class TestDownstream(unittest.TestCase):
 
     def apply(self, surface, kind, *calls):
         """The output of a filter, which must not complain. calls: (method, argument), ..."""
-        messages = []
         step = kind()
-        step.AddObserver("ErrorEvent", lambda *_: messages.append("error"))
-        step.AddObserver("WarningEvent", lambda *_: messages.append("warning"))
-        step.SetInputData(surface)
         for name, *arguments in calls:
             getattr(step, name)(*arguments)
-        step.Update()
-        self.assertEqual(messages, [], kind.__name__)
-        return step if kind is vtkMassProperties else step.GetOutput()
+        output, told = run(step, surface)
+        self.assertEqual(told, [], kind.__name__)
+        return step if kind is vtkMassProperties else output
 
     def count_edges(self, surface, kind):
         calls = [(name + ("On" if name == kind else "Off"),)

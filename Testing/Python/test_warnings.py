@@ -3,88 +3,45 @@
 """One warning for each thing that may be wrong with the input, with figures, once in a run."""
 import unittest
 
-from vtkmodules.vtkCommonCore import VTK_STRING, vtkDoubleArray
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPolyData
+import numpy
 
-import test_filter
-
-
-def warnings_of(extract):
-    found = []
-
-    def keep(_, event, text):
-        found.append(text)
-
-    keep.CallDataType = VTK_STRING
-    extract.AddObserver("WarningEvent", keep)
-    extract.Update()
-    return found
-
-
-def blocks_of(**blocks):
-    result = vtkMultiBlockDataSet()
-    for i, (name, block) in enumerate(blocks.items()):
-        result.SetBlock(i, block)
-        result.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
-    return result
-
-
-def with_kinds(particles, name, kind):
-    copy = vtkPolyData()
-    copy.DeepCopy(particles)
-    kinds = vtkDoubleArray()
-    kinds.SetName(name)
-    for i in range(copy.GetNumberOfPoints()):
-        kinds.InsertNextValue(kind(i))
-    copy.GetPointData().AddArray(kinds)
-    return copy
+from test_filter import make_filter, make_particles
+from vtk_test import blocks_of, run
 
 
 class TestWarnings(unittest.TestCase):
-    def setUp(self):
-        self.particles = test_filter.make_particles()
+    def check(self, words, extract, **settings):
+        """One sentence with these words; None: not a word."""
+        told = run(extract, **settings)[1]
+        self.assertEqual(len(told), 1 if words else 0, told)
+        if words:
+            self.assertRegex(told[0], words)
 
     def test_nothing_is_wrong(self):
-        self.assertEqual(warnings_of(test_filter.make_filter(self.particles)), [])
+        self.check(None, make_filter())
 
     def test_iso_value(self):
-        found = warnings_of(test_filter.make_filter(self.particles, iso=7))
-        self.assertEqual(len(found), 1)
-        self.assertRegex(found[0], "Iso value 7 is outside the range of Radius, 0 to 0.86")
+        self.check("Iso value 7 is outside the range of Radius, 0 to 0.86", make_filter(iso=7))
 
     def test_once_in_a_run(self):
-        extract = test_filter.make_filter(blocks_of(a=self.particles, b=self.particles))
-        extract.SetBlocksToApart()
-        extract.SetSmoothingLength(0.26)
+        extract = make_filter(blocks_of(a=make_particles(), b=make_particles()))
         for _ in range(2):
-            found = warnings_of(extract)
-            self.assertEqual(len(found), 1)
-            self.assertRegex(found[0], "Block 'a', index 1: .* neighbours.*support radius")
-            extract.RemoveAllObservers()
+            self.check("Block 'a', index 1: .* neighbours.*support radius", extract, BlocksToApart=(), SmoothingLength=0.26)
             extract.Modified()
 
     def test_walls_in_a_block(self):
-        fluid = self.particles
+        fluid = make_particles()
         for apart, words in ((1, "Block 'PartBound', index 2 of 2 seems to hold walls.*Set Blocks to Together"),
                              (0, "The names of some blocks suggest walls.*'WallBlock'")):
-            extract = test_filter.make_filter(blocks_of(PartFluid=fluid, PartBound=fluid))
-            extract.SetBlocks(apart)
-            found = warnings_of(extract)
-            self.assertEqual(len(found), 1)
-            self.assertRegex(found[0], words)
-            extract = test_filter.make_filter(blocks_of(Bound1=fluid, Bound2=fluid))
-            extract.SetBlocks(apart)
-            self.assertEqual(warnings_of(extract), [])
+            self.check(words, make_filter(blocks_of(PartFluid=fluid, PartBound=fluid)), Blocks=apart)
+            self.check(None, make_filter(blocks_of(Bound1=fluid, Bound2=fluid)), Blocks=apart)
 
     def test_likely_kernel(self):
         """Named where such particles are usual for another one."""
         for kernel, h, words in (("cubic", 0.24, "Or the kernel is wendland"), ("wendland", 0.24, None),
                                  ("cubic", 0.08, "Or the kernel is quintic"), ("cubic", 0.05, "neighbours.*unit")):
             with self.subTest(kernel=kernel, h=h):
-                extract = test_filter.make_filter(self.particles)
-                extract.SetKernelByName(kernel)
-                extract.SetSmoothingLength(h)
-                found = [text for text in warnings_of(extract) if "neighbours" in text]
+                found = [text for text in run(make_filter(), KernelByName=kernel, SmoothingLength=h)[1] if "neighbours" in text]
                 self.assertEqual(len(found), 1 if words else 0)
                 if words:
                     self.assertRegex(found[0], words)
@@ -99,16 +56,12 @@ class TestWarnings(unittest.TestCase):
             ("Temperature", lambda i: i % 2, None),
         ]:
             with self.subTest(name):
-                particles = with_kinds(self.particles, name, kind)
-                found = warnings_of(test_filter.make_filter(particles))
-                self.assertEqual(len(found), 1 if words else 0)
+                particles = make_particles(**{name: numpy.array([kind(i) for i in range(1331)], float)})
+                self.check(words, make_filter(particles))
                 if words:
-                    self.assertRegex(found[0], words)
-                    extract = test_filter.make_filter(particles)
-                    extract.SetFluidArrayName(name)
-                    extract.SetFluidValue(3 if name == "Type" else 1)
-                    extract.SetSolids(extract.SOLIDS_WEIGHT)  # they lie everywhere
-                    self.assertEqual(warnings_of(extract), [])
+                    extract = make_filter(particles)
+                    self.check(None, extract, FluidArrayName=name, FluidValue=3 if name == "Type" else 1,
+                               Solids=extract.SOLIDS_WEIGHT)  # they lie everywhere
 
 
 if __name__ == "__main__":

@@ -261,47 +261,6 @@ static void run_case(oracle_suite* suite, const cap_case* one, int unequal)
   oracle_free_particles(&particles);
 }
 
-/* Each iso value's caps close its own surface. */
-static void run_several(oracle_suite* suite, const oracle_particles* particles)
-{
-  const double isos[] = { 0.8, 1.2, 1.6 };
-  const mcor_input input = particle_period_input(particles);
-  mcor_options options = oracle_case_options(isos);
-  mcor_surface all;
-  mesh_report mesh;
-  ++suite->cases;
-  options.capping = 1;
-  options.iso_count = 3;
-  particle_period_set(&options, "");
-  int64_t triangles = 0;
-  for (int i = 0; i < 3; ++i)
-  {
-    mcor_options single = options;
-    mcor_surface one;
-    single.iso_values = &isos[i];
-    single.iso_count = 1;
-    expect(suite, mcor_extract(suite->context, &input, &single, &one) == MCOR_OK, "several",
-      mcor_last_error(suite->context), 0.0);
-    triangles += one.triangle_count;
-    mcor_free_surface(&one);
-  }
-  expect(suite, mcor_extract(suite->context, &input, &options, &all) == MCOR_OK, "several",
-    mcor_last_error(suite->context), 0.0);
-  expect(suite, all.triangle_count == triangles && triangles > 5000, "several", "triangles",
-    (double)all.triangle_count);
-  if (mesh_check(all.points, all.point_count, all.triangles, all.triangle_count, &mesh))
-  {
-    expect(suite, mesh.boundary_edges == 0, "several", "open edges", (double)mesh.boundary_edges);
-    mesh_free_report(&mesh);
-  }
-  mcor_free_surface(&all);
-  options.seeds = MCOR_PAIRS;
-  expect(suite,
-    mcor_extract(suite->context, &input, &options, &all) == MCOR_INVALID_ARGUMENT &&
-      strstr(mcor_last_error(suite->context), "Capping cannot be combined with pair seeds"),
-    "several", mcor_last_error(suite->context), 0.0);
-}
-
 int main(int argc, char** argv)
 {
   oracle_suite suite;
@@ -315,12 +274,6 @@ int main(int argc, char** argv)
     {
       run_case(&suite, &cases[n], unequal);
     }
-  }
-  if (!suite.filter)
-  {
-    oracle_particles particles = particle_period_make(3);
-    run_several(&suite, &particles);
-    oracle_free_particles(&particles);
   }
   return oracle_end_suite(&suite);
 }

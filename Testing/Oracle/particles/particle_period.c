@@ -24,22 +24,6 @@ static double move(double from, double length)
   return from + AMOUNT * length / (2.0 * PI) * sin(2.0 * PI * from / length);
 }
 
-double particle_period_density(const double x[3])
-{
-  double density = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double from = x[axis];
-    for (int step = 0; step < 50; ++step)
-    {
-      from -= (move(from, particle_period_lengths[axis]) - x[axis]) /
-        stretch(from, particle_period_lengths[axis]);
-    }
-    density /= stretch(from, particle_period_lengths[axis]);
-  }
-  return density;
-}
-
 /* A position that shifts by multiples of 1/2 leave exact. */
 static double on_grid(double x)
 {

@@ -14,7 +14,6 @@ extern const double particle_period_lengths[3];
 /* Jittered; the scalar is the density, the smoothing length goes with it. Positions are multiples of
  * 2^-16, so that shifts by multiples of 1/2 leave them exact. count is 0 if memory ran out. */
 oracle_particles particle_period_make(uint64_t seed);
-double particle_period_density(const double x[3]);
 
 /* Borrowed. */
 mcor_input particle_period_input(const oracle_particles* particles);

@@ -434,29 +434,3 @@ void particle_set_transform(particle_set* set, double scale, const double offset
     set->volume[j] *= scale * scale * scale;
   }
 }
-
-static void set_swap(double* array, int64_t a, int64_t b)
-{
-  const double kept = array[a];
-  array[a] = array[b];
-  array[b] = kept;
-}
-
-void particle_set_shuffle(particle_set* set, uint64_t seed)
-{
-  uint64_t state = seed;
-  for (int64_t a = set->count - 1; a > 0; --a)
-  {
-    const int64_t b = (int64_t)(random_bits(&state) % (uint64_t)(a + 1));
-    const uint8_t kept = set->solid[a];
-    set->solid[a] = set->solid[b];
-    set->solid[b] = kept;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      set_swap(set->position, 3 * a + axis, 3 * b + axis);
-    }
-    set_swap(set->smoothing_length, a, b);
-    set_swap(set->volume, a, b);
-    set_swap(set->scalar, a, b);
-  }
-}

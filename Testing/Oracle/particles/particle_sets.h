@@ -56,8 +56,6 @@ mcor_input particle_set_input(const particle_set* set);
 
 /* x -> scale * x + offset, with lengths and volumes. */
 void particle_set_transform(particle_set* set, double scale, const double offset[3]);
-/* Puts the particles into another, seemingly random order. */
-void particle_set_shuffle(particle_set* set, uint64_t seed);
 
 /* A small fast generator (splitmix64), the same on every machine. */
 uint64_t random_bits(uint64_t* state);

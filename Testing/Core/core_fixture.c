@@ -207,17 +207,24 @@ int64_t* core_make_order(int64_t count, uint64_t seed)
   return order;
 }
 
+void core_append(core_set* to, const core_set* from, int64_t i)
+{
+  const int64_t n = to->count++;
+  memcpy(to->position + 3 * n, from->position + 3 * i, 3 * sizeof(double));
+  to->smoothing_length[n] = from->smoothing_length[i];
+  to->volume[n] = from->volume[i];
+  to->scalar[n] = from->scalar[i];
+  to->solid[n] = from->solid[i];
+}
+
 core_set core_permute(const core_set* set, const int64_t* order)
 {
   core_set result = core_make_set(set->count);
   result.has_solids = set->has_solids;
+  result.count = 0;
   for (int64_t i = 0; i < set->count; ++i)
   {
-    memcpy(result.position + 3 * i, set->position + 3 * order[i], 3 * sizeof(double));
-    result.smoothing_length[i] = set->smoothing_length[order[i]];
-    result.volume[i] = set->volume[order[i]];
-    result.scalar[i] = set->scalar[order[i]];
-    result.solid[i] = set->solid[order[i]];
+    core_append(&result, set, order[i]);
   }
   return result;
 }

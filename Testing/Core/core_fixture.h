@@ -85,6 +85,8 @@ mcor_options core_options(const double* iso);
 /* The set for the oracle; borrowed, not to be freed. */
 oracle_particles core_oracle(const core_set* set);
 
+/* Appends particle i to a set that has room. */
+void core_append(core_set* to, const core_set* from, int64_t i);
 /* Particle i of the result is particle order[i] of the set. */
 core_set core_permute(const core_set* set, const int64_t* order);
 /* A seemingly random order; free with free(). */

@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core_keep.h"
+#include "core_parts.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,29 +56,6 @@ static int compare_bytes(const void* a, const void* b)
   return memcmp(a, b, g_width);
 }
 
-/* Without keys, which number the bricks. */
-static size_t put_point(unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i)
-{
-  const unsigned char* begin = to;
-  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
-  mcor_list_surface_arrays(s, arrays);
-  for (int a = 0; a < MCOR_SURFACE_ARRAYS; ++a)
-  {
-    if (*arrays[a].array && arrays[a].array != (void**)&s->point_keys)
-    {
-      memcpy(to, (const char*)*arrays[a].array + (size_t)i * arrays[a].width, arrays[a].width);
-      to += arrays[a].width;
-    }
-  }
-  for (int a = 0; a < s->attribute_count; ++a)
-  {
-    const size_t width = (size_t)input->attributes[a].components * sizeof(double);
-    memcpy(to, (const char*)s->attributes[a] + (size_t)i * width, width);
-    to += width;
-  }
-  return (size_t)(to - begin);
-}
-
 /* Adds a cell, from its least corner on. */
 static void add_cell(
   keep_cells* cells, const mcor_input* input, mcor_surface* s, const int32_t* points)
@@ -86,7 +64,7 @@ static void add_cell(
   int least = 0;
   for (int c = 0; c < cells->corners; ++c)
   {
-    cells->width = put_point(corner[c], input, s, points[c]);
+    cells->width = (size_t)(core_put_point(corner[c], input, s, points[c], false) - corner[c]);
     least = memcmp(corner[c], corner[least], cells->width) < 0 ? c : least;
   }
   const size_t bytes = (size_t)cells->corners * cells->width;

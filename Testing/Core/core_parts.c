@@ -14,29 +14,22 @@ static int compare_triangles(const void* a, const void* b)
   return memcmp(a, b, g_width);
 }
 
-/* Appends an element of an array that is there; returns where the next one goes. */
-static unsigned char* put(unsigned char* to, const void* array, int64_t i, size_t width)
-{
-  if (array)
-  {
-    memcpy(to, (const char*)array + (size_t)i * width, width);
-    return to + width;
-  }
-  return to;
-}
-
-static unsigned char* put_point(
-  unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i)
+unsigned char* core_put_point(
+  unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i, bool keys)
 {
   mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
   mcor_list_surface_arrays(s, arrays);
-  for (int a = 0; a < MCOR_SURFACE_ARRAYS; ++a)
+  for (int a = 0; a < MCOR_SURFACE_ARRAYS + s->attribute_count; ++a)
   {
-    to = put(to, *arrays[a].array, i, arrays[a].width);
-  }
-  for (int a = 0; a < s->attribute_count; ++a)
-  {
-    to = put(to, s->attributes[a], i, (size_t)input->attributes[a].components * sizeof(double));
+    const int k = a - MCOR_SURFACE_ARRAYS;
+    const char* array = k < 0 ? *arrays[a].array : s->attributes[k];
+    const size_t width =
+      k < 0 ? arrays[a].width : (size_t)input->attributes[k].components * sizeof(double);
+    if (array && (keys || array != (const char*)s->point_keys))
+    {
+      memcpy(to, array + (size_t)i * width, width);
+      to += width;
+    }
   }
   return to;
 }
@@ -59,26 +52,37 @@ static unsigned char* put_place(unsigned char* to, const mcor_surface* s, int64_
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s)
 {
   unsigned char point[1024];
-  if (s->triangle_count == 0)
+  if (s->point_count == 0)
   {
     return;
   }
-  triangles->width =
-    3 * (size_t)(put_point(point, input, s, 0) - point) + (s->triangle_keys ? 24 : 0);
-  const size_t count = (size_t)(triangles->count + s->triangle_count);
+  const size_t place = s->triangle_keys ? 24 : 0;
+  triangles->width = 3 * (size_t)(core_put_point(point, input, s, 0, true) - point) + place;
+  const size_t count = (size_t)(triangles->count + s->triangle_count + s->line_point_count);
   triangles->bytes = realloc(triangles->bytes, count * triangles->width);
   assert_non_null(triangles->bytes);
   unsigned char* to = triangles->bytes + (size_t)triangles->count * triangles->width;
   uint64_t nth = 0;
-  for (int64_t i = 0; i < s->triangle_count; ++i)
+  for (int64_t i = 0; i < s->triangle_count; ++i, ++triangles->count)
   {
     to = s->triangle_keys ? put_place(to, s, i, &nth) : to;
     for (int c = 0; c < 3; ++c)
     {
-      to = put_point(to, input, s, s->triangles[3 * i + c]);
+      to = core_put_point(to, input, s, s->triangles[3 * i + c], true);
     }
   }
-  triangles->count += s->triangle_count;
+  for (int64_t l = 0; l < s->line_count; ++l)
+  {
+    for (int64_t i = s->line_offsets[l]; i + 1 < s->line_offsets[l + 1]; ++i, ++triangles->count)
+    {
+      memset(to, 0, place);
+      to += place;
+      for (int c = 0; c < 3; ++c)
+      {
+        to = core_put_point(to, input, s, s->line_points[i + (c > 0)], true);
+      }
+    }
+  }
 }
 
 static void sort_triangles(core_triangles* triangles)
@@ -250,11 +254,7 @@ void core_add_near(
   }
   if (in)
   {
-    memcpy(near->position + 3 * near->count, x, 3 * sizeof *x);
-    near->smoothing_length[near->count] = set->smoothing_length[i];
-    near->volume[near->count] = set->volume[i];
-    near->scalar[near->count] = set->scalar[i];
-    near->solid[near->count++] = set->solid[i];
+    core_append(near, set, i);
   }
 }
 

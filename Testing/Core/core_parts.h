@@ -7,7 +7,8 @@
 
 #include "core_fixture.h"
 
-/* Triangles of some surfaces: the bytes of their corners, one after the other. */
+/* Triangles of some surfaces, and pieces of lines, whose second end is there twice: the bytes of their corners, one
+ * after the other. */
 typedef struct core_triangles
 {
   int64_t count;
@@ -15,6 +16,9 @@ typedef struct core_triangles
   unsigned char* bytes;
 } core_triangles;
 
+/* All that a point carries; returns where the next one goes. Keys number the bricks. */
+unsigned char* core_put_point(
+  unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i, bool keys);
 void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_surface* s);
 /* Sorts both; each triangle of one must be in the other, too, with all its bytes. */
 void core_expect_same(const char* name, core_triangles* all, core_triangles* whole);

@@ -454,9 +454,7 @@ static void project_part(core_rank* rank, void* data)
   part.count = 0;
   for (int64_t i = r; i < job->set->count; i += count)
   {
-    memcpy(part.position + 3 * part.count, job->set->position + 3 * i, 3 * sizeof(double));
-    part.smoothing_length[part.count] = job->set->smoothing_length[i];
-    part.volume[part.count++] = job->set->volume[i];
+    core_append(&part, job->set, i);
   }
   const mcor_input input = input_of(&part);
   mcor_options options = project_options(MCOR_QUINTIC_SPLINE);

@@ -86,9 +86,7 @@ static core_set take_near(const gauge_job* job, double low, double high, double 
     }
     if (is_near)
     {
-      memcpy(part.position + 3 * part.count, job->set->position + 3 * i, 3 * sizeof(double));
-      part.smoothing_length[part.count] = job->set->smoothing_length[i];
-      part.volume[part.count++] = job->set->volume[i];
+      core_append(&part, job->set, i);
     }
   }
   return part;

@@ -4,7 +4,7 @@
 /* Ranks, in threads: what is measured over all of them is, to the last bit, what is measured over one
  * input, whoever has what. */
 
-#include "core_fixture.h"
+#include "core_parts.h"
 #include "core_ranks.h"
 
 #include <math.h>
@@ -59,11 +59,7 @@ static core_set take_part(const core_set* set, split_function split, int ranks, 
   {
     if (split(set, i, ranks) == rank)
     {
-      memcpy(part.position + 3 * part.count, set->position + 3 * i, 3 * sizeof(double));
-      part.smoothing_length[part.count] = set->smoothing_length[i];
-      part.volume[part.count] = set->volume[i];
-      part.scalar[part.count] = set->scalar[i];
-      part.solid[part.count++] = set->solid[i];
+      core_append(&part, set, i);
     }
   }
   return part;
@@ -270,65 +266,6 @@ static void faults(void** state)
 
 /* ---- Surfaces of parts ---- */
 
-/* Corners of triangles: positions and normals. */
-typedef struct triangle
-{
-  double x[9];
-  float normal[9];
-} triangle;
-
-typedef struct triangle_list
-{
-  triangle* triangles;
-  int64_t count;
-} triangle_list;
-
-/* Of lines in the plane, each piece, its second end twice. */
-static void add_lines(triangle_list* list, const mcor_surface* s)
-{
-  list->triangles =
-    realloc(list->triangles, (size_t)(list->count + s->line_point_count + 1) * sizeof(triangle));
-  assert_non_null(list->triangles);
-  for (int64_t l = 0; l < s->line_count; ++l)
-  {
-    for (int64_t i = s->line_offsets[l]; i + 1 < s->line_offsets[l + 1]; ++i)
-    {
-      triangle* to = list->triangles + list->count++;
-      memset(to, 0, sizeof *to);
-      for (int e = 0; e < 3; ++e)
-      {
-        const int64_t point = s->line_points[i + (e > 0)];
-        memcpy(to->x + 3 * e, s->points + 3 * point, 3 * sizeof(double));
-        memcpy(to->normal + 3 * e, s->normals + 3 * point, 3 * sizeof(float));
-      }
-    }
-  }
-}
-
-static void add_triangles(triangle_list* list, const mcor_surface* s)
-{
-  list->triangles =
-    realloc(list->triangles, (size_t)(list->count + s->triangle_count + 1) * sizeof(triangle));
-  assert_non_null(list->triangles);
-  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
-  {
-    triangle* to = list->triangles + list->count + i / 3;
-    if (i % 3 == 0)
-    {
-      memset(to, 0, sizeof *to);
-    }
-    memcpy(to->x + 3 * (i % 3), s->points + 3 * s->triangles[i], 3 * sizeof(double));
-    memcpy(to->normal + 3 * (i % 3), s->normals + 3 * s->triangles[i], 3 * sizeof(float));
-  }
-  list->count += s->triangle_count;
-  add_lines(list, s);
-}
-
-static int compare_triangles(const void* a, const void* b)
-{
-  return memcmp(a, b, sizeof(triangle));
-}
-
 typedef struct parts_job
 {
   const core_set* set;
@@ -340,24 +277,6 @@ typedef struct parts_job
   double margin; /* of particles beside a box */
 } parts_job;
 
-static core_set take_near(const core_set* set, const double box[6], double margin)
-{
-  core_set near = core_make_set(set->count);
-  near.count = 0;
-  for (int64_t i = set->count - 1; i >= 0; --i)
-  {
-    const double x = set->position[3 * i];
-    if (x > box[0] - margin && x < box[1] + margin)
-    {
-      memcpy(near.position + 3 * near.count, set->position + 3 * i, 3 * sizeof x);
-      near.smoothing_length[near.count] = set->smoothing_length[i];
-      near.volume[near.count] = set->volume[i];
-      near.scalar[near.count++] = set->scalar[i];
-    }
-  }
-  return near;
-}
-
 static void extract_part(core_rank* rank, void* data)
 {
   parts_job* job = data;
@@ -368,7 +287,7 @@ static void extract_part(core_rank* rank, void* data)
   memcpy(options.box, box, sizeof box);
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
-  core_set near = take_near(job->set, box, job->margin);
+  core_set near = core_take_near(job->set, box, job->margin);
   const mcor_input input = core_input(&near);
   mcor_context* context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
@@ -401,31 +320,27 @@ static void check_parts(mcor_context* context, const core_set* set, const mcor_o
   int ranks, const double* sides, double margin, int64_t least)
 {
   const mcor_input input = core_input(set);
-  triangle_list whole = { 0 }, all = { 0 };
+  core_triangles whole = { 0 }, all = { 0 };
   parts_job job = { .set = set, .options = options, .sides = sides, .margin = margin };
   mcor_surface surface = core_extract(context, &input, options);
   CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
-  add_triangles(&whole, &surface);
+  core_add_surface(&whole, &input, &surface);
   core_world world;
   core_run_ranks(ranks, extract_part, &job, &world);
   mcor_statistics sum = { 0 };
   for (int r = 0; r < ranks; ++r)
   {
     assert_int_equal(job.status[r], MCOR_OK);
-    add_triangles(&all, &job.surface[r]);
+    core_add_surface(&all, &input, &job.surface[r]);
     sum.cells_used += job.surface[r].statistics.cells_used;
     assert_int_equal(world.calls[r], world.calls[0]);
     mcor_free_surface(&job.surface[r]);
   }
-  CORE_CHECK(whole.count > least && all.count == whole.count,
-    "%d ranks: %lld triangles or lines, not %lld", ranks, (long long)all.count,
-    (long long)whole.count);
+  CORE_CHECK(whole.count > least, "%d ranks: only %lld triangles or lines", ranks, (long long)whole.count);
+  core_expect_same("ranks", &all, &whole);
   assert_int_equal(sum.cells_used, surface.statistics.cells_used);
-  qsort(whole.triangles, (size_t)whole.count, sizeof(triangle), compare_triangles);
-  qsort(all.triangles, (size_t)all.count, sizeof(triangle), compare_triangles);
-  assert_memory_equal(all.triangles, whole.triangles, (size_t)all.count * sizeof(triangle));
-  free(whole.triangles);
-  free(all.triangles);
+  free(whole.bytes);
+  free(all.bytes);
   mcor_free_surface(&surface);
   mcor_free_globals(&job.globals);
 }

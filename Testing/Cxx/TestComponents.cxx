@@ -21,7 +21,6 @@
 #include "vtkVariant.h"
 
 #include <array>
-#include <cstdio>
 #include <functional>
 #include <vector>
 
@@ -251,65 +250,6 @@ void CheckAgainstVtk()
   CHECK(closed > 10);
 }
 
-/// A ball across a corner of the period is one, wherever the period begins; a cylinder has no volume.
-void CheckPeriod()
-{
-  std::vector<double> areas, volumes;
-  for (const double shift : { 0.0, 0.37 })
-  {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    const int n = 20;
-    for (int i = 0; i < n * n * n; ++i)
-    {
-      const double x[3] = { (i % n) * 0.1, (i / n % n) * 0.1, (i / n / n) * 0.1 };
-      const auto distance = [](double a, double b) { return std::abs(std::remainder(a - b, 2.0)); };
-      const double r =
-        std::hypot(std::hypot(distance(x[0], 0), distance(x[1], 0)), distance(x[2], 0));
-      const double rod = std::hypot(distance(x[0], 1.0), distance(x[1], 1.0));
-      if (r < 0.45 || rod < 0.3)
-      {
-        points->InsertNextPoint(x[0] + shift, x[1] + shift, x[2] + shift);
-      }
-    }
-    vtkNew<vtkPolyData> particles;
-    particles->SetPoints(points);
-    vtkNew<vtkMarchingCorrectors> filter;
-    filter->SetInputData(particles);
-    filter->SetSmoothingLength(0.13);
-    filter->FreeSurfaceOn();
-    filter->SetCubeSize(0.05);
-    filter->SetPeriodicBounds(0, 2, 0, 2, 0, 2);
-    filter->Update();
-    auto split = Split(filter->GetOutput(), particles);
-    split->SetPeriodicBounds(0, 2, 0, 2, 0, 2);
-    split->Update();
-    vtkTable* table = split->GetTable();
-    CHECK(table->GetNumberOfRows() == 2);
-    CHECK(At(table, 0, "closed") == 1.0 && std::isnan(At(table, 0, "volume")));
-    CHECK(At(table, 1, "closed") == 1.0 && At(table, 1, "volume") > 0.3);
-    CHECK(At(table, 1, "xmax") - At(table, 1, "xmin") < 1.3);
-    int inBall = 0;
-    for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-    {
-      double x[3];
-      points->GetPoint(i, x);
-      double square = 0.0;
-      for (const double c : x)
-      {
-        const double d = std::remainder(c - shift, 2.0);
-        square += d * d;
-      }
-      inBall += square < 0.45 * 0.45;
-    }
-    CHECK(At(table, 1, "particles") == inBall);
-    areas.push_back(At(table, 1, "area"));
-    volumes.push_back(At(table, 1, "volume"));
-  }
-  CHECK(
-    std::abs(areas[0] / areas[1] - 1.0) < 0.01 && std::abs(volumes[0] / volumes[1] - 1.0) < 0.01);
-}
-
 /// A lattice of spacing 0.1 in the period 2, moved by `shift`: those whose way from the origin is wanted.
 vtkSmartPointer<vtkPolyData> PeriodicLattice(
   const std::array<double, 3>& shift, const std::function<bool(const double way[3])>& wanted)
@@ -367,6 +307,7 @@ void CheckSides()
       {
         CHECK(std::abs(At(table, row, column) / At(first, row, column) - 1.0) < 1e-5);
       }
+      CHECK(At(table, row, "xmax") - At(table, row, "xmin") < 1.3);
       for (int a = 0; a < 3; ++a)
       {
         const char* const centres[3] = { "x", "y", "z" };
@@ -454,45 +395,7 @@ vtkSmartPointer<vtkPolyData> Lattice(int n, const std::function<bool(const doubl
       places.push_back(x);
     }
   }
-  auto lattice = Particles(places);
-  test::AddArray<vtkDoubleArray>(lattice, "Distance", 1,
-    [&](vtkIdType i, int)
-    {
-      const double* x = lattice->GetPoint(i);
-      return std::hypot(std::hypot(x[0], x[1]), x[2]);
-    });
-  return lattice;
-}
-
-/// Spheres of lattice particles: with twice as many along an axis area and volume are four times as near.
-void CheckConvergence()
-{
-  const double r = 0.6, pi = 3.14159265358979323846;
-  const double exact[2] = { 4.0 * pi * r * r, 4.0 / 3.0 * pi * r * r * r };
-  double errors[2][2];
-  for (int fine = 0; fine < 2; ++fine)
-  {
-    const int n = fine ? 40 : 20;
-    auto lattice = Lattice(n, [](const double*) { return true; });
-    vtkNew<vtkMarchingCorrectors> filter;
-    filter->SetInputData(lattice);
-    filter->SetSmoothingLength(1.3 * 2.0 / n);
-    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Distance");
-    filter->SetValue(0, r);
-    filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-    filter->Update();
-    auto split = Split(filter->GetOutput(), lattice);
-    split->Update();
-    CHECK(split->GetTable()->GetNumberOfRows() == 1);
-    errors[0][fine] = std::abs(At(split->GetTable(), 0, "area") / exact[0] - 1.0);
-    errors[1][fine] = std::abs(
-      At(split->GetTable(), 0, "volume") / -exact[1] - 1.0); // a cavity: values are above outside
-  }
-  for (const auto& error : errors)
-  {
-    std::printf("errors %g, %g: %g times as near\n", error[0], error[1], error[0] / error[1]);
-    CHECK(error[0] < 0.1 && error[0] / error[1] > 3.5);
-  }
+  return Particles(places);
 }
 
 /// What the pieces hold, all particles being in one, is what there is: two balls, one hollow, and a lone particle.
@@ -558,10 +461,8 @@ int TestComponents(int, char*[])
   CheckParents();
   CheckFluid();
   CheckAgainstVtk();
-  CheckPeriod();
   CheckSides();
   CheckDropsInBubbles();
-  CheckConvergence();
   CheckSums();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

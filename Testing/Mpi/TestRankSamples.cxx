@@ -37,126 +37,110 @@ using Data = vtkSmartPointer<vtkPolyData>;
 /// Of particles and points.
 using Run = std::function<Data(vtkPolyData*, vtkPolyData*, vtkMultiProcessController*)>;
 
-Data ProbeWith(vtkSPHProbe* probe, vtkPolyData* particles, vtkPolyData* points,
-  vtkMultiProcessController* controller)
-{
-  probe->SetController(controller);
-  probe->SetInputData(points);
-  probe->SetSourceData(particles);
-  probe->Update();
-  return vtkPolyData::SafeDownCast(probe->GetOutput());
-}
-
-Data DeriveWith(vtkSPHDerivatives* filter, const char* array, vtkPolyData* particles,
-  vtkMultiProcessController* controller)
-{
-  filter->SetController(controller);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, array);
-  filter->ComputeStrainRateOn();
-  filter->SetInputData(particles);
-  filter->Update();
-  return vtkPolyData::SafeDownCast(filter->GetOutput());
-}
-
 struct Case
 {
   const char* Name;
   const char* File;
   bool IsPlane; // the points lie in a plane; else in space
+  int Constant; // the axis across which the particles are moved into a plane; -1: none
   Run Do;
-  int Constant = -1; // the axis across which the particles are moved into a plane
 };
 
+const char* const Dams = "double_dam_break_small"; // a small one, and one with walls and smoothing lengths that differ
+const char* const Dam = "dam_break_45k";
+
+Case Probe(const char* name, const char* file, bool isPlane, int constant, void (*setUp)(vtkSPHProbe*))
+{
+  return { name, file, isPlane, constant,
+    [=](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHProbe> probe;
+      setUp(probe);
+      probe->SetController(controller);
+      probe->SetInputData(points);
+      probe->SetSourceData(particles);
+      probe->Update();
+      return Data(vtkPolyData::SafeDownCast(probe->GetOutput()));
+    } };
+}
+
+Case Derive(const char* name, const char* file, const char* array, int constant, void (*setUp)(vtkSPHDerivatives*))
+{
+  return { name, file, false, constant,
+    [=](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    {
+      vtkNew<vtkSPHDerivatives> filter;
+      setUp(filter);
+      filter->SetController(controller);
+      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, array);
+      filter->ComputeStrainRateOn();
+      filter->SetInputData(particles);
+      filter->Update();
+      return Data(vtkPolyData::SafeDownCast(filter->GetOutput()));
+    } };
+}
+
 const std::vector<Case> Cases = {
-  { "probe, plane", "double_dam_break_small", true,
-    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+  Probe("probe, plane", Dams, true, -1, [](vtkSPHProbe* probe) { probe->ComputeGradientsOn(); }),
+  Probe("probe, sum, computed volumes, M'4", Dams, false, -1,
+    [](vtkSPHProbe* probe)
     {
-      vtkNew<vtkSPHProbe> probe;
-      probe->ComputeGradientsOn();
-      return ProbeWith(probe, particles, points, controller);
-    } },
-  { "probe, sum, computed volumes, M'4", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
-    {
-      vtkNew<vtkSPHProbe> probe;
       probe->ShepardNormalizationOff();
       probe->DetectArraysOff();
       probe->SetSmoothingLength(0.06);
       probe->SetKernelToMPrime4();
       probe->SetHScaleFactor(0.9);
-      return ProbeWith(probe, particles, points, controller);
-    } },
-  { "probe, solids, smoothing lengths that differ, double precision", "dam_break_45k", false,
-    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    }),
+  Probe("probe, solids, smoothing lengths that differ, double precision", Dam, false, -1,
+    [](vtkSPHProbe* probe)
     {
-      vtkNew<vtkSPHProbe> probe;
       probe->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
       probe->SetFluidArrayName("ParticleType");
       probe->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
       probe->ComputeGradientsOn();
-      return ProbeWith(probe, particles, points, controller);
-    } },
-  { "probe, periods", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
+    }),
+  Probe("probe, periods", Dams, false, -1,
+    [](vtkSPHProbe* probe)
     {
-      vtkNew<vtkSPHProbe> probe;
       probe->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
       probe->ComputeGradientsOn();
-      return ProbeWith(probe, particles, points, controller);
-    } },
-  { "derivatives, periods, computed volumes", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    }),
+  Probe("probe, two dimensions, periods, also across the plane", Dams, false, 1,
+    [](vtkSPHProbe* probe)
     {
-      vtkNew<vtkSPHDerivatives> filter;
-      filter->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
-      filter->DetectArraysOff();
-      filter->SetSmoothingLength(0.06);
-      return DeriveWith(filter, "Velocity", particles, controller);
-    } },
-  { "derivatives", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
-    {
-      vtkNew<vtkSPHDerivatives> filter;
-      return DeriveWith(filter, "Velocity", particles, controller);
-    } },
-  { "derivatives, estimated smoothing length, computed volumes", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
-    {
-      vtkNew<vtkSPHDerivatives> filter;
-      filter->CorrectGradientsOff();
-      filter->DetectArraysOff();
-      filter->EstimateSmoothingLengthOn();
-      return DeriveWith(filter, "Speed", particles, controller);
-    } },
-  { "derivatives, solids, smoothing lengths that differ", "dam_break_45k", false,
-    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
-    {
-      vtkNew<vtkSPHDerivatives> filter;
-      filter->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      filter->SetFluidArrayName("ParticleType");
-      return DeriveWith(filter, "Velocity", particles, controller);
-    } },
-  { "probe, two dimensions, periods, also across the plane", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData* points, vtkMultiProcessController* controller)
-    {
-      vtkNew<vtkSPHProbe> probe;
       probe->DetectArraysOff();
       probe->SetSmoothingLength(0.06);
       probe->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.6, -1.0, 0.5);
       probe->ComputeGradientsOn();
-      return ProbeWith(probe, particles, points, controller);
-    },
-    1 },
-  { "derivatives, two dimensions, estimated smoothing length", "double_dam_break_small", false,
-    [](vtkPolyData* particles, vtkPolyData*, vtkMultiProcessController* controller)
+    }),
+  Derive("derivatives", Dams, "Velocity", -1, [](vtkSPHDerivatives*) {}),
+  Derive("derivatives, periods, computed volumes", Dams, "Velocity", -1,
+    [](vtkSPHDerivatives* filter)
     {
-      vtkNew<vtkSPHDerivatives> filter;
+      filter->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
+      filter->DetectArraysOff();
+      filter->SetSmoothingLength(0.06);
+    }),
+  Derive("derivatives, estimated smoothing length, computed volumes", Dams, "Speed", -1,
+    [](vtkSPHDerivatives* filter)
+    {
+      filter->CorrectGradientsOff();
+      filter->DetectArraysOff();
+      filter->EstimateSmoothingLengthOn();
+    }),
+  Derive("derivatives, solids, smoothing lengths that differ", Dam, "Velocity", -1,
+    [](vtkSPHDerivatives* filter)
+    {
+      filter->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+      filter->SetFluidArrayName("ParticleType");
+    }),
+  Derive("derivatives, two dimensions, estimated smoothing length", Dams, "Velocity", 2,
+    [](vtkSPHDerivatives* filter)
+    {
       filter->DetectArraysOff();
       filter->EstimateSmoothingLengthOn();
       filter->ComputeLambda2On();
-      return DeriveWith(filter, "Velocity", particles, controller);
-    },
-    2 },
+    }),
 };
 
 /// Numbers the points, so that they are known wherever they go.

@@ -119,25 +119,91 @@ class Program(unittest.TestCase):
         return [run.get(name) for name in ("dimension", "lines", "length", "area", "cells_used", "cells_of_level",
                                            "trim_vertices", "lattice_cells", "points")]
 
-    def test_lines(self):
-        """In a plane: all points, arrays and lines are those of one process, on squares of one size and of several."""
+    def check_same(self, name, particles, pieces, *how, numbers=False):
+        """The file that processes make of as many pieces of the particles (0: of their file) is, byte for byte, that of
+        one process; numbers: of lines, too."""
+        source = write_pieces(particles, self.folder.name, pieces) if pieces else particles
+        stats = [["--quiet", "--stats", self.path(file)] if numbers else [] for file in ("a.json", "s.json")]
+        alone = self.good(self.run_alone(particles, self.path("alone_" + name), *how, *stats[0]))
+        done = self.good(self.run_ranks(source, self.path(name), *how, *stats[1]))
+        self.assertTrue(filecmp.cmp(self.path("alone_" + name), self.path(name), shallow=False), how)
+        if numbers:
+            self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"), how)
+        return alone, done
+
+    def test_in_a_plane(self):
+        """Lines on squares of one size and of several, what is filled between them, along sides of boxes and periods."""
         plane = self.write_plane()
-        pieces = write_pieces(plane, self.folder.name, 3)
-        for cubes in "uniform", "adaptive":
-            how = ["--scalar", "Speed", "--iso", "1,2", "--smoothing-length", "PlaneLength", "--volume", "PlaneArea",
-                   "--cubes", cubes, "--quiet"]
-            self.good(self.run_alone(plane, self.path("alone.vtp"), *how, "--stats", self.path("a.json")))
-            alone = read(self.path("alone.vtp"))
-            self.assertGreater(alone.GetNumberOfLines(), 5)
-            for out in "ranks.vtp", "ranks.pvtp":
-                self.good(self.run_ranks(pieces, self.path(out), *how, "--stats", self.path("s.json")))
-                ranks = read(self.path(out))
-                for get in (lambda p: p.GetPoints().GetData(), lambda p: p.GetLines().GetConnectivityArray(),
-                            lambda p: p.GetLines().GetOffsetsArray()):
-                    np.testing.assert_array_equal(vtk_to_numpy(get(alone)), vtk_to_numpy(get(ranks)))
-                self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
-                self.assertIsNotNone(alone.GetPointData().GetArray("Normals"))
-                self.check_point_data(alone, ranks)
+        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea"]
+        speed = ["--scalar", "Speed", "--iso", "1,2"]
+        for how in ([*speed, "--cubes", "uniform"], [*speed, "--cubes", "adaptive"],
+                    ["--filled", "--free-surface", "--cubes", "adaptive"], ["--filled", *speed, "--weight-sum", "--gradients"],
+                    ["--capping", "--free-surface", "--box=-1,0.6,-inf,0.3,-inf,inf", "--weight-sum"],
+                    ["--capping", *speed, "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0"],
+                    ["--filled", *speed, "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0", "--topology", "field"]):
+            self.check_same("out.vtp", plane, 3, *size, *how, numbers=True)
+            self.good(self.run_ranks(self.path("pieces.pvtp"), self.path("out.pvtp"), *size, *how, "--quiet"))
+            alone, ranks = read(self.path("out.vtp")), read(self.path("out.pvtp"))
+            self.assertGreater(alone.GetNumberOfPolys() if "--filled" in how else alone.GetNumberOfLines(), 0)
+            for get in (lambda p: p.GetPoints().GetData(), lambda p: p.GetLines().GetConnectivityArray(),
+                        lambda p: p.GetLines().GetOffsetsArray(), lambda p: p.GetPolys().GetConnectivityArray()):
+                np.testing.assert_array_equal(vtk_to_numpy(get(alone)), vtk_to_numpy(get(ranks)))
+            self.check_point_data(alone, ranks)
+
+    def test_fields_in_a_plane(self):
+        """Points on a line, what is derived, gauges."""
+        plane = self.write_plane()
+        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea"]
+        wet = ["--gauge", "a=0,-0.5,0.5:0,1.2,0.5", "--gauge", "b=-2,0.1,0.5:2,0.3,0.5"]
+        for name, how in (("line.vtp", ["--line=-1.5,0.1,0.5,1.5,0.4,0.5", "--derive", "Velocity", "--gradients"]),
+                          ("derived.vtp", ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "5"]),
+                          ("gauges.csv", wet), ("gauges.csv", [*wet, "--periodic", "3,0,0"])):
+            self.check_same(name, plane, 4, *size, *how)
+        line = read(self.path("line.vtp")).GetPointData()
+        self.assertGreater(vtk_to_numpy(line.GetArray("vtkValidPointMask")).sum(), 100)
+        self.assertIsNone(line.GetArray("Lambda2"))
+        self.assertGreater(read(self.path("derived.vtp")).GetNumberOfLines(), 5)
+        with open(self.path("gauges.csv"), encoding="utf-8") as stream:
+            self.assertIn(",wet,", stream.read())
+
+    def test_same_file(self):
+        """Trimmed, two iso values, a period in a box: the order of points and triangles, too. Walls in files of their own,
+        which the first process reads: here some of the fluid's places."""
+        write_pieces(PARTICLES, self.folder.name, 4)
+        walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
+        trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]
+        for how in ([*trimmed, "--topology", "field"], [*trimmed, "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf"],
+                    ["--free-surface"], ["--free-surface", "--capping", "--box=-1,0.9,-inf,0.4,-inf,0.5"],
+                    [*trimmed, "--capping", "--box=-1,inf,-inf,inf,-inf,0.5", "--periodic", "0,0,3.1"],
+                    [*trimmed, "--capping", "--periodic=-1,1,-0.5,1.1,-1.05,1.05", "--cube-size", "0.04"],
+                    [*trimmed, "--solids", "wall", *walls]):
+            self.check_same("out.ply", PARTICLES, 0, *how)
+            self.assertGreater(os.path.getsize(self.path("out.ply")), 50000)
+
+    def test_tables_and_images(self):
+        """Gauges and fluxes, an image of levels, projections, also of lengths and volumes that are found from all particles."""
+        bare = read(PARTICLES)
+        bare.GetPointData().RemoveArray("Density")
+        write(bare, self.path("bare.vtp"))
+        gauges = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1", "--periodic", "0,0,3.1"]
+        fluxes = ["--flux", "a=box:-1,0.1,-0.1,0.2,-1,0.5", "--flux", "b=disc:0,0.1,0:1,0.2,0:1.4", "--periodic", "0,0,3.1"]
+        view = ["--resolution", "150", "--project"]
+        for name, file, how in (
+                ("gauges.csv", PARTICLES, gauges), ("fluxes.csv", PARTICLES, fluxes),
+                ("levels.vti", PARTICLES, ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]),
+                ("view.vti", PARTICLES, [*view, "z"]), ("view.vti", PARTICLES, [*view, "1,2,3", "--periodic", "0,0,3.1"]),
+                ("view.vti", PARTICLES, [*view, "x", "--smoothing-length", "estimate"]),
+                ("view.vti", PARTICLES, [*view, "y", "--scalar", "Velocity", "--weighted-by", "Mass"]),
+                ("view.vti", self.path("bare.vtp"), [*view, "z", "--scalar", "Speed"])):
+            alone, done = self.check_same(name, file, 5, *how)
+            if name == "gauges.csv":
+                self.assertEqual(done.stdout, alone.stdout)
+        with open(self.path("gauges.csv"), encoding="utf-8") as stream:
+            self.assertIn(",wet,", stream.read())
+        for name, how in (("o.csv", ["--gauge", "a=0,0,0:0,0,1", "--smoothing-length", "Nope"]),
+                          ("o.vti", ["--project", "z", "--scalar", "Nope"])):
+            self.check_fails(self.run_ranks(PARTICLES, self.path(name), *how), "Nope")
+        self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "no/o.csv")
 
     def test_types_of_pieces(self):
         """An array that is int8 in one piece and float64 in the others comes out alike, whoever reads that piece."""
@@ -200,81 +266,6 @@ class Program(unittest.TestCase):
                 length = json.load(stream)["statistics"]["smoothing_length_range"]
             self.assertEqual(length, [0.03 * math.sqrt(dimension)] * 2)
 
-    def test_filled(self):
-        """What is filled between lines, with its border in a box and a period: the file is that of one process, byte for byte."""
-        plane = self.write_plane()
-        pieces = write_pieces(plane, self.folder.name, 3)
-        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea", "--filled", "--quiet"]
-        speed = ["--scalar", "Speed", "--iso", "1,2"]
-        for how in (["--free-surface", "--cubes", "adaptive"], [*speed, "--weight-sum", "--gradients"],
-                    [*speed, "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0", "--topology", "field"]):
-            self.good(self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json")))
-            self.assertGreater(read(self.path("alone.vtp")).GetNumberOfPolys(), 1000)
-            self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json")))
-            self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False), how)
-            self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
-        self.good(self.run_ranks(pieces, self.path("ranks.pvtp"), *size, *how))
-        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.pvtp"))
-        np.testing.assert_array_equal(corners(ranks), corners(alone))
-        np.testing.assert_array_equal(vtk_to_numpy(ranks.GetCellData().GetArray("BandValue")),
-                                      vtk_to_numpy(alone.GetCellData().GetArray("BandValue")))
-
-    def test_capped_lines(self):
-        """Along the sides of a box and a period: the file is that of one process, byte for byte."""
-        plane = self.write_plane()
-        pieces = write_pieces(plane, self.folder.name, 3)
-        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea", "--capping", "--quiet"]
-        for how in (["--free-surface", "--box=-1,0.6,-inf,0.3,-inf,inf", "--weight-sum"],
-                    ["--scalar", "Speed", "--iso", "1,2", "--box=-1,0.6,-inf,inf,-inf,inf", "--periodic", "0,1.3,0"]):
-            self.good(self.run_alone(plane, self.path("alone.vtp"), *size, *how, "--stats", self.path("a.json")))
-            self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *size, *how, "--stats", self.path("s.json")))
-            self.assertTrue(filecmp.cmp(self.path("alone.vtp"), self.path("ranks.vtp"), shallow=False), how)
-            self.assertEqual(self.line_numbers("s.json"), self.line_numbers("a.json"))
-        with open(self.path("s.json"), encoding="utf-8") as stream:
-            self.assertGreater(json.load(stream)["statistics"]["cap_triangles"], 20)
-
-    def test_fields_in_a_plane(self):
-        """Points on a line, what is derived, gauges: the files are those of one process, byte for byte."""
-        plane = self.write_plane()
-        pieces = write_pieces(plane, self.folder.name, 4)
-        size = ["--smoothing-length", "PlaneLength", "--volume", "PlaneArea"]
-        wet = ["--gauge", "a=0,-0.5,0.5:0,1.2,0.5", "--gauge", "b=-2,0.1,0.5:2,0.3,0.5"]
-        for name, how in (("line.vtp", ["--line=-1.5,0.1,0.5,1.5,0.4,0.5", "--derive", "Velocity", "--gradients"]),
-                          ("derived.vtp", ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "5"]),
-                          ("gauges.csv", wet), ("gauges.csv", [*wet, "--periodic", "3,0,0"])):
-            self.good(self.run_alone(plane, self.path("alone_" + name), *size, *how))
-            self.good(self.run_ranks(pieces, self.path(name), *size, *how))
-            self.assertTrue(filecmp.cmp(self.path("alone_" + name), self.path(name), shallow=False), name)
-        line = read(self.path("line.vtp")).GetPointData()
-        self.assertGreater(vtk_to_numpy(line.GetArray("vtkValidPointMask")).sum(), 100)
-        self.assertIsNone(line.GetArray("Lambda2"))
-        self.assertGreater(read(self.path("derived.vtp")).GetNumberOfLines(), 5)
-        with open(self.path("gauges.csv"), encoding="utf-8") as stream:
-            self.assertIn(",wet,", stream.read())
-
-    def check_same_file(self, *how):
-        """A file that the first process merges is, byte for byte, that of one process."""
-        self.good(self.run_alone(PARTICLES, self.path("alone.ply"), *how))
-        self.good(self.run_ranks(PARTICLES, self.path("ranks.ply"), *how))
-        self.assertGreater(os.path.getsize(self.path("alone.ply")), 50000)
-        self.assertTrue(filecmp.cmp(self.path("alone.ply"), self.path("ranks.ply"), shallow=False), how)
-
-    def test_same_file(self):
-        """Trimmed, two iso values, a period in a box: the order of points and triangles, too."""
-        trimmed = ["--scalar", "Speed", "--iso", "1,2", "--no-attributes"]
-        self.check_same_file(*trimmed, "--topology", "field")
-        self.check_same_file(*trimmed, "--periodic", "0,0,3.1", "--box=-1,inf,-inf,inf,-0.5,inf")
-        self.check_same_file("--free-surface")
-        self.check_same_file("--free-surface", "--capping", "--box=-1,0.9,-inf,0.4,-inf,0.5")
-        self.check_same_file(*trimmed, "--capping", "--box=-1,inf,-inf,inf,-inf,0.5", "--periodic", "0,0,3.1")
-        self.check_same_file(*trimmed, "--capping", "--periodic=-1,1,-0.5,1.1,-1.05,1.05", "--cube-size", "0.04")
-
-    def test_walls(self):
-        """In files of their own, which the first process reads: here some of the fluid's places."""
-        write_pieces(PARTICLES, self.folder.name, 4)
-        walls = [word for i in (1, 3) for word in ("--walls", self.path(f"piece_{i}.vtp"))]
-        self.check_same_file("--scalar", "Speed", "--iso", "1", "--no-attributes", "--solids", "wall", *walls)
-
     def test_period_of_data(self):
         """The field data of one piece tell of the period, those of two tell of different ones."""
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
@@ -332,45 +323,6 @@ class Program(unittest.TestCase):
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vti"), "--probe", self.path("points.vti"),
                                         "--smoothing-length", "Nope"), "Nope")
         self.assertFalse(os.path.exists(self.path("o.vti")))
-
-    def test_gauges(self):
-        """Two steps, one of them in pieces: the tables, of fluxes, too, and an image of levels, are those of one process, byte for byte."""
-        pieces = write_pieces(PARTICLES, self.folder.name, 5)
-        how = ["--gauge", "a=0,-0.1,0:0,1.2,0", "--gauge", "b=-2,0.1,-1:2,0.3,1", "--periodic", "0,0,3.1"]
-        alone = self.good(self.run_alone(PARTICLES, PARTICLES, self.path("alone.csv"), *how))
-        done = self.good(self.run_ranks(pieces, PARTICLES, self.path("ranks.csv"), *how))
-        self.assertEqual(done.stdout, alone.stdout)
-        with open(self.path("alone.csv"), encoding="utf-8") as stream:
-            rows = stream.read().splitlines()
-        self.assertEqual(len(rows), 5)
-        self.assertIn(",wet,", rows[1])
-        self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
-        how = ["--flux", "a=box:-1,0.1,-0.1,0.2,-1,0.5", "--flux", "b=disc:0,0.1,0:1,0.2,0:1.4", "--periodic", "0,0,3.1"]
-        self.good(self.run_alone(PARTICLES, PARTICLES, self.path("alone_flux.csv"), *how))
-        self.good(self.run_ranks(pieces, PARTICLES, self.path("ranks_flux.csv"), *how))
-        self.assertTrue(filecmp.cmp(self.path("alone_flux.csv"), self.path("ranks_flux.csv"), shallow=False))
-        how = ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]
-        self.good(self.run_alone(PARTICLES, self.path("alone.vti"), *how))
-        self.good(self.run_ranks(pieces, self.path("ranks.vti"), *how))
-        self.assertTrue(filecmp.cmp(self.path("alone.vti"), self.path("ranks.vti"), shallow=False))
-        self.check_fails(self.run_ranks(PARTICLES, self.path("o.csv"), "--gauge", "a=0,0,0:0,0,1", "--smoothing-length",
-                                        "Nope"), "Nope")
-        self.check_fails(self.run_ranks(PARTICLES, self.path("no/o.csv"), "--gauge", "a=0,0,0:0,0,1"), "could not be written")
-
-    def test_projection(self):
-        """Also of lengths and volumes that are found from all particles: the image is that of one process, byte for byte."""
-        bare = read(PARTICLES)
-        bare.GetPointData().RemoveArray("Density")
-        write(bare, self.path("bare.vtp"))
-        for file, how in ((PARTICLES, ["z"]), (PARTICLES, ["1,2,3", "--periodic", "0,0,3.1"]),
-                          (PARTICLES, ["x", "--smoothing-length", "estimate"]),
-                          (PARTICLES, ["y", "--scalar", "Velocity", "--weighted-by", "Mass"]),
-                          (self.path("bare.vtp"), ["z", "--scalar", "Speed"])):
-            how = ["--project", *how, "--resolution", "150"]
-            self.good(self.run_alone(file, self.path("alone.vti"), *how))
-            self.good(self.run_ranks(write_pieces(file, self.folder.name, 5), self.path("ranks.vti"), *how))
-            self.assertTrue(filecmp.cmp(self.path("alone.vti"), self.path("ranks.vti"), shallow=False), how)
-        self.check_fails(self.run_ranks(PARTICLES, self.path("o.vti"), "--project", "z", "--scalar", "Nope"), "Nope")
 
     def write_series(self):
         """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""

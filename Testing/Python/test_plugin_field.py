@@ -1,16 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """SPH Probe, SPH Derivatives and SPH Temporal Interpolator in pvpython, or in the pvserver of
-with_pvserver.py. Renders nothing."""
+with_pvserver.py. Renders nothing. Traces and states: test_plugin_properties.py."""
 import faulthandler
 import math
 import os
 import tempfile
 
-from paraview import servermanager, smtrace
-from paraview.simple import (Connect, Delete, Disconnect, FindSource, GetAnimationScene, GetSources, GroupDatasets,
-                             LoadPlugin, LoadState, Plane, PlotDataOverTime, RenameSource, SaveState, Wavelet,
-                             XMLPolyDataReader)
+from paraview import servermanager
+from paraview.simple import (Connect, Delete, Disconnect, GetAnimationScene, GroupDatasets, LoadPlugin, Plane,
+                             PlotDataOverTime, Wavelet, XMLPolyDataReader)
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -20,16 +19,6 @@ import numpy
 PLUGIN = os.environ["MCOR_TEST_PLUGIN"]
 DATA = os.environ["MCOR_TEST_DATA"]
 SIDE, SPACING, RATE = 11, 0.1, 0.5
-# What a user may set, not all of it by default.
-CHOICES = {
-    "SPHProbe": {"FluidArray": "Kind", "FluidValue": 1.0, "Kernel": "Wendland C2", "ComputeGradients": 1,
-                 "ExcludedArrays": ["Velocity"], "WeightThreshold": 0.25},
-    "SPHDerivatives": {"Array": ["POINTS", "Velocity"], "ComputeStrainRate": 1, "ResultArrayName": "J",
-                       "FluidArray": "Kind", "FluidValue": 1.0, "Kernel": "Quintic spline (M6)"},
-    "SPHTemporalInterpolator": {"IdArray": "Idp", "VelocityArray": "Velocity", "ResampleFactor": 4},
-}
-
-
 def turned(time):
     """A lattice, turned around the z axis: points and velocities."""
     x, y, z = (numpy.mgrid[0:SIDE, 0:SIDE, 0:SIDE].reshape(3, -1) - SIDE // 2) * SPACING
@@ -200,57 +189,6 @@ def check_interpolator(reader):
     Delete(film)
 
 
-def has_choices(proxy, choices):
-    for name, value in choices.items():
-        found = getattr(proxy, name)
-        found = list(found) if isinstance(value, list) else found
-        assert found == value, (name, found)
-
-
-def content(proxy):
-    data, found = arrays_of(proxy, 0.5)
-    points = vtk_to_numpy(data.GetPoints().GetData())
-    return {**found, "": points}
-
-
-def same(found, expected):
-    """To the bit: outside of the fluid there are no numbers."""
-    return found.keys() == expected.keys() and all(found[key].tobytes() == expected[key].tobytes() for key in expected)
-
-
-def check_trace_and_state(name, inputs, path):
-    """What was done comes back, from its trace and from a saved state."""
-    smtrace.start_trace()
-    made = globals()[name](registrationName="traced", **inputs)
-    applied = smtrace.PropertiesModified(made)  # as the window does around Apply
-    for key, value in CHOICES[name].items():
-        setattr(made, key, value)
-    applied.finalize()
-    lines = smtrace.stop_trace().replace(",\n", ",").splitlines()
-    first = next(i for i, line in enumerate(lines) if name + "(" in line)
-    expected = content(made)
-    RenameSource("original", made)
-    # All but the inputs, which are there already.
-    arguments = [each.strip() for each in lines[first].split("(", 1)[1].rstrip(")").split(",")]
-    renamed = {each.split("=")[1]: inputs[each.split("=")[0]] for each in arguments if each.split("=")[0] in inputs}
-    assert len(renamed) == len(inputs), lines[first]
-    exec("\n".join(lines[first:]), {**globals(), **renamed})  # pylint: disable=exec-used
-    replayed = FindSource("traced")
-    has_choices(replayed, CHOICES[name])
-    assert same(content(replayed), expected), name
-    Delete(replayed)
-
-    SaveState(path)
-    before = set(GetSources().values())
-    RenameSource("before", made)
-    LoadState(path)
-    loaded = FindSource("original")
-    has_choices(loaded, CHOICES[name])
-    assert same(content(loaded), expected), name
-    for source in (loaded, *(each for each in GetSources().values() if each not in before), made):
-        Delete(source)
-
-
 def check_real_data():
     reader = XMLPolyDataReader(FileName=[os.path.join(DATA, "dam_break_45k.vtp")])
     plane = Plane(Origin=[0.0, 0.0, 0.1], Point1=[3.22, 0.0, 0.1], Point2=[0.0, 1.0, 0.1], XResolution=80,
@@ -287,10 +225,6 @@ def main():
         check_flux(reader)
         check_derivatives(reader)
         check_interpolator(reader)
-        state = os.path.join(folder, "state.pvsm")
-        check_trace_and_state("SPHProbe", {"Points": plane, "Particles": reader}, state)
-        check_trace_and_state("SPHDerivatives", {"Input": reader}, state)
-        check_trace_and_state("SPHTemporalInterpolator", {"Input": reader}, state)
     check_real_data()
     if server:
         Disconnect()

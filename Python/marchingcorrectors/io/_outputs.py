@@ -31,7 +31,7 @@ class Outputs:
     """
 
     def __init__(self, inputs, outputs, steps=()):
-        self._written, self._folders = [], []
+        self._written = []  # (where it is, where it goes) of each
         read = {_identity(path) for path in inputs if os.path.exists(path)}
         found = set()
         for path in (*outputs, *steps):
@@ -51,46 +51,24 @@ class Outputs:
 
     def write(self, path, data):
         """Bytes; no more than one file of them is in memory."""
-        with _sentences(path):
-            target = os.path.realpath(path)
-            if os.path.exists(target) and not stat.S_ISREG(os.stat(target).st_mode):
-                self._written.append((None, target, data))  # a device or a pipe
-                return
-            old = None
-            if os.path.exists(target):
-                with open(target, "r+b"):  # asks the system, which may forbid it
-                    old = os.stat(target)
-                    mode = stat.S_IMODE(old.st_mode)
-            else:
-                mask = os.umask(0)
-                os.umask(mask)
-                mode = 0o666 & ~mask
-            folder, name = os.path.split(target)
-            descriptor, beside = tempfile.mkstemp(dir=folder, prefix=f".{name[:50]}.")
-            self._written.append((beside, target, b""))
-            with os.fdopen(descriptor, "wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(descriptor)
-            if old and hasattr(os, "chown"):
-                try:
-                    os.chown(beside, old.st_uid, old.st_gid)
-                except OSError:
-                    mode &= 0o707  # another group must not gain what the old one was allowed
-            os.chmod(beside, mode)
+        with _sentences(path), open(self.beside(path), "wb") as file:
+            file.write(data)
+            file.flush()
+            if os.path.isfile(file.name):
+                os.fsync(file.fileno())
 
     def beside(self, path):
-        """Where a library is to write that file: in a folder of its own beside the place, under its name."""
+        """Where that file is to be written: in a folder of its own beside the place, under its name; a device or a pipe
+        where it is."""
         with _sentences(path):
             target = os.path.realpath(path)
-            if os.path.exists(target) and not os.path.isfile(target):
-                return str(path)
             if os.path.exists(target):
-                with open(target, "r+b"):
+                if not os.path.isfile(target):
+                    return str(path)
+                with open(target, "r+b"):  # asks the system, which may forbid it
                     pass
             folder, name = os.path.dirname(target), os.path.basename(path)
-            self._folders.append(tempfile.mkdtemp(dir=folder, prefix=f".{name[:50]}."))
-            self._written.append((os.path.join(self._folders[-1], name), target, b""))
+            self._written.append((os.path.join(tempfile.mkdtemp(dir=folder, prefix=f".{name[:50]}."), name), target))
             return self._written[-1][0]
 
     def __enter__(self):
@@ -98,23 +76,26 @@ class Outputs:
 
     def __exit__(self, kind, *_):
         try:
-            while kind is None and self._written:
-                beside, target, data = self._written[0]
+            for beside, target in self._written if kind is None else ():
                 with _sentences(target):
-                    if beside:
-                        if os.path.dirname(beside) in self._folders and os.path.exists(target):
-                            shutil.copymode(target, beside)
-                        os.replace(beside, target)
-                    else:
-                        with open(target, "wb") as file:
-                            file.write(data)
-                self._written.pop(0)
+                    if os.path.exists(target):
+                        _copy_mode(target, beside)
+                    os.replace(beside, target)
         finally:
-            for beside, _, _ in self._written:
-                if beside and os.path.exists(beside):
-                    os.unlink(beside)
-            for folder in self._folders:
-                shutil.rmtree(folder, ignore_errors=True)
+            for beside, _ in self._written:
+                shutil.rmtree(os.path.dirname(beside), ignore_errors=True)
+
+
+def _copy_mode(old, new):
+    """And owner and group, where that is allowed."""
+    status = os.stat(old)
+    mode = stat.S_IMODE(status.st_mode)
+    if hasattr(os, "chown"):
+        try:
+            os.chown(new, status.st_uid, status.st_gid)
+        except OSError:
+            mode &= 0o707  # another group must not gain what the old one was allowed
+    os.chmod(new, mode)
 
 
 class _sentences:

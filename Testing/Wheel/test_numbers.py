@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""gauge(), flux() and project(): of a block of particles by hand, of others against probe() and counts; PyVista's methods
+and files; and what is refused."""
+import os
+import tempfile
+import unittest
+
+import numpy as np
+import pyvista
+
+import marchingcorrectors as mc
+
+H, V = 0.13, 0.001
+X = np.stack(np.meshgrid(*[np.arange(12)] * 3, indexing="ij"), -1).reshape(-1, 3) * 0.1
+WORDS = {"smoothing_length": H, "volume": V}
+UP = np.array([[0.52, 0.55, -1.0], [0.52, 0.55, 2.0]])
+UNIFORM = np.tile([1.0, -2.0, 3.0], (len(X), 1))
+DISC = ("disc", (0.5, 0.5, 0.5), (0, 0, 2), 0.2)
+WALL = np.array([[0.5, 0.2, 0.2], [0.5, 0.8, 0.2], [0.5, 0.2, 0.7]])
+# Particles anywhere, far smaller than pixels.
+RANDOM = np.random.default_rng(4)
+POINTS, M, SMALL = RANDOM.random((3000, 3)), RANDOM.random(3000), np.full(3000, 1e-5)
+WHOLE = {"box": (0, 1, 0, 1, 0, 1), "smoothing_length": SMALL, "mass": M, "resolution": 16}
+
+
+class Gauge(unittest.TestCase):
+    def test_readings(self):
+        lines = {"mast": UP, "inside": UP * [1, 1, 0.1] + [0, 0, 0.2], "far": UP + 90}
+        found = mc.gauge(X, lines, **WORDS)
+        self.assertEqual(found.names, ["mast", "inside", "far"])
+        self.assertEqual(found.state.tolist(), ["wet", "full", "dry"])
+        self.assertEqual(found.outside.tolist(), [False, False, True])
+        self.assertLess(abs(found.place[0, 2] - 1.15), 0.005)
+        self.assertAlmostEqual(found.last[0], found.place[0, 2] + 1)
+        self.assertAlmostEqual(found.depth[1], 0.3)
+        self.assertEqual([len(each) for each in found.crossings.values()], [2, 0, 0])
+        weight = mc.probe(X, UP[:1] + np.outer(found.crossings["mast"], [0, 0, 1]), **WORDS).weight_sum
+        self.assertLess(np.abs(weight - 0.5).max(), 1e-4)
+        self.assertTrue(np.isnan(found.place[2]).all() and np.isnan(found.last[2]) and found.depth[2] == 0)
+        self.assertEqual(repr(found), "<Gauges: 3 lines, 1 dry, 1 wet, 1 full>")
+        self.assertEqual(found, mc.gauge(X, lines, **WORDS))
+        one = mc.gauge(X, UP, **WORDS)
+        self.assertEqual((one.names, one.last.tolist()), (["0"], found.last[:1].tolist()))
+        self.assertEqual(mc.gauge(X, [], **WORDS).place.shape, (0, 3))
+
+
+class Flux(unittest.TestCase):
+    def test_uniform(self):
+        cube = pyvista.Cube(center=(0.5, 0.5, 0.5), x_length=0.3, y_length=0.3, z_length=0.3).triangulate()
+        triangles = cube.points[cube.faces.reshape(-1, 4)[:, 1:]].astype(float)
+        sections = {"disc": DISC, "wall": WALL, "box": ("box", (0.3, 0.6, 0.3, 0.7, 0.2, 0.6)), "cube": triangles,
+                    "far": WALL + 90}
+        found = mc.flux(X, UNIFORM, sections, density=1000.0, **WORDS)
+        self.assertEqual(found.names, list(sections))
+        np.testing.assert_allclose(found.area, [0.04 * np.pi, 0.3, 0.24 + 0.24 + 0.32, 0.54, 0], rtol=1e-6)
+        np.testing.assert_allclose(found.volume_flux, [0.12 * np.pi, 0.3, 0, 0, 0], atol=1e-6)
+        np.testing.assert_allclose(found.mass_flux, 1000 * found.volume_flux, atol=1e-3)
+        np.testing.assert_allclose(found.velocity[:2], [3, 1], rtol=1e-6)
+        self.assertEqual(found.outside.tolist(), [False] * 4 + [True])
+        self.assertTrue(np.isnan(found.velocity[4]))
+        self.assertEqual(repr(found), "<Fluxes: 5 sections, 4 in fluid>")
+        one = mc.flux(X, UNIFORM, DISC, mass=2.0, **WORDS)
+        self.assertEqual((one.names, one.area[0]), (["0"], found.area[0]))
+        np.testing.assert_allclose(one.mass_flux, 2000 * one.volume_flux)
+        self.assertTrue(np.isnan(mc.flux(X, UNIFORM, WALL, **WORDS).mass_flux[0]))
+        self.assertEqual(mc.flux(X, UNIFORM, [], **WORDS).area.shape, (0,))
+
+    def test_against_samples(self):
+        """A swirl through a wall, by Gauss's rule."""
+        velocity = np.stack([np.sin(7 * X[:, 1]), np.cos(9 * X[:, 2]), X[:, 0]], -1)
+        density = 1000 + 50 * np.sin(8 * X[:, 2])
+        at, share = np.polynomial.legendre.leggauss(3)
+        n = 60
+        s, w = ((np.arange(n)[:, None] + 0.5 + 0.5 * at) / n).ravel(), np.tile(share / 2 / n, n)
+        points = WALL[0] + s[:, None, None] * (WALL[1] - WALL[0]) + s[:, None] * (WALL[2] - WALL[0])
+        samples = mc.probe(X, points.reshape(-1, 3), attributes={"v": velocity, "rho": density}, precision="double", **WORDS)
+        expected = 0.3 * (np.outer(w, w).ravel() * samples.values["v"][:, 0] * samples.values["rho"]).sum()
+        found = mc.flux(X, velocity, WALL, density=density, **WORDS).mass_flux[0]
+        self.assertLess(abs(found - expected), 1e-6 * 0.3 * 1050)
+
+    def test_plane(self):
+        flat = X[np.isclose(X[:, 2], 0.5)] * [1, 1, 0]
+        for velocity in (UNIFORM[:len(flat)], UNIFORM[:len(flat), :2]):
+            found = mc.flux(flat, velocity, {"up": [(0.5, 0.3, 0), (0.5, 0.7, 0)]}, smoothing_length=H, volume=0.01)
+            np.testing.assert_allclose([found.area[0], found.volume_flux[0]], 0.4, rtol=1e-6)
+
+
+class Project(unittest.TestCase):
+    def test_small_particles_are_counted(self):
+        for direction, (u, v) in (("x", (1, 2)), ((0, -2, 0), (0, 2)), (None, (0, 1))):
+            image = mc.project(POINTS, direction=direction, **WHOLE)
+            expected, _, _ = np.histogram2d(POINTS[:, v], POINTS[:, u], 16, [[0, 1], [0, 1]], weights=M)
+            split = np.abs(image.values * image.pixel_area - expected) > 1e-12  # by particles on the sides of pixels
+            self.assertLess(split.sum(), 20)
+            self.assertAlmostEqual(image.values.sum() * image.pixel_area, M.sum(), delta=0.1)
+            self.assertEqual((image.extent.tolist(), image.values.shape), ([0, 1, 0, 1], (16, 16)))
+        self.assertEqual(repr(image), "<Projection: 16 x 16 pixels>")
+
+    def test_all_of_the_mass(self):
+        for words in ({"sph_kernel": "cubic", "direction": "y"}, {"sph_kernel": "mprime4", "direction": (1, 2, -3)},
+                      {"sph_kernel": "wendland_c6", "direction": (1, 2, -3)}, {"periodic": (1, 1, 1)}):
+            image = mc.project(POINTS, smoothing_length=0.1, mass=M, resolution=50, **words)
+            self.assertAlmostEqual(image.values.sum() * image.pixel_area / M.sum(), 1, delta=1e-8)
+            self.assertLess(np.abs(image.axes @ image.axes.T - np.eye(3)).max(), 1e-15)
+        self.assertLess(image.values.std() / image.values.mean(), 0.2)
+
+    def test_scalars_and_weights(self):
+        words = {**WHOLE, "smoothing_length": 0.2, "volume": 1 / 3000, "resolution": 9}
+        self.assertAlmostEqual(mc.project(POINTS, np.ones(3000), **words).values[4, 4], 1, delta=0.1)
+        weighted = mc.project(POINTS, POINTS[:, 0], weighted_by=M, **words).values
+        self.assertTrue((np.diff(weighted.mean(axis=0)) > 0).all())
+        by_mass = mc.project(POINTS, POINTS[:, 0], weighted_by=M, **{**words, "volume": M}).values
+        self.assertAlmostEqual(np.abs(by_mass - weighted).max(), 0, delta=1e-12)
+        vector = mc.project(POINTS, POINTS, scalar_component=1, **words).values
+        self.assertTrue((mc.project(POINTS, POINTS[:, 1], **words).values == vector).all())
+
+
+class OtherParticles(unittest.TestCase):
+    def particles(self, x, columns):
+        """The same as PyVista's, and from a file; and their places."""
+        data = pyvista.PolyData(x)
+        for name, values in columns.items():
+            data[name] = values
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = os.path.join(folder.name, "particles.vtp")
+        data.save(path)
+        return data.sph, mc.io.read(path), np.asarray(data.points)
+
+    def test_gauge_and_flux(self):
+        """Masses and volumes of files make densities."""
+        sph, file, x = self.particles(X, {"Velocity": UNIFORM, "h": np.full(len(X), H), "Volume": np.full(len(X), V),
+                                          "Mass": np.full(len(X), 1000 * V)})
+        lines, sections = {"mast": UP}, {"a": DISC}
+        expected = mc.gauge(x, lines, **WORDS), mc.flux(x, UNIFORM, sections, mass=1000 * V, **WORDS)
+        self.assertGreater(expected[1].mass_flux[0], 100)
+        self.assertEqual((sph.gauge(lines), sph.flux(sections)), expected)
+        self.assertEqual((mc.gauge(file, lines), mc.flux(file, "Velocity", sections)), expected)
+
+    def test_flux_through_triangles(self):
+        sph, _, _ = self.particles(X, {})
+        sphere = pyvista.Sphere(radius=0.3, center=(0.5, 0.5, 0.5))
+        inwards = pyvista.PolyData(sphere.points, sphere.faces.reshape(-1, 4)[:, [0, 1, 3, 2]].ravel())
+        for surface in (sphere, inwards):
+            found = sph.flux({"ball": surface}, X - 0.5, **WORDS)
+            self.assertLess(abs(found.volume_flux[0] - 3 * sphere.volume), 1e-3)  # outwards
+
+    def test_project(self):
+        """Masses count even where there are volumes."""
+        sph, file, x = self.particles(POINTS, {"Mass": M, "h": SMALL + 0.1, "Volume": SMALL + 1})
+        words = {"smoothing_length": SMALL + 0.1, "mass": M, "volume": SMALL + 1, "direction": "x", "resolution": 10}
+        for given, scalars in (({}, ()), ({"weighted_by": "Mass"}, ("Mass",))):
+            arrays = {name: M for name in given}, [M for _ in scalars]
+            expected = mc.project(x, *arrays[1], **arrays[0], **words)
+            self.assertEqual(sph.project(*scalars, direction="x", resolution=10, **given), expected)
+            self.assertEqual(mc.project(file, *scalars, direction="x", resolution=10, **given), expected)
+
+
+class Refused(unittest.TestCase):
+    def check(self, call, error, cases):
+        for words, sentence in cases:
+            with self.subTest(words), self.assertRaisesRegex(error, sentence):
+                call(**words)
+
+    def test_gauge(self):
+        def gauge(lines=UP, iso=0.5, **more):
+            mc.gauge(X, lines, iso, **WORDS, **more)
+
+        self.check(gauge, mc.InvalidArgument, [
+            ({"lines": UP[0]}, "shape"), ({"lines": {"bow": UP * 0}}, "bow' has no length"), ({"lines": UP * np.nan}, "not finite"),
+            *(({"iso": iso}, "one iso value above 0") for iso in (0, -1, (0.2, 0.5)))])
+        self.check(gauge, TypeError, [({"capping": True}, "no option 'capping'")])
+
+    def test_flux(self):
+        def flux(sections=WALL, velocity=UNIFORM, iso=0.5):
+            mc.flux(X, velocity, sections, iso, **WORDS)
+
+        self.check(flux, mc.InvalidArgument, [
+            ({"sections": [WALL[0]]}, "'0' has the shape"), ({"sections": {"bow": WALL * 0}}, "'bow' has no area"),
+            ({"sections": WALL * np.nan}, "not finite"), ({"sections": ("ring", 1)}, "begins with 'ring'"),
+            ({"sections": ("box", (1, 2, 3))}, r"where it is \(6,\)"), ({"sections": WALL[:2]}, "is a line"),
+            ({"iso": 0}, "one iso value above 0"), ({"velocity": UNIFORM[:, 0]}, "The velocity has 1 components")])
+        self.check(flux, mc.InvalidData, [({"velocity": UNIFORM * np.nan}, "velocity is NaN or infinite at particle 0")])
+
+    def test_project(self):
+        def project(**words):
+            mc.project(POINTS, **{**WHOLE, **words})
+
+        self.check(project, mc.Error, [
+            ({"direction": "w"}, "direction is 'w'"), ({"direction": (0, 0, 0)}, "not all 0"),
+            ({"mass": None}, "neither mass nor density"), ({"resolution": 0}, "at least 1"), ({"box": (0, 1, 2)}, "6 numbers"),
+            ({"box": (1, 0, 0, 1, 0, 1)}, "box along x"), ({"weighted_by": POINTS}, "3 components"), ({"scalar": M[:5]}, "shape")])
+        self.check(project, TypeError, [({"iso": 1}, "no option 'iso'")])
+        self.assertEqual(mc.project(np.empty((0, 3)), mass=1.0, smoothing_length=1.0).values.shape, (0, 0))
+
+
+if __name__ == "__main__":
+    unittest.main()

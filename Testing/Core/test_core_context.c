@@ -453,74 +453,12 @@ static void test_build_seconds(void** state)
   mcor_free_context(context);
 }
 
-/* A plane through the particles: an extraction of each kind of lines. */
-static void extract_lines(mcor_context* context, core_set* set, mcor_options options)
-{
-  for (int64_t i = 0; i < set->count; ++i)
-  {
-    set->position[3 * i + 2] = 0;
-  }
-  const mcor_input input = core_input(set);
-  for (int way = 0; way < 4; ++way)
-  {
-    options.level_limit = way & 1 ? MCOR_CUBE_LEVELS - 1 : 0;
-    options.filled = way == 2;
-    options.seeds = way == 0 ? MCOR_PAIRS : MCOR_COMPLETE;
-    mcor_surface lines = core_extract(context, &input, &options);
-    assert_true(lines.line_count > 0);
-    mcor_free_surface(&lines);
-  }
-}
-
-/* A context has room for all that it may be asked for, one after the other. */
-static void test_everything(void** state)
-{
-  core_set set = core_make_random(1500, 8, 0.7, 2, 5);
-  const double iso = 0;
-  mcor_input input = core_input(&set);
-  const mcor_array attribute = input.scalar, at = core_array(set.position, 3);
-  mcor_options options = core_options(&iso);
-  mcor_context* context = NULL;
-  mcor_samples samples;
-  mcor_derivatives derivatives;
-  CORE_OK(context, mcor_create_context(NULL, &context));
-  input.attributes = &attribute;
-  input.attribute_count = 1;
-  ask_for_all(&options);
-  options.vertex_threshold = 0.3;
-  CORE_OK(context, mcor_probe(context, &input, &options, &at, set.count, &samples));
-  CORE_OK(context, mcor_derive(context, &input, &options, MCOR_GRADIENT_CORRECTED, &derivatives));
-  for (int way = 0; way < 16; ++way)
-  {
-    options.level_limit = way % 4 == 1 ? MCOR_CUBE_LEVELS - 1 : 0;
-    options.seeds = way & 2 ? MCOR_PAIRS : MCOR_COMPLETE;
-    options.topology = way & 4 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
-    options.boundary_detection = way & 8 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
-    options.capping = way & 2 ? 0 : MCOR_CAP_BOX;
-    for (int side = 0; side < 6; ++side)
-    {
-      options.box[side] = way & 2 ? 0 : side % 2 ? 6 : 2;
-    }
-    input.volume = way & 8 ? (mcor_array){ 0 } : input.volume;
-    hash_of(context, &input, &options);
-  }
-  memset(options.box, 0, sizeof options.box);
-  options.capping = 0;
-  extract_lines(context, &set, options);
-  mcor_free_samples(&samples);
-  mcor_free_derivatives(&derivatives);
-  mcor_free_context(context);
-  core_free_set(&set);
-  (void)state;
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_reach),
     cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
     cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_kept_buffers),
     cmocka_unit_test(test_devices), cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
-    cmocka_unit_test(test_build_seconds), cmocka_unit_test(test_statistics),
-    cmocka_unit_test(test_everything) };
+    cmocka_unit_test(test_build_seconds), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

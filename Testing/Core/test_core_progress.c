@@ -34,44 +34,6 @@ static int on_progress(void* user, double fraction, const char* phase)
   return c->calls++ == c->stop_at;
 }
 
-static void test_cancel_in_every_phase(void** state)
-{
-  mcor_context* context = *state;
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
-  const double iso = 0, interval = context->report_interval;
-  mcor_input input = core_input(&set);
-  input.particles_version = input.scalar_version = 99;
-  mcor_options options = core_options(&iso);
-  const uint64_t expected = hash_of(context, &input, &options);
-  cancel_at never = { .stop_at = -1 };
-  mcor_release_memory(context);
-  context->report_interval = INFINITY; /* the phases alone */
-  options.progress = on_progress;
-  options.progress_user = &never;
-  CORE_CHECK(hash_of(context, &input, &options) == expected, "progress changes the result");
-  for (int p = MCOR_PHASE_SEARCH_GRID; p < MCOR_PHASE_COUNT; ++p)
-  {
-    CORE_CHECK(strstr(never.phases, mcor_phase_name((mcor_phase)p)), "no phase \"%s\" in %s",
-      mcor_phase_name((mcor_phase)p), never.phases);
-  }
-  for (int stop = 0; stop < never.calls; ++stop)
-  {
-    cancel_at at = { .stop_at = stop };
-    options.progress_user = &at;
-    mcor_release_memory(context); /* so that no phase is skipped */
-    mcor_surface surface = { 0 };
-    const mcor_status status = mcor_extract(context, &input, &options, &surface);
-    CORE_CHECK(status == MCOR_CANCELLED, "stop %d: %s", stop, mcor_status_name(status));
-    CORE_CHECK(surface.point_count == 0 && !surface.points && !surface.triangles, "not empty");
-    assert_non_null(strstr(mcor_last_error(context), "cancelled"));
-    cancel_at on = { .stop_at = -1 };
-    options.progress_user = &on;
-    CORE_CHECK(hash_of(context, &input, &options) == expected, "after a stop at call %d", stop);
-  }
-  context->report_interval = interval;
-  core_free_set(&set);
-}
-
 /* One call of any kind, on whose way there are launches. */
 static mcor_status run_kind(
   mcor_context* context, int kind, const mcor_input* input, const mcor_options* options)
@@ -224,8 +186,7 @@ static void test_long_launches_are_cut(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_cancel_in_every_phase),
-    cmocka_unit_test(test_cancel_between_launches), cmocka_unit_test(test_all_phases_ask),
-    cmocka_unit_test(test_long_launches_are_cut) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_cancel_between_launches),
+    cmocka_unit_test(test_all_phases_ask), cmocka_unit_test(test_long_launches_are_cut) };
   return cmocka_run_group_tests_name("progress", tests, core_set_up, core_tear_down);
 }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Preview has the same triangles, attributes are Shepard means, and a range of sizes that is too wide for the
- * reference's lattice gives a closed surface on which the field has the iso value. */
+/* Preview has the same triangles, and a range of sizes that is too wide for the reference's lattice gives a closed
+ * surface on which the field has the iso value. */
 
 #include "mesh_check.h"
 #include "oracle_case.h"
@@ -112,78 +112,6 @@ static void test_preview(const char* device)
   free_bench(&b);
 }
 
-static int64_t nearest_fluid(const particle_set* set, const double point[3], double* distance)
-{
-  int64_t nearest = -1;
-  *distance = INFINITY;
-  for (int64_t j = 0; j < set->count; ++j)
-  {
-    const double* x = &set->position[3 * j];
-    const double d = sqrt((x[0] - point[0]) * (x[0] - point[0]) +
-      (x[1] - point[1]) * (x[1] - point[1]) + (x[2] - point[2]) * (x[2] - point[2]));
-    if (!set->solid[j] && d < *distance)
-    {
-      *distance = d;
-      nearest = j;
-    }
-  }
-  return nearest;
-}
-
-/* A vector and a scalar attribute against the oracle, and the nearest particle against a loop. */
-static void test_attributes(const char* name, const char* device)
-{
-  bench b;
-  char message[256];
-  oracle_reference reference;
-  if (create_bench(&b, name, device) &&
-    oracle_create_reference(&reference, &b.input, &b.options, 10000000, message))
-  {
-    const mcor_array attributes[2] = { b.input.positions, b.input.scalar };
-    double* component = malloc((size_t)b.set.count * sizeof(double));
-    b.input.attributes = attributes;
-    b.input.attribute_count = 2;
-    b.options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
-    mcor_surface surface = extract(&b);
-    ORACLE_CHECK(surface.triangle_count > 50 && surface.attribute_count == 2, "%s", name);
-    reference.field.kind = ORACLE_SHEPARD;
-    double worst = 0.0;
-    for (int a = 0; a < 4 && component; ++a)
-    {
-      for (int64_t j = 0; j < b.set.count; ++j)
-      {
-        component[j] = a < 3 ? b.set.position[3 * j + a] : b.set.scalar[j];
-      }
-      for (int64_t v = 0; v < surface.point_count; ++v)
-      {
-        oracle_sample sample;
-        oracle_evaluate(&reference.field, component, &surface.points[3 * v], &sample);
-        const double value = a < 3 ? surface.attributes[0][3 * v + a] : surface.attributes[1][v];
-        worst = fmax(worst, fabs(value - sample.value));
-      }
-    }
-    ORACLE_CHECK(worst < 1e-5, "%s: attributes are off by %g", name, worst);
-    for (int64_t v = 0; v < surface.point_count; v += 7)
-    {
-      double distance;
-      const int64_t nearest = nearest_fluid(&b.set, &surface.points[3 * v], &distance);
-      const int64_t found = surface.nearest_particle[v];
-      double d = 0.0;
-      for (int axis = 0; axis < 3 && found >= 0; ++axis)
-      {
-        d += pow(b.set.position[3 * found + axis] - surface.points[3 * v + axis], 2.0);
-      }
-      ORACLE_CHECK(found >= 0 && !b.set.solid[found] && sqrt(d) <= distance * (1.0 + 1e-5),
-        "%s: nearest to vertex %lld is %lld, not %lld", name, (long long)v, (long long)found,
-        (long long)nearest);
-    }
-    free(component);
-    mcor_free_surface(&surface);
-    oracle_free_reference(&reference);
-  }
-  free_bench(&b);
-}
-
 /* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: a lattice of 10^12 cells,
  * too large for a reference. The surface is a closed manifold, and each vertex on it. */
 static void test_wide_range(const char* device)
@@ -240,8 +168,6 @@ int main(int argc, char** argv)
   const char* device = argc > 1 ? argv[1] : NULL;
   test_wide_range(device);
   test_preview(device);
-  test_attributes("gyroid", device);
-  test_attributes("puddle", device);
   printf("%d failures\n", oracle_failures);
   return oracle_failures > 0;
 }

@@ -1,12 +1,217 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The topology table, exhaustively: all cases with all decisions on faces and inside. */
+/* The topology table, exhaustively: all cases with all decisions on faces and inside, and that cells side by side fit. */
 
-#include "core_cells.h"
 #include "core_fixture.h"
 
-#include <stdlib.h>
+#include <string.h>
+
+#define EDGES                                                                                      \
+  24 /* axis << 3 | lower corner; 12 of these numbers are edges; a face is axis * 2 + side */
+
+/* What was decided on a cell, and the row of the table for it. */
+typedef struct cells_choice
+{
+  int cube_case;
+  int joined; /* faces whose corners above are joined */
+  int tunnel; /* 0 joins regions below, 1 above, 2 none */
+  const mcor_cell_row* row;
+} cells_choice;
+
+typedef struct cells_mesh
+{
+  int count; /* of triangles */
+  int corner[64][3];
+  uint8_t directed[EDGES][EDGES]; /* triangles with a side from one vertex to the other */
+} cells_mesh;
+
+/* ---- what must be on faces, derived from the corners alone ---- */
+
+static int corner_above(int cube_case, int corner)
+{
+  return cube_case >> corner & 1;
+}
+
+static int lower_corner(int edge)
+{
+  return edge & 7;
+}
+
+static int upper_corner(int edge)
+{
+  return (edge & 7) | 1 << (edge >> 3);
+}
+
+/* 0 for a number that is no edge. */
+static int is_crossed(int cube_case, int edge)
+{
+  return edge >> 3 < 3 && !(edge >> (edge >> 3) & 1) &&
+    corner_above(cube_case, lower_corner(edge)) != corner_above(cube_case, upper_corner(edge));
+}
+
+static int in_face(int edge, int face)
+{
+  return edge >> 3 != face / 2 && (edge >> face / 2 & 1) == (face & 1);
+}
+
+/* Crossed edges of a face, 0, 2 or 4. */
+static int face_crossings(int cube_case, int face, int crossed[4])
+{
+  int count = 0;
+  for (int e = 0; e < 24; ++e)
+  {
+    if (is_crossed(cube_case, e) && in_face(e, face))
+    {
+      crossed[count++] = e;
+    }
+  }
+  return count;
+}
+
+static int ambiguous_faces(int cube_case)
+{
+  int result = 0, crossed[4];
+  for (int face = 0; face < 6; ++face)
+  {
+    result |= (face_crossings(cube_case, face, crossed) == 4) << face;
+  }
+  return result;
+}
+
+/* The edge that the surface connects with `edge` in a face: the other one that is crossed; of three, the one around the
+ * same corner above, or below where those above are joined. */
+static int partner(int cube_case, int joined, int face, int edge)
+{
+  int crossed[4];
+  const int count = face_crossings(cube_case, face, crossed);
+  const int lower_is_above = corner_above(cube_case, lower_corner(edge));
+  const int around =
+    lower_is_above != (joined >> face & 1) ? lower_corner(edge) : upper_corner(edge);
+  for (int i = 0; i < count; ++i)
+  {
+    const int other = crossed[i];
+    if (other != edge &&
+      (count == 2 || lower_corner(other) == around || upper_corner(other) == around))
+    {
+      return other;
+    }
+  }
+  return -1;
+}
+
+/* All rows of a case; returns their number. */
+static int case_rows(const mcor_topology_table* table, int cube_case, cells_choice rows[256])
+{
+  const int ambiguous = ambiguous_faces(cube_case), entry = table->cases[cube_case];
+  const mcor_cell_row* first = table->rows + (entry >> 6);
+  int count = 0;
+  CORE_CHECK((entry & 63) == ambiguous, "case %d: ambiguous faces %x", cube_case, entry & 63);
+  for (int joined = 0; joined < 64; ++joined)
+  {
+    if (joined & ~ambiguous)
+    {
+      continue;
+    }
+    int number = 0, bit = 1;
+    for (int face = 0; face < 6; ++face)
+    {
+      number |= joined >> face & 1 ? bit : 0;
+      bit <<= ambiguous >> face & 1;
+    }
+    for (int tunnel = 0; tunnel <= 2; ++tunnel)
+    {
+      const int other = tunnel < 2 ? first[number].tunnel[tunnel] : number;
+      if (tunnel == 2 || other > 0)
+      {
+        rows[count++] = (cells_choice){ cube_case, joined, tunnel, first + other };
+      }
+    }
+  }
+  return count;
+}
+
+/* Loops that the connections in faces make. */
+static int count_loops(int cube_case, int joined)
+{
+  int seen[24] = { 0 }, loops = 0;
+  for (int e = 0; e < 24; ++e)
+  {
+    int at = e, last_face = -1;
+    loops += is_crossed(cube_case, e) && !seen[e];
+    while (is_crossed(cube_case, at) && !seen[at])
+    {
+      seen[at] = 1;
+      for (int face = 0; face < 6; ++face)
+      {
+        if (face != last_face && in_face(at, face))
+        {
+          at = partner(cube_case, joined, face, at);
+          last_face = face;
+          break;
+        }
+      }
+    }
+  }
+  return loops;
+}
+
+static void add_row(cells_mesh* mesh, const mcor_cell_row* row)
+{
+  for (int t = 0; t < row->triangles; ++t)
+  {
+    int* corner = mesh->corner[mesh->count++];
+    for (int k = 0; k < 3; ++k)
+    {
+      corner[k] = row->edges[3 * t + k];
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      ++mesh->directed[corner[k]][corner[(k + 1) % 3]];
+    }
+  }
+}
+
+/* Walks the link of a vertex, against the triangles' direction until its begin, then along it. Returns its length if it is
+ * one simple path through all triangles of the vertex, else -1. */
+static int walk_link(const cells_mesh* mesh, int vertex, int link[64])
+{
+  int next[EDGES], before[EDGES], triangles = 0, begin = -1;
+  memset(next, -1, sizeof next);
+  memset(before, -1, sizeof before);
+  for (int t = 0; t < mesh->count; ++t)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      const int a = mesh->corner[t][(k + 1) % 3], b = mesh->corner[t][(k + 2) % 3];
+      if (mesh->corner[t][k] == vertex)
+      {
+        if (next[a] >= 0 || before[b] >= 0)
+        {
+          return -1;
+        }
+        next[a] = b;
+        before[b] = a;
+        begin = a;
+        ++triangles;
+      }
+    }
+  }
+  for (int i = 0; i < triangles && before[begin] >= 0; ++i)
+  {
+    begin = before[begin];
+  }
+  int length = 1, at = begin;
+  link[0] = begin;
+  while (next[at] >= 0 && next[at] != begin)
+  {
+    at = next[at];
+    link[length++] = at;
+  }
+  return length - (next[at] < 0) == triangles ? length : -1;
+}
+
+/* ---- the table ---- */
 
 static int set_up(void** state)
 {
@@ -40,7 +245,7 @@ static int goes_right(int cube_case, int face, int from, int to)
   across[v] = (face & 1 ? 1 : -1) * along[u];
   for (int i = 0; i < 2; ++i)
   {
-    const double fall = cells_corner_above(cube_case, cells_lower_corner(edges[i])) ? 1 : -1;
+    const double fall = corner_above(cube_case, lower_corner(edges[i])) ? 1 : -1;
     towards += fall * across[edges[i] >> 3];
   }
   return towards > 0;
@@ -48,22 +253,20 @@ static int goes_right(int cube_case, int face, int from, int to)
 
 static void check_sides(const cells_mesh* mesh, const cells_choice* choice)
 {
-  static const int origin[3] = { 0, 0, 0 };
   for (int e = 0; e < 24; ++e)
   {
     for (int f = 0; f < 24; ++f)
     {
-      if (!cells_is_crossed(choice->cube_case, e) || !cells_is_crossed(choice->cube_case, f) ||
-        e == f)
+      if (!is_crossed(choice->cube_case, e) || !is_crossed(choice->cube_case, f) || e == f)
       {
         continue;
       }
-      const int a = cells_edge_number(e, origin), b = cells_edge_number(f, origin);
+      const int a = e, b = f;
       int segment = -1;
       for (int face = 0; face < 6; ++face)
       {
-        if (cells_in_face(e, face) && cells_in_face(f, face) &&
-          cells_partner(choice->cube_case, choice->joined, face, e) == f)
+        if (in_face(e, face) && in_face(f, face) &&
+          partner(choice->cube_case, choice->joined, face, e) == f)
         {
           segment = face;
         }
@@ -77,7 +280,7 @@ static void check_sides(const cells_mesh* mesh, const cells_choice* choice)
   }
 }
 
-static int find_part(int part[CELLS_EDGES], int vertex)
+static int find_part(int part[EDGES], int vertex)
 {
   while (part[vertex] != vertex)
   {
@@ -89,13 +292,12 @@ static int find_part(int part[CELLS_EDGES], int vertex)
 /* Every loop bounds a disc; or two bound a tube: Euler number and connected parts. */
 static void check_shape(const cells_mesh* mesh, const cells_choice* choice)
 {
-  static const int origin[3] = { 0, 0, 0 };
-  int part[CELLS_EDGES], vertices = 0, sides = 0, parts = 0;
-  for (int v = 0; v < CELLS_EDGES; ++v)
+  int part[EDGES], vertices = 0, sides = 0, parts = 0;
+  for (int v = 0; v < EDGES; ++v)
   {
     part[v] = v;
   }
-  for (int a = 0; a < CELLS_EDGES; ++a)
+  for (int a = 0; a < EDGES; ++a)
   {
     for (int b = 0; b < a; ++b)
     {
@@ -108,15 +310,14 @@ static void check_shape(const cells_mesh* mesh, const cells_choice* choice)
   }
   for (int e = 0; e < 24; ++e)
   {
-    if (cells_is_crossed(choice->cube_case, e))
+    if (is_crossed(choice->cube_case, e))
     {
-      const int v = cells_edge_number(e, origin);
+      const int v = e;
       ++vertices;
       parts += find_part(part, v) == v;
     }
   }
-  const int loops = cells_count_loops(choice->cube_case, choice->joined),
-            tunnel = choice->tunnel < 2;
+  const int loops = count_loops(choice->cube_case, choice->joined), tunnel = choice->tunnel < 2;
   const int euler = vertices - sides + mesh->count;
   CORE_CHECK(euler == loops - 2 * tunnel && parts == loops - tunnel,
     "case %d, joined %x, tunnel %d: %d loops, Euler number %d, %d parts", choice->cube_case,
@@ -126,23 +327,21 @@ static void check_shape(const cells_mesh* mesh, const cells_choice* choice)
 /* The fan of an edge's vertex goes from one of the edge's faces to the other. */
 static void check_fans(const cells_mesh* mesh, const cells_choice* choice)
 {
-  static const int origin[3] = { 0, 0, 0 };
   for (int e = 0; e < 24; ++e)
   {
-    int link[64], ends = 0;
-    if (!cells_is_crossed(choice->cube_case, e))
+    int link[64] = { 0 }, ends = 0;
+    if (!is_crossed(choice->cube_case, e))
     {
       continue;
     }
-    const int length = cells_walk_link(mesh, cells_edge_number(e, origin), link);
+    const int length = walk_link(mesh, e, link);
     CORE_CHECK(length >= 2, "case %d, joined %x, tunnel %d: edge %d has no fan", choice->cube_case,
       choice->joined, choice->tunnel, e);
     for (int face = 0; face < 6; ++face)
     {
-      if (cells_in_face(e, face))
+      if (in_face(e, face))
       {
-        const int end =
-          cells_edge_number(cells_partner(choice->cube_case, choice->joined, face, e), origin);
+        const int end = partner(choice->cube_case, choice->joined, face, e);
         ends += link[0] == end || link[length - 1] == end;
       }
     }
@@ -151,26 +350,74 @@ static void check_fans(const cells_mesh* mesh, const cells_choice* choice)
   }
 }
 
+/* Diagonals within a face, by the face's axis and corners above, and by the cell's side: its ends are of 12 edges. */
+typedef uint8_t diagonal_table[3][16][2][EDGES][EDGES];
+
+/* The edge's number in the lower cell's terms: that of the upper cell's lower face is its upper face. */
+static void note_diagonals(const cells_mesh* mesh, const cells_choice* choice, diagonal_table used)
+{
+  for (int face = 0; face < 6; ++face)
+  {
+    int above = 0;
+    for (int corner = 0, n = 0; corner < 8; ++corner)
+    {
+      if ((corner >> face / 2 & 1) == (face & 1))
+      {
+        above |= corner_above(choice->cube_case, corner) << n++;
+      }
+    }
+    for (int a = 0; a < EDGES; ++a)
+    {
+      for (int b = 0; b < EDGES; ++b)
+      {
+        if (in_face(a, face) && in_face(b, face) && mesh->directed[a][b] && mesh->directed[b][a])
+        {
+          const int upper = 1 << face / 2;
+          used[face / 2][above][face & 1][a | upper][b | upper] = 1;
+        }
+      }
+    }
+  }
+}
+
+/* Of two cells that share a face, at most one has a diagonal between the same two vertices there, whatever is decided.
+ * So no side has more than two triangles, and fans around an edge's vertex meet in their ends alone: with the above,
+ * any cells fit together. */
+static void check_diagonals(diagonal_table used)
+{
+  int some = 0;
+  for (int i = 0; i < 3 * 16 * EDGES * EDGES; ++i)
+  {
+    const int axis = i / EDGES / EDGES / 16, above = i / EDGES / EDGES % 16, a = i / EDGES % EDGES,
+              b = i % EDGES;
+    CORE_CHECK(!(used[axis][above][0][a][b] && used[axis][above][1][a][b]),
+      "axis %d, corners %x: both cells have the diagonal %d-%d", axis, above, a, b);
+    some += used[axis][above][0][a][b] || used[axis][above][1][a][b];
+  }
+  assert_true(some > 0);
+}
+
 static void test_single_cells(void** state)
 {
-  static cells_mesh mesh;
-  static const int origin[3] = { 0, 0, 0 };
+  static diagonal_table used;
   cells_choice rows[256];
   int checked = 0;
   for (int cube_case = 0; cube_case < 256; ++cube_case)
   {
-    const int count = cells_case_rows(*state, cube_case, rows);
+    const int count = case_rows(*state, cube_case, rows);
     for (int i = 0; i < count; ++i)
     {
-      cells_add_row(&mesh, rows[i].row, origin);
+      cells_mesh mesh = { .count = 0 };
+      add_row(&mesh, rows[i].row);
       check_sides(&mesh, rows + i);
       check_shape(&mesh, rows + i);
       check_fans(&mesh, rows + i);
-      cells_clear(&mesh);
+      note_diagonals(&mesh, rows + i, used);
       ++checked;
     }
   }
   assert_int_equal(checked, ((mcor_topology_table*)*state)->row_count);
+  check_diagonals(used);
 }
 
 /* Where nothing is joined, cells without a tunnel are those of the case table. */
@@ -194,10 +441,10 @@ static void test_tunnels(void** state)
   int tunnels = 0;
   for (int c = 0; c < 256; ++c)
   {
-    const int count = cells_case_rows(*state, c, rows);
+    const int count = case_rows(*state, c, rows);
     for (int i = 0; i < count; ++i)
     {
-      const int loops = cells_count_loops(c, rows[i].joined), tunnel = rows[i].tunnel < 2;
+      const int loops = count_loops(c, rows[i].joined), tunnel = rows[i].tunnel < 2;
       CORE_CHECK(!tunnel || loops >= 2, "case %d has a tunnel of one loop", c);
       /* Two loops have one region between them: exactly one tunnel. */
       if (!tunnel && loops == 2)

@@ -89,8 +89,9 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
       offsets[3 * i], offsets[3 * i + 1], offsets[3 * i + 2], at[0], at[1], twin);
     for (int a = 0; a < 3; ++a)
     {
-      CORE_CHECK(fabs(at[2 + a] - h * h * h * gradient[a]) < 1e-10, "kernel %s: slope %g along %d, twin %g",
-        mcor_sph_kernel_name(kernel), at[2 + a], a, h * h * h * gradient[a]);
+      CORE_CHECK(fabs(at[2 + a] - h * h * h * gradient[a]) < 1e-10,
+        "kernel %s: slope %g along %d, twin %g", mcor_sph_kernel_name(kernel), at[2 + a], a,
+        h * h * h * gradient[a]);
     }
   }
   free(w);

@@ -69,6 +69,11 @@ static inline void mcor_put_real(const mcor_context* context, void* array, int64
   ((double*)array)[i] = value;
 }
 
+static inline double mcor_power(double x, int axes)
+{
+  return axes == 2 ? x * x : x * x * x;
+}
+
 /* Rounds a number to the device's precision. */
 static inline double mcor_real_of(const mcor_context* context, double value)
 {

@@ -34,6 +34,17 @@ typedef struct mcor_lattice
   mcor_rung rungs[MCOR_LEVEL_LIMIT + 1];
 } mcor_lattice;
 
+/* The space of a call, all of it or a plane: what differs. Filled in where the plane is found. */
+typedef struct mcor_space
+{
+  int axes;         /* 3, or 2 */
+  int flat;         /* axes that cells lack; kernels take it as `plane` */
+  int brick_nodes;  /* in a plane, those of the lowest layer */
+  int region_depth; /* of mcor_seed_regions */
+  double ball;      /* volume of a ball of radius 1, or area of a disc */
+  const char *evaluate, *emit; /* the kernels for nodes, and for triangles or lines */
+} mcor_space;
+
 /* Particles on their way to the search grid. */
 typedef struct mcor_stage_data
 {
@@ -308,7 +319,8 @@ struct mcor_context
   mcor_kept_widening kept_widening;
   mcor_measure measure;
   mcor_lattice lattice;
-  mcor_plane plane; /* of the call under way */
+  mcor_plane plane; /* of the call under way, and its space */
+  mcor_space space;
   mcor_box box;
   mcor_stage_data stage;
   mcor_grid grid;

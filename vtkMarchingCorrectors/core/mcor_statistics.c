@@ -105,7 +105,7 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   }
   s->plane_extent = m->plane_extent;
   s->wall_share = m->solid_count > 0 && context->kept.uses_solids ? mcor_wall_share(context) : 0;
-  s->dimension = mcor_is_plane(context) ? 2 : 3;
+  s->dimension = context->space.axes;
   s->cube_size = fmin(lattice->edge[0], fmin(lattice->edge[1], lattice->edge[2]));
   s->position_error = sqrt(s->dimension) * mcor_rounding(context);
   s->highest_level = lattice->levels - 1;
@@ -125,12 +125,8 @@ mcor_status mcor_finish_statistics(mcor_context* context)
   const mcor_buffer* known = &context->bricks.now.known;
   int nodes = 0;
   MCOR_TRY(mcor_count_bits(context, known, known, context->bricks.now.count, &nodes));
-  s->nodes_evaluated = nodes;
-  if (mcor_is_plane(context))
-  {
-    mcor_unflatten_statistics(&context->plane, s);
-    s->nodes_evaluated /= MCOR_BRICK; /* only the lowest layer of a brick is in the plane */
-  }
+  s->nodes_evaluated = nodes / MCOR_BRICK_NODES * context->space.brick_nodes;
+  mcor_unflatten_statistics(&context->plane, s);
   s->correction_count = (int64_t)n;
   s->correction_mean = n > 0 ? context->run.correction_sum / n : 0;
   s->correction_deviation = n > 0

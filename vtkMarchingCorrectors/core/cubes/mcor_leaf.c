@@ -7,7 +7,6 @@
  * first; they are evaluated if a crossed cell has them. */
 
 #include "mcor_adaptive.h"
-#include "mcor_plane.h"
 #include "mcor_tree.h"
 
 #include <string.h>
@@ -38,7 +37,7 @@ mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input)
   MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, tree->block_count,
     rungs[tree->top + 2].base, &bricks->block_buckets, &bricks->block_shift));
   return MCOR_LAUNCH(context, "mcor_leaf_compare", MCOR_MEDIUM, blocks * MCOR_BLOCK_BRICKS / 8,
-    MCOR_BLOCK_ARGS(context), MCOR_INT(tree->is_plane), MCOR_BUFFER(&bricks->leaves),
+    MCOR_BLOCK_ARGS(context), MCOR_INT(context->space.flat), MCOR_BUFFER(&bricks->leaves),
     MCOR_BUFFER(&bricks->split), MCOR_BUFFER(&bricks->beside));
 }
 
@@ -52,7 +51,7 @@ mcor_status mcor_choose_leaves(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_choose", MCOR_MEDIUM,
     (size_t)bricks->block_count * MCOR_BLOCK_BRICKS / 8, MCOR_BRICK_ARGS(context),
     MCOR_BUFFER(&bricks->leaves), MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&now->known),
-    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_INT(mcor_is_plane(context)),
+    MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_INT(context->space.flat),
     MCOR_BUFFER(&bricks->beside), MCOR_BUFFER(&adaptive->chosen)));
   MCOR_TRY(mcor_reserve(context, &adaptive->scanned, ((size_t)words + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_count", MCOR_MEDIUM, words, MCOR_INT(words),
@@ -75,7 +74,7 @@ static mcor_status mcor_evaluate_slots(mcor_context* context)
   const mcor_brick_data* now = &bricks->now;
   /* The proof is tried if a work-item evaluates whole bricks, see MCOR_PROVES_INSIDE. */
   const bool proves = options->field == MCOR_WEIGHT_SUM && options->sph_kernel != MCOR_M_PRIME_4 &&
-    context->cl.lanes > 1 && !mcor_is_plane(context);
+    context->cl.lanes > 1 && context->space.axes == 3;
   if (proves)
   {
     MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_prove", 1, bricks->first_slot,
@@ -94,7 +93,7 @@ mcor_status mcor_complete_leaves(mcor_context* context)
   const mcor_brick_data* now = &bricks->now;
   const int count = adaptive->count;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_request", MCOR_MEDIUM, count, MCOR_BLOCK_ARGS(context),
-    MCOR_INT(count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->cells),
+    MCOR_INT(count), MCOR_INT(context->space.flat), MCOR_BUFFER(&adaptive->cells),
     MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&bricks->bits)));
   MCOR_TRY(mcor_place_bricks(context));
   ++context->run.statistics->march_rounds;
@@ -109,10 +108,10 @@ mcor_status mcor_complete_leaves(mcor_context* context)
     mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, &adaptive->mixed, (size_t)count));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_tables", MCOR_MEDIUM, count, MCOR_BRICK_ARGS(context),
-    MCOR_INT(count), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->cells),
+    MCOR_INT(count), MCOR_INT(context->space.flat), MCOR_BUFFER(&adaptive->cells),
     MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_need", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
+    MCOR_INT(context->space.flat), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&adaptive->mixed),
     MCOR_BUFFER(&adaptive->proofs)));
   MCOR_TRY(mcor_evaluate_slots(context));

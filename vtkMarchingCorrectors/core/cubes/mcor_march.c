@@ -86,7 +86,7 @@ static mcor_status mcor_count_edges(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &mesh->vertex_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(mcor_reserve(context, tunnels, of_tunnels * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_march_count", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_CUT_ARGS(context), MCOR_INT(mcor_is_plane(context)), MCOR_INT(context->adaptive.count),
+    MCOR_CUT_ARGS(context), MCOR_INT(context->space.flat), MCOR_INT(context->adaptive.count),
     MCOR_BUFFER(&context->adaptive.quadrants), MCOR_BUFFER(&mesh->plain_used),
     MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
     MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(tunnels)));
@@ -127,9 +127,8 @@ static mcor_status mcor_emit_triangles(
   const mcor_mesh* mesh = &context->mesh;
   const bool follows = mcor_follows_cells(context);
   const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
-  const char* emit = mcor_is_plane(context) ? "mcor_plane_lines" : "mcor_march_triangles";
   MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, emit, MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+  return MCOR_LAUNCH(context, context->space.emit, MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_LEAF_ARGS(context), MCOR_PLAIN_ARGS(context), MCOR_CUT_ARGS(context),
     MCOR_SIDES_ARGS(sides), MCOR_INT(follows), MCOR_BUFFER(&context->bricks.rungs),
     MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),

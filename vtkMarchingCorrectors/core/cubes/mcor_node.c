@@ -11,15 +11,15 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count, lanes = context->cl.lanes;
-  const bool plane = mcor_is_plane(context);
+  const mcor_space* space = &context->space;
   /* One item does a brick if particles are gathered for many lanes, else a node. In the plane a
    * brick has 16 nodes, and one item does as many as there are lanes. */
-  const int items = plane ? 16 / lanes : lanes == 1 ? 64 : 1;
+  const int items = space->flat || lanes == 1 ? space->brick_nodes / lanes : 1;
   MCOR_TRY(mcor_reserve(context, &bricks->need, (size_t)count * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_brick_need", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.known), MCOR_INT(context->adaptive.count),
     MCOR_BUFFER(&context->adaptive.proofs), MCOR_BUFFER(&bricks->need)));
-  return MCOR_LAUNCH_BY_LEVEL(context, plane ? "mcor_plane_nodes" : "mcor_node_values", items,
+  return MCOR_LAUNCH_BY_LEVEL(context, space->evaluate, items,
     bricks->first_slot, bricks->first_slot + 1, MCOR_BUFFER(&bricks->now.bricks),
     MCOR_BUFFER(&bricks->need), MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight));
 }

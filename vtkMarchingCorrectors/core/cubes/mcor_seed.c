@@ -70,7 +70,7 @@ static mcor_status mcor_test_regions(mcor_context* context, mcor_region_list* li
   MCOR_TRY(mcor_reserve(context, &bricks->regions, blocks * MCOR_BLOCK_REGIONS * sizeof(cl_int)));
   MCOR_TRY(mcor_fill(context, &bricks->found, 0, counts));
   MCOR_TRY(MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_regions", 1, listed->first, listed->first + 1,
-    MCOR_INT(mcor_is_plane(context) ? 0 : MCOR_REGION_BRICKS * MCOR_BRICK),
+    MCOR_INT(context->space.region_depth),
     MCOR_BUFFER(&bricks->rungs), MCOR_BUFFER(&bricks->block_keys),
     MCOR_BUFFER(&bricks->block_states), MCOR_TREE_ARGS(context), MCOR_SEED_ARGS(context),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&bricks->seed_bits), MCOR_BUFFER(&bricks->regions),
@@ -120,7 +120,7 @@ static mcor_status mcor_test_seeds(mcor_context* context)
   MCOR_TRY(mcor_sign_nodes(context, &bricks->now.known));
   /* One item does a region if particles are gathered for many lanes, and evaluates bricks; else
    * a brick. */
-  return mcor_is_plane(context)
+  return context->space.flat
     ? MCOR_OK
     : MCOR_LAUNCH_BY_LEVEL(context, "mcor_seed_bricks", context->cl.lanes == 1 ? 8 : 1,
         listed.first, listed.end, MCOR_BRICK_ARGS(context), MCOR_TREE_ARGS(context),

@@ -4,7 +4,6 @@
 /* Topology by the field: samples of the field decide what Marching Cubes leaves ambiguous. */
 
 #include "mcor_adaptive.h"
-#include "mcor_plane.h"
 
 #include <stdlib.h>
 
@@ -113,7 +112,7 @@ mcor_status mcor_resolve_topology(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->neighbours), MCOR_INT(context->adaptive.count),
-    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&bricks->plain),
+    MCOR_INT(context->space.flat), MCOR_BUFFER(&bricks->plain),
     MCOR_BUFFER(&context->mesh.plain_used), MCOR_BUFFER(&bricks->now.above),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_resolve_faces(context));

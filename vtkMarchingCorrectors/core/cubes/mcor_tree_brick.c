@@ -3,7 +3,6 @@
 
 /* Adaptive cubes: numbers, places and sets of the bricks of all levels. */
 
-#include "mcor_plane.h"
 #include "mcor_tree.h"
 
 #include <math.h>
@@ -34,7 +33,7 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
   double most = MCOR_BLOCK_BRICKS; /* nearly the bricks of all levels */
   tree->lattice = lattice;
   tree->top = lattice->levels - 1;
-  tree->is_plane = mcor_is_plane(context);
+  tree->is_plane = context->space.flat;
   for (int l = 0; l <= tree->top + 1; ++l)
   {
     mcor_rung* rung = &lattice->rungs[l];

@@ -4,7 +4,6 @@
 /* Curvatures at the surface's vertices, from the derivatives of the sum itself. */
 
 #include "mcor_adaptive.h"
-#include "mcor_plane.h"
 
 mcor_status mcor_find_curvature(mcor_context* context)
 {
@@ -13,5 +12,5 @@ mcor_status mcor_find_curvature(mcor_context* context)
     context, &mesh->curvature, 2 * (size_t)mesh->vertex_count * context->cl.real_size));
   return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_curvature_points",
     MCOR_BUFFER(&mesh->offset), MCOR_REAL(context->run.iso.relative),
-    MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&mesh->curvature));
+    MCOR_INT(context->space.flat), MCOR_BUFFER(&mesh->curvature));
 }

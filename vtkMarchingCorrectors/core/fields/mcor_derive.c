@@ -155,8 +155,7 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
     {
       m[k / 3][k % 3] = mcor_get_real(context, job->moments, 9 * i + k);
     }
-    if (mcor_is_plane(
-          context)) /* the third axis is empty: this entry keeps the condition of the other two */
+    if (context->space.axes == 2) /* keeps the condition of two axes where the third is empty */
     {
       m[2][2] =
         sqrt(0.5 * (m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]));
@@ -302,7 +301,7 @@ static mcor_status mcor_run_derive(
   const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
   mcor_release_derive(&run);
   MCOR_TRY(status);
-  for (int a = 0; a < input->attribute_count && mcor_is_plane(context); ++a)
+  for (int a = 0; a < input->attribute_count; ++a)
   {
     mcor_unflatten_doubles(&context->plane, derivatives->gradients[a],
       input->count * mcor_components(&input->attributes[a]), 0);

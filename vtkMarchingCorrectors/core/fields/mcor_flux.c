@@ -26,11 +26,10 @@
 static mcor_status mcor_check_velocity(
   mcor_context* context, const mcor_input* input, int64_t not_finite[2])
 {
-  const bool is_plane = mcor_is_plane(context);
-  const int components = mcor_components(&input->attributes[0]);
-  MCOR_RETURN_IF(components != 3 && !(is_plane && components == 2), context, MCOR_INVALID_ARGUMENT,
+  const int axes = context->space.axes, components = mcor_components(&input->attributes[0]);
+  MCOR_RETURN_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
     "The velocity has %d components; it must have 3%s.", components,
-    is_plane ? ", or 2 in two dimensions" : "");
+    axes == 2 ? ", or 2 in two dimensions" : "");
   MCOR_RETURN_IF(input->attribute_count == 2 && mcor_components(&input->attributes[1]) != 1,
     context, MCOR_INVALID_ARGUMENT, "The density has %d components; it must have 1.",
     mcor_components(&input->attributes[1]));
@@ -147,7 +146,7 @@ static mcor_status mcor_run_flux(
     .edges = { .context = context, .level = call->level, .box = call->box, .map = mcor_map_patch },
     .sections = call->sections,
     .section_count = call->count,
-    .is_plane = mcor_is_plane(context),
+    .is_plane = context->space.flat,
     .velocity_components = mcor_components(&input->attributes[0]),
     .has_density = input->attribute_count == 2,
     .low = { DBL_MAX, DBL_MAX, DBL_MAX },

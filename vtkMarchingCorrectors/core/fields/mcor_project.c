@@ -275,7 +275,7 @@ static mcor_status mcor_run_project(
     .input = input,
     .view = view,
     .out = job->out,
-    .is_plane = mcor_is_plane(context),
+    .is_plane = context->space.flat,
     .places_only = job->places_only,
     .h_scale = options->h_scale,
     .channels = view->weight.data ? 2 : 1 };

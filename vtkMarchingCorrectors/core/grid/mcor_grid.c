@@ -267,9 +267,9 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   MCOR_TRY(mcor_reserve(context, density, bytes));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
-    MCOR_REAL(context->run.options->h_scale), MCOR_INT(mcor_is_plane(context)),
+    MCOR_REAL(context->run.options->h_scale), MCOR_INT(context->space.flat),
     MCOR_REAL(MCOR_ONE_SIDED *
-      mcor_kernel_variance(context->run.options->sph_kernel, mcor_is_plane(context))),
+      mcor_kernel_variance(context->run.options->sph_kernel, context->space.flat)),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(density)));
   double low[3], high[3];
   cl_int first = INT32_MAX;
@@ -278,7 +278,7 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   /* A volume grows with the cube of the scale, in two dimensions with its square. */
   const double scale = context->run.options->h_scale;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_weight", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_REAL(mcor_is_plane(context) ? mcor_cube_root(scale * scale) : scale),
+    MCOR_REAL(context->space.flat ? mcor_cube_root(scale * scale) : scale),
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(density),
     MCOR_REAL(ldexp(1, -context->lattice.fix_bits)), MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py),
     MCOR_BUFFER(&grid->pz), MCOR_BUFFER(&grid->inv_h), MCOR_REAL(low[0]), MCOR_REAL(low[1]),

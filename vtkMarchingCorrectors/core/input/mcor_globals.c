@@ -84,10 +84,7 @@ static mcor_status mcor_measure_all(
   }
   MCOR_TRY(mcor_measure_splits(context, input, globals));
   MCOR_TRY(mcor_measure_components(context, input, globals));
-  if (mcor_is_plane(context))
-  {
-    mcor_turn_measure(&globals->measured, true);
-  }
+  mcor_turn_measure(&globals->measured, true);
   return MCOR_OK;
 }
 

@@ -361,7 +361,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
       "Use a larger cube size, or remove particles that are far away from the rest.",
       edge, last - first, mcor_axis_letter(context, a), limit);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
-    if (a == 2 && mcor_is_plane(context)) /* one layer of cells */
+    if (a >= context->space.axes) /* one layer of cells */
     {
       lattice->origin[a] = lattice->first[a] = 0;
       lattice->last[a] = lattice->blocks[a] = 1;

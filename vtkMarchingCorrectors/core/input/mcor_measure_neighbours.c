@@ -8,7 +8,6 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_vector.h"
 
@@ -220,16 +219,15 @@ void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double 
 
 /* Takes the medians over the watched particles. */
 static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[MCOR_WATCHED],
-  const double nearest[MCOR_WATCHED], mcor_measure* m)
+  const double nearest[MCOR_WATCHED], const mcor_space* space, mcor_measure* m)
 {
   double count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED], h[MCOR_WATCHED];
   for (int s = 0; s < watch->count; ++s)
   {
     const double reach = watch->support * watch->sample[s].h, distance = sqrt(nearest[s]);
     count[s] = (double)neighbours[s];
-    filled[s] = count[s] * watch->sample[s].volume /
-      (m->plane.axis > 0 ? MCOR_PI : 4.0 / 3 * MCOR_PI) /
-      (reach * reach * (m->plane.axis > 0 ? 1 : reach));
+    filled[s] =
+      count[s] * watch->sample[s].volume / space->ball / mcor_power(reach, space->axes);
     spacing[s] = distance < reach ? distance : 0;
     h[s] = watch->sample[s].h;
   }
@@ -254,7 +252,7 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
   }
   MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, watch->count));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, nearest, watch->count));
-  mcor_sum_up_watch(watch, neighbours, nearest, &context->measure);
+  mcor_sum_up_watch(watch, neighbours, nearest, &context->space, &context->measure);
   return mcor_has_normal(watch) ? mcor_sum_up_plane(context, watch, slices) : MCOR_OK;
 }
 
@@ -268,7 +266,7 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
   memcpy(watch->sample, chosen.sample, sizeof watch->sample);
   watch->count = chosen.count;
   mcor_place_watch(watch, input->count);
-  if (!mcor_is_plane(context))
+  if (context->space.axes == 3)
   {
     mcor_find_normal(watch);
   }

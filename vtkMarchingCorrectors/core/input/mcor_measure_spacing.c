@@ -5,7 +5,6 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_plane.h"
 #include "mcor_ranks.h"
 
 #include <limits.h>
@@ -174,9 +173,9 @@ static mcor_status mcor_find_spacing(
   MCOR_TRY(mcor_find_farthest(context, job, spacing, neighbours));
   for (int s = 0; s < count; ++s)
   {
-    const double pi = 3.14159265358979323846, n = (double)neighbours[s];
-    spacing[s] = sqrt(spacing[s]) *
-      (mcor_is_plane(context) ? sqrt(pi / n) : mcor_cube_root(4.0 / 3.0 * pi / n));
+    const double share = context->space.ball / (double)neighbours[s];
+    spacing[s] =
+      sqrt(spacing[s]) * (context->space.axes == 2 ? sqrt(share) : mcor_cube_root(share));
   }
   *estimate = 1.3 * mcor_median_of(spacing, count) / job->scale;
   return MCOR_OK;

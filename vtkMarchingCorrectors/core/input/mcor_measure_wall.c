@@ -9,7 +9,6 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_plane.h"
 #include "mcor_ranks.h"
 
 #include <math.h>
@@ -56,9 +55,13 @@ static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
 {
   double size;
   mcor_read_size(wall->input, i, 1, &size);
-  return mcor_needs_density(wall->input)
-    ? size / wall->mass_max * h * h * (mcor_is_plane(wall->context) ? 1 : h)
-    : size;
+  const int axes = mcor_needs_density(wall->input) ? wall->context->space.axes : 0;
+  size = axes > 0 ? size / wall->mass_max : size;
+  for (int a = 0; a < axes; ++a)
+  {
+    size *= h;
+  }
+  return size;
 }
 
 /* Finds the first sample that is not before x along the axis. */
@@ -102,7 +105,7 @@ static void mcor_wall_add(
       /* Shares do not depend on the norm, nor on that of two dimensions. */
       weight = weight != 0 ? weight
                            : mcor_wall_volume(wall, i, h) * mcor_kernel_norm(options->sph_kernel) /
-          (scaled * scaled * (mcor_is_plane(wall->context) ? 1 : scaled));
+          mcor_power(scaled, wall->context->space.axes);
       const double most = fmin(fmax(weight * w, -MCOR_MOST_WEIGHT), MCOR_MOST_WEIGHT);
       wall->weights[slice][s][solid] += llrint(most * MCOR_WHOLE_WEIGHT);
     }

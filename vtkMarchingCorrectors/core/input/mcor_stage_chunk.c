@@ -3,7 +3,6 @@
 
 /* One chunk of the caller's particles, in the units of the staging arrays. */
 
-#include "mcor_plane.h"
 #include "mcor_stage.h"
 #include "mcor_tree.h"
 
@@ -51,7 +50,7 @@ void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input,
   {
     chunk->size[i] *= staging->size_scale;
   }
-  const int areas = mcor_is_plane(context) && !mcor_needs_density(input) ? chunk->count : 0;
+  const int areas = context->space.flat && !mcor_needs_density(input) ? chunk->count : 0;
   for (int i = 0; i < areas; ++i)
   {
     chunk->size[i] *= chunk->h[i];

@@ -9,6 +9,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
+#include "mcor_vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -203,10 +204,9 @@ static bool mcor_is_apart(const mcor_spread* spread)
 
 /* Whether rounding made the plane: its coordinate is so large that single precision rounds it by
  * about the particles' spacing, and most particles lie on others. */
-static mcor_status mcor_is_rounding(
-  mcor_context* context, const mcor_input* input, const mcor_spread* spread, bool* rounding)
+static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* input,
+  const mcor_spread* spread, const mcor_plane* plane, bool* rounding)
 {
-  const mcor_plane* plane = &context->plane;
   mcor_array positions = input->positions;
   positions.components = 3;
   int64_t counts[3] = { 0 }; /* particles; samples, and those with a twin */
@@ -249,11 +249,28 @@ static mcor_status mcor_is_rounding(
   return MCOR_OK;
 }
 
+static void mcor_set_plane(mcor_context* context, mcor_plane plane)
+{
+  context->plane = plane;
+  context->space = plane.axis > 0 ? (mcor_space){ .axes = 2,
+    .flat = 1,
+    .brick_nodes = MCOR_BRICK * MCOR_BRICK,
+    .ball = MCOR_PI,
+    .evaluate = "mcor_plane_nodes",
+    .emit = "mcor_plane_lines" }
+  : (mcor_space){ .axes = 3,
+    .brick_nodes = MCOR_BRICK_NODES,
+    .region_depth = MCOR_REGION_BRICKS * MCOR_BRICK,
+    .ball = 4.0 / 3 * MCOR_PI,
+    .evaluate = "mcor_node_values",
+    .emit = "mcor_march_triangles" };
+}
+
 /* With ranks and globals, all ranks find the same. */
 static mcor_status mcor_find_plane(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  context->plane = options->globals ? options->globals->measured.plane : (mcor_plane){ 0 };
+  mcor_set_plane(context, options->globals ? options->globals->measured.plane : (mcor_plane){ 0 });
   if (options->dimension == 3 || options->globals)
   {
     return MCOR_OK;
@@ -261,13 +278,13 @@ static mcor_status mcor_find_plane(
   mcor_spread spread = mcor_spread_of(context, input);
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.low, 6));
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.high, 6));
-  context->plane = mcor_plane_of(&spread, options->dimension);
+  const mcor_plane plane = mcor_plane_of(&spread, options->dimension);
   bool rounding = false;
-  if (mcor_is_plane(context) && options->dimension == 0)
+  if (plane.axis > 0 && options->dimension == 0)
   {
-    MCOR_TRY(mcor_is_rounding(context, input, &spread, &rounding));
+    MCOR_TRY(mcor_is_rounding(context, input, &spread, &plane, &rounding));
   }
-  context->plane = rounding ? (mcor_plane){ 0 } : context->plane;
+  mcor_set_plane(context, rounding ? (mcor_plane){ 0 } : plane);
   const bool some = spread.low[0] <= spread.high[0] || spread.low[3] <= spread.high[3];
   const bool refused = options->dimension == 2 ? some : !rounding && mcor_is_apart(&spread);
   return refused && !mcor_is_plane(context) ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;
@@ -378,7 +395,7 @@ mcor_status mcor_flatten(
     context, MCOR_INVALID_ARGUMENT, "The dimension is %d; it must be 2, 3, or 0 (automatic).",
     options->dimension);
   MCOR_TRY(mcor_find_plane(context, input, options));
-  o->dimension = mcor_is_plane(context) ? 2 : 3;
+  o->dimension = context->space.axes;
   if (!mcor_is_plane(context))
   {
     return MCOR_OK;
@@ -427,7 +444,7 @@ void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant)
 {
-  for (int64_t i = 0; i < count && numbers; ++i)
+  for (int64_t i = 0; i < count && numbers && plane->axis > 0; ++i)
   {
     numbers[3 * i + 2] = constant;
     mcor_turn_back(plane, numbers + 3 * i, sizeof *numbers);
@@ -439,7 +456,7 @@ void mcor_turn_measure(mcor_measure* measure, bool back)
 {
   const mcor_measure from = *measure;
   const double at = back ? from.plane.at : 0;
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3 && from.plane.axis > 0; ++a)
   {
     const int axis = mcor_plane_axis(&from.plane, a), f = back ? a : axis, t = back ? axis : a;
     measure->low[t] = a < 2 ? from.low[f] : at - from.support_max;
@@ -453,6 +470,10 @@ void mcor_turn_measure(mcor_measure* measure, bool back)
 
 void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* s)
 {
+  if (plane->axis == 0)
+  {
+    return;
+  }
   mcor_turn_back(plane, s->fluid_extent, sizeof *s->fluid_extent);
   mcor_turn_back(plane, s->far_place, sizeof *s->far_place);
   s->far_place[plane->axis - 1] = plane->at;

@@ -15,7 +15,7 @@
 static inline bool mcor_caps_walls(const mcor_context* context)
 {
   return context->run.options->capping && context->run.options->field == MCOR_WEIGHT_SUM &&
-    !mcor_is_plane(context) && mcor_fluid_share(context) > 0;
+    context->space.axes == 3 && mcor_fluid_share(context) > 0;
 }
 
 /* Adds the caps to the trimmed mesh. */
@@ -135,7 +135,7 @@ static inline void mcor_cap_node(
   node[face->axis] = face->plane;
   node[face->across[0]] = face->first[0] + u;
   node[face->across[1]] = face->first[1] + v;
-  node[2] = mcor_is_plane(context) ? 0 : node[2];
+  node[2] = context->space.flat ? 0 : node[2];
 }
 
 /* mcor_cap_points.c. Returns the number of nodes along an axis to its lower or upper side if a

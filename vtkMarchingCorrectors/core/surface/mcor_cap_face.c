@@ -77,7 +77,7 @@ static void mcor_set_cap_extent(
     mcor_cap_range(context, a, range);
     face->first[i] = range[0];
     face->count[i] = range[1] - range[0] + 1;
-    if (a == 2 && mcor_is_plane(context)) /* the edges of a plane's side: one row of squares */
+    if (a >= context->space.axes) /* the edges of a plane's side: one row of squares */
     {
       face->first[i] = 0;
       face->count[i] = 2;

@@ -122,7 +122,7 @@ static mcor_status mcor_make_caps(mcor_cap_job* job)
   {
     MCOR_TRY(mcor_cap_sides(job, axis));
   }
-  const bool places = mcor_is_plane(context) && !context->run.options->preview;
+  const bool places = context->space.flat && !context->run.options->preview;
   MCOR_TRY(places ? mcor_place_cap_cuts(job) : MCOR_OK);
   return mcor_caps_walls(context) ? mcor_cap_walls(job) : MCOR_OK;
 }

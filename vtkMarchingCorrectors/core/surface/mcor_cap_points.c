@@ -44,7 +44,7 @@ static mcor_status mcor_evaluate_cap_points(mcor_context* context, mcor_cap_poin
   MCOR_TRY(mcor_reserve(context, &p->eigenvalues, n * real));
   return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
-    MCOR_BUFFER(&p->offsets), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(&p->eigenvalues));
+    MCOR_BUFFER(&p->offsets), MCOR_INT(context->space.flat), MCOR_BUFFER(&p->eigenvalues));
 }
 
 mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)

@@ -64,7 +64,7 @@ static void mcor_square_node(
   memcpy(node, square->node, sizeof square->node);
   node[(square->axis + 1) % 3] += u;
   node[(square->axis + 2) % 3] += v;
-  node[2] = mcor_is_plane(job->context) ? 0 : node[2];
+  node[2] = job->context->space.flat ? 0 : node[2];
 }
 
 static mcor_status mcor_cap_node_corner(
@@ -153,7 +153,7 @@ static mcor_status mcor_cap_cut(
   const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
   MCOR_TRY(mcor_find_cap_vertex(
     job, &job->cuts, key, cut->at, job->border ? MCOR_CAP_FLAG : 2, &cut->vertex));
-  const bool is_placed = job->border || mcor_is_plane(job->context);
+  const bool is_placed = job->border || job->context->space.flat;
   return is_placed && job->vertex_count > before ? mcor_add_cap_line(job, low, high, s) : MCOR_OK;
 }
 
@@ -212,7 +212,7 @@ static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* sq
       ? mcor_add_cap_border(job, square->upper ? first : last, square->upper ? last : first)
       : MCOR_OK;
   }
-  if (mcor_is_plane(job->context))
+  if (job->context->space.flat)
   {
     return mcor_add_side_line(job, square, corners, count);
   }
@@ -267,7 +267,7 @@ void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node
 {
   const mcor_box* box = &job->context->box;
   bool owned = true;
-  for (int a = 0; a < (mcor_is_plane(job->context) ? 2 : 3); ++a)
+  for (int a = 0; a < job->context->space.axes; ++a)
   {
     owned = owned && (a == across || (node[a] >= box->first[a] && node[a] < box->last[a]));
   }

@@ -5,7 +5,6 @@
 
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
-#include "mcor_plane.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +14,7 @@
 mcor_status mcor_evaluate_boundary(mcor_context* context, int vertices, mcor_buffer* eigenvalue)
 {
   return MCOR_LAUNCH_AT_VERTICES(context, vertices, "mcor_boundary_points",
-    MCOR_BUFFER(&context->mesh.offset), MCOR_INT(mcor_is_plane(context)), MCOR_BUFFER(eigenvalue));
+    MCOR_BUFFER(&context->mesh.offset), MCOR_INT(context->space.flat), MCOR_BUFFER(eigenvalue));
 }
 
 /* Whether the vertex threshold is one of the boundary eigenvalue. The free surface has none. */
@@ -185,7 +184,7 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
   return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve,
     MCOR_REAL(context->run.iso.relative), MCOR_REAL(options->tolerance * range),
     MCOR_REAL(mcor_vertex_threshold(context)), MCOR_REAL(mcor_fluid_share(context)),
-    MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(mcor_is_plane(context)),
+    MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(context->space.flat),
     MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));

@@ -221,6 +221,31 @@ static void test_plummer(void** state)
   core_free_set(&set);
 }
 
+/* Where a particle lies does not matter but for whole periods, however many. */
+static void test_far_beyond_period(void** state)
+{
+  (void)state;
+  char* why;
+  double at[3 * 64], lengths[2][64];
+  uint64_t seed = 9;
+  for (int i = 0; i < 3 * 64; ++i)
+  {
+    at[i] = floor(1024 * random_unit(&seed)) / 1024;
+  }
+  mcor_options options = core_options(NULL);
+  options.periodic[1] = options.periodic[3] = options.periodic[5] = 1;
+  const mcor_input input = { .count = 64, .positions = core_array(at, 3) };
+  for (int far = 0; far < 2; ++far)
+  {
+    at[12] += far * 1e6;
+    at[13] -= far * 1e6;
+    at[14] += far * 2e6;
+    assert_int_equal(
+      mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths[far], &why), MCOR_OK);
+  }
+  assert_memory_equal(lengths[0], lengths[1], sizeof lengths[0]);
+}
+
 static void expect_refusal(mcor_status status, mcor_status expected, char** why, const char* words)
 {
   CORE_CHECK(status == expected && *why && strstr(*why, words), "%d: %s", (int)status, *why);
@@ -268,6 +293,6 @@ static void test_weird(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_plummer),
-    cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_far_beyond_period), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -16,27 +16,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MCOR_LEAF 16       /* particles */
-#define MCOR_CURVE_BITS 21 /* of a key along each axis */
+#define MCOR_LEAF 8 /* particles */
 #define MCOR_LENGTH_STEPS 60
+#define MCOR_LENGTH_ERROR 1e-7 /* of a length; of the extent, the least length */
 
 typedef struct mcor_neighbour
 {
-  uint64_t key;
   double x[3], mass;
+  uint64_t
+    place[3]; /* as numbers of the curve: 62 bits of the extent, so that none is too far away */
   int64_t source;
 } mcor_neighbour;
 
 typedef struct mcor_neighbour_job
 {
   const mcor_input* input;
-  mcor_sph_kernel kernel;
-  int dimension, leaves; /* leaves: a power of 2 */
-  double period[3];      /* 0: open */
-  double extent;         /* the greatest, of a period, too */
-  double norm, eta;      /* eta: to the power of the dimension */
-  int64_t count,
-    wanted; /* particles that are present; as many of the input, the first ones, are asked for */
+  const mcor_options* options;
+  double eta; /* to the power of the dimension; 0: densities are summed */
+  bool plane;
+  double norm, support;
+  double period[3];       /* 0: open */
+  double extent;          /* the greatest, of a period, too */
+  int64_t count, wanted;  /* particles that are present; the first ones of the input, asked for */
+  int64_t leaves;         /* a power of 2 */
   mcor_neighbour* sorted; /* [count] */
   double (
     *box)[6];  /* [2 * leaves]: low and high of x, y, z; of node n the children are 2 n, 2 n + 1 */
@@ -58,24 +60,27 @@ double mcor_w_of(mcor_sph_kernel kernel, double q)
 #undef MCOR_ENTRY
 }
 
-/* ---- the tree ---- */
+/* ---- The tree ---- */
 
-static uint64_t mcor_spread_bits(uint64_t x)
-{
-  x = (x | x << 32) & 0x1f00000000ffffu;
-  x = (x | x << 16) & 0x1f0000ff0000ffu;
-  x = (x | x << 8) & 0x100f00f00f00f00fu;
-  x = (x | x << 4) & 0x10c30c30c30c30c3u;
-  return (x | x << 2) & 0x1249249249249249u;
-}
-
-/* Particles at one place are interchangeable but for their masses. */
+/* Compares along the curve: by the axis with the highest bit in which places differ. Particles at one place are
+ * interchangeable but for their masses. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
-  if (p->key != q->key)
+  uint64_t most = 0;
+  int axis = 0;
+  for (int i = 0; i < 3; ++i)
   {
-    return p->key < q->key ? -1 : 1;
+    const uint64_t differs = p->place[i] ^ q->place[i];
+    if (most < differs && most < (most ^ differs))
+    {
+      most = differs;
+      axis = i;
+    }
+  }
+  if (most > 0)
+  {
+    return p->place[axis] < q->place[axis] ? -1 : 1;
   }
   for (int i = 0; i < 3; ++i)
   {
@@ -89,27 +94,23 @@ static int mcor_compare_neighbours(const void* a, const void* b)
 
 static void mcor_sort_neighbours(mcor_neighbour_job* job)
 {
-  double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
-  for (int64_t i = 0; i < job->count; ++i)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      low[a] = fmin(low[a], job->sorted[i].x[a]);
-      high[a] = fmax(high[a], job->sorted[i].x[a]);
-    }
-  }
+  double low[3] = { INFINITY, INFINITY, INFINITY };
   for (int a = 0; a < 3; ++a)
   {
-    job->extent = fmax(job->extent, fmax(high[a] - low[a], job->period[a]));
+    double high = -INFINITY;
+    for (int64_t i = 0; i < job->count; ++i)
+    {
+      low[a] = fmin(low[a], job->sorted[i].x[a]);
+      high = fmax(high, job->sorted[i].x[a]);
+    }
+    job->extent = fmax(job->extent, fmax(high - low[a], job->period[a]));
   }
-  const double scale = job->extent > 0 ? ((1 << MCOR_CURVE_BITS) - 1) / job->extent : 0;
+  const double scale = job->extent > 0 ? ldexp(1, 62) / job->extent : 0;
   for (int64_t i = 0; i < job->count; ++i)
   {
-    mcor_neighbour* p = &job->sorted[i];
-    p->key = 0;
     for (int a = 0; a < 3; ++a)
     {
-      p->key |= mcor_spread_bits((uint64_t)((p->x[a] - low[a]) * scale)) << a;
+      job->sorted[i].place[a] = (uint64_t)((job->sorted[i].x[a] - low[a]) * scale);
     }
   }
   qsort(job->sorted, (size_t)job->count, sizeof *job->sorted, mcor_compare_neighbours);
@@ -117,25 +118,20 @@ static void mcor_sort_neighbours(mcor_neighbour_job* job)
 
 static void mcor_make_boxes(mcor_neighbour_job* job)
 {
-  for (int n = 2 * job->leaves - 1; n > 0; --n)
+  for (int64_t n = 2 * job->leaves - 1; n > 0; --n)
   {
     double* box = job->box[n];
-    for (int a = 0; a < 6; ++a)
+    const int64_t first = (n - job->leaves) * MCOR_LEAF;
+    for (int a = 0; a < 3; ++a)
     {
-      box[a] = a < 3 ? INFINITY : -INFINITY;
-    }
-    const int64_t first = (int64_t)(n - job->leaves) * MCOR_LEAF;
-    for (int64_t i = first; n >= job->leaves && i < first + MCOR_LEAF && i < job->count; ++i)
-    {
-      for (int a = 0; a < 3; ++a)
+      box[a] = INFINITY;
+      box[a + 3] = -INFINITY;
+      for (int64_t i = first; n >= job->leaves && i < first + MCOR_LEAF && i < job->count; ++i)
       {
         box[a] = fmin(box[a], job->sorted[i].x[a]);
         box[a + 3] = fmax(box[a + 3], job->sorted[i].x[a]);
       }
-    }
-    for (int child = 2 * n; n < job->leaves && child <= 2 * n + 1; ++child)
-    {
-      for (int a = 0; a < 3; ++a)
+      for (int64_t child = 2 * n; n < job->leaves && child <= 2 * n + 1; ++child)
       {
         box[a] = fmin(box[a], job->box[child][a]);
         box[a + 3] = fmax(box[a + 3], job->box[child][a + 3]);
@@ -144,238 +140,193 @@ static void mcor_make_boxes(mcor_neighbour_job* job)
   }
 }
 
-/* ---- neighbours of one particle ---- */
+/* ---- Neighbours of one particle ---- */
 
-/* Distances and masses; it grows. */
+/* Squared distances and masses; it grows. */
 typedef struct mcor_neighbour_list
 {
+  double h; /* within the support of this length, at least; 0: not listed yet */
   int64_t count, room;
   double (*at)[2];
+  bool failed;
 } mcor_neighbour_list;
 
-static bool mcor_add_neighbour(mcor_neighbour_list* list, double distance, double mass)
-{
-  if (list->count == list->room)
-  {
-    const int64_t room = list->room > 0 ? 2 * list->room : 1024;
-    void* more = realloc(list->at, (size_t)room * sizeof *list->at);
-    if (!more)
-    {
-      return false;
-    }
-    list->at = more;
-    list->room = room;
-  }
-  list->at[list->count][0] = distance;
-  list->at[list->count++][1] = mass;
-  return true;
-}
-
-/* Lists the particles within `radius` of a place. */
-static bool mcor_list_around(
+/* Adds the particles within `radius` of a place. */
+static void mcor_list_around(
   const mcor_neighbour_job* job, const double x[3], double radius, mcor_neighbour_list* list)
 {
-  int stack[128], top = 0;
-  bool enough = true;
-  for (stack[top++] = 1; top > 0 && enough;)
+  int64_t stack[128];
+  int top = 0;
+  for (stack[top++] = 1; top > 0 && !list->failed;)
   {
-    const int n = stack[--top];
+    const int64_t n = stack[--top], first = (n - job->leaves) * MCOR_LEAF;
+    const double* box = job->box[n];
     double apart = 0;
     for (int a = 0; a < 3; ++a)
     {
-      const double d = fmax(fmax(job->box[n][a] - x[a], x[a] - job->box[n][a + 3]), 0);
+      const double d = fmax(fmax(box[a] - x[a], x[a] - box[a + 3]), 0);
       apart += d * d;
     }
-    if (!(apart <= radius * radius))
-    {
-      continue;
-    }
-    if (n < job->leaves)
+    if (apart < radius * radius && n < job->leaves)
     {
       stack[top++] = 2 * n + 1;
       stack[top++] = 2 * n;
+    }
+    if (!(apart < radius * radius) || n < job->leaves)
+    {
       continue;
     }
-    const int64_t first = (int64_t)(n - job->leaves) * MCOR_LEAF;
-    for (int64_t i = first; i < first + MCOR_LEAF && i < job->count && enough; ++i)
+    if (list->count + MCOR_LEAF > list->room)
+    {
+      list->room = 2 * list->room + 1024;
+      void* more = realloc(list->at, (size_t)list->room * sizeof *list->at);
+      list->failed = !more;
+      list->at = more ? more : list->at;
+    }
+    for (int64_t i = first; i < first + MCOR_LEAF && i < job->count && !list->failed; ++i)
     {
       const double* y = job->sorted[i].x;
       const double d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
       const double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      enough = !(r2 < radius * radius) || mcor_add_neighbour(list, sqrt(r2), job->sorted[i].mass);
+      list->at[list->count][0] = r2;
+      list->at[list->count][1] = job->sorted[i].mass;
+      list->count += r2 < radius * radius;
     }
   }
-  return enough;
 }
 
-/* And of its images whole periods away. */
-static bool mcor_list_neighbours(
-  const mcor_neighbour_job* job, const double x[3], double radius, mcor_neighbour_list* list)
+/* Lists the particles within the support of h, and their images whole periods away. */
+static void mcor_list_neighbours(
+  const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
   int most[3];
-  bool enough = true;
   list->count = 0;
+  list->h = h;
   for (int a = 0; a < 3; ++a)
   {
-    /* Positions may be anywhere: as far apart as all are. */
-    most[a] = job->period[a] > 0 ? (int)((radius + job->extent) / job->period[a]) + 1 : 0;
+    most[a] = job->period[a] > 0 ? (int)(job->support * h / job->period[a]) + 1 : 0;
   }
   for (int i = -most[0]; i <= most[0]; ++i)
   {
     for (int j = -most[1]; j <= most[1]; ++j)
     {
-      for (int k = -most[2]; k <= most[2] && enough; ++k)
+      for (int k = -most[2]; k <= most[2]; ++k)
       {
         const double at[3] = { x[0] + i * job->period[0], x[1] + j * job->period[1],
           x[2] + k * job->period[2] };
-        enough = mcor_list_around(job, at, radius, list);
+        mcor_list_around(job, at, job->support * h, list);
       }
     }
   }
-  return enough;
 }
 
-/* sum_j W h^d, or with masses. */
-static double mcor_sum_list(
-  const mcor_neighbour_job* job, const mcor_neighbour_list* list, double h, bool masses)
+/* sum_j W h^d, with masses where densities are summed, from a list that is not much longer. */
+static double mcor_sum_at(
+  const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
   double sum = 0;
-  for (int64_t i = 0; i < list->count; ++i)
+  if (h > list->h || h < 0.6 * list->h)
   {
-    sum += (masses ? list->at[i][1] : 1) * mcor_w_of(job->kernel, list->at[i][0] / h);
+    mcor_list_neighbours(job, x, h, list);
+  }
+  for (int64_t i = 0; i < list->count && !list->failed; ++i)
+  {
+    sum += (job->eta > 0 ? 1 : list->at[i][1]) *
+      mcor_w_of(job->options->sph_kernel, sqrt(list->at[i][0]) / h);
   }
   return job->norm * sum;
 }
 
-/* ---- smoothing lengths ---- */
-
-/* Lengths that every search begins with, whatever it begins from: quarter powers of 2. */
-static double mcor_length_rung(int rung)
+/* About the distance of near particles: of those some places before and behind along the curve, the nearer one, as
+ * the curve jumps. */
+static double mcor_guess_length(const mcor_neighbour_job* job, int64_t i)
 {
-  static const double quarters[4] = { 1, 1.189207115002721, 1.4142135623730951, 1.681792830507429 };
-  const int quarter = (rung % 4 + 4) % 4;
-  return ldexp(quarters[quarter], (rung - quarter) / 4);
+  double guess = job->extent;
+  for (int64_t k = i - 4; k <= i + 4; k += 8)
+  {
+    const double *x = job->sorted[i].x, *y = job->sorted[k < 0 || k >= job->count ? i : k].x;
+    const double d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
+    const double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    guess = r > 0 ? fmin(guess, r) : guess;
+  }
+  return fmax(guess, MCOR_LENGTH_ERROR * job->extent);
 }
 
-/* The smoothing length at a place: between two rungs, then by false position, halved where that does not
- * help. -1: memory ran out. */
-static double mcor_solve_length(
-  const mcor_neighbour_job* job, const double x[3], double guess, mcor_neighbour_list* list)
+/* Solves for the smoothing length at a place by false position, halved where that does not help. */
+static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
-  const double support = mcor_support_factor(job->kernel), limit = job->extent;
-  int rung = 4 * ilogb(guess) + 2;
-  double high = fmin(mcor_length_rung(rung), limit);
-  while (true)
+  const double* x = job->sorted[i].x;
+  double high = mcor_guess_length(job, i), low = high;
+  double above = mcor_sum_at(job, x, high, list) - job->eta, below = above;
+  while (above < 0 && high < job->extent)
   {
-    if (!mcor_list_neighbours(job, x, support * high, list))
-    {
-      return -1;
-    }
-    if (high >= limit || mcor_sum_list(job, list, high, false) >= job->eta)
-    {
-      break;
-    }
-    high = fmin(mcor_length_rung(++rung), limit);
+    low = high;
+    below = above;
+    high = fmin(1.25 * high, job->extent);
+    above = mcor_sum_at(job, x, high, list) - job->eta;
   }
-  double low = mcor_length_rung(rung - 1), above = mcor_sum_list(job, list, high, false) - job->eta;
-  double below = mcor_sum_list(job, list, low, false) - job->eta;
-  while (below >= 0 && low > 1e-7 * limit)
+  while (below >= 0 && low > MCOR_LENGTH_ERROR * job->extent)
   {
     high = low;
     above = below;
-    low = mcor_length_rung(--rung - 1);
-    below = mcor_sum_list(job, list, low, false) - job->eta;
+    low *= 0.8;
+    below = mcor_sum_at(job, x, low, list) - job->eta;
   }
   if (above <= 0 || below >= 0) /* all that there is does not suffice; so many are at one place */
   {
     return above <= 0 ? high : low;
   }
-  for (int step = 1, last = 0; step < MCOR_LENGTH_STEPS && high - low > 1e-7 * low; ++step)
+  for (int step = 1, last = 0; step < MCOR_LENGTH_STEPS && high - low > MCOR_LENGTH_ERROR * low;
+       ++step)
   {
     const double share = step % 4 == 0 ? 0.5 : below / (below - above);
-    const double h = low + (high - low) * share,
-                 sum = mcor_sum_list(job, list, h, false) - job->eta;
+    const double h = low + (high - low) * share, sum = mcor_sum_at(job, x, h, list) - job->eta;
     if (fabs(sum) < 1e-9 * job->eta)
     {
       return h;
     }
-    if (sum < 0)
-    {
-      low = h;
-      below = sum;
-      above *= last < 0 ? 0.5 : 1;
-      last = -1;
-    }
-    else
-    {
-      high = h;
-      above = sum;
-      below *= last > 0 ? 0.5 : 1;
-      last = 1;
-    }
+    const int side = sum < 0 ? -1 : 1;
+    *(sum < 0 ? &low : &high) = h;
+    *(sum < 0 ? &below : &above) = sum;
+    *(sum < 0 ? &above : &below) *= side == last ? 0.5 : 1;
+    last = side;
   }
   return 0.5 * (low + high);
 }
 
-static void mcor_solve_lengths(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_neighbour_job* job = data;
-  mcor_neighbour_list list = { 0 };
-  for (int64_t i = first; i < last && !job->failed[slice]; ++i)
-  {
-    if (job->sorted[i].source >= job->wanted)
-    {
-      continue;
-    }
-    const double* box = job->box[job->leaves + i / MCOR_LEAF];
-    const double size = fmax(fmax(box[3] - box[0], box[4] - box[1]), box[5] - box[2]);
-    const double guess = size > 1e-6 * job->extent ? 0.5 * size : 1e-3 * job->extent;
-    const double h = mcor_solve_length(job, job->sorted[i].x, guess, &list);
-    job->failed[slice] = h < 0;
-    job->out[job->sorted[i].source] = h;
-  }
-  free(list.at);
-}
-
-/* ---- densities ---- */
+/* ---- All particles ---- */
 
 static void mcor_sum_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_neighbour_job* job = data;
   mcor_neighbour_list list = { 0 };
-  const mcor_input* input = job->input;
-  const double support = mcor_support_factor(job->kernel);
-  const double scale = input->smoothing_length_is_support_radius ? 1 / support : 1;
-  for (int64_t i = first; i < last && !job->failed[slice]; ++i)
+  const double scale = job->input->smoothing_length_is_support_radius ? 1 / job->support : 1;
+  for (int64_t i = first; i < last && !list.failed; ++i)
   {
     const int64_t source = job->sorted[i].source;
-    if (source >= job->wanted)
+    list.h = 0;
+    if (source < job->wanted && job->eta > 0)
     {
-      continue;
+      job->out[source] = mcor_solve_length(job, i, &list);
     }
-    const double h = mcor_array_at(&input->smoothing_length, source, 0) * scale;
-    job->failed[slice] = !mcor_list_neighbours(job, job->sorted[i].x, support * h, &list);
-    job->out[source] =
-      mcor_sum_list(job, &list, h, true) / (job->dimension == 2 ? h * h : h * h * h);
+    else if (source < job->wanted)
+    {
+      const double h = mcor_array_at(&job->input->smoothing_length, source, 0) * scale;
+      job->out[source] =
+        mcor_sum_at(job, job->sorted[i].x, h, &list) / (job->plane ? h * h : h * h * h);
+    }
   }
+  job->failed[slice] = list.failed;
   free(list.at);
 }
 
-/* ---- both ---- */
-
-static mcor_status mcor_load_neighbours(
-  mcor_context* context, const mcor_options* options, mcor_neighbour_job* job)
+/* Makes the particles that are present, positions within the period, and their tree. */
+static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_job* job)
 {
   const mcor_input* input = job->input;
-  const bool plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
-  job->dimension = plane ? 2 : 3;
-  job->norm = mcor_kernel_norm(job->kernel) * (plane ? mcor_plane_factor(job->kernel) : 1);
-  for (int a = 0; a < 3; ++a)
-  {
-    const double length = options->periodic[2 * a + 1] - options->periodic[2 * a];
-    job->period[a] = length > 0 ? length : 0;
-  }
-  for (job->leaves = 1; job->leaves < (input->count + MCOR_LEAF - 1) / MCOR_LEAF; job->leaves *= 2)
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  for (job->leaves = 1; job->leaves * MCOR_LEAF < input->count; job->leaves *= 2)
   {
   }
   job->sorted = malloc((size_t)input->count * sizeof *job->sorted);
@@ -396,109 +347,87 @@ static mcor_status mcor_load_neighbours(
       .mass = mcor_is_given(&input->mass) ? mcor_array_at(&input->mass, i, 0) : 1 };
     for (int a = 0; a < 3; ++a)
     {
-      mcor_array positions = input->positions;
-      positions.components = 3;
+      const double *period = job->options->periodic + 2 * a, length = period[1] - period[0];
+      job->period[a] = length > 0 ? length : 0;
       p->x[a] = mcor_array_at(&positions, i, a);
+      p->x[a] -= length > 0 ? floor((p->x[a] - period[0]) / length) * length : 0;
     }
   }
   mcor_sort_neighbours(job);
   mcor_make_boxes(job);
+  MCOR_RETURN_IF(job->count > 0 && job->eta > 0 && !(job->extent > 0), context, MCOR_INVALID_DATA,
+    "All particles are at one place, so that neighbours tell no smoothing length. Give one value.");
   return MCOR_OK;
 }
 
-static mcor_status mcor_run_neighbours(
-  mcor_context* context, const mcor_options* options, mcor_neighbour_job* job, mcor_slice_body body)
+static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor_neighbour_job* job)
 {
-  mcor_status status = mcor_load_neighbours(context, options, job);
-  if (status == MCOR_OK && job->count > 0 && body == mcor_solve_lengths && !(job->extent > 0))
-  {
-    status = mcor_fail(context, MCOR_INVALID_DATA,
-      "All particles are at one place, so that neighbours tell no smoothing length. Give one "
-      "value.");
-  }
-  int slices = 0;
-  status =
-    status == MCOR_OK ? mcor_parallel_run(NULL, job->count, 256, body, job, &slices) : status;
-  for (int s = 0; s < slices && status == MCOR_OK; ++s)
-  {
-    status = mcor_allocated(context, !job->failed[s]);
-  }
-  free(job->sorted);
-  free(job->box);
-  return status;
-}
-
-static mcor_skip mcor_skip_of(const mcor_input* input)
-{
-  return input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT;
-}
-
-/* Positions, and whatever else must be above 0. */
-static mcor_status mcor_check_neighbours(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  MCOR_RETURN_IF(
-    (unsigned)options->sph_kernel >= MCOR_SPH_KERNEL_COUNT || options->sph_kernel == MCOR_M_PRIME_4,
-    context, MCOR_INVALID_ARGUMENT,
-    "Neighbours are not counted with kernel %s. Choose another kernel.",
-    mcor_sph_kernel_name(options->sph_kernel) ? mcor_sph_kernel_name(options->sph_kernel) : "?");
+  const mcor_input* input = job->input;
+  const mcor_skip skip = input->ignore_solids ? MCOR_SKIP_SOLIDS : MCOR_SKIP_ABSENT;
+  const mcor_sph_kernel kernel = job->options->sph_kernel;
+  MCOR_RETURN_IF((unsigned)kernel >= MCOR_SPH_KERNEL_COUNT || kernel == MCOR_M_PRIME_4, context,
+    MCOR_INVALID_ARGUMENT, "Neighbours are not counted with kernel %s. Choose another kernel.",
+    mcor_sph_kernel_name(kernel) ? mcor_sph_kernel_name(kernel) : "?");
   MCOR_RETURN_IF(input->count < 0 || (input->count > 0 && !input->positions.data), context,
     MCOR_INVALID_ARGUMENT, "There are no particle positions.");
   mcor_array positions = input->positions;
   positions.components = 3;
   int c = 0;
-  const int64_t i =
-    mcor_find_illegal(NULL, &positions, input->solid, mcor_skip_of(input), input->count, false, &c);
+  int64_t i = mcor_find_illegal(NULL, &positions, input->solid, skip, input->count, false, &c);
   MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
     "The position of particle %lld is not finite. Remove such particles.", (long long)i);
-  return MCOR_OK;
-}
-
-static mcor_status mcor_begin_lengths(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, double eta, int64_t count, double* lengths)
-{
-  MCOR_TRY(mcor_check_neighbours(context, input, options));
-  mcor_neighbour_job job = {
-    .input = input, .kernel = options->sph_kernel, .wanted = count, .out = lengths
-  };
-  const bool plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
-  job.eta = plane ? eta * eta : eta * eta * eta;
-  const double own = mcor_kernel_norm(job.kernel) * mcor_w_of(job.kernel, 0) *
-    (plane ? mcor_plane_factor(job.kernel) : 1);
-  MCOR_RETURN_IF(!(isfinite(job.eta) && eta > 0 && job.eta > own), context, MCOR_INVALID_ARGUMENT,
-    "ETA is %g; it must be above %.3g, which a particle without neighbours has. Usual is %g.", eta,
-    pow(own, plane ? 0.5 : 1.0 / 3), MCOR_USUAL_ETA);
-  return input->count > 0 ? mcor_run_neighbours(context, options, &job, mcor_solve_lengths)
-                          : MCOR_OK;
-}
-
-static mcor_status mcor_begin_densities(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, int64_t count, double* densities)
-{
-  MCOR_TRY(mcor_check_neighbours(context, input, options));
   const mcor_array* arrays[] = { &input->mass, &input->smoothing_length };
   const char* const names[] = { "mass", "smoothing length" };
-  for (int k = 0; k < 2; ++k)
+  for (int k = 0; k < 2 && job->eta == 0; ++k)
   {
-    int c = 0;
     MCOR_RETURN_IF(!mcor_is_given(arrays[k]), context, MCOR_INVALID_ARGUMENT,
       "There is no %s, from which densities are summed. Name its array, or give one value.",
       names[k]);
-    const int64_t i = mcor_find_illegal(
-      NULL, arrays[k], input->solid, mcor_skip_of(input), k == 0 ? input->count : count, true, &c);
+    const int64_t count = k == 0 ? input->count : job->wanted;
+    i = mcor_find_illegal(NULL, arrays[k], input->solid, skip, count, true, &c);
     MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,
       "The %s of particle %lld is not a number above 0. Remove such particles.", names[k],
       (long long)i);
   }
-  mcor_neighbour_job job = {
-    .input = input, .kernel = options->sph_kernel, .wanted = count, .out = densities
-  };
-  return input->count > 0 ? mcor_run_neighbours(context, options, &job, mcor_sum_slice) : MCOR_OK;
+  job->plane = mcor_find_dimension(input, NULL, job->options->dimension) == 2;
+  job->support = mcor_support_factor(kernel);
+  job->norm = mcor_kernel_norm(kernel) * (job->plane ? mcor_plane_factor(kernel) : 1);
+  if (job->eta > 0)
+  {
+    job->eta = job->plane ? eta * eta : eta * eta * eta;
+    const double own = job->norm * mcor_w_of(kernel, 0);
+    MCOR_RETURN_IF(!(isfinite(job->eta) && eta > 0 && job->eta > own), context,
+      MCOR_INVALID_ARGUMENT,
+      "ETA is %g; it must be above %.3g, which a particle without neighbours has. Usual is %g.",
+      eta, pow(own, job->plane ? 0.5 : 1.0 / 3), MCOR_USUAL_ETA);
+  }
+  return MCOR_OK;
 }
 
-/* A context that opens no device: it has the sentence. */
-static mcor_status mcor_tell_why(mcor_context* context, mcor_status status, char** why)
+/* In a context that opens no device, but has the sentence. job.eta: 0 for densities. */
+static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, char** why)
 {
+  mcor_context* context = calloc(1, sizeof *context);
+  *why = NULL;
+  if (!context)
+  {
+    return MCOR_OUT_OF_CAPACITY;
+  }
+  mcor_status status = mcor_check_neighbours(context, eta, job);
+  int slices = 0;
+  if (status == MCOR_OK && job->input->count > 0)
+  {
+    status = mcor_load_neighbours(context, job);
+    status = status == MCOR_OK
+      ? mcor_parallel_run(NULL, job->count, 256, mcor_sum_slice, job, &slices)
+      : status;
+    free(job->sorted);
+    free(job->box);
+  }
+  for (int s = 0; s < slices && status == MCOR_OK; ++s)
+  {
+    status = mcor_allocated(context, !job->failed[s]);
+  }
   *why = status == MCOR_OK ? NULL : malloc(sizeof context->error);
   if (*why)
   {
@@ -511,19 +440,17 @@ static mcor_status mcor_tell_why(mcor_context* context, mcor_status status, char
 mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
   double eta, int64_t count, double* lengths, char** why)
 {
-  mcor_context* context = calloc(1, sizeof *context);
-  *why = NULL;
-  return context
-    ? mcor_tell_why(context, mcor_begin_lengths(context, input, options, eta, count, lengths), why)
-    : MCOR_OUT_OF_CAPACITY;
+  mcor_neighbour_job job = {
+    .input = input, .options = options, .eta = 1, .wanted = count, .out = lengths
+  };
+  return mcor_run_neighbours(eta, &job, why);
 }
 
 mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options, int64_t count,
   double* densities, char** why)
 {
-  mcor_context* context = calloc(1, sizeof *context);
-  *why = NULL;
-  return context
-    ? mcor_tell_why(context, mcor_begin_densities(context, input, options, count, densities), why)
-    : MCOR_OUT_OF_CAPACITY;
+  mcor_neighbour_job job = {
+    .input = input, .options = options, .wanted = count, .out = densities
+  };
+  return mcor_run_neighbours(0, &job, why);
 }

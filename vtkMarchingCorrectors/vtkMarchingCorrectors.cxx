@@ -159,8 +159,11 @@ void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkP
 void vtkMarchingCorrectors::FillRequests(
   vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
 {
-  choice.Scalar = this->FindFirstRequest(particles);
-  choice.ScalarDot = this->FindRequest(1, particles);
+  if (!this->FreeSurface) // which contours no array: all of their values need not be seen
+  {
+    choice.Scalar = this->FindFirstRequest(particles);
+    choice.ScalarDot = this->FindRequest(1, particles);
+  }
 }
 
 void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)

@@ -143,45 +143,45 @@ static double mcor_single_step(double largest)
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
 }
 
-/* Returns the longest such step among the coordinates, if all of the fluid's are numbers of
- * single precision; else 0. */
-static double mcor_step_of(const mcor_input* input, int* axis)
+static double mcor_coordinate(const mcor_input* input, int64_t i)
 {
-  double largest = 0;
-  const int64_t n = input->positions.data ? input->count : 0;
-  for (int64_t i = 0; i < 3 * n; ++i)
-  {
-    const double x = input->positions.type == MCOR_FLOAT64
-      ? ((const double*)input->positions.data)[i]
-      : (double)((const float*)input->positions.data)[i];
-    if (input->solid && input->solid[i / 3])
-    {
-      continue;
-    }
-    if ((double)(float)x != x)
-    {
-      return 0;
-    }
-    *axis = fabs(x) > largest ? (int)(i % 3) : *axis;
-    largest = fmax(largest, fabs(x));
-  }
-  return mcor_single_step(largest);
+  return input->positions.type == MCOR_FLOAT64 ? ((const double*)input->positions.data)[i]
+                                               : (double)((const float*)input->positions.data)[i];
 }
 
+/* Warns where steps at the largest coordinate are too long, and all of the fluid's coordinates are
+ * numbers of single precision. */
 static bool mcor_warn_coarse(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
-  int axis = 0;
-  const double step = n->spacing_median > 0 && n->fluid_particles >= MCOR_FEW_PARTICLES
-    ? mcor_step_of(s->input, &axis)
-    : 0;
-  return step * MCOR_COARSE_STEPS > n->spacing_median &&
+  const mcor_input* input = s->input;
+  const bool known = n->spacing_median > 0 && n->fluid_particles >= MCOR_FEW_PARTICLES;
+  const int64_t count = known && input->positions.data ? input->count : 0;
+  double largest[3] = { 0 };
+  for (int64_t i = 0; i < count; ++i)
+  {
+    for (int a = 0; a < 3 && !(input->solid && input->solid[i]); ++a)
+    {
+      const double x = fabs(mcor_coordinate(input, 3 * i + a));
+      largest[a] = x > largest[a] ? x : largest[a];
+    }
+  }
+  const int axis = largest[2] > largest[1] && largest[2] > largest[0] ? 2
+    : largest[1] > largest[0]                                         ? 1
+                                                                      : 0;
+  const double step = mcor_single_step(largest[axis]);
+  bool coarse = step * MCOR_COARSE_STEPS > n->spacing_median;
+  for (int64_t i = 0; i < 3 * count && coarse; ++i)
+  {
+    const double x = mcor_coordinate(input, i);
+    coarse = (input->solid && input->solid[i / 3]) || (double)(float)x == x;
+  }
+  return coarse &&
     mcor_say(s,
       "The positions are too coarse: they were stored in single precision, which rounds %c to "
-      "steps of %.3g, and the "
-      "nearest particle is %.3g away (median). Surfaces and volumes are wrong by about as much. "
-      "Subtract a constant "
-      "from the coordinates, or store them in double precision, where they are written.",
+      "steps of %.3g, and the nearest particle is %.3g away (median). Surfaces and volumes are "
+      "wrong by about as much. Subtract a constant from the coordinates, or store them in double "
+      "precision, where they are written.",
       "xyz"[axis], step, n -> spacing_median);
 }
 
@@ -207,13 +207,9 @@ static bool mcor_warn_period(mcor_suspicion* s)
   return false;
 }
 
-static bool mcor_warn_plane(mcor_suspicion* s)
+static bool mcor_is_flat(mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
-  if (mcor_warn_coarse(s))
-  {
-    return false; /* rounding made it flat */
-  }
   const double h = n->smoothing_length_median;
   for (int a = 0; a < 3; ++a)
   {
@@ -244,6 +240,11 @@ static bool mcor_warn_plane(mcor_suspicion* s)
       "simulation, turn them into a plane of constant x, y or z that all share exactly; otherwise "
       "set the dimension to 3.",
       normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
+}
+
+static bool mcor_warn_plane(mcor_suspicion* s)
+{
+  return mcor_is_flat(s) && !mcor_warn_coarse(s); /* else rounding made it flat */
 }
 
 /* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies

@@ -7,6 +7,7 @@
 #include "ComponentRun.h"
 #include "DataSetFile.h"
 #include "Ending.h"
+#include "Extra.h"
 #include "Film.h"
 #include "FluxRun.h"
 #include "GaugeRun.h"
@@ -170,9 +171,9 @@ void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
       {
         colors.Suggest(whole, job.Surface->GetIsoValueArrayName());
         colors.Include(whole);
-        Picture picture(job.Picture);
+        const auto picture = LoadExtra().NewPicture(job.Picture);
         WriteOutput(
-          job.Picture.File, picture.Draw(job.Picture.File, whole, particles, colors, messages));
+          job.Picture.File, picture->Draw(job.Picture.File, whole, particles, colors, messages));
       }
     });
 }

@@ -50,3 +50,13 @@ endif ()
 if (WITH_VTK)
   run("${WORK}/all/uses_filter")
 endif ()
+
+# The installed program finds the library that it loads only for some files and pictures.
+file(GLOB program "${WORK}/install/bin/marching-correctors")
+if (program)
+  execute_process(COMMAND "${program}" --list-arrays "${SOURCE}/../CommandLine/film.vtkhdf"
+    OUTPUT_VARIABLE words ERROR_VARIABLE words)
+  if (NOT words MATCHES "particles  |built without its reader")
+    message(FATAL_ERROR "${words}")
+  endif ()
+endif ()

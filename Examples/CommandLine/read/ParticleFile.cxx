@@ -5,6 +5,7 @@
 #include "CollectionFile.h"
 #include "DeclaredSizes.h"
 #include "Ending.h"
+#include "Extra.h"
 #include "FileFormat.h"
 #include "GadgetFile.h"
 #include "MessageCapture.h"
@@ -17,21 +18,13 @@
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
 #include "vtkGenericDataObjectReader.h"
-#ifdef MCOR_HAS_VTKHDF
-#include "HdfLinks.h"
-#include "HdfSteps.h"
-#include "vtkHDFReader.h"
-#endif
 #include "vtkNew.h"
-#include "vtkOBJReader.h"
 #include "vtkObjectFactory.h"
-#include "vtkPLYReader.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHVertices.h"
-#include "vtkSTLReader.h"
 #include "vtkXMLDataParser.h"
 #include "vtkXMLImageDataReader.h"
 #include "vtkXMLPolyDataReader.h"
@@ -137,44 +130,21 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file)
   return reader->GetOutput();
 }
 
-#ifdef MCOR_HAS_VTKHDF
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step)
 {
-  RefuseHdfLinks(file);
-  if (const vtkSmartPointer<vtkDataObject> points = ReadHdfPoints(file, step))
-  {
-    return points;
-  }
-  vtkNew<vtkHDFReader> reader;
-  reader->SetFileName(file.c_str());
-  if (!reader->CanReadFile(file.c_str()))
-  {
-    throw std::runtime_error(file + " cannot be read: its reader does not know what it holds");
-  }
-  reader->Update();
-  return reader->GetOutputDataObject(0);
+  return LoadExtra().ReadHdf(file, step);
 }
-#else
-vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t)
+
+vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file)
 {
-  throw std::runtime_error(file + " cannot be read: this VTK was built without its reader");
+  return LoadExtra().ReadSurface(file);
 }
-#endif
 
 template <typename ReaderT>
 vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
 {
   vtkNew<PromptReader<ReaderT>> reader;
   return ReadXml(reader, file);
-}
-
-template <typename ReaderT>
-vtkSmartPointer<vtkDataObject> ReadSurfaceWith(const std::string& file)
-{
-  vtkNew<ReaderT> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutputDataObject(0);
 }
 
 /// Every format that is read, with all that is known of it. A format without a function is a list
@@ -215,9 +185,9 @@ const std::vector<FileFormat<Reader>> DataFormats = {
   { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
   { ".vtk", ReadOne<ReadLegacy> },
   { ".csv", ReadOne<ReadCsv> },
-  { ".stl", ReadOne<ReadSurfaceWith<vtkSTLReader>> },
-  { ".ply", ReadOne<ReadSurfaceWith<vtkPLYReader>> },
-  { ".obj", ReadOne<ReadSurfaceWith<vtkOBJReader>> },
+  { ".stl", ReadOne<ReadSurface> },
+  { ".ply", ReadOne<ReadSurface> },
+  { ".obj", ReadOne<ReadSurface> },
 };
 
 const FileFormat<Reader> Gadget = { "", ReadOne<ReadGadget> };
@@ -458,15 +428,12 @@ std::vector<double> ListTimes(const std::string& file)
   {
     return { TimeOfGadget(file) };
   }
-#ifdef MCOR_HAS_VTKHDF
   if (ends(".vtkhdf"))
   {
     const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
     const Silence silence;
-    RefuseHdfLinks(file);
-    return ListHdfTimes(file);
+    return LoadExtra().ListHdfTimes(file);
   }
-#endif
   return ends(".xyz") || ends(".extxyz") || ends(".lammpstrj") || ends(".dump") || ends(".txt") ||
       ends(".dat")
     ? ListTimesInText(file)

@@ -6,6 +6,7 @@
 #include "ColorScale.h"
 #include "ComponentRun.h"
 #include "Ending.h"
+#include "Extra.h"
 #include "FilmNumbers.h"
 #include "Job.h"
 #include "MessageCapture.h"
@@ -105,7 +106,7 @@ public:
     sharing.OnFirst([&] { CheckFiles(job, this->Times.ListFiles(), this->Surfaces, messages); });
     if (!job.Picture.File.empty())
     {
-      this->Drawn.reset(new Picture(job.Picture));
+      this->Drawn = LoadExtra().NewPicture(job.Picture);
     }
   }
 

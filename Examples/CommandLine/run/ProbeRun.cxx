@@ -4,6 +4,7 @@
 
 #include "ColorScale.h"
 #include "DataSetFile.h"
+#include "Extra.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
@@ -155,9 +156,9 @@ void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
   ColorScale colors(job.Picture);
   colors.SetName(job.Picture.ColorBy.empty() ? ArrayToShow(shown) : job.Picture.ColorBy);
   colors.Include(shown);
-  Picture picture(job.Picture);
+  const auto picture = LoadExtra().NewPicture(job.Picture);
   WriteOutput(job.Picture.File,
-    picture.Draw(job.Picture.File, shown, result, colors, messages, job.Slice.Axis));
+    picture->Draw(job.Picture.File, shown, result, colors, messages, job.Slice.Axis));
 }
 
 }

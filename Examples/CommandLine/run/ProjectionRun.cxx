@@ -4,6 +4,7 @@
 
 #include "ColorScale.h"
 #include "DataSetFile.h"
+#include "Extra.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
@@ -51,9 +52,9 @@ void WriteProjection(const Job& job, double seconds, MessageCapture* messages)
     colors.Include(image);
     const double* sight = job.Projection->GetDirection();
     const int axis = sight[0] != 0.0 ? 0 : sight[1] != 0.0 ? 1 : 2;
-    Picture picture(job.Picture);
+    const auto picture = LoadExtra().NewPicture(job.Picture);
     WriteOutput(job.Picture.File,
-      picture.Draw(job.Picture.File, image, image, colors, messages, size[axis] == 1 ? axis : -1));
+      picture->Draw(job.Picture.File, image, image, colors, messages, size[axis] == 1 ? axis : -1));
   }
 }
 

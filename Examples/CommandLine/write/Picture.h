@@ -3,8 +3,6 @@
 #ifndef Picture_h
 #define Picture_h
 
-#include "vtkBoundingBox.h"
-
 #include <memory>
 #include <string>
 
@@ -19,23 +17,15 @@ struct PictureOptions;
 class Picture
 {
 public:
-  /// Throws std::runtime_error with one sentence where this VTK renders through an X server and there is
-  /// none: VTK itself would abort.
-  explicit Picture(const PictureOptions& options);
-  ~Picture();
-  Picture(const Picture&) = delete;
-  void operator=(const Picture&) = delete;
+  /// For LoadExtra().NewPicture(). Throws std::runtime_error with one sentence where this VTK renders through an X
+  /// server and there is none: VTK itself would abort.
+  static std::unique_ptr<Picture> New(const PictureOptions& options);
+  virtual ~Picture() = default;
 
   /// The bytes of a .png file, which the sentence of a std::runtime_error names. A slice is seen along this
   /// axis.
-  std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
-    const ColorScale& colors, MessageCapture* messages, int sliceAxis = -1);
-
-private:
-  class Scene;
-  const PictureOptions& Options;
-  std::unique_ptr<Scene> Drawn;
-  vtkBoundingBox Seen;
+  virtual std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
+    const ColorScale& colors, MessageCapture* messages, int sliceAxis = -1) = 0;
 };
 
 #endif

@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -44,35 +45,52 @@ bool WriteXml(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   return WriteXmlInline(writer, surface, bytes);
 }
 
-/// The least significant byte first, on every machine.
-template <typename T>
-void Append(std::string& bytes, T value)
+/// Bytes of a length that is known before, the least significant byte of a value first, on every machine.
+class ByteWriter
 {
-  const std::uint16_t one = 1;
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-  if (*reinterpret_cast<const unsigned char*>(&one) != 1)
+public:
+  ByteWriter(std::string& bytes, std::size_t more)
   {
-    std::reverse(bytes.end() - sizeof(value), bytes.end());
+    const std::size_t begin = bytes.size();
+    bytes.resize(begin + more);
+    this->Next = &bytes[0] + begin;
   }
-}
 
-void AppendVector(std::string& bytes, const double (&vector)[3])
-{
-  for (const double value : vector)
+  template <typename T>
+  void Put(T value)
   {
-    Append(bytes, static_cast<float>(value));
+    const std::uint16_t one = 1;
+    std::memcpy(this->Next, &value, sizeof(value));
+    if (*reinterpret_cast<const unsigned char*>(&one) != 1)
+    {
+      std::reverse(this->Next, this->Next + sizeof(value));
+    }
+    this->Next += sizeof(value);
   }
-}
+
+  void PutVector(const double (&vector)[3])
+  {
+    for (const double value : vector)
+    {
+      this->Put(static_cast<float>(value));
+    }
+  }
+
+private:
+  char* Next;
+};
 
 /// Calls use(corners) for each triangle.
 template <typename F>
 void ForTriangles(vtkPolyData* surface, const F& use)
 {
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPolys(); ++i)
+  vtkCellArray* triangles = surface->GetPolys();
+  vtkIdType count = 0;
+  const vtkIdType* corners = nullptr;
+  for (vtkIdType i = 0; i < triangles->GetNumberOfCells(); ++i)
   {
-    surface->GetPolys()->GetCellAtId(i, corners);
-    use(corners->GetPointer(0));
+    triangles->GetCellAtId(i, count, corners);
+    use(corners);
   }
 }
 
@@ -82,9 +100,11 @@ bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   bytes = "binary STL by marching-correctors";
   bytes.resize(80, ' ');
-  Append(bytes, static_cast<std::uint32_t>(surface->GetNumberOfPolys()));
+  const vtkIdType count = surface->GetNumberOfPolys();
+  ByteWriter writer(bytes, 4 + 50 * static_cast<std::size_t>(count));
+  writer.Put(static_cast<std::uint32_t>(count));
   ForTriangles(surface,
-    [&](const vtkIdType* corners)
+    [&writer, surface](const vtkIdType* corners)
     {
       double points[3][3], normal[3];
       for (int k = 0; k < 3; ++k)
@@ -92,12 +112,12 @@ bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
         surface->GetPoint(corners[k], points[k]);
       }
       vtkTriangle::ComputeNormal(points[0], points[1], points[2], normal);
-      AppendVector(bytes, normal);
+      writer.PutVector(normal);
       for (const auto& point : points)
       {
-        AppendVector(bytes, point);
+        writer.PutVector(point);
       }
-      Append(bytes, std::uint16_t(0));
+      writer.Put(std::uint16_t(0));
     });
   return true;
 }
@@ -154,30 +174,33 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   head << "\nelement face " << surface->GetNumberOfPolys()
        << "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes = head.str();
-  bytes.reserve(bytes.size() + 27 * static_cast<std::size_t>(surface->GetNumberOfPoints()) +
-    13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
+  const auto points = static_cast<std::size_t>(surface->GetNumberOfPoints());
+  ByteWriter writer(bytes,
+    points * (12u + (normals ? 12u : 0u) + (colored ? 3u : 0u)) +
+      13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
   double vector[3];
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  for (std::size_t i = 0; i < points; ++i)
   {
-    surface->GetPoint(i, vector);
-    AppendVector(bytes, vector);
+    const auto id = static_cast<vtkIdType>(i);
+    surface->GetPoint(id, vector);
+    writer.PutVector(vector);
     if (normals)
     {
-      normals->GetTuple(i, vector);
-      AppendVector(bytes, vector);
+      normals->GetTuple(id, vector);
+      writer.PutVector(vector);
     }
     for (std::size_t c = 0; colored && c < 3; ++c)
     {
-      Append(bytes, colors[3 * static_cast<std::size_t>(i) + c]);
+      writer.Put(colors[3 * i + c]);
     }
   }
   ForTriangles(surface,
-    [&](const vtkIdType* corners)
+    [&writer](const vtkIdType* corners)
     {
-      Append(bytes, static_cast<std::uint8_t>(3));
+      writer.Put(static_cast<std::uint8_t>(3));
       for (int k = 0; k < 3; ++k)
       {
-        Append(bytes, static_cast<std::int32_t>(corners[k]));
+        writer.Put(static_cast<std::int32_t>(corners[k]));
       }
     });
   return true;

@@ -219,14 +219,13 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
   renderer->ResetCameraClippingRange();
 }
 
-}
-
 /// Window and what is in it.
-class Picture::Scene
+class Scene : public Picture
 {
 public:
   explicit Scene(const PictureOptions& options)
-    : Display(this->Window)
+    : Options(options)
+    , Display(this->Window)
   {
     if (this->Display.IsMissing())
     {
@@ -243,6 +242,40 @@ public:
     this->Window->AddRenderer(this->Renderer);
   }
 
+  std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
+    const ColorScale& colors, MessageCapture* messages, int sliceAxis) override
+  {
+    const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
+    messages->Clear();
+    const int axis = sliceAxis >= 0 ? sliceAxis : AxisOfLines(data);
+    const bool isSlice = axis >= 0;
+    this->Show(data, colors, isSlice);
+    this->ShowOutline(vtkBoundingBox(frame->GetBounds()));
+    this->Seen.AddBounds(frame->GetBounds());
+    if (data->GetNumberOfPoints() > 0)
+    {
+      this->Seen.AddBounds(data->GetBounds());
+    }
+    if (!colors.GetName().empty())
+    {
+      this->ShowBar(colors);
+    }
+    const Vector up = AxisOf(this->Options.Up);
+    const std::vector<double>& given = this->Options.View;
+    this->Place(!given.empty() ? MakeView(up, { given[0], given[1], given[2] })
+        : isSlice              ? ViewOfSlice(up, axis)
+                               : ObliqueView(up),
+      this->Seen);
+    std::string bytes = this->Render();
+    if (bytes.empty() || !messages->GetErrors().empty())
+    {
+      throw std::runtime_error(file + " could not be written" +
+        (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+    }
+    return bytes;
+  }
+
+private:
   void Show(vtkDataSet* data, const ColorScale& colors, bool isFlat)
   {
     this->Renderer->RemoveAllViewProps();
@@ -350,7 +383,7 @@ public:
     PlaceCamera(this->Renderer, view, box, share * Width / Height);
   }
 
-  std::string Draw()
+  std::string Render()
   {
     this->Window->Render();
     vtkNew<vtkWindowToImageFilter> image;
@@ -366,8 +399,9 @@ public:
                  : std::string();
   }
 
-private:
   static constexpr int Width = 1280, Height = 800;
+  const PictureOptions& Options;
+  vtkBoundingBox Seen;
   vtkNew<vtkRenderWindow> Window;
   const DisplayConnection Display;
   vtkNew<vtkRenderer> Renderer;
@@ -375,45 +409,11 @@ private:
   bool HasBar = false;
 };
 
-Picture::Picture(const PictureOptions& options)
-  : Options(options)
+}
+
+std::unique_ptr<Picture> Picture::New(const PictureOptions& options)
 {
   const Activity drawing(
     options.File + " could not be written", "the graphics driver may be at fault");
-  this->Drawn.reset(new Scene(options));
-}
-
-Picture::~Picture() = default;
-
-std::string Picture::Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
-  const ColorScale& colors, MessageCapture* messages, int sliceAxis)
-{
-  const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
-  messages->Clear();
-  const int axis = sliceAxis >= 0 ? sliceAxis : AxisOfLines(data);
-  const bool isSlice = axis >= 0;
-  this->Drawn->Show(data, colors, isSlice);
-  this->Drawn->ShowOutline(vtkBoundingBox(frame->GetBounds()));
-  this->Seen.AddBounds(frame->GetBounds());
-  if (data->GetNumberOfPoints() > 0)
-  {
-    this->Seen.AddBounds(data->GetBounds());
-  }
-  if (!colors.GetName().empty())
-  {
-    this->Drawn->ShowBar(colors);
-  }
-  const Vector up = AxisOf(this->Options.Up);
-  const std::vector<double>& given = this->Options.View;
-  this->Drawn->Place(!given.empty() ? MakeView(up, { given[0], given[1], given[2] })
-      : isSlice                     ? ViewOfSlice(up, axis)
-                                    : ObliqueView(up),
-    this->Seen);
-  std::string bytes = this->Drawn->Draw();
-  if (bytes.empty() || !messages->GetErrors().empty())
-  {
-    throw std::runtime_error(file + " could not be written" +
-      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
-  }
-  return bytes;
+  return std::make_unique<Scene>(options);
 }

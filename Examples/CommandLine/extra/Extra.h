@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef Extra_h
+#define Extra_h
+
+#include "vtkSmartPointer.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+class Picture;
+class vtkDataObject;
+struct PictureOptions;
+
+/// What needs many libraries, VTK's rendering and HDF5, which to load takes longer than a small run: it is in a
+/// library of its own.
+struct Extra
+{
+  std::unique_ptr<Picture> (*NewPicture)(const PictureOptions& options);
+
+  /// Points of a .vtkhdf file at one of its steps, and the times of these. Throws std::runtime_error.
+  vtkSmartPointer<vtkDataObject> (*ReadHdf)(const std::string& file, std::size_t step);
+  std::vector<double> (*ListHdfTimes)(const std::string& file);
+
+  /// A .stl, .ply or .obj file.
+  vtkSmartPointer<vtkDataObject> (*ReadSurface)(const std::string& file);
+};
+
+extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectorsExtra;
+
+/// Loads the library. Throws std::runtime_error where it cannot be loaded.
+const Extra& LoadExtra();
+
+#endif

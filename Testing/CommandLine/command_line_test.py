@@ -53,11 +53,11 @@ class CommandLineTest(unittest.TestCase):
         """No temporary file is left, whatever happened."""
         self.assertEqual([p for p in self.directory.rglob("*") if p.name.startswith((".", "core"))], [])
 
-    def run_program(self, *arguments, told=False, **options):
+    def run_program(self, *arguments, told=False, display=False, **options):
         """Unless `told`, without the sentence about a driver's first compilation, which any test may cause."""
         defaults = {"cwd": self.directory, "stdin": subprocess.DEVNULL, "capture_output": True,
                     "text": True, "timeout": 1200}
-        result = subprocess.run([self.program, *map(os.fspath, arguments)], **{**defaults, **options})
+        result = subprocess.run([*[WITH_DISPLAY] * display, self.program, *map(os.fspath, arguments)], **{**defaults, **options})
         if not told and isinstance(result.stderr, str):
             result.stderr = result.stderr.replace(FIRST_COMPILATION, "")
         return result
@@ -74,10 +74,13 @@ class CommandLineTest(unittest.TestCase):
     def extract_good(self, *options, source=None, **run_options):
         return self.run_good(source or self.input, self.output, *options, **run_options)
 
-    def succeed(self, *options, source=None):
-        """Runs the program, which must succeed without a word on stderr; returns its statistics."""
+    def succeed(self, *options, source=None, told=""):
+        """Runs the program, which must succeed, and say what matches on stderr, or nothing; returns its statistics."""
         statistics = self.directory / "statistics.json"
-        self.extract_good(*options, "--stats", statistics, source=source)
+        result = self.extract(*options, "--stats", statistics, source=source)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stderr, told or "^$")
+        self.said = result.stderr
         self.assertIn("</VTKFile>", self.output.read_text())
         return json.loads(statistics.read_text())
 
@@ -93,6 +96,12 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
         self.assertTrue(result.stderr.startswith("marching-correctors: "), result.stderr)
         self.assertNotRegex(result.stderr, r"ERROR|\(0x|\.cxx|\.c:")
+
+    def refuse_all(self, status, cases, *common, source=None):
+        """cases: ([options], sentence) each."""
+        for options, sentence in cases:
+            with self.subTest(options):
+                self.refuse(self.extract(*common, *options, source=source), status, sentence)
 
     def misbehaving(self, **variables):
         """The environment for a run with misbehave.c, and its variables MCOR_..."""

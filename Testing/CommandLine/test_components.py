@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Pieces of surfaces by the program marching-correctors: test_components.py PROGRAM PRELOAD."""
-import json
 import math
 
 import particle_files as files
@@ -102,9 +101,8 @@ class Components(CommandLineTest):
             self.assertLess(int(one["triangles"]), int(both["triangles"]))
 
     def test_area_is_that_of_what_stays(self):
-        row, = self.pieces("--least-volume", "0.3", "--stats", self.directory / "s.json", "--quiet")
-        with open(self.directory / "s.json", encoding="utf-8") as file:
-            statistics = json.load(file)["statistics"]
+        statistics = self.succeed(*FREE, "--components", self.table, "--least-volume", "0.3", "--quiet")["statistics"]
+        row, = self.rows(COLUMNS)
         self.assertEqual(statistics["pieces"], 1)
         self.assertAlmostEqual(statistics["area"] / float(row["area"]), 1, delta=1e-6)
         self.assertAlmostEqual(statistics["volume"] / float(row["volume"]), 1, delta=1e-6)
@@ -126,12 +124,10 @@ class Components(CommandLineTest):
         self.assertAlmostEqual(float(layer["volume"]), 1, delta=0.02)
 
     def test_wrong_usage(self):
-        for options, sentence in (([*FREE, "--components", "pieces.txt"], "writes a .csv file"),
-                                  ([*FREE, "--least-volume", "1"], "no pieces to remove; leave out --least-volume"),
-                                  ([*FREE, "--components", self.output], "writes a .csv file"),
-                                  ([*FREE, "--numbers", "numbers.csv"], "the table of a film")):
-            self.refuse(self.extract(*options), 2, sentence)
-        self.refuse(self.extract(*FREE, "--components", "nowhere/pieces.csv"), 1, "could not be written")
+        self.refuse_all(2, [(["--components", "pieces.txt"], "writes a .csv file"), (["--components", self.output], "a .csv file"),
+                            (["--least-volume", "1"], "no pieces to remove; leave out --least-volume"),
+                            (["--numbers", "numbers.csv"], "the table of a film")], *FREE)
+        self.refuse_all(1, [(["--components", "nowhere/pieces.csv"], "could not be written")], *FREE)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ import os
 import random
 import re
 import shutil
-import unittest
 
 import binary_files
 import particle_files as files

@@ -11,7 +11,7 @@ import time
 import xml.etree.ElementTree
 
 import particle_files as files
-from command_line_test import WITH_DISPLAY, CommandLineTest, main
+from command_line_test import CommandLineTest, main
 
 FREE = ["--free-surface"]
 HERE = pathlib.Path(__file__).resolve().parent
@@ -163,10 +163,8 @@ class Film(CommandLineTest):
     def test_pictures(self):
         """One of each step."""
         self.write_steps(2)
-        result = subprocess.run([WITH_DISPLAY, self.program, "steps.pvd", self.film, *FREE, "--quiet", "--screenshot",
-                                 "frame_%d.png", "--color-by", "Velocity", "--up", "z"], cwd=self.directory,
-                                capture_output=True, text=True, timeout=1200)
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.run_good("steps.pvd", self.film, *FREE, "--quiet", "--screenshot", "frame_%d.png", "--color-by", "Velocity", "--up",
+                      "z", display=True)
         pictures = [(self.directory / f"frame_{i}.png").read_bytes() for i in range(2)]
         self.assertNotEqual(*pictures)
         for picture in pictures:

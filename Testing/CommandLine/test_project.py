@@ -3,12 +3,11 @@
 """Projections by the program marching-correctors: test_project.py PROGRAM PRELOAD."""
 import math
 import struct
-import subprocess
 import xml.etree.ElementTree
 
 import binary_files
 import particle_files as files
-from command_line_test import WITH_DISPLAY, CommandLineTest, main
+from command_line_test import CommandLineTest, main
 
 
 class Project(CommandLineTest):
@@ -82,24 +81,21 @@ class Project(CommandLineTest):
 
     def test_picture(self):
         for direction in ("y", "1,1,1"):
-            done = subprocess.run([WITH_DISPLAY, self.program, self.input, self.image, "--project", direction, "--resolution",
-                                   "64", "--screenshot", "image.png"], cwd=self.directory, capture_output=True, text=True,
-                                  timeout=600, check=False)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.run_good(self.input, self.image, "--project", direction, "--resolution", "64", "--screenshot", "image.png",
+                          display=True)
             self.assertGreater((self.directory / "image.png").stat().st_size, 3000)
 
     def test_wrong_usage(self):
-        cases = [(["w"], 2, "--project needs|direction|three numbers"), (["0,0,0"], 2, "0,0,0"), (["1,2"], 2, "1,2"),
-                 (["z", "--iso", "1"], 2, "leave out --iso"), (["z", "--slice", "z=0"], 2, "leave out --slice"),
-                 (["z", "--gauge", "a=0,0,0:0,0,1"], 2, "leave out --gauge"),
-                 (["z", "--resolution", "1"], 2, "--resolution"), (["z", "--times", "1"], 2, "one INPUT of one time"),
-                 (["z", "--scalar", "Nope"], 1, "no point array 'Nope' for the projection"),
-                 (["z", "--scalar", "Velocity", "--component", "3"], 1, "no component 3"),
-                 (["z", "--weighted-by", "Velocity"], 1, "3 components"), (["z", "--weighted-by", "Nope"], 1, "'Nope' for the weight"),
-                 (["z", "--smoothing-length", "Nope"], 1, "Nope"), (["z", "--box", "0,0,0,1,0,1"], 1, "The box along x")]
-        for options, status, sentence in cases:
-            with self.subTest(options):
-                self.refuse(self.run_program(self.input, self.image, "--project", *options), status, sentence)
+        self.output = self.image
+        self.refuse_all(2, [(["w"], "--project needs|direction|three numbers"), (["0,0,0"], "0,0,0"), (["1,2"], "1,2"),
+                            (["z", "--iso", "1"], "leave out --iso"), (["z", "--slice", "z=0"], "leave out --slice"),
+                            (["z", "--gauge", "a=0,0,0:0,0,1"], "leave out --gauge"),
+                            (["z", "--resolution", "1"], "--resolution"), (["z", "--times", "1"], "one INPUT of one time")], "--project")
+        self.refuse_all(1, [(["--scalar", "Nope"], "no point array 'Nope' for the projection"),
+                            (["--scalar", "Velocity", "--component", "3"], "no component 3"),
+                            (["--weighted-by", "Velocity"], "3 components"), (["--weighted-by", "Nope"], "'Nope' for the weight"),
+                            (["--smoothing-length", "Nope"], "Nope"), (["--box", "0,0,0,1,0,1"], "The box along x")],
+                        "--project", "z")
         self.refuse(self.run_program(self.input, "surface.vtp", "--project", "z"), 2, r"\.vti or \.vtk file, not 'surface.vtp'")
         self.refuse(self.run_program(self.input, "surface.vtp", "--weighted-by", "Mass", "--free-surface"), 2, "is for --project")
 

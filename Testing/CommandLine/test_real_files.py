@@ -1,13 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Files as people have them, by the program marching-correctors: test_real_files.py PROGRAM PRELOAD."""
-import csv
-import json
 import math
 import re
 
 import particle_files as files
-from command_line_test import CommandLineTest, main
+from command_line_test import CommandLineTest, main, read_table
 
 FREE = ["--free-surface", "--quiet"]
 H = ["--smoothing-length", "0.13"]
@@ -32,15 +30,7 @@ class RealFiles(CommandLineTest):
 
     def volume(self, source, *options, words=""):
         """Of the free surface; `words` must stand in what is said, which is nothing where there are none."""
-        statistics = self.directory / "statistics.json"
-        result = self.extract(*FREE, *options, "--stats", statistics, source=source)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.said = result.stderr
-        if words:
-            self.assertRegex(result.stderr, words)
-        else:
-            self.assertEqual(result.stderr, "")
-        self.statistics = json.loads(statistics.read_text())["statistics"]
+        self.statistics = self.succeed(*FREE, *options, source=source, told=words)["statistics"]
         return self.statistics.get("volume", self.statistics.get("area"))
 
     def levels(self, sources, *options, gauge="a=0.25,0.25,-1:0.25,0.25,2", words=None):
@@ -48,9 +38,8 @@ class RealFiles(CommandLineTest):
         result = self.run_program(*sources, table, "--quiet", "--gauge", gauge, *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stderr, words) if words else self.assertEqual(result.stderr, "")
-        with table.open() as file:
-            return [(float(row["time"]), row["state"], float(row["z"]) if row["state"] == "wet" else None)
-                    for row in csv.DictReader(file)]
+        return [(float(row["time"]), row["state"], float(row["z"]) if row["state"] == "wet" else None)
+                for row in read_table(table)]
 
     # ---- particles far from all others ----
 
@@ -94,14 +83,12 @@ class RealFiles(CommandLineTest):
         self.assertEqual(self.statistics["fluid_particles"], 1001)
         components = self.directory / "pieces.csv"
         self.volume(file, *H, "--only", "Level=0:10", "--components", components)
-        with components.open() as rows:
-            large, small = [int(row["particles"]) for row in csv.DictReader(rows)]
-            self.assertEqual((large > 900, small), (True, 2))
+        large, small = [int(row["particles"]) for row in read_table(components)]
+        self.assertEqual((large > 900, small), (True, 2))
         self.volume(file, *H, "--only", "Kind=99", words="No particle is left by Kind=99, so there is no fluid")
-        for bad, sentence in [("Kind", "needs NAME=VALUE or"), ("Kind=2:1", "lower value first"), ("Kind=a", "finite number")]:
-            self.refuse(self.extract(*FREE, *H, "--only", bad, source=file), 2, sentence)
-        self.refuse(self.extract(*FREE, *H, "--only", "Nothing=1", source=file), 1,
-                    "There is no point array 'Nothing' for the choice of particles")
+        self.refuse_all(2, [(["Kind"], "needs NAME=VALUE or"), (["Kind=2:1"], "lower value first"), (["Kind=a"], "finite number")],
+                        *FREE, *H, "--only", source=file)
+        self.refuse_all(1, [(["Nothing=1"], "no point array 'Nothing' for the choice")], *FREE, *H, "--only", source=file)
 
     def test_what_plays_no_part(self):
         near = block((10, 10, 10))
@@ -182,8 +169,7 @@ class RealFiles(CommandLineTest):
                                   "--gauge", "a=0.25,0.25,-1:0.25,0.25,2")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual((self.directory / "film.pvd").read_text().count("<DataSet"), 3)
-        with numbers.open() as file:
-            rows = list(csv.DictReader(file))
+        rows = read_table(numbers)
         self.assertEqual([float(row["volume"]) > 0 for row in rows], [False, True, False])
         self.assertEqual([float(row["volume"]) for row in rows][::2], [0, 0])
         self.assertEqual([float(row["a.depth"]) > 0 for row in rows], [False, True, False])
@@ -216,11 +202,8 @@ class RealFiles(CommandLineTest):
             volume = self.volume(file, *H, words="note: 8 of 224 points of .* are nodes of a mesh and no particles")
             self.assertAlmostEqual(volume, 0.6 ** 3, delta=0.17 * 0.6 ** 3)
             self.assertEqual(self.statistics["fluid_particles"], 216)
-            result = self.extract("--scalar", "Height", "--iso", "0.07", *H, "--quiet", "--stats", self.directory / "s.json",
-                                  source=file)
-            self.assertEqual(result.returncode, 0, result.stderr)
-            low, high = json.loads((self.directory / "s.json").read_text())["statistics"]["scalar_range"]
-            self.assertAlmostEqual(high, 0.25 * 0.55)
+            run = self.succeed("--scalar", "Height", "--iso", "0.07", *H, "--quiet", source=file, told="are nodes of a mesh")
+            self.assertAlmostEqual(run["statistics"]["scalar_range"][1], 0.25 * 0.55)
 
     # ---- vectors of two components ----
 
@@ -236,16 +219,13 @@ class RealFiles(CommandLineTest):
             file = self.directory / "plane.vtu"
             files.write_vtu(file, points, {"velocity": [(-2 * y, 2 * x) for x, y in flat], "index": list(range(len(flat))),
                                            "particle_spacing": [0.1] * len(flat)})
-            result = self.extract("--derive", "velocity", "--scalar", "Vorticity", "--component", str(normal), "--iso",
-                                  "4", *H, "--stats", self.directory / "s.json", source=file)
-            self.assertEqual(result.returncode, 0, result.stderr)
-            low, high = json.loads((self.directory / "s.json").read_text())["statistics"]["scalar_range"]
+            low, high = self.succeed("--derive", "velocity", "--scalar", "Vorticity", "--component", str(normal), "--iso", "4",
+                                     *H, source=file, told="(?s).*")["statistics"]["scalar_range"]
             for value in (low, high):
                 self.assertAlmostEqual(abs(value), 4, delta=1e-5)
             self.assertEqual(low > 0, normal != 1)  # x, z around y turn the other way
-            self.extract("--derive", "velocity", "--scalar", "Divergence", "--iso", "1", *H, "--stats",
-                         self.directory / "s.json", source=file)
-            low, high = json.loads((self.directory / "s.json").read_text())["statistics"]["scalar_range"]
+            low, high = self.succeed("--derive", "velocity", "--scalar", "Divergence", "--iso", "1", *H, source=file,
+                                     told="(?s).*")["statistics"]["scalar_range"]
             self.assertLess(max(abs(low), abs(high)), 1e-5)
         self.refuse(self.extract("--free-surface", source=file), 1,
                     "By 'particle_spacing', particles are 0.1 apart: 0.13 is usual. ")
@@ -298,12 +278,17 @@ class RealFiles(CommandLineTest):
                 result = self.extract(*how, source=file)
                 self.assertRegex(result.stderr, r"nowhere that the weight sum is above the node threshold 0.1. .*use the sum as "
                                  r"the field \(--field sum --node-threshold 0 --vertex-threshold 0\)")
-                self.extract_good(*how, "--field", "sum", "--node-threshold", "0", "--vertex-threshold", "0", "--quiet",
-                                  "--stats", self.directory / "s.json", source=file)
-                volume = json.loads((self.directory / "s.json").read_text())["statistics"]["volume"]
-                self.assertAlmostEqual(volume / expected, 1, delta=0.15)
+                run = self.succeed(*how, "--field", "sum", "--node-threshold", "0", "--vertex-threshold", "0", source=file)
+                self.assertAlmostEqual(run["statistics"]["volume"] / expected, 1, delta=0.15)
 
     # ---- tables ----
+
+    def refuse_texts(self, name, cases):
+        for text, sentence in cases:
+            bad = self.directory / name
+            bad.write_text(text)
+            with self.subTest(text[:60]):
+                self.refuse(self.extract(*FREE, *H, source=bad), 1, sentence)
 
     def check_table(self, name, text, volume=0.216, **options):
         file = self.directory / name
@@ -326,18 +311,15 @@ class RealFiles(CommandLineTest):
             ";".join(repr(v).replace(".", ",") for v in (*p, 1000.5)) for p in points))
         self.check_table("bare.tsv", "\n".join("\t".join(map(repr, p)) for p in points))
         self.extract_good("--scalar", "Vel", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
-        for text, sentence in [("a,b\n1,2\n", "no columns of positions, which are called x, y and z, .* there are a, b"),
-                               ("x,y,z\n1,2\n", "line 2 has 2 values for 3 columns"), ("", "no row of values"),
-                               ("x,y,z\n", "holds no points"), ("x,y,z\nnan,0,0\n", "not a number"),
-                               ("x\0y,z\n1,2,3\n", "line 1 is no text")]:
-            bad = self.directory / "bad.csv"
-            bad.write_text(text)
-            self.refuse(self.extract(*FREE, *H, source=bad), 1, sentence)
+        self.refuse_texts("bad.csv", [
+            ("a,b\n1,2\n", "no columns of positions, which are called x, y and z, .* there are a, b"),
+            ("x,y,z\n1,2\n", "line 2 has 2 values for 3 columns"), ("", "no row of values"), ("x,y,z\n", "holds no points"),
+            ("x,y,z\nnan,0,0\n", "not a number"), ("x\0y,z\n1,2,3\n", "line 1 is no text")])
 
     def test_columns(self):
         points = block((6, 6, 6))
         body = "\n".join(f" {x:.6E}  {y:.6e}\t{z:+.6f} 1.0D3 {i}" for i, (x, y, z) in enumerate(points))
-        file = self.check_table("run.txt", "# a header\n# x y z rho id\n" + body + "\n# the end\n")
+        self.check_table("run.txt", "# a header\n# x y z rho id\n" + body + "\n# the end\n")
         self.assertRegex(self.output.read_text(), 'type="Int64"[^>]*Name="id"')
         self.check_table("unnamed.dat", body)
         self.assertIn('Name="Column4"', self.output.read_text())
@@ -359,14 +341,9 @@ class RealFiles(CommandLineTest):
         film.write_text(steps)
         self.assertEqual([(round(t, 9), round(level, 1)) for t, _, level in self.levels([film], *H)],
                          [(0.4, 0.4), (0.6, 0.6), (0.9, 0.9)])
-        for text, sentence in [("5\nx\nA 1 2 3\n", "it ends before all particles of a step"), ("3\n", "ends before the second line"),
-                               ("1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns"),
-                               ("1\nc\nA 1 2 3\nB 1 2 3\nC\n", None), ("999999999999\nc\nA 1 2 3\n", "ends before")]:
-            bad = self.directory / "bad.xyz"
-            bad.write_text(text)
-            result = self.extract(*FREE, *H, source=bad)
-            if sentence:
-                self.refuse(result, 1, sentence)
+        self.refuse_texts("bad.xyz", [
+            ("5\nx\nA 1 2 3\n", "it ends before all particles of a step"), ("3\n", "ends before the second line"),
+            ("1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns"), ("999999999999\nc\nA 1 2 3\n", "ends before")])
 
     def test_lammps(self):
         def step(number, layers, columns="id type x y z vx", scaled=False):
@@ -378,18 +355,16 @@ class RealFiles(CommandLineTest):
                 text += f"{i + 1} 1 {x} {y} {z} {10 * i}\n"
             return text
 
-        file = self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="may be a period .-1,1,0,0,0,0.")
+        self.check_table("one.lammpstrj", step(100, 5), volume=0.125, words="may be a period .-1,1,0,0,0,0.")
         self.check_table("scaled.dump", step(100, 5, "id type xs ys zs vx", True), volume=0.125, words="period")
         self.check_table("dump.txt", step(100, 5), volume=0.125, words="period")
         film = self.directory / "film.dump"
         film.write_text("".join(step(100 * n, n) for n in (4, 6, 9)))
         self.assertEqual([(t, round(level, 1)) for t, _, level in self.levels([film], *H)],
                          [(400, 0.4), (600, 0.6), (900, 0.9)])
-        for text, sentence in [("ITEM: TIMESTEP\nx\n", "line 2 is no time"), ("ITEM: ATOMS x y\n", "holds no points"),
-                               (step(1, 5)[:-200], "ends before|values for 6 columns"), ("hello\n", "none of a dump")]:
-            bad = self.directory / "bad.dump"
-            bad.write_text(text)
-            self.refuse(self.extract(*FREE, *H, source=bad), 1, sentence)
+        self.refuse_texts("bad.dump", [
+            ("ITEM: TIMESTEP\nx\n", "line 2 is no time"), ("ITEM: ATOMS x y\n", "holds no points"),
+            (step(1, 5)[:-200], "ends before|values for 6 columns"), ("hello\n", "none of a dump")])
 
 
 if __name__ == "__main__":

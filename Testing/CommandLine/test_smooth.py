@@ -30,11 +30,9 @@ class Smooth(CommandLineTest):
             self.assertGreater(len(wide.read_bytes()), 10000)
 
     def test_refused(self):
-        self.refuse(self.extract("--free-surface", "--compact", "--filled"), 1, "leave out --filled or --compact")
-        for options, sentence in ((["--widening", "f.vtp"], "without --widen"),
-                                  (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")):
-            with self.subTest(options):
-                self.refuse(self.extract("--free-surface", *options), 2, sentence)
+        self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled or --compact")], "--free-surface")
+        self.refuse_all(2, [(["--widening", "f.vtp"], "without --widen"),
+                            (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")], "--free-surface")
 
 
 if __name__ == "__main__":

@@ -57,8 +57,9 @@ class Volumes(CommandLineTest):
         summed = self.succeed("--scalar", "Density", "--iso", "900", "--field", "sum", "--smoothing-length", "neighbours")
         self.assertAlmostEqual(summed["statistics"]["scalar_range"][1], 1000, delta=50)  # where it is not there
         self.output.unlink()
-        self.refuse(self.extract("--free-surface", "--smoothing-length", "neighbours=0"), 2, "--smoothing-length")
-        self.refuse(self.extract("--free-surface", "--smoothing-length", "neighbours=0.5"), 1, "ETA is 0.5; it must be above 0.683")
+        free = "--free-surface", "--smoothing-length"
+        self.refuse_all(2, [(["neighbours=0"], "--smoothing-length")], *free)
+        self.refuse_all(1, [(["neighbours=0.5"], "ETA is 0.5; it must be above 0.683")], *free)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes of the virtual grid: their values, and the sides of the iso value that they are on. */
+/* Nodes of the virtual grid: their values, and the sides of the iso value that they are on. In a plane, the nodes above it get the sides
+ * of those in it. */
 
 #include "mcor_adaptive.h"
-#include "mcor_plane.h"
 
 /* Evaluates all nodes of the bricks whose nodes are needed and not known yet. */
 mcor_status mcor_evaluate_nodes(mcor_context* context)
@@ -28,13 +28,16 @@ mcor_status mcor_evaluate_nodes(mcor_context* context)
  * now, or for another iso value. */
 mcor_status mcor_sign_nodes(mcor_context* context, const mcor_buffer* evaluated)
 {
-  mcor_bricks* bricks = &context->bricks;
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_node_sides", MCOR_MEDIUM, bricks->now.count,
-    MCOR_INT(bricks->now.count), MCOR_BUFFER(evaluated), MCOR_BUFFER(&bricks->now.known),
-    MCOR_BUFFER(&bricks->now.value), MCOR_BUFFER(&bricks->now.weight),
-    MCOR_REAL(context->run.iso.relative), MCOR_REAL(context->run.options->node_threshold),
-    MCOR_BUFFER(&bricks->now.above), MCOR_BUFFER(&bricks->now.valid)));
-  return mcor_spread_signs(context);
+  const mcor_brick_data* now = &context->bricks.now;
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_node_sides", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_BUFFER(evaluated), MCOR_BUFFER(&now->known), MCOR_BUFFER(&now->value),
+    MCOR_BUFFER(&now->weight), MCOR_REAL(context->run.iso.relative),
+    MCOR_REAL(context->run.options->node_threshold), MCOR_BUFFER(&now->above),
+    MCOR_BUFFER(&now->valid)));
+  return context->space.axes == 3
+    ? MCOR_OK
+    : MCOR_LAUNCH(context, "mcor_plane_spread", MCOR_LIGHT, now->count, MCOR_INT(now->count),
+        MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
 }
 
 /* Gives back node values, which only another call could still use. */

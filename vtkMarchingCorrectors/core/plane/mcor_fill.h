@@ -29,11 +29,9 @@ typedef struct mcor_fill_cut
   uint64_t key[2]; /* the point's key: its node, then axis << 32 | part of the edge */
   cl_int node[3];  /* lower node of the edge */
   int axis;
-  double inside, outside;               /* the bracket of the root, along the edge */
-  double inside_margin, outside_margin; /* margins at its ends */
-  double at, margin;                    /* the best place so far, and its margin */
-  int last;        /* the end that moved last: 1: inside; 0: outside; -1: none yet */
-  int band, index; /* index: the one that triangles use */
+  mcor_bracket bracket; /* along the edge, from inside to outside */
+  double at, margin;    /* the best place so far, and its margin */
+  int band, index;      /* index: the one that triangles use */
 } mcor_fill_cut;
 
 /* corner: a node's index; node_count + a cut's index; or -1 - a point of the surface. */
@@ -68,12 +66,9 @@ mcor_status mcor_begin_fill(mcor_context* context);
 mcor_status mcor_take_lines(mcor_context* context);
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base);
 void mcor_end_fill(mcor_context* context);
-/* mcor_fill_points.c. After all iso values: adds the filled triangles behind those that stand
+/* mcor_fill_squares.c. After all iso values: adds the filled triangles behind those that stand
  * for lines. */
 mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface);
-
-/* mcor_fill_squares.c. Makes the polygons, of one band each. */
-mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill);
 
 /* Packs a node into a key that ascends by squares of 4 x 4, so that successive nodes are near
  * each other. */

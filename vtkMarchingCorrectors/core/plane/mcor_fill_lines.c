@@ -17,47 +17,6 @@
 
 /* ---- Before all lines ---- */
 
-/* Lists the lines by iso value; equal values become one line. */
-static void mcor_list_lines(const mcor_context* context, mcor_filling* fill)
-{
-  const mcor_options* options = context->run.options;
-  for (int i = 0; i < options->iso_count; ++i)
-  {
-    const double iso = mcor_real_of(context, options->iso_values[i] - context->value_shift);
-    int at = fill->line_count;
-    while (at > 0 && fill->lines[at - 1].iso > iso)
-    {
-      --at;
-    }
-    if (at > 0 && fill->lines[at - 1].iso == iso)
-    {
-      continue;
-    }
-    mcor_fill_line* line = &fill->lines[at];
-    memmove(line + 1, line, (size_t)(fill->line_count - at) * sizeof *line);
-    *line = (mcor_fill_line){ .iso = iso, .value = options->iso_values[i], .iso_number = i };
-    ++fill->line_count;
-  }
-}
-
-/* Makes the nodes of the box's squares. */
-static mcor_status mcor_make_fill_nodes(mcor_context* context, mcor_filling* fill)
-{
-  const mcor_box* box = &context->box;
-  mcor_cap_face* face = &fill->face;
-  *face = (mcor_cap_face){ .axis = 2, .upper = 1, .across = { 0, 1 } };
-  for (int a = 0; a < 2; ++a)
-  {
-    face->first[a] = box->first[a];
-    face->count[a] = box->last[a] - box->first[a] + 1;
-  }
-  MCOR_TRY(mcor_note_cap_tiles(context, 1, face));
-  MCOR_TRY(mcor_make_cap_nodes(context, face));
-  fill->value = calloc((size_t)face->node_count, sizeof *fill->value);
-  fill->band = calloc((size_t)face->node_count, sizeof *fill->band);
-  return mcor_allocated(context, fill->value && fill->band);
-}
-
 static void mcor_take_fill_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -80,16 +39,43 @@ mcor_status mcor_begin_fill(mcor_context* context)
   MCOR_TRY(mcor_allocated(context, fill));
   fill->lines = calloc((size_t)options->iso_count, sizeof *fill->lines);
   MCOR_TRY(mcor_allocated(context, fill->lines));
-  mcor_list_lines(context, fill);
+  for (int i = 0; i < options->iso_count; ++i) /* by iso value; equal values become one line */
+  {
+    const double iso = mcor_real_of(context, options->iso_values[i] - context->value_shift);
+    int at = fill->line_count;
+    while (at > 0 && fill->lines[at - 1].iso > iso)
+    {
+      --at;
+    }
+    if (at == 0 || fill->lines[at - 1].iso != iso)
+    {
+      mcor_fill_line* line = &fill->lines[at];
+      memmove(line + 1, line, (size_t)(fill->line_count - at) * sizeof *line);
+      *line = (mcor_fill_line){ .iso = iso, .value = options->iso_values[i], .iso_number = i };
+      ++fill->line_count;
+    }
+  }
   const double least = fill->lines[0].value;
   MCOR_RETURN_IF(options->field == MCOR_SUM && options->node_threshold == 0 && least <= 0, context,
     MCOR_INVALID_ARGUMENT,
     "The region above %g has no end: without a node threshold the sum is 0 in all empty space. "
     "Use a node threshold, or iso values above 0, to fill it.",
     least);
-  MCOR_TRY(mcor_make_fill_nodes(context, fill));
+  const mcor_box* box = &context->box;
+  mcor_cap_face* face = &fill->face;
+  *face = (mcor_cap_face){ .axis = 2, .upper = 1, .across = { 0, 1 } };
+  for (int a = 0; a < 2; ++a)
+  {
+    face->first[a] = box->first[a];
+    face->count[a] = box->last[a] - box->first[a] + 1;
+  }
+  MCOR_TRY(mcor_note_cap_tiles(context, 1, face));
+  MCOR_TRY(mcor_make_cap_nodes(context, face));
+  fill->value = calloc((size_t)face->node_count, sizeof *fill->value);
+  fill->band = calloc((size_t)face->node_count, sizeof *fill->band);
+  MCOR_TRY(mcor_allocated(context, fill->value && fill->band));
   mcor_cap_points points = { .take = mcor_take_fill_node, .data = fill };
-  const mcor_status status = mcor_ask_cap_nodes(context, &fill->face, false, &points);
+  const mcor_status status = mcor_ask_cap_nodes(context, face, false, &points);
   mcor_free_cap_points(context, &points);
   return status;
 }
@@ -108,23 +94,6 @@ static mcor_fill_line* mcor_line_under_way(const mcor_context* context)
     }
   }
   return NULL;
-}
-
-/* Reads the vertices. */
-static mcor_status mcor_read_vertices(mcor_context* context, const cl_int* nodes,
-  const void* offsets, const void* quantity, mcor_fill_line* line)
-{
-  const double threshold = mcor_real_of(context, mcor_trim_threshold(context));
-  for (int v = 0; v < line->vertex_count; ++v)
-  {
-    const cl_int* node = nodes + 4 * (size_t)v;
-    const int axis = node[3] & 3;
-    line->offset[v] = mcor_get_real(context, offsets, 4 * (int64_t)v + axis);
-    line->margin[v] = quantity ? mcor_get_real(context, quantity, v) - threshold : INFINITY;
-    const cl_int edge[3] = { node[0], node[1], axis };
-    MCOR_TRY(mcor_allocated(context, mcor_table_number(&line->edges, mcor_cap_key(edge), v) >= 0));
-  }
-  return MCOR_OK;
 }
 
 static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* line)
@@ -149,39 +118,42 @@ static mcor_status mcor_take_vertices(mcor_context* context, mcor_fill_line* lin
     { mcor_trim_quantity(context), n * real, &quantity } };
   const int count = mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, mappings, count);
-  status = status == MCOR_OK ? mcor_read_vertices(context, node, offset, quantity, line) : status;
+  const double threshold = mcor_real_of(context, mcor_trim_threshold(context));
+  for (int v = 0; v < line->vertex_count && status == MCOR_OK; ++v)
+  {
+    const cl_int *at = (const cl_int*)node + 4 * (size_t)v, axis = at[3] & 3;
+    const cl_int edge[3] = { at[0], at[1], axis };
+    line->offset[v] = mcor_get_real(context, offset, 4 * (int64_t)v + axis);
+    line->margin[v] = quantity ? mcor_get_real(context, quantity, v) - threshold : INFINITY;
+    status = mcor_allocated(context, mcor_table_number(&line->edges, mcor_cap_key(edge), v) >= 0);
+  }
   return mcor_unmap_all(context, mappings, count, status);
 }
 
 /* Counts the bands: notes which nodes are above this level. Where marching has evaluated a node
  * its answer is taken, since lines are made from that. */
-static mcor_status mcor_take_level(mcor_context* context, mcor_filling* fill, mcor_fill_line* line)
-{
-  mcor_cap_face* face = &fill->face;
-  memset(face->state, 0, (size_t)face->node_count);
-  MCOR_TRY(mcor_take_cap_masks(context, face));
-  for (int64_t n = MCOR_CAP_TILE_NODES; n < face->node_count; ++n)
-  {
-    const int state = face->state[n];
-    const bool known = state & MCOR_CAP_KNOWN;
-    fill->band[n] += known ? (state & MCOR_CAP_ABOVE) != 0 : fill->value[n] >= line->iso;
-    face->within[n] = known ? (uint8_t)(state & MCOR_CAP_VALID) : face->within[n];
-    const bool joined = state & MCOR_CAP_JOINED;
-    MCOR_TRY(
-      mcor_allocated(context, !joined || mcor_table_number(&line->joined, (uint64_t)n, 0) >= 0));
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_take_lines(mcor_context* context)
 {
+  mcor_filling* fill = context->run.fill;
   mcor_fill_line* line = mcor_line_under_way(context);
   if (!line)
   {
     return MCOR_OK;
   }
   MCOR_TRY(context->mesh.march_count > 0 ? mcor_take_vertices(context, line) : MCOR_OK);
-  return mcor_take_level(context, context->run.fill, line);
+  mcor_cap_face* face = &fill->face;
+  memset(face->state, 0, (size_t)face->node_count);
+  MCOR_TRY(mcor_take_cap_masks(context, face));
+  for (int64_t n = MCOR_CAP_TILE_NODES; n < face->node_count; ++n)
+  {
+    const int state = face->state[n];
+    const bool known = state & MCOR_CAP_KNOWN, joined = state & MCOR_CAP_JOINED;
+    fill->band[n] += known ? (state & MCOR_CAP_ABOVE) != 0 : fill->value[n] >= line->iso;
+    face->within[n] = known ? (uint8_t)(state & MCOR_CAP_VALID) : face->within[n];
+    MCOR_TRY(
+      mcor_allocated(context, !joined || mcor_table_number(&line->joined, (uint64_t)n, 0) >= 0));
+  }
+  return MCOR_OK;
 }
 
 void mcor_number_lines(mcor_context* context, const cl_int* scanned, int64_t base)

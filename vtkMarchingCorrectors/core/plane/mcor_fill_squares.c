@@ -1,13 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cuts squares into polygons of one band each, and makes triangles of what trimming leaves of
- * them. Borders are run through with the inside on the left. */
+/* Cuts squares into polygons of one band each, makes triangles of what trimming leaves of them,
+ * and adds these to the surface, with the points that no line has. Borders are run through with
+ * the inside on the left. */
 
+#include "mcor_box.h"
 #include "mcor_fill.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#define MCOR_FILL_STEPS 10 /* evaluations of a cut */
 
 /* A node, or a line's vertex, on the border of a square; and the part of the border from there
  * to the next one. */
@@ -63,30 +68,13 @@ static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
   return mcor_cap_key(edge) ^ (uint64_t)part << 44;
 }
 
-static mcor_status mcor_add_vertex(mcor_fill_job* job, int level, mcor_fill_corner* corner)
-{
-  const mcor_fill_line* line = &job->fill->lines[level];
-  const int32_t v = mcor_find_number(&line->edges, mcor_edge_part(corner, 0));
-  if (v < 0 || (line->margin[v] > 0 && line->number[v] < 0))
-  {
-    return mcor_does_not_fit(job->context, corner);
-  }
-  corner->ref = -1 - line->number[v];
-  corner->margin = line->margin[v];
-  corner->level = level;
-  corner->vertex = v;
-  corner->from = line->offset[v];
-  return MCOR_OK;
-}
-
 /* Adds side s to the border, without its last node. */
 static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
 {
   const mcor_filling* fill = job->fill;
   const mcor_cap_face* face = &fill->face;
-  const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 }, next = (s + 1) % 4;
-  const int64_t begin = mcor_cap_index(face, job->u + corner_u[s], job->v + corner_v[s]),
-                end = mcor_cap_index(face, job->u + corner_u[next], job->v + corner_v[next]);
+  const int64_t begin = mcor_corner_index(face, job->u, job->v, s),
+                end = mcor_corner_index(face, job->u, job->v, (s + 1) % 4);
   const int first = fill->band[begin], last = fill->band[end], parts = abs(last - first);
   for (int i = 0; i <= parts; ++i)
   {
@@ -100,11 +88,19 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
       .axis = s & 1,
       .part = s < 2 ? i : parts - i,
       .from = s < 2 ? 0 : 1 };
-    MCOR_TRY(
-      i > 0 ? mcor_add_vertex(job, last < first ? first - i : first + i - 1, corner) : MCOR_OK);
-    if (i > 0)
+    if (i > 0) /* a line's vertex */
     {
-      corner[-1].to = corner->from;
+      corner->level = last < first ? first - i : first + i - 1;
+      const mcor_fill_line* line = &fill->lines[corner->level];
+      const int32_t v = mcor_find_number(&line->edges, mcor_edge_part(corner, 0));
+      if (v < 0 || (line->margin[v] > 0 && line->number[v] < 0))
+      {
+        return mcor_does_not_fit(job->context, corner);
+      }
+      corner->ref = -1 - line->number[v];
+      corner->margin = line->margin[v];
+      corner->vertex = v;
+      corner->from = corner[-1].to = line->offset[v];
     }
     corner->to = s < 2 ? 1 : 0;
   }
@@ -143,17 +139,6 @@ static mcor_status mcor_add_fan(mcor_fill_job* job, const int32_t* refs, int cou
   return MCOR_OK;
 }
 
-/* Finds the point where trimming cuts a line. */
-static mcor_status mcor_find_line_cut(
-  mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
-{
-  const mcor_fill_line* line = &job->fill->lines[p->level];
-  const int cut = mcor_find_cut(line->cuts, line->cut_count, p->vertex, q->vertex);
-  const int32_t number = cut < 0 ? -1 : line->number[line->vertex_count + cut];
-  *ref = -1 - number;
-  return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
-}
-
 /* Finds, or makes, the point where trimming cuts the border from corner p to q. */
 static mcor_status mcor_find_border_cut(
   mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
@@ -167,18 +152,15 @@ static mcor_status mcor_find_border_cut(
   *ref = (int32_t)(fill->face.node_count + index);
   if (index == fill->cut_count)
   {
-    const bool inside = p->margin > 0;
+    const mcor_fill_corner *first = p->margin > 0 ? p : q, *second = first == p ? q : p;
     fill->cuts[fill->cut_count++] =
       (mcor_fill_cut){ .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
                          (uint64_t)p->axis << 32 | (uint32_t)p->part },
         .node = { p->node[0], p->node[1], 0 },
         .axis = p->axis,
-        .inside = inside ? p->from : p->to,
-        .outside = inside ? p->to : p->from,
-        .inside_margin = inside ? p->margin : q->margin,
-        .outside_margin = inside ? q->margin : p->margin,
+        .bracket = { { first == p ? p->from : p->to, first == p ? p->to : p->from },
+          { first->margin, second->margin }, -1 },
         .margin = INFINITY,
-        .last = -1,
         .band = p->band,
         .index = index };
   }
@@ -202,11 +184,20 @@ static mcor_status mcor_add_polygon(
     const mcor_fill_side* before = &sides[(start + i - 1) % count];
     const mcor_fill_corner *p = before->corner, *q = sides[(start + i) % count].corner;
     const bool inside = q->margin > 0;
-    if (inside != (p->margin > 0))
+    if (inside != (p->margin > 0) && before->is_line) /* the line has been cut there */
     {
-      MCOR_TRY(before->is_line ? mcor_find_line_cut(job, p, q, &run[length])
-                               : mcor_find_border_cut(job, p, q, &run[length]));
-      ++length;
+      const mcor_fill_line* line = &job->fill->lines[p->level];
+      const int cut = mcor_find_cut(line->cuts, line->cut_count, p->vertex, q->vertex);
+      const int32_t number = cut < 0 ? -1 : line->number[line->vertex_count + cut];
+      if (number < 0)
+      {
+        return mcor_does_not_fit(job->context, p);
+      }
+      run[length++] = -1 - number;
+    }
+    else if (inside != (p->margin > 0))
+    {
+      MCOR_TRY(mcor_find_border_cut(job, p, q, &run[length++]));
     }
     if (inside)
     {
@@ -248,29 +239,23 @@ static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
 
 /* ---- Squares ---- */
 
-/* Whether all nodes are valid, and any is above the lowest level. */
-static bool mcor_is_filled(const mcor_filling* fill, int u, int v)
-{
-  bool valid = true, above = false;
-  for (int c = 0; c < 4; ++c)
-  {
-    const int64_t node = mcor_cap_index(&fill->face, u + (c & 1), v + (c >> 1));
-    valid = valid && (fill->face.within[node] & MCOR_CAP_VALID);
-    above = above || fill->band[node] > 0;
-  }
-  return valid && above;
-}
-
+/* A square is filled if all nodes are valid, and any is above the lowest level. */
 static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face, int u, int v)
 {
   mcor_fill_job* job = data;
+  bool valid = true, above = false;
+  for (int c = 0; c < 4; ++c)
+  {
+    const int64_t node = mcor_cap_index(face, u + (c & 1), v + (c >> 1));
+    valid = valid && (face->within[node] & MCOR_CAP_VALID);
+    above = above || job->fill->band[node] > 0;
+  }
   job->u = u;
   job->v = v;
   job->square = (uint64_t)(face->first[1] + v) << 21 | (uint64_t)(face->first[0] + u);
   job->lowest = mcor_cap_index(face, u, v);
   job->count = 0;
-  const int sides = mcor_is_filled(job->fill, u, v) ? 4 : 0;
-  for (int s = 0; s < sides; ++s)
+  for (int s = 0; s < 4 && valid && above; ++s)
   {
     MCOR_TRY(mcor_add_border_side(job, s));
   }
@@ -282,7 +267,7 @@ static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face,
   return MCOR_OK;
 }
 
-mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
+static mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
 {
   mcor_fill_job job = { .context = context, .fill = fill };
   job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
@@ -291,4 +276,216 @@ mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
     mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job);
   free(job.border);
   return status;
+}
+
+/* ---- Cuts ---- */
+
+/* Chooses the next place of a cut: where a linear margin would be 0; the middle where that would
+ * not halve the bracket. */
+static double mcor_next_place(const mcor_bracket* bracket, bool halve)
+{
+  const double s = mcor_bracket_share(bracket);
+  const double part = halve || !(s >= 0 && s <= 1)
+    ? 0.5
+    : fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
+  return bracket->at[0] + part * (bracket->at[1] - bracket->at[0]);
+}
+
+static void mcor_narrow_cut(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
+{
+  mcor_fill_cut* cut = &((mcor_filling*)data)->cuts[points->to[i]];
+  const double at = mcor_get_real(context, points->offset, 4 * i + cut->axis);
+  const double margin = mcor_cap_margin(context, points, i);
+  if (fabs(margin) < fabs(cut->margin))
+  {
+    cut->at = at;
+    cut->margin = margin;
+  }
+  mcor_narrow_bracket(&cut->bracket, at, margin);
+}
+
+static int mcor_compare_cuts(const void* x, const void* y)
+{
+  const mcor_fill_cut *a = x, *b = y;
+  const int first = (a->key[0] > b->key[0]) - (a->key[0] < b->key[0]);
+  return first ? first : (a->key[1] > b->key[1]) - (a->key[1] < b->key[1]);
+}
+
+/* Sorts the cuts, and moves them to where the margin is 0; in a preview, to the linear estimate. */
+static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fill)
+{
+  mcor_cap_points points = { .take = mcor_narrow_cut, .data = fill };
+  mcor_status status = MCOR_OK;
+  if (fill->cut_count > 0)
+  {
+    qsort(fill->cuts, (size_t)fill->cut_count, sizeof *fill->cuts, mcor_compare_cuts);
+  }
+  for (int64_t i = 0; i < fill->cut_count; ++i)
+  {
+    fill->cuts[i].at = mcor_next_place(&fill->cuts[i].bracket, false);
+  }
+  const int steps = context->run.options->preview ? 0 : MCOR_FILL_STEPS;
+  for (int step = 0; step < steps && status == MCOR_OK; ++step)
+  {
+    for (int64_t i = 0; i < fill->cut_count && status == MCOR_OK; ++i)
+    {
+      const mcor_fill_cut* cut = &fill->cuts[i];
+      double offset[3] = { 0, 0, 0 };
+      offset[cut->axis] = mcor_next_place(&cut->bracket, step == 4);
+      status = mcor_add_cap_point(context, &points, cut->node, offset, i);
+    }
+    status = status == MCOR_OK ? mcor_take_cap_points(context, &points) : status;
+  }
+  mcor_free_cap_points(context, &points);
+  return status;
+}
+
+/* ---- Points ---- */
+
+/* Lists the marked nodes, by squares of 4 x 4, and numbers them. */
+static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertex)
+{
+  int32_t* number = fill->number;
+  const mcor_cap_face* face = &fill->face;
+  const int *first = face->first, *size = face->count;
+  for (int v = first[1] >> 2; v <= (first[1] + size[1] - 1) >> 2; ++v)
+  {
+    for (int u = first[0] >> 2; u <= (first[0] + size[0] - 1) >> 2; ++u)
+    {
+      for (int n = 0; n < 16; ++n)
+      {
+        const int x = 4 * u + (n & 3) - first[0], y = 4 * v + (n >> 2) - first[1];
+        const bool within = x >= 0 && x < size[0] && y >= 0 && y < size[1];
+        const int64_t node = within ? mcor_cap_index(face, x, y) : 0;
+        if (number[node] == 0)
+        {
+          number[node] = (int32_t)base++;
+          *vertex = (mcor_cap_vertex){ .node = { first[0] + x, first[1] + y, 0 },
+            .band = fill->band[node],
+            .flag = MCOR_CAP_FLAG };
+          vertex->key[0] = mcor_fill_node_key(vertex->node);
+          ++vertex;
+        }
+      }
+    }
+  }
+}
+
+/* Makes the points that lines lack, and numbers them in the surface: first the nodes that
+ * triangles use, then the cuts. They are appended as a mesh that consists of them alone, all like
+ * vertices of caps, and get the iso values and residuals of their bands. */
+static mcor_status mcor_make_fill_points(
+  mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
+{
+  const size_t refs = (size_t)(fill->face.node_count + fill->cut_count);
+  fill->number = malloc(refs * sizeof *fill->number);
+  MCOR_TRY(mcor_allocated(context, fill->number));
+  memset(fill->number, 0xff, refs * sizeof *fill->number);
+  const int64_t base = surface->point_count;
+  int64_t nodes = 0;
+  for (int64_t i = 0; i < 3 * fill->triangle_count; ++i)
+  {
+    const int32_t ref = fill->triangles[i / 3].corner[i % 3];
+    if (ref >= 0 && ref < fill->face.node_count && fill->number[ref] < 0)
+    {
+      fill->number[ref] = 0;
+      ++nodes;
+    }
+  }
+  const int64_t count = nodes + fill->cut_count;
+  MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "The filled region would have %lld points; the limit is %d. Use a larger cube size.",
+    (long long)count, MCOR_COUNT_LIMIT);
+  MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
+    "The surface would have %lld points; the limit is %d. Use a larger cube size.",
+    (long long)(base + count), INT32_MAX);
+  if (count == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_cap_vertex* vertices = malloc((size_t)count * sizeof *vertices);
+  MCOR_TRY(mcor_allocated(context, vertices));
+  mcor_list_nodes(fill, base, vertices);
+  for (int64_t i = 0; i < fill->cut_count; ++i)
+  {
+    const mcor_fill_cut* cut = &fill->cuts[i];
+    mcor_cap_vertex* vertex = &vertices[nodes + i];
+    *vertex = (mcor_cap_vertex){ .node = { cut->node[0], cut->node[1], 0 },
+      .band = cut->band,
+      .key = { cut->key[0], cut->key[1] },
+      .flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2 };
+    vertex->offset[cut->axis] = cut->at;
+    fill->number[fill->face.node_count + cut->index] = (int32_t)(base + nodes + i);
+  }
+  mcor_mesh* mesh = &context->mesh;
+  mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
+  context->run.iso = (mcor_iso){ .number = context->run.options->iso_count };
+  mcor_status status = mcor_load_attributes(context, input, 0);
+  status = status == MCOR_OK ? mcor_reserve_vertices(context, (int)count) : status;
+  status = status == MCOR_OK ? mcor_append_cap_vertices(context, vertices, count) : status;
+  mcor_release(context, &context->attributes.sorted);
+  status = status == MCOR_OK ? mcor_append_output(context, input, true, surface) : status;
+  for (int64_t i = base; i < surface->point_count && status == MCOR_OK; ++i)
+  {
+    const mcor_fill_line* line = &fill->lines[vertices[i - base].band - 1];
+    if (surface->iso_value)
+    {
+      surface->iso_value[i] = line->value;
+    }
+    if (surface->residual)
+    {
+      surface->residual[i] = (float)(surface->residual[i] - line->iso);
+    }
+  }
+  free(vertices);
+  return status;
+}
+
+/* ---- Triangles ---- */
+
+static mcor_status mcor_append_fill_triangles(
+  mcor_context* context, const mcor_filling* fill, mcor_surface* surface)
+{
+  const int64_t first = surface->triangle_count, count = fill->triangle_count;
+  MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));
+  MCOR_TRY(mcor_grow(context, (void**)&surface->band_value, 0, count, sizeof(double)));
+  MCOR_TRY(mcor_extend_kept(context, count, surface));
+  for (int64_t t = 0; t < count; ++t)
+  {
+    const mcor_fill_triangle* from = &fill->triangles[t];
+    for (int c = 0; c < 3; ++c)
+    {
+      const int32_t ref = from->corner[c];
+      surface->triangles[3 * (first + t) + c] = ref < 0 ? -1 - ref : fill->number[ref];
+    }
+    surface->band_value[t] = fill->lines[from->band - 1].value;
+    if (context->box.kept)
+    {
+      context->box.kept[first + t] = 1;
+    }
+    if (surface->triangle_keys)
+    {
+      uint64_t* key = surface->triangle_keys + MCOR_TRIANGLE_KEY * (first + t);
+      key[0] = (uint64_t)context->run.options->iso_count;
+      key[1] = from->square;
+    }
+  }
+  surface->triangle_count += count;
+  return MCOR_OK;
+}
+
+mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
+{
+  mcor_filling* fill = context->run.fill;
+  if (!fill)
+  {
+    return MCOR_OK;
+  }
+  free(fill->value); /* the bands are known */
+  fill->value = NULL;
+  MCOR_TRY(mcor_fill_squares(context, fill));
+  MCOR_TRY(mcor_place_fill_cuts(context, fill));
+  MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
+  return mcor_append_fill_triangles(context, fill, surface);
 }

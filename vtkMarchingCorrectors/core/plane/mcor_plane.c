@@ -182,20 +182,6 @@ static mcor_status mcor_refuse_plane(
     "the particles into a plane of constant x, y or z, or use three dimensions.");
 }
 
-/* Refuses fluid in one plane and solids in another: meant as two dimensions. */
-static bool mcor_is_apart(const mcor_spread* spread)
-{
-  int planes = 0;
-  bool apart = false;
-  for (int a = 0; a < 3; ++a)
-  {
-    const bool in_plane = spread->low[a] == spread->high[a];
-    planes += in_plane;
-    apart = apart || (in_plane && spread->low[3 + a] == spread->high[3 + a]);
-  }
-  return planes == 1 && apart;
-}
-
 /* Particles sampled in the search for twins. */
 #define MCOR_TWIN_SAMPLES 32
 /* The share of the spacing, of particles strewn evenly over the plane, that a step of single
@@ -286,7 +272,15 @@ static mcor_status mcor_find_plane(
   }
   mcor_set_plane(context, rounding ? (mcor_plane){ 0 } : plane);
   const bool some = spread.low[0] <= spread.high[0] || spread.low[3] <= spread.high[3];
-  const bool refused = options->dimension == 2 ? some : !rounding && mcor_is_apart(&spread);
+  int planes = 0;
+  bool apart = false; /* fluid in one plane and solids in another: meant as two dimensions */
+  for (int a = 0; a < 3; ++a)
+  {
+    const bool in_plane = spread.low[a] == spread.high[a];
+    planes += in_plane;
+    apart = apart || (in_plane && spread.low[3 + a] == spread.high[3 + a]);
+  }
+  const bool refused = options->dimension == 2 ? some : !rounding && planes == 1 && apart;
   return refused && !mcor_is_plane(context) ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;
 }
 
@@ -355,23 +349,6 @@ void mcor_flatten_sides(const mcor_plane* plane, const double from[6], double to
   memcpy(to, sides, sizeof sides);
 }
 
-static mcor_status mcor_flatten_positions(mcor_context* context, mcor_flat* flat)
-{
-  const mcor_input* input = &flat->input;
-  const bool floats = input->positions.type == MCOR_FLOAT32;
-  flat->positions =
-    malloc((size_t)input->count * 3 * (floats ? sizeof(float) : sizeof(double)) + 1);
-  MCOR_RETURN_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY,
-    "Host memory for %lld particles could not be allocated.", (long long)input->count);
-  mcor_flatten_job job = { &context->plane, input->positions, flat->positions, false };
-  job.positions.components = 3;
-  MCOR_TRY(mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN,
-    floats ? mcor_flatten_floats : mcor_flatten_doubles, &job, NULL));
-  flat->input.positions.data = flat->positions;
-  flat->input.positions.components = 3;
-  return MCOR_OK;
-}
-
 mcor_status mcor_flatten_points(
   mcor_context* context, const mcor_array* points, int64_t count, mcor_array* turned, double** flat)
 {
@@ -391,12 +368,13 @@ mcor_status mcor_flatten(
   const mcor_plane* plane = &context->plane;
   mcor_options* o = &flat->options;
   *flat = (mcor_flat){ .input = *input, .options = *options };
+  flat->input.positions.components = 3; /* whatever the caller says */
   MCOR_RETURN_IF(options->dimension != 0 && options->dimension != 2 && options->dimension != 3,
     context, MCOR_INVALID_ARGUMENT, "The dimension is %d; it must be 2, 3, or 0 (automatic).",
     options->dimension);
   MCOR_TRY(mcor_find_plane(context, input, options));
   o->dimension = context->space.axes;
-  if (!mcor_is_plane(context))
+  if (plane->axis == 0)
   {
     return MCOR_OK;
   }
@@ -427,8 +405,19 @@ mcor_status mcor_flatten(
     mcor_flatten_sides(plane, options->ranks->whole_box, flat->ranks.whole_box);
     o->ranks = &flat->ranks;
   }
-  const bool is_flat = plane->axis == 3 && plane->at == 0; /* as it is */
-  return mcor_has_positions(input) && !is_flat ? mcor_flatten_positions(context, flat) : MCOR_OK;
+  if (!mcor_has_positions(input) || (plane->axis == 3 && plane->at == 0)) /* flat as it is */
+  {
+    return MCOR_OK;
+  }
+  const bool floats = input->positions.type == MCOR_FLOAT32;
+  const size_t width = 3 * (floats ? sizeof(float) : sizeof(double));
+  flat->positions = malloc((size_t)input->count * width + 1);
+  MCOR_RETURN_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY,
+    "Host memory for %lld particles could not be allocated.", (long long)input->count);
+  mcor_flatten_job job = { plane, flat->input.positions, flat->positions, false };
+  flat->input.positions.data = flat->positions;
+  return mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN,
+    floats ? mcor_flatten_floats : mcor_flatten_doubles, &job, NULL);
 }
 
 void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)
@@ -482,15 +471,6 @@ void mcor_unflatten_statistics(const mcor_plane* plane, mcor_statistics* s)
 }
 
 /* ---- Marching squares, see mcor_plane.cl ---- */
-
-mcor_status mcor_spread_signs(mcor_context* context)
-{
-  const mcor_brick_data* now = &context->bricks.now;
-  return !mcor_is_plane(context)
-    ? MCOR_OK
-    : MCOR_LAUNCH(context, "mcor_plane_spread", MCOR_LIGHT, now->count, MCOR_INT(now->count),
-        MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid));
-}
 
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells)
 {

@@ -62,9 +62,6 @@ void mcor_unflatten_doubles(
 /* Returns the SPH kernel's normalisation in two dimensions over that in three. */
 double mcor_plane_factor(mcor_sph_kernel kernel);
 
-/* Marching squares: gives the nodes above the plane the signs of those in it; the second
- * function finds the seed bricks. */
-mcor_status mcor_spread_signs(mcor_context* context);
 /* Keeps of all cells those that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 

@@ -50,7 +50,7 @@ static void mcor_add_line(mcor_joining* j, int32_t from, int32_t to)
   j->last[to] = from;
 }
 
-/* Whether a triangle stands for a line: two of its corners are one. */
+/* Whether a triangle stands for a line: two of its corners are one. The others are filled. */
 static bool mcor_is_line(const int32_t* t)
 {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -64,9 +64,7 @@ static mcor_status mcor_read_lines(
   for (int64_t i = 0; i < surface->triangle_count; ++i)
   {
     const int32_t* t = surface->triangles + 3 * i;
-    if (t[0] != t[2] &&
-      mcor_is_line(
-        t)) /* else the second half of a quad that stands for a line, or a filled triangle */
+    if (t[0] != t[2] && mcor_is_line(t)) /* no second half of a quad that stands for a line */
     {
       mcor_add_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
     }
@@ -74,21 +72,8 @@ static mcor_status mcor_read_lines(
   return MCOR_OK;
 }
 
-/* Follows the lines from a point; a closed polyline ends with its first point. */
-static void mcor_follow_line(mcor_joining* j, int32_t from, mcor_surface* surface)
-{
-  int32_t* points = surface->line_points;
-  int64_t to = surface->line_offsets[surface->line_count];
-  points[to++] = from;
-  for (int32_t at = from; j->next[at] >= 0 && !j->done[at]; at = j->next[at])
-  {
-    j->done[at] = true;
-    points[to++] = j->next[at];
-  }
-  surface->line_offsets[++surface->line_count] = surface->line_point_count = to;
-}
-
-/* Makes open polylines from their ends, then closed ones, each from its first point. */
+/* Makes open polylines from their ends, then closed ones, each from its first point, with which it
+ * ends, too. */
 static bool mcor_join(mcor_joining* j, mcor_surface* surface)
 {
   const size_t lines = (size_t)j->count;
@@ -99,32 +84,23 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
     return false;
   }
   surface->line_offsets[0] = 0;
-  for (int closed = 0; closed < 2; ++closed)
+  for (int64_t n = 0; n < 2 * j->points; ++n)
   {
-    for (int32_t i = 0; i < j->points; ++i)
+    const int32_t first = (int32_t)(n % j->points), closed = n >= j->points;
+    if (j->next[first] < 0 || j->done[first] || (!closed && j->last[first] >= 0))
     {
-      if (j->next[i] >= 0 && !j->done[i] && (closed || j->last[i] < 0))
-      {
-        mcor_follow_line(j, i, surface);
-      }
+      continue;
     }
+    int64_t to = surface->line_offsets[surface->line_count];
+    surface->line_points[to++] = first;
+    for (int32_t at = first; j->next[at] >= 0 && !j->done[at]; at = j->next[at])
+    {
+      j->done[at] = true;
+      surface->line_points[to++] = j->next[at];
+    }
+    surface->line_offsets[++surface->line_count] = surface->line_point_count = to;
   }
   return true;
-}
-
-/* Sums the area of the filled region. */
-static double mcor_filled_area(const mcor_surface* surface, int u, int v)
-{
-  const double* x = surface->points;
-  double area = 0;
-  for (int64_t t = 0; t < surface->triangle_count; ++t)
-  {
-    const double *a = x + 3 * (int64_t)surface->triangles[3 * t],
-                 *b = x + 3 * (int64_t)surface->triangles[3 * t + 1],
-                 *c = x + 3 * (int64_t)surface->triangles[3 * t + 2];
-    area += 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (c[u] - a[u]) * (b[v] - a[v]));
-  }
-  return area;
 }
 
 /* Measures the length, and the area of the filled region, or the area that lines enclose if all
@@ -149,7 +125,14 @@ static void mcor_measure_lines(mcor_surface* surface, int u, int v)
     }
   }
   s->is_closed = closed;
-  s->area = surface->band_value ? mcor_filled_area(surface, u, v) : closed ? s->area : 0;
+  s->area = closed && !surface->band_value ? s->area : 0;
+  for (int64_t t = 0; t < surface->triangle_count && surface->band_value; ++t)
+  {
+    const int32_t* corner = surface->triangles + 3 * t;
+    const double *a = x + 3 * (int64_t)corner[0], *b = x + 3 * (int64_t)corner[1],
+                 *c = x + 3 * (int64_t)corner[2];
+    s->area += 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (c[u] - a[u]) * (b[v] - a[v]));
+  }
 }
 
 mcor_status mcor_join_lines(
@@ -168,41 +151,6 @@ mcor_status mcor_join_lines(
     mcor_measure_lines(surface, mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1));
   }
   return made ? MCOR_OK : MCOR_OUT_OF_CAPACITY;
-}
-
-/* Keeps the filled triangles and their keys alone; leaves NULL if there are none. */
-static void mcor_keep_filled(mcor_surface* surface)
-{
-  const bool filled = surface->band_value != NULL;
-  int64_t count = 0;
-  for (int64_t t = 0; t < surface->triangle_count && filled; ++t)
-  {
-    if (!mcor_is_line(surface->triangles + 3 * t))
-    {
-      mcor_move_triangle(surface, t, count++);
-    }
-  }
-  if (!filled)
-  {
-    free(surface->triangles);
-    free(surface->triangle_keys);
-    surface->triangles = NULL;
-    surface->triangle_keys = NULL;
-  }
-  surface->triangle_count = count;
-}
-
-/* Turns normals back; in filled regions they become those of the plane. */
-static void mcor_turn_normals(const mcor_plane* plane, mcor_surface* surface)
-{
-  for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
-  {
-    float* n = surface->normals + 3 * i;
-    n[2] = surface->band_value ? 1 : 0;
-    n[0] = surface->band_value ? 0 : n[0];
-    n[1] = surface->band_value ? 0 : n[1];
-    mcor_turn_back(plane, n, sizeof *n);
-  }
 }
 
 /* Makes normals, to the right of the lines: at all points of a preview, else where the gradient
@@ -240,10 +188,33 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   status = status == MCOR_OK ? mcor_allocated(context, mcor_join(&joining, surface)) : status;
   mcor_free_joining(&joining);
   MCOR_TRY(status);
-  mcor_keep_filled(surface);
+  const bool filled = surface->band_value != NULL;
+  int64_t count = 0;
+  for (int64_t t = 0; t < surface->triangle_count && filled; ++t)
+  {
+    if (!mcor_is_line(surface->triangles + 3 * t))
+    {
+      mcor_move_triangle(surface, t, count++);
+    }
+  }
+  if (!filled)
+  {
+    free(surface->triangles);
+    free(surface->triangle_keys);
+    surface->triangles = NULL;
+    surface->triangle_keys = NULL;
+  }
+  surface->triangle_count = count;
   mcor_measure_lines(surface, 0, 1);
   mcor_unflatten_doubles(plane, surface->points, surface->point_count, plane->at);
   mcor_unflatten_doubles(plane, surface->gradients, surface->point_count, 0);
-  mcor_turn_normals(plane, surface);
+  for (int64_t i = 0; i < surface->point_count && surface->normals; ++i)
+  {
+    float* n = surface->normals + 3 * i; /* in filled regions that of the plane */
+    n[0] = filled ? 0 : n[0];
+    n[1] = filled ? 0 : n[1];
+    n[2] = filled;
+    mcor_turn_back(plane, n, sizeof *n);
+  }
   return MCOR_OK;
 }

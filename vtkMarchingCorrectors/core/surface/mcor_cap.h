@@ -86,7 +86,41 @@ void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float no
 #define MCOR_CAP_CUT_MARGIN 1e-5
 #define MCOR_CAP_ROOT 2e-5 /* a margin below which a cut counts as exact */
 
+/* A bracket of the root of the trim margin along a line: its ends, the margins there, and the end
+ * that moved last; -1: none. */
+typedef struct mcor_bracket
+{
+  double at[2], margin[2];
+  int last;
+} mcor_bracket;
+
+/* Returns where between the ends a linear margin would be 0. */
+static inline double mcor_bracket_share(const mcor_bracket* b)
+{
+  return b->margin[0] / (b->margin[0] - b->margin[1]);
+}
+/* Moves an end to where the margin was found. The margin of an end that stays twice is halved, so
+ * that it does not stay for ever (the Illinois method). */
+static inline void mcor_narrow_bracket(mcor_bracket* b, double at, double margin)
+{
+  const int moved = (margin > 0) != (b->margin[0] > 0);
+  b->at[moved] = at;
+  b->margin[moved] = margin;
+  b->margin[1 - moved] *= b->last == moved ? 0.5 : 1;
+  b->last = moved;
+}
+
 /* ---- mcor_cap_face.c: the nodes of one side ---- */
+
+/* Corners of a square; side k goes from corner k to the next one. */
+static inline int mcor_corner_u(int k)
+{
+  return (k + 1) >> 1 & 1;
+}
+static inline int mcor_corner_v(int k)
+{
+  return k >> 1;
+}
 
 enum
 {
@@ -126,6 +160,11 @@ static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
   const int64_t tile =
     face->tile[(int64_t)(v / MCOR_CAP_TILE) * face->tiles[0] + u / MCOR_CAP_TILE];
   return tile * MCOR_CAP_TILE_NODES + (v % MCOR_CAP_TILE) * MCOR_CAP_TILE + u % MCOR_CAP_TILE;
+}
+
+static inline int64_t mcor_corner_index(const mcor_cap_face* face, int u, int v, int k)
+{
+  return mcor_cap_index(face, u + mcor_corner_u(k), v + mcor_corner_v(k));
 }
 
 /* Finds where node (u, v) is; in two dimensions nodes above each other are one. */

@@ -18,14 +18,6 @@
 /* Entries of a side's directory of tiles, at most. */
 #define MCOR_CAP_PLACE_LIMIT (1 << 24)
 
-/* The number of tiles at which a side is refused: 4 to 64 million nodes. Where few particles
- * reach more than that, a smoothing length or the cube size is a mistake. */
-static int mcor_tile_limit(const mcor_context* context)
-{
-  const int particles = context->grid.count / 2;
-  return particles < 1 << 14 ? 1 << 14 : particles < 1 << 18 ? particles : 1 << 18;
-}
-
 bool mcor_has_cap_side(const mcor_context* context, int axis, int upper)
 {
   const int plane = mcor_cap_plane(context, axis, upper);
@@ -105,7 +97,11 @@ static mcor_status mcor_note_tiles(
       *tile = 1;
     }
   }
-  const int limit = mcor_tile_limit(context), nodes = limit * MCOR_CAP_TILE * MCOR_CAP_TILE;
+  /* 4 to 64 million nodes. Where few particles reach more than that, a smoothing length or the cube
+   * size is a mistake. */
+  const int particles = context->grid.count / 2, least = 1 << 14, most = 1 << 18;
+  const int limit = particles < least ? least : particles < most ? particles : most;
+  const int nodes = limit * MCOR_CAP_TILE_NODES;
   const bool is_much = face->tile_count > limit;
   MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
     "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
@@ -336,21 +332,9 @@ static void mcor_take_cap_node(
   }
 }
 
-/* Whether a node must be evaluated. On the side: nodes above need their margin, unknown ones
- * their side, too. Nodes further in: their validity, where a cell has no vertex on the side. */
-static bool mcor_needs_cap_node(const mcor_cap_face* face, bool within, int u, int v)
-{
-  const int64_t at = mcor_cap_index(face, u, v);
-  if (!within)
-  {
-    return !(face->state[at] & MCOR_CAP_KNOWN) || (face->state[at] & MCOR_CAP_ABOVE);
-  }
-  return !(face->within[at] & MCOR_CAP_KNOWN) && (face->state[at] & MCOR_CAP_ABOVE) &&
-    (face->state[at] & MCOR_CAP_VALID);
-}
-
 /* Goes tile by tile, and there by squares of 4 x 4 nodes, so that successive points are near
- * each other. */
+ * each other. On the side, nodes above need their margin, unknown ones their side, too. Nodes
+ * further in need their validity, where a cell has no vertex on the side. */
 mcor_status mcor_ask_cap_nodes(
   mcor_context* context, const mcor_cap_face* face, bool within, mcor_cap_points* points)
 {
@@ -361,33 +345,23 @@ mcor_status mcor_ask_cap_nodes(
     for (int n = 0; n < MCOR_CAP_TILE_NODES; ++n)
     {
       const int u = u0 + (n & 3) + (n >> 4 & 3) * 4, v = v0 + (n >> 2 & 3) + (n >> 6) * 4;
-      if (u < face->count[0] && v < face->count[1] && mcor_needs_cap_node(face, within, u, v))
+      if (u >= face->count[0] || v >= face->count[1])
+      {
+        continue;
+      }
+      const int64_t at = mcor_cap_index(face, u, v);
+      const int state = face->state[at], corner = MCOR_CAP_ABOVE | MCOR_CAP_VALID;
+      if (within ? !(face->within[at] & MCOR_CAP_KNOWN) && (state & corner) == corner
+                 : !(state & MCOR_CAP_KNOWN) || (state & MCOR_CAP_ABOVE))
       {
         cl_int node[3];
         mcor_cap_node(context, face, u, v, node);
         node[face->axis] += within ? (face->upper ? -1 : 1) : 0;
-        MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, mcor_cap_index(face, u, v)));
+        MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, at));
       }
     }
   }
   return mcor_take_cap_points(context, points);
-}
-
-/* Copies what the opposite side of a period knows: a period apart, sums have the same bits. A
- * tile that the opposite side lacks is one that no particle reaches. */
-static void mcor_take_opposite(const mcor_cap_face* opposite, mcor_cap_face* face)
-{
-  const int64_t nodes = MCOR_CAP_TILE_NODES;
-  for (int t = 1; t <= face->tile_count; ++t)
-  {
-    const int64_t from = opposite->tile[face->place[t]] * nodes, to = t * nodes;
-    for (int64_t i = 0; i < nodes; ++i)
-    {
-      const int signs = opposite->state[from + i] & (MCOR_CAP_ABOVE | MCOR_CAP_VALID);
-      face->state[to + i] |= (uint8_t)(face->state[to + i] & MCOR_CAP_KNOWN ? 0 : signs);
-      face->margin[to + i] = opposite->margin[from + i];
-    }
-  }
 }
 
 mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_face* face,
@@ -419,13 +393,16 @@ mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
   MCOR_TRY(mcor_note_cap_tiles(context, context->run.iso.value, face));
   MCOR_TRY(mcor_make_cap_nodes(context, face));
   MCOR_TRY(mcor_take_cap_masks(context, face));
-  if (opposite)
+  MCOR_TRY(opposite ? MCOR_OK : mcor_ask_cap_nodes(context, face, false, points));
+  /* Copies what the opposite side of a period knows: a period apart, sums have the same bits. A
+   * tile that the opposite side lacks is one that no particle reaches. */
+  const int64_t nodes = MCOR_CAP_TILE_NODES;
+  for (int64_t to = nodes; opposite && to < face->node_count; ++to)
   {
-    mcor_take_opposite(opposite, face);
-  }
-  else
-  {
-    MCOR_TRY(mcor_ask_cap_nodes(context, face, false, points));
+    const int64_t from = opposite->tile[face->place[to / nodes]] * nodes + to % nodes;
+    const int signs = opposite->state[from] & (MCOR_CAP_ABOVE | MCOR_CAP_VALID);
+    face->state[to] |= (uint8_t)(face->state[to] & MCOR_CAP_KNOWN ? 0 : signs);
+    face->margin[to] = opposite->margin[from];
   }
   return mcor_ask_cap_nodes(context, face, true, points);
 }

@@ -8,15 +8,14 @@
 #include "mcor_cap.h"
 #include "mcor_table.h"
 
-/* The line on which a cut is moved, from one end (0) to the other (1). at: the cut; side: the
- * bracket around the root; margin: the trim margins at its ends. */
+/* The line on which a cut is moved, from one end (0) to the other (1). at: the cut. */
 typedef struct mcor_cap_line
 {
   int64_t vertex; /* index among the caps' vertices */
   double from[3], to[3];
-  double at, side[2], margin[2];
-  int last,
-    moves; /* last: the end of the bracket that moved last; moves: how often the cut has moved */
+  double at;
+  mcor_bracket bracket;
+  int moves; /* how often the cut has moved */
   bool done;
 } mcor_cap_line;
 
@@ -39,12 +38,10 @@ typedef struct mcor_cap_job
   mcor_table nodes, cuts;
   mcor_cap_vertex* vertices;
   int64_t vertex_count, vertex_room;
-  mcor_cap_line*
-    lines; /* of cuts that are placed exactly: of caps at walls, or in two dimensions */
+  mcor_cap_line* lines; /* of cuts that are placed exactly: at walls, or in two dimensions */
   int64_t line_count, line_room;
   cl_int* triangles;
-  cl_ulong*
-    cells; /* of each triangle its square, numbered behind all cells, see mcor_triangle_cell.c */
+  cl_ulong* cells; /* squares of triangles, numbered behind all cells, see mcor_triangle_cell.c */
   int64_t triangle_count, triangle_room, cell_room, owned_count;
   cl_ulong square;  /* the square that is being capped */
   uint64_t lookups; /* how often it has looked up a vertex */
@@ -74,34 +71,6 @@ mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3]);
 mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
 /* Moves the cuts to where the trim margin is 0. */
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job);
-
-/* ---- Caps at walls ---- */
-
-/* A brick of nodes near both fluid and solids. */
-typedef struct mcor_wall_brick
-{
-  cl_ulong key; /* of its first cell */
-  cl_int at[3]; /* in bricks */
-  bool has_fluid, is_known;
-  /* Masks of nodes, and of the cells and faces whose lowest node is here. */
-  cl_ulong above, used, joined[3];
-  double margin[MCOR_BRICK_NODES]; /* trim margins of nodes above */
-} mcor_wall_brick;
-
-typedef struct mcor_wall
-{
-  mcor_table index; /* numbers of bricks by place */
-  mcor_wall_brick* bricks;
-  int64_t count, room;
-  bool has_bricks; /* all that solids reach are listed */
-  int range[3][2]; /* first and last node along each axis: of the box and its ring */
-} mcor_wall;
-
-/* mcor_cap_brick.c. Lists the bricks where there may be caps, by key. */
-mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall);
-/* Returns NULL where there is none. */
-const mcor_wall_brick* mcor_find_wall_brick(const mcor_wall* wall, const int at[3]);
-void mcor_free_wall(mcor_wall* wall);
 
 /* mcor_cap_wall.c. Adds caps where the surface ends at solids. */
 mcor_status mcor_cap_walls(mcor_cap_job* job);

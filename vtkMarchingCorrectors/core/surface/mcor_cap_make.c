@@ -43,42 +43,28 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
   return MCOR_OK;
 }
 
-/* Whether the cell beside square (u, v) is valid, where the surface does not meet it. */
-static bool mcor_is_valid_beside(const mcor_cap_face* face, int u, int v)
-{
-  bool valid = true;
-  for (int c = 0; c < 4; ++c)
-  {
-    const int64_t at = mcor_cap_index(face, u + (c & 1), v + (c >> 1));
-    valid = valid && (face->state[at] & MCOR_CAP_VALID) && (face->within[at] & MCOR_CAP_VALID);
-  }
-  return valid;
-}
-
 /* Caps one square. Its number is above the keys of all cells; numbers ascend. */
 static mcor_status mcor_visit_cap_square(void* data, const mcor_cap_face* face, int u, int v)
 {
   mcor_cap_job* job = data;
-  const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
   const int state = face->state[mcor_cap_index(face, u, v)];
   mcor_cap_square square = {
     .axis = face->axis, .upper = face->upper, .is_joined = state & MCOR_CAP_JOINED
   };
   int64_t at[4];
   int total = 0;
+  bool valid = true; /* the cell beside the square is, where the surface does not meet it */
   for (int k = 0; k < 4; ++k)
   {
-    at[k] = mcor_cap_index(face, u + corner_u[k], v + corner_v[k]);
+    at[k] = mcor_corner_index(face, u, v, k);
     square.above[k] = face->state[at[k]] & MCOR_CAP_ABOVE;
+    square.margin[k] = face->margin[at[k]];
     total += square.above[k];
+    valid = valid && (face->state[at[k]] & face->within[at[k]] & MCOR_CAP_VALID);
   }
-  if (total == 0 || (total == 4 ? !mcor_is_valid_beside(face, u, v) : !(state & MCOR_CAP_USED)))
+  if (total == 0 || (total == 4 ? !valid : !(state & MCOR_CAP_USED)))
   {
     return MCOR_OK;
-  }
-  for (int k = 0; k < 4; ++k)
-  {
-    square.margin[k] = face->margin[at[k]];
   }
   mcor_cap_node(job->context, face, u, v, square.node);
   const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
@@ -88,29 +74,29 @@ static mcor_status mcor_visit_cap_square(void* data, const mcor_cap_face* face, 
   return mcor_add_cap_square(job, &square);
 }
 
-static mcor_status mcor_cap_side(
-  mcor_cap_job* job, int axis, int upper, const mcor_cap_face* opposite, mcor_cap_face* face)
-{
-  MCOR_TRY(mcor_load_cap_face(job->context, axis, upper, opposite, &job->points, face));
-  return mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job);
-}
-
 /* Caps the lower and the upper side of an axis, as far as this call's box has them. */
 static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
 {
   const mcor_context* context = job->context;
-  const bool has_lower = mcor_has_cap_side(context, axis, 0),
-             has_upper = mcor_has_cap_side(context, axis, 1);
   const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
-  const bool are_one = has_lower && apart == context->lattice.period[axis];
-  mcor_cap_face lower = { 0 }, upper = { 0 };
-  mcor_status status = has_lower ? mcor_cap_side(job, axis, 0, NULL, &lower) : MCOR_OK;
-  if (has_upper && status == MCOR_OK)
+  const bool are_one =
+    mcor_has_cap_side(context, axis, 0) && apart == context->lattice.period[axis];
+  mcor_cap_face faces[2] = { { 0 }, { 0 } };
+  mcor_status status = MCOR_OK;
+  for (int upper = 0; upper < 2 && status == MCOR_OK; ++upper)
   {
-    status = mcor_cap_side(job, axis, 1, are_one ? &lower : NULL, &upper);
+    if (mcor_has_cap_side(context, axis, upper))
+    {
+      mcor_cap_face* face = &faces[upper];
+      status = mcor_load_cap_face(
+        job->context, axis, upper, upper && are_one ? &faces[0] : NULL, &job->points, face);
+      status = status == MCOR_OK
+        ? mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job)
+        : status;
+    }
   }
-  mcor_free_cap_face(&lower);
-  mcor_free_cap_face(&upper);
+  mcor_free_cap_face(&faces[0]);
+  mcor_free_cap_face(&faces[1]);
   return status;
 }
 
@@ -125,21 +111,6 @@ static mcor_status mcor_make_caps(mcor_cap_job* job)
   const bool places = context->space.flat && !context->run.options->preview;
   MCOR_TRY(places ? mcor_place_cap_cuts(job) : MCOR_OK);
   return mcor_caps_walls(context) ? mcor_cap_walls(job) : MCOR_OK;
-}
-
-/* Lists the views of the mesh that caps read. Returns their number: a mesh that is not trimmed
- * has no cuts. */
-static int mcor_list_cap_views(mcor_cap_job* job, mcor_mapping views[4])
-{
-  const mcor_context* context = job->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->march_count, all = (size_t)mesh->vertex_count,
-               real = context->cl.real_size;
-  views[0] = (mcor_mapping){ &mesh->node, all * 4 * sizeof(cl_int), &job->node };
-  views[1] = (mcor_mapping){ &mesh->offset, all * 4 * real, &job->offset };
-  views[2] = (mcor_mapping){ mcor_trim_quantity(context), n * real, &job->quantity };
-  views[3] = (mcor_mapping){ &mesh->cut_edges, (all - n) * sizeof(cl_ulong), &job->cut_edges };
-  return n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
 }
 
 /* Appends the caps' vertices and triangles to the mesh. */
@@ -174,18 +145,26 @@ mcor_status mcor_cap(mcor_context* context)
   }
   mcor_cap_job job = { .context = context,
     .threshold = mcor_real_of(context, mcor_trim_threshold(context)) };
-  mcor_mapping views[4];
-  const int mapped = mcor_list_cap_views(&job, views);
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->march_count, all = (size_t)mesh->vertex_count,
+               real = context->cl.real_size;
+  const mcor_mapping views[] = { { &mesh->node, all * 4 * sizeof(cl_int), &job.node },
+    { &mesh->offset, all * 4 * real, &job.offset },
+    { mcor_trim_quantity(context), n * real, &job.quantity },
+    { &mesh->cut_edges, (all - n) * sizeof(cl_ulong), &job.cut_edges } };
+  /* A mesh that is not trimmed has no cuts. */
+  const int mapped = n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, views, mapped);
   status = status == MCOR_OK ? mcor_make_caps(&job) : status;
   status = mcor_unmap_all(context, views, mapped, status);
   mcor_free_cap_points(context, &job.points);
   status = status == MCOR_OK ? mcor_append_caps(&job) : status;
-  mcor_table* const maps[] = { &job.edges[0], &job.edges[1], &job.edges[2], &job.nodes, &job.cuts };
-  for (int i = 0; i < 5; ++i)
+  for (int a = 0; a < 3; ++a)
   {
-    mcor_table_free(maps[i]);
+    mcor_table_free(&job.edges[a]);
   }
+  mcor_table_free(&job.nodes);
+  mcor_table_free(&job.cuts);
   free(job.vertices);
   free(job.lines);
   free(job.triangles);

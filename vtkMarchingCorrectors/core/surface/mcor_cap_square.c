@@ -18,9 +18,6 @@ typedef struct mcor_cap_corner
   double at[3], margin;
 } mcor_cap_corner;
 
-/* Corners of a square; side k goes from corner k to the next one. */
-static const int corner_u[4] = { 0, 1, 1, 0 }, corner_v[4] = { 0, 0, 1, 1 };
-
 /* ---- Vertices ---- */
 
 /* Splits a place, in cubes, into a node and an offset. */
@@ -71,7 +68,7 @@ static mcor_status mcor_cap_node_corner(
   mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
 {
   cl_int node[3];
-  mcor_square_node(job, square, corner_u[k], corner_v[k], node);
+  mcor_square_node(job, square, mcor_corner_u(k), mcor_corner_v(k), node);
   for (int a = 0; a < 3; ++a)
   {
     corner->at[a] = node[a];
@@ -109,25 +106,8 @@ static mcor_status mcor_cap_edge_corner(
   return MCOR_OK;
 }
 
-/* Notes the line of the newest cut, along which it will be moved. */
-static mcor_status mcor_add_cap_line(
-  mcor_cap_job* job, const mcor_cap_corner* low, const mcor_cap_corner* high, double at)
-{
-  MCOR_TRY(mcor_make_room(
-    job->context, (void**)&job->lines, job->line_count, &job->line_room, sizeof *job->lines));
-  mcor_cap_line* line = &job->lines[job->line_count++];
-  *line = (mcor_cap_line){ .vertex = job->vertex_count - 1,
-    .at = at,
-    .side = { 0, 1 },
-    .margin = { low->margin, high->margin },
-    .last = -1 };
-  memcpy(line->from, low->at, sizeof low->at);
-  memcpy(line->to, high->at, sizeof high->at);
-  return MCOR_OK;
-}
-
 /* Finds the vertex where trimming cuts the line between two corners: the surface's own cut, else
- * one of the cap's. */
+ * one of the cap's, with the line along which it will be moved. */
 static mcor_status mcor_cap_cut(
   mcor_cap_job* job, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
 {
@@ -143,8 +123,9 @@ static mcor_status mcor_cap_cut(
     cut->vertex = mesh->march_count + own;
     return MCOR_OK;
   }
-  const double s = fmin(
-    fmax(low->margin / (low->margin - high->margin), MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
+  const mcor_bracket bracket = { { 0, 1 }, { low->margin, high->margin }, -1 };
+  const double s =
+    fmin(fmax(mcor_bracket_share(&bracket), MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
   for (int a = 0; a < 3; ++a)
   {
     cut->at[a] = low->at[a] + s * (high->at[a] - low->at[a]);
@@ -153,8 +134,17 @@ static mcor_status mcor_cap_cut(
   const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
   MCOR_TRY(mcor_find_cap_vertex(
     job, &job->cuts, key, cut->at, job->border ? MCOR_CAP_FLAG : 2, &cut->vertex));
-  const bool is_placed = job->border || job->context->space.flat;
-  return is_placed && job->vertex_count > before ? mcor_add_cap_line(job, low, high, s) : MCOR_OK;
+  if ((!job->border && job->context->space.axes == 3) || job->vertex_count == before)
+  {
+    return MCOR_OK;
+  }
+  MCOR_TRY(mcor_make_room(
+    job->context, (void**)&job->lines, job->line_count, &job->line_room, sizeof *job->lines));
+  mcor_cap_line* line = &job->lines[job->line_count++];
+  *line = (mcor_cap_line){ .vertex = before, .at = s, .bracket = bracket };
+  memcpy(line->from, low->at, sizeof low->at);
+  memcpy(line->to, high->at, sizeof high->at);
+  return MCOR_OK;
 }
 
 /* ---- Polygons ---- */
@@ -182,24 +172,6 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
   return MCOR_OK;
 }
 
-/* Adds a line along the plane's side, with the inside on its left, as a triangle whose last two
- * corners are one. In two dimensions corners above each other are one. */
-static mcor_status mcor_add_side_line(
-  mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)
-{
-  const mcor_cap_corner* other = corners + 1;
-  while (other < corners + count - 1 && other->vertex == corners->vertex)
-  {
-    ++other;
-  }
-  const int along = 1 - square->axis;
-  const bool forward = (other->at[along] > corners->at[along]) == (square->upper == along);
-  const int32_t from = forward ? corners->vertex : other->vertex,
-                to = forward ? other->vertex : corners->vertex;
-  const int32_t line[3] = { from, to, to };
-  return mcor_add_cap_triangle(job, line);
-}
-
 /* Adds a polygon as a fan; corners go round as seen from above the axis. For a cap at a wall it
  * adds only the polygon's last edge, if that is a cut. */
 static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* square,
@@ -214,7 +186,18 @@ static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* sq
   }
   if (job->context->space.flat)
   {
-    return mcor_add_side_line(job, square, corners, count);
+    /* A line along the plane's side, with the inside on its left, is a triangle whose last two
+     * corners are one. Corners above each other are one. */
+    int other = 1;
+    while (other < count - 1 && corners[other].vertex == corners[0].vertex)
+    {
+      ++other;
+    }
+    const int along = 1 - square->axis, forward = square->upper == along;
+    const bool rises = corners[other].at[along] > corners[0].at[along];
+    const int from = rises == forward ? 0 : other, to = other - from;
+    return mcor_add_cap_triangle(
+      job, (int32_t[3]){ corners[from].vertex, corners[to].vertex, corners[to].vertex });
   }
   for (int i = 1; i + 1 < count; ++i)
   {
@@ -328,14 +311,10 @@ static void mcor_move_cut(
   {
     return;
   }
-  const int moved = (margin > 0) == (line->margin[0] > 0) ? 0 : 1, other = 1 - moved;
-  line->side[moved] = line->at;
-  line->margin[moved] = margin;
-  line->margin[other] *= line->last == moved ? 0.5 : 1;
-  line->last = moved;
-  const double share =
-    ++line->moves % 4 == 0 ? 0.5 : line->margin[0] / (line->margin[0] - line->margin[1]);
-  const double s = line->side[0] + (line->side[1] - line->side[0]) * share;
+  mcor_bracket* bracket = &line->bracket;
+  mcor_narrow_bracket(bracket, line->at, margin);
+  const double share = ++line->moves % 4 == 0 ? 0.5 : mcor_bracket_share(bracket);
+  const double s = bracket->at[0] + (bracket->at[1] - bracket->at[0]) * share;
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
   line->done = line->at == before; /* at an end of its line, or as exact as numbers are */
   double at[3];

@@ -20,6 +20,28 @@
 /* Marks the key of a cell as that of a cap at a wall. */
 #define MCOR_WALL_CELL ((cl_ulong)1 << 61)
 
+#define MCOR_WALL_LIMIT (1 << 20) /* bricks */
+
+/* A brick of nodes near both fluid and solids. */
+typedef struct mcor_wall_brick
+{
+  cl_ulong key; /* of its first cell */
+  cl_int at[3]; /* in bricks */
+  bool has_fluid, is_known;
+  /* Masks of nodes, and of the cells and faces whose lowest node is here. */
+  cl_ulong above, used, joined[3];
+  double margin[MCOR_BRICK_NODES]; /* trim margins of nodes above */
+} mcor_wall_brick;
+
+typedef struct mcor_wall
+{
+  mcor_table index; /* numbers of bricks by place */
+  mcor_wall_brick* bricks;
+  int64_t count, room;
+  bool has_bricks; /* all that solids reach are listed */
+  int range[3][2]; /* first and last node along each axis: of the box and its ring */
+} mcor_wall;
+
 /* An edge that trimming has made, in the direction of its triangle, and its cell. */
 typedef struct mcor_wall_edge
 {
@@ -48,6 +70,145 @@ typedef struct mcor_wall_cell
   double margin[8];
 } mcor_wall_cell;
 
+/* ---- The bricks near both fluid and solids ---- */
+
+static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
+{
+  const int32_t next = (int32_t)wall->count;
+  const int32_t number = mcor_table_number(&wall->index, mcor_cap_key(at), next);
+  if (number != next)
+  {
+    return mcor_allocated(context, number >= 0);
+  }
+  MCOR_RETURN_IF(next >= MCOR_WALL_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. Use "
+    "a larger cube size, or turn capping off.",
+    MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
+  MCOR_TRY(
+    mcor_make_room(context, (void**)&wall->bricks, wall->count, &wall->room, sizeof *wall->bricks));
+  mcor_wall_brick* brick = &wall->bricks[wall->count++];
+  *brick = (mcor_wall_brick){ .at = { at[0], at[1], at[2] } };
+  const cl_int node[4] = { at[0] * MCOR_BRICK, at[1] * MCOR_BRICK, at[2] * MCOR_BRICK, 0 };
+  brick->key = mcor_node_key(&context->lattice, node);
+  return MCOR_OK;
+}
+
+/* Visits a particle at x (in nodes), in two passes: the first one adds the bricks that solids
+ * reach, the second one marks those that fluid reaches, too. Reach is widened by one node,
+ * because a cell is looked up by its lowest node, and by another one for rounding. */
+static mcor_status mcor_reach_wall(
+  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
+{
+  mcor_wall* wall = data;
+  int from[3], to[3], at[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    const int* range = wall->range[a];
+    const double nodes = reach / mcor_edge_of(&context->lattice, a) + 2;
+    from[a] = (int)fmax(floor(x[a] - nodes), range[0]) / MCOR_BRICK;
+    to[a] = (int)fmin(ceil(x[a] + nodes), range[1]);
+    to[a] = to[a] < range[0] || is_solid == wall->has_bricks ? -1 : to[a] / MCOR_BRICK;
+  }
+  for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
+  {
+    for (at[1] = from[1]; at[1] <= to[1]; ++at[1])
+    {
+      for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
+      {
+        const int32_t found = is_solid ? -1 : mcor_find_number(&wall->index, mcor_cap_key(at));
+        MCOR_TRY(is_solid ? mcor_add_wall_brick(context, wall, at) : MCOR_OK);
+        if (found >= 0)
+        {
+          wall->bricks[found].has_fluid = true;
+        }
+      }
+    }
+  }
+  return MCOR_OK;
+}
+
+static int mcor_compare_wall_bricks(const void* x, const void* y)
+{
+  const mcor_wall_brick *a = x, *b = y;
+  return (a->key > b->key) - (a->key < b->key);
+}
+
+static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
+{
+  const mcor_wall* wall = data;
+  const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(seen->at));
+  if (number >= 0)
+  {
+    mcor_wall_brick* brick = &wall->bricks[number];
+    brick->is_known = seen->known != 0;
+    brick->above = seen->above;
+    brick->used = seen->used;
+    memcpy(brick->joined, seen->joined, sizeof seen->joined);
+  }
+}
+
+/* Takes the field at node points->to[i], which counts the nodes of all bricks. */
+static void mcor_take_wall_node(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
+{
+  const mcor_wall* wall = data;
+  mcor_wall_brick* brick = &wall->bricks[points->to[i] / MCOR_BRICK_NODES];
+  const int n = (int)(points->to[i] % MCOR_BRICK_NODES);
+  const bool is_above = brick->is_known || mcor_get_real(context, points->value, i) >= 0;
+  brick->above |= (cl_ulong)is_above << n;
+  brick->margin[n] = mcor_cap_margin(context, points, i);
+}
+
+/* Lists the bricks where there may be caps, by key. Of their nodes those above are known to be by
+ * marching, or are evaluated, for their trim margins. */
+static mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_cap_range(context, a, wall->range[a]);
+  }
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  wall->has_bricks = true;
+  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
+  int64_t count = 0;
+  for (int64_t i = 0; i < wall->count; ++i)
+  {
+    if (wall->bricks[i].has_fluid)
+    {
+      wall->bricks[count++] = wall->bricks[i];
+    }
+  }
+  wall->count = count;
+  if (count > 0)
+  {
+    qsort(wall->bricks, (size_t)count, sizeof *wall->bricks, mcor_compare_wall_bricks);
+  }
+  mcor_table_free(&wall->index);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const uint64_t key = mcor_cap_key(wall->bricks[i].at);
+    MCOR_TRY(mcor_allocated(context, mcor_table_number(&wall->index, key, (int32_t)i) >= 0));
+  }
+  MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
+  points->take = mcor_take_wall_node;
+  points->data = wall;
+  for (int64_t i = 0; i < count * MCOR_BRICK_NODES; ++i)
+  {
+    const mcor_wall_brick* brick = &wall->bricks[i / MCOR_BRICK_NODES];
+    const int n = (int)(i % MCOR_BRICK_NODES);
+    if (!brick->is_known || (brick->above >> n & 1))
+    {
+      cl_int node[3];
+      for (int a = 0; a < 3; ++a)
+      {
+        node[a] = brick->at[a] * MCOR_BRICK + (n >> 2 * a & 3);
+      }
+      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, i));
+    }
+  }
+  return mcor_take_cap_points(context, points);
+}
+
 /* ---- Edges that trimming has made ---- */
 
 static int mcor_compare_wall_edges(const void* x, const void* y)
@@ -58,44 +219,33 @@ static int mcor_compare_wall_edges(const void* x, const void* y)
 }
 
 /* Lists the border edges of the trimmed triangles: an edge between two cuts. */
-static mcor_status mcor_list_wall_edges(
-  mcor_wall_job* job, const cl_int* triangles, const cl_ulong* cells)
-{
-  mcor_context* context = job->cap->context;
-  const mcor_mesh* mesh = &context->mesh;
-  job->edges = malloc(((size_t)mesh->triangle_count + 1) * sizeof *job->edges);
-  MCOR_TRY(mcor_allocated(context, job->edges));
-  for (int32_t t = 0; t < mesh->triangle_count; ++t)
-  {
-    const cl_int* corner = triangles + 3 * (size_t)t;
-    for (int c = 0; c < 3; ++c)
-    {
-      const int32_t from = corner[c], to = corner[(c + 1) % 3];
-      if (from >= mesh->march_count && to >= mesh->march_count)
-      {
-        job->edges[job->edge_count++] =
-          (mcor_wall_edge){ cells[t] & ~(MCOR_RING_CELL | MCOR_OTHERS_CELL), t, from, to };
-      }
-    }
-  }
-  qsort(job->edges, (size_t)job->edge_count, sizeof *job->edges, mcor_compare_wall_edges);
-  return MCOR_OK;
-}
-
 static mcor_status mcor_load_wall_edges(mcor_wall_job* job)
 {
   mcor_context* context = job->cap->context;
-  const size_t n = (size_t)context->mesh.triangle_count;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->triangle_count;
   void *triangles = NULL, *cells = NULL;
-  const mcor_mapping mappings[] = { { &context->mesh.triangles, 3 * n * sizeof(cl_int),
-                                      &triangles },
+  const mcor_mapping mappings[] = { { &mesh->triangles, 3 * n * sizeof(cl_int), &triangles },
     { &context->box.cells, n * sizeof(cl_ulong), &cells } };
   if (n == 0)
   {
     return MCOR_OK;
   }
-  mcor_status status = mcor_map_all(context, mappings, 2);
-  status = status == MCOR_OK ? mcor_list_wall_edges(job, triangles, cells) : status;
+  job->edges = malloc(n * sizeof *job->edges);
+  MCOR_TRY(mcor_allocated(context, job->edges));
+  const mcor_status status = mcor_map_all(context, mappings, 2);
+  for (int32_t i = 0; i < 3 * mesh->triangle_count && status == MCOR_OK; ++i)
+  {
+    const cl_int* corner = triangles;
+    const int32_t t = i / 3, from = corner[i], to = corner[3 * t + (i + 1) % 3];
+    if (from >= mesh->march_count && to >= mesh->march_count)
+    {
+      job->edges[job->edge_count++] =
+        (mcor_wall_edge){ ((const cl_ulong*)cells)[t] & ~(MCOR_RING_CELL | MCOR_OTHERS_CELL), t,
+          from, to };
+    }
+  }
+  qsort(job->edges, (size_t)job->edge_count, sizeof *job->edges, mcor_compare_wall_edges);
   return mcor_unmap_all(context, mappings, 2, status);
 }
 
@@ -128,7 +278,11 @@ static bool mcor_load_wall_cell(
       which |= (at[a] != brick->at[a]) << a;
       bit |= node % MCOR_BRICK << 2 * a;
     }
-    near[which] = near[which] ? near[which] : which ? mcor_find_wall_brick(wall, at) : brick;
+    if (!near[which])
+    {
+      const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(at));
+      near[which] = !which ? brick : number < 0 ? NULL : &wall->bricks[number];
+    }
     if (!near[which])
     {
       return false;
@@ -200,19 +354,6 @@ static mcor_status mcor_cut_wall_face(
 
 /* ---- Loops ---- */
 
-static void mcor_place_of(const mcor_cap_job* job, int32_t v, double at[3])
-{
-  const mcor_cap_vertex* vertex = v < job->context->mesh.vertex_count
-    ? NULL
-    : &job->vertices[v - job->context->mesh.vertex_count];
-  for (int a = 0; a < 3; ++a)
-  {
-    at[a] = vertex ? vertex->node[a] + vertex->offset[a]
-                   : ((const cl_int*)job->node)[4 * (size_t)v + (size_t)a] +
-        mcor_get_real(job->context, job->offset, 4 * (int64_t)v + a);
-  }
-}
-
 /* Computes the area of the fan around corner `first`. */
 static double mcor_fan_area(double (*at)[3], int count, int first)
 {
@@ -235,11 +376,16 @@ static double mcor_fan_area(double (*at)[3], int count, int first)
 /* Fills a loop with the fan of least area, since loops are not flat, and may not be convex. */
 static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, int count)
 {
+  const mcor_context* context = job->context;
   double at[MCOR_CAP_BORDER][3], least = INFINITY;
   int best = 0;
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < 3 * count; ++i)
   {
-    mcor_place_of(job, loop[i], at[i]);
+    const int64_t v = 4 * (int64_t)loop[i / 3] + i % 3,
+                  own = loop[i / 3] - context->mesh.vertex_count;
+    at[i / 3][i % 3] = own >= 0
+      ? job->vertices[own].node[i % 3] + job->vertices[own].offset[i % 3]
+      : ((const cl_int*)job->node)[v] + mcor_get_real(context, job->offset, v);
   }
   for (int i = 0; i < count; ++i)
   {
@@ -299,25 +445,6 @@ static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* 
   return mcor_fill_wall_cell(cap, cell);
 }
 
-static mcor_status mcor_cap_wall_cells(mcor_wall_job* job)
-{
-  mcor_context* context = job->cap->context;
-  for (int64_t b = 0; b < job->wall.count; ++b)
-  {
-    const mcor_wall_brick* brick = &job->wall.bricks[b];
-    for (int inner = 0; inner < MCOR_BRICK_NODES; ++inner)
-    {
-      mcor_wall_cell cell;
-      if (mcor_load_wall_cell(job, brick, inner, &cell) && mcor_is_wall_cell(job, &cell))
-      {
-        MCOR_TRY(mcor_cap_wall_cell(job, &cell));
-      }
-    }
-    MCOR_TRY(b % 1024 == 0 ? mcor_report_launch(context) : MCOR_OK);
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_cap_walls(mcor_cap_job* cap)
 {
   mcor_wall_job job = { .cap = cap };
@@ -325,10 +452,23 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap)
   mcor_status status = mcor_load_wall(cap->context, &cap->points, &job.wall);
   status = status == MCOR_OK ? mcor_load_wall_edges(&job) : status;
   cap->border = &border;
-  status = status == MCOR_OK ? mcor_cap_wall_cells(&job) : status;
+  for (int64_t i = 0; i < job.wall.count * MCOR_BRICK_NODES && status == MCOR_OK; ++i)
+  {
+    const mcor_wall_brick* brick = &job.wall.bricks[i / MCOR_BRICK_NODES];
+    const int inner = (int)(i % MCOR_BRICK_NODES);
+    mcor_wall_cell cell;
+    if (mcor_load_wall_cell(&job, brick, inner, &cell) && mcor_is_wall_cell(&job, &cell))
+    {
+      status = mcor_cap_wall_cell(&job, &cell);
+    }
+    status = status == MCOR_OK && i % (1024 * MCOR_BRICK_NODES) == MCOR_BRICK_NODES - 1
+      ? mcor_report_launch(cap->context)
+      : status;
+  }
   status = status == MCOR_OK ? mcor_place_cap_cuts(cap) : status;
   cap->border = NULL;
-  mcor_free_wall(&job.wall);
+  mcor_table_free(&job.wall.index);
+  free(job.wall.bricks);
   free(job.edges);
   return status;
 }

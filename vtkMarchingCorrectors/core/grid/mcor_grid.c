@@ -191,7 +191,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   const mcor_stage_data* stage = &context->stage;
   const uint64_t cells = mcor_make_levels(context, staging);
   const int count = grid->count;
-  MCOR_TRY(mcor_unmap_staging(context, staging));
+  MCOR_TRY(mcor_unmap_all(context, staging->views, staging->view_count, MCOR_OK));
   MCOR_TRY(mcor_write(
     context, &grid->level_buffer, grid->levels, (size_t)grid->level_count * sizeof(mcor_level)));
   MCOR_TRY(mcor_reserve(context, &grid->cell_keys, n * sizeof(cl_ulong)));
@@ -291,14 +291,14 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
 {
-  mcor_staging staging = { 0 };
-  mcor_status status = mcor_stage(context, input, &staging);
+  mcor_staging staging = { .context = context, .input = input };
+  mcor_status status = mcor_stage(&staging);
   status =
     status == MCOR_OK ? mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15) : status;
   context->grid.count = staging.count;
   context->attributes.kept = 0; /* in another order */
   status = status == MCOR_OK && staging.count > 0 ? mcor_sort_particles(context, &staging) : status;
-  const mcor_status unmapped = mcor_unmap_staging(context, &staging);
+  const mcor_status unmapped = mcor_unmap_all(context, staging.views, staging.view_count, MCOR_OK);
   MCOR_TRY(status);
   MCOR_TRY(unmapped);
   if (staging.count > 0)

@@ -10,29 +10,22 @@
 #include <stdio.h>
 #include <string.h>
 
-static mcor_status mcor_check_period(mcor_context* context, const mcor_options* options)
+static mcor_status mcor_check_sides(mcor_context* context, const mcor_options* options)
 {
+  for (int a = 0; a < 3 && mcor_has_box(options); ++a)
+  {
+    const double from = options->box[2 * a], to = options->box[2 * a + 1];
+    MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
+      "The box along %c goes from %g to %g; %s.", mcor_axis_letter(context, a), from, to,
+      isnan(from) || isnan(to) ? "both must be numbers"
+                               : "the first must be lower than the second");
+  }
   for (int a = 0; a < 3; ++a)
   {
     const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
     MCOR_RETURN_IF(!isfinite(from) || !isfinite(to) || from > to, context, MCOR_INVALID_ARGUMENT,
       "The period along %c goes from %g to %g; both must be finite, and the second must not be "
       "lower.",
-      mcor_axis_letter(context, a), from, to);
-  }
-  return MCOR_OK;
-}
-
-static mcor_status mcor_check_box(mcor_context* context, const mcor_options* options)
-{
-  for (int a = 0; a < 3 && mcor_has_box(options); ++a)
-  {
-    const double from = options->box[2 * a], to = options->box[2 * a + 1];
-    MCOR_RETURN_IF(isnan(from) || isnan(to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; both must be numbers.", mcor_axis_letter(context, a),
-      from, to);
-    MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; the first must be lower than the second.",
       mcor_axis_letter(context, a), from, to);
   }
   return MCOR_OK;
@@ -150,7 +143,7 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
     "%s cannot be combined with pair seeds. Choose complete seeds.", other);
 #undef MCOR_NEED
   MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
-  return mcor_check_box(context, options);
+  return mcor_check_sides(context, options);
 }
 
 /* Checks an array's type and number of components. */
@@ -214,58 +207,40 @@ mcor_status mcor_check_scalar_form(mcor_context* context, const mcor_input* inpu
                                 : MCOR_OK;
 }
 
-static mcor_status mcor_check_scalar(
-  mcor_context* context, const mcor_input* input, const mcor_options* options)
-{
-  if (options->field == MCOR_WEIGHT_SUM)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_check_scalar_form(context, input));
-  const int components = mcor_components(&input->scalar);
-  MCOR_TRY(mcor_check_array(
-    context, input, &input->scalar, MCOR_SKIP_SOLIDS, "scalar", components, false));
-  return input->scalar_dot.data ? mcor_check_array(context, input, &input->scalar_dot,
-                                    MCOR_SKIP_SOLIDS, "scalar", components, false)
-                                : MCOR_OK;
-}
-
+/* Checks the arrays that particles have whatever the field is. */
 static mcor_status mcor_check_particles(mcor_context* context, const mcor_input* input)
 {
   const mcor_skip skip = context->run.uses_solids ? MCOR_SKIP_ABSENT : MCOR_SKIP_SOLIDS;
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  MCOR_TRY(mcor_check_array(context, input, &positions, skip, "position", 3, false));
-  if (!input->estimate_smoothing_length)
+  const bool has_volume = mcor_is_given(&input->volume),
+             has_mass = !has_volume && mcor_is_given(&input->mass);
+  const mcor_array* const widening = mcor_is_given(&input->widening) ? &input->widening : NULL;
+  const struct
   {
-    MCOR_RETURN_IF(!input->smoothing_length.data && input->smoothing_length.constant == 0, context,
-      MCOR_INVALID_ARGUMENT,
-      "There is no smoothing length. Name its array, give a constant, or have it estimated.");
-    MCOR_TRY(mcor_check_array(
-      context, input, &input->smoothing_length, skip, "smoothing length", 1, true));
+    const mcor_array* array; /* NULL: there is none */
+    const char* role;
+  } arrays[] = { { input->estimate_smoothing_length ? NULL : &input->smoothing_length,
+                   "smoothing length" },
+    { widening, "widening" }, { has_volume ? &input->volume : NULL, "volume" },
+    { has_mass ? &input->mass : NULL, "mass" },
+    { has_mass && mcor_is_given(&input->density) ? &input->density : NULL, "density" } };
+  MCOR_TRY(mcor_check_array(context, input, &input->positions, skip, "position", 3, false));
+  MCOR_RETURN_IF(arrays[0].array && !mcor_is_given(arrays[0].array), context, MCOR_INVALID_ARGUMENT,
+    "There is no smoothing length. Name its array, give a constant, or have it estimated.");
+  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+  {
+    MCOR_TRY(arrays[i].array
+        ? mcor_check_array(context, input, arrays[i].array, skip, arrays[i].role, 1, true)
+        : MCOR_OK);
   }
-  if (mcor_is_given(&input->widening))
+  if (widening)
   {
     double range[2];
-    MCOR_TRY(mcor_check_array(context, input, &input->widening, skip, "widening", 1, true));
-    mcor_find_range(context, &input->widening, input->solid, skip, input->count, 0, range);
+    mcor_find_range(context, widening, input->solid, skip, input->count, 0, range);
     MCOR_RETURN_IF(range[0] < 1, context, MCOR_INVALID_DATA,
       "The least factor of the smoothing lengths is %g; it must be at least 1.", range[0]);
     MCOR_RETURN_IF(mcor_needs_density(input), context, MCOR_INVALID_ARGUMENT,
       "With factors of the smoothing lengths volumes cannot be computed. Provide those of the "
       "lengths themselves, which mcor_widen returns.");
-  }
-  if (mcor_is_given(&input->volume))
-  {
-    MCOR_TRY(mcor_check_array(context, input, &input->volume, skip, "volume", 1, true));
-  }
-  else if (mcor_is_given(&input->mass))
-  {
-    MCOR_TRY(mcor_check_array(context, input, &input->mass, skip, "mass", 1, true));
-    if (mcor_is_given(&input->density))
-    {
-      MCOR_TRY(mcor_check_array(context, input, &input->density, skip, "density", 1, true));
-    }
   }
   return MCOR_OK;
 }
@@ -274,7 +249,6 @@ mcor_status mcor_check_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   MCOR_TRY(mcor_check_options(context, options));
-  MCOR_TRY(mcor_check_period(context, options));
   MCOR_RETURN_IF(input->attribute_count < 0, context, MCOR_INVALID_ARGUMENT,
     "attribute_count is %d; it must not be negative.", input->attribute_count);
   MCOR_RETURN_IF(input->attribute_count > 0 && !input->attributes, context, MCOR_INVALID_ARGUMENT,
@@ -293,7 +267,16 @@ mcor_status mcor_check_input(
   {
     MCOR_TRY(mcor_check_particles(context, input));
   }
-  MCOR_TRY(mcor_check_scalar(context, input, options));
+  if (options->field != MCOR_WEIGHT_SUM)
+  {
+    const mcor_array* const scalars[] = { &input->scalar, &input->scalar_dot };
+    MCOR_TRY(mcor_check_scalar_form(context, input));
+    for (int i = 0; i < (input->scalar_dot.data ? 2 : 1); ++i)
+    {
+      MCOR_TRY(mcor_check_array(context, input, scalars[i], MCOR_SKIP_SOLIDS, "scalar",
+        mcor_components(scalars[i]), false));
+    }
+  }
   for (int a = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* attribute = &input->attributes[a];

@@ -59,30 +59,27 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_far_job* job = data;
   const mcor_input* input = job->input;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
+  mcor_places p;
   job->used[slice] = job->absent[slice] = job->fluid[slice] = 0;
   job->first[slice] = INT64_MAX;
   job->farthest[slice] = 0;
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  for (; mcor_read_places(job->context, input, first, last, &p) > 0; first += p.count)
   {
-    const int count = mcor_chunk_of(last - begin);
-    mcor_read_positions(input, begin, count, x);
-    mcor_read_smoothing_length(job->context, input, begin, count, h);
-    mcor_widen_lengths(input, begin, count, h, length);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < p.count; ++i)
     {
-      const int64_t particle = begin + i;
+      const int64_t particle = first + i;
       const uint8_t was = input->solid ? input->solid[particle] : 0;
-      const double at[3] = { x[0][i], x[1][i], x[2][i] };
+      const double at[3] = { p.x[0][i], p.x[1][i], p.x[2][i] };
       const bool is_used = mcor_is_used(job->context, input, particle);
-      const bool is_far = is_used && mcor_is_far(job, at, length[i]);
+      const bool is_far = is_used && mcor_is_far(job, at, p.length[i]);
       job->far->solid[particle] = is_far ? MCOR_ABSENT : was;
       job->used[slice] += is_used;
       job->absent[slice] += is_far;
       job->fluid[slice] += !is_far && !was;
       job->first[slice] = is_far && particle < job->first[slice] ? particle : job->first[slice];
-      job->farthest[slice] = is_used && !is_far ? fmax(job->farthest[slice], length[i] * job->reach)
-                                                : job->farthest[slice];
+      job->farthest[slice] = is_used && !is_far
+        ? fmax(job->farthest[slice], p.length[i] * job->reach)
+        : job->farthest[slice];
     }
   }
 }
@@ -132,12 +129,10 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
   MCOR_TRY(mcor_choose_samples(context, job->input, MCOR_FLUID_PARTICLES, &one));
   for (int64_t i = 0; i < job->input->count; ++i)
   {
-    mcor_array positions = job->input->positions;
-    positions.components = 3;
     bool same = !(job->input->solid && job->input->solid[i]);
     for (int a = 0; a < 3; ++a)
     {
-      same = same && mcor_array_at(&positions, i, a) == one.sample[0].x[a];
+      same = same && mcor_array_at(&job->input->positions, i, a) == one.sample[0].x[a];
     }
     job->far->solid[i] = same ? 0 : job->far->solid[i];
   }
@@ -172,11 +167,9 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
   const int64_t own = far->first;
   MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &far->first));
   bool is_mine = own == far->first;
-  mcor_array positions = job->input->positions;
-  positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    const double at = is_mine ? mcor_array_at(&positions, own, a) : DBL_MAX;
+    const double at = is_mine ? mcor_array_at(&job->input->positions, own, a) : DBL_MAX;
     far->place[a] = at;
     MCOR_TRY(mcor_reduce_double(context, MCOR_LEAST, &far->place[a]));
     is_mine = is_mine && at == far->place[a];
@@ -230,8 +223,6 @@ mcor_status mcor_leave_out_again(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_far* far)
 {
   const mcor_measure* m = &options->globals->measured;
-  mcor_array positions = input->positions;
-  positions.components = 3;
   far->solid = malloc((size_t)input->count + 1);
   MCOR_TRY(mcor_allocated(context, far->solid));
   for (int64_t i = 0; i < input->count; ++i)
@@ -239,7 +230,7 @@ mcor_status mcor_leave_out_again(
     bool is_far = false;
     for (int a = 0; a < 3; ++a)
     {
-      const double x = mcor_array_at(&positions, i, a);
+      const double x = mcor_array_at(&input->positions, i, a);
       const bool is_open = !(options->periodic[2 * a] < options->periodic[2 * a + 1]);
       is_far = is_far || (is_open && (x < m->low[a] || x > m->high[a]));
     }

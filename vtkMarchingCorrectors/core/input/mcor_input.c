@@ -64,12 +64,20 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
 
 void mcor_read_positions(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
 {
-  mcor_array positions = input->positions;
-  positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    mcor_read_array(&positions, first, count, a, x[a]);
+    mcor_read_array(&input->positions, first, count, a, x[a]);
   }
+}
+
+int mcor_read_places(const mcor_context* context, const mcor_input* input, int64_t first,
+  int64_t last, mcor_places* places)
+{
+  places->count = mcor_chunk_of(last - first);
+  mcor_read_positions(input, first, places->count, places->x);
+  mcor_read_smoothing_length(context, input, first, places->count, places->h);
+  mcor_widen_lengths(input, first, places->count, places->h, places->length);
+  return places->count;
 }
 
 /* Moves the elements that are not skipped to the front of a chunk that begins with particle
@@ -285,16 +293,6 @@ static int mcor_exponent_of(const mcor_array* array, int64_t i)
   return exponent;
 }
 
-static bool mcor_is_zero(const mcor_array* array, int64_t i)
-{
-  bool zero = true;
-  for (int c = 0; c < mcor_components(array); ++c)
-  {
-    zero = zero && mcor_array_at(array, i, c) == 0;
-  }
-  return zero;
-}
-
 /* Computes a^T b of particle i, or its root. Scales by powers of 2, so that no product overflows
  * or vanishes on the way. */
 static double mcor_scaled_product(
@@ -364,7 +362,7 @@ static void mcor_read_magnitude(const mcor_array* a, int64_t first, int count, d
     {
       out[i] = sqrt(out[i]);
     }
-    else if (out[i] != 0 || !mcor_is_zero(a, first + i))
+    else if (out[i] != 0 || mcor_exponent_of(a, first + i) != 0)
     {
       out[i] = mcor_scaled_product(a, a, first + i, true);
     }

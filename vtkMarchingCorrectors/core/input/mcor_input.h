@@ -81,6 +81,15 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
 /* Reads all three coordinates of at most MCOR_CHUNK particles. */
 void mcor_read_positions(
   const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
+/* Places of a chunk of particles, their smoothing lengths, and the lengths of their kernels. */
+typedef struct mcor_places
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
+} mcor_places;
+/* Reads the next chunk of [first, last); returns its count, 0 at the end. */
+int mcor_read_places(const mcor_context* context, const mcor_input* input, int64_t first,
+  int64_t last, mcor_places* places);
 /* Moves the positions of present, finite particles to the front; returns their number. */
 int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
 /* Reads at most MCOR_CHUNK values. A derived scalar that is too large for a number is not

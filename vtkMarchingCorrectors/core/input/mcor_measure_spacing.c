@@ -127,11 +127,9 @@ static mcor_status mcor_scale_positions(
   int exponent = 0, most = INT_MIN;
   double largest[3];
   job->input = input;
-  mcor_array positions = input->positions;
-  positions.components = 3;
   for (int a = 0; a < 3; ++a)
   {
-    largest[a] = mcor_largest(context, input, &positions, a);
+    largest[a] = mcor_largest(context, input, &input->positions, a);
   }
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
   for (int a = 0; a < 3; ++a)

@@ -115,19 +115,15 @@ static void mcor_wall_add(
 static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_wall* wall = data;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK];
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  mcor_places p;
+  for (; mcor_read_places(wall->context, wall->input, first, last, &p) > 0; first += p.count)
   {
-    const int count = mcor_chunk_of(last - begin);
-    mcor_read_positions(wall->input, begin, count, x);
-    mcor_read_smoothing_length(wall->context, wall->input, begin, count, h);
-    mcor_widen_lengths(wall->input, begin, count, h, length);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < p.count; ++i)
     {
-      const double at[3] = { x[0][i], x[1][i], x[2][i] };
-      if (mcor_is_used(wall->context, wall->input, begin + i))
+      const double at[3] = { p.x[0][i], p.x[1][i], p.x[2][i] };
+      if (mcor_is_used(wall->context, wall->input, first + i))
       {
-        mcor_wall_add(wall, slice, begin + i, at, h[i], length[i]);
+        mcor_wall_add(wall, slice, first + i, at, p.h[i], p.length[i]);
       }
     }
   }

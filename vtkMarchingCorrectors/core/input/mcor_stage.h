@@ -5,22 +5,41 @@
 
 #include "mcor_box.h"
 #include "mcor_input.h"
+#include "mcor_parallel.h"
+
+/* What one slice of the input stages. */
+typedef struct mcor_stage_slice
+{
+  int64_t used, to; /* images; where they begin */
+  int64_t heavy;    /* the first particle whose weight is too large; -1: none */
+  bool changed;     /* not as measured: another thread writes to the arrays */
+  double largest_weight;
+} mcor_stage_slice;
 
 /* The input in the device's form, in input order, without unused solids. The arrays are views of
- * the buffers of the same names. */
+ * the stage's buffers of the same names. */
+#define MCOR_STAGE_VIEWS 6
 typedef struct mcor_staging
 {
+  mcor_context* context;
+  const mcor_input* input;
   int count;
-  void* x[3];         /* fix */
-  void *inv_h, *size; /* real; size: volume, mass or 1, negative for solids */
-  double size_scale;  /* see mcor_size_scale */
-  void* level;        /* uint8_t */
+  void* x[3];                           /* fix */
+  void *inv_h, *size;                   /* real; size: volume, mass or 1, negative for solids */
+  void* level;                          /* uint8_t */
+  mcor_mapping views[MCOR_STAGE_VIEWS]; /* of these six, once there are any */
+  int view_count;
+  double size_scale;           /* see mcor_size_scale */
+  double h_max;                /* the largest support that was measured, with rounding */
+  const mcor_reach_box* reach; /* NULL: all particles are needed */
+  uint8_t* images;             /* by particle: whether an image is staged; NULL without reach */
+  mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;
 
 /* Returns the factor from the input's volume or mass to the device's. */
 double mcor_size_scale(mcor_context* context, const mcor_input* input);
-mcor_status mcor_stage(mcor_context* context, const mcor_input* input, mcor_staging* staging);
-mcor_status mcor_unmap_staging(mcor_context* context, mcor_staging* staging);
+/* context and input are set. */
+mcor_status mcor_stage(mcor_staging* staging);
 
 /* Returns how many digits shorter than fixed-point numbers the positions of particles with this
  * support are, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
@@ -37,27 +56,19 @@ typedef struct mcor_stage_chunk
   int32_t source[MCOR_CHUNK];
 } mcor_stage_chunk;
 
-/* Reads positions and smoothing lengths of a chunk whose count is set. reach: NULL, or the box
- * and period. */
-void mcor_read_stage_places(const mcor_context* context, const mcor_input* input, int64_t first,
-  const mcor_reach_box* reach, mcor_stage_chunk* chunk);
-/* Reads their volumes or masses, too. */
-void mcor_read_stage_chunk(const mcor_context* context, const mcor_input* input, int64_t first,
-  const mcor_staging* staging, const mcor_reach_box* reach, mcor_stage_chunk* chunk);
+/* Reads positions and smoothing lengths of a chunk whose count is set; then their volumes or
+ * masses. */
+void mcor_read_stage_places(const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk);
+void mcor_read_stage_sizes(const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk);
 
 /* Returns the weight above which the device's numbers would be infinite. */
 double mcor_weight_limit(const mcor_context* context);
 /* Returns the weight of particle i of a chunk on the device: large where the volume is huge
  * against the smoothing length. */
 double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i);
-/* Returns the input index of the first particle of a chunk whose weight is too large, else -1.
- * Keeps the largest weight. */
-int64_t mcor_find_heavy(const mcor_context* context, const mcor_input* input,
-  const mcor_stage_chunk* chunk, double* largest_weight);
 
 /* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
-void mcor_store_stage_chunk(const mcor_context* context, const mcor_input* input,
-  mcor_stage_chunk* chunk, const mcor_staging* staging, int64_t to);
+void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk* chunk, int64_t to);
 /* Writes numbers to `array` from element `first` on, in the device's precision. */
 void mcor_store_reals(
   const mcor_context* context, void* array, int64_t first, const double* values, int count);

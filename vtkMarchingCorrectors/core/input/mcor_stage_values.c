@@ -4,7 +4,6 @@
 /* Copies values of particles from the caller's arrays to the device, in the order of the search
  * grid. */
 
-#include "mcor_parallel.h"
 #include "mcor_stage.h"
 
 #include <math.h>

@@ -359,23 +359,20 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_reach_job* job = data;
   const mcor_lattice* lattice = &job->context->lattice;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], length[MCOR_CHUNK], farthest = 0;
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  double farthest = 0;
+  mcor_places p;
+  for (; mcor_read_places(job->context, job->input, first, last, &p) > 0; first += p.count)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
-    mcor_read_smoothing_length(job->context, job->input, begin, count, h);
-    mcor_widen_lengths(job->input, begin, count, h, length);
-    mcor_read_positions(job->input, begin, count, x);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < p.count; ++i)
     {
-      const int level = mcor_tree_level_of(h[i], job->box->h_min, job->box->top);
-      const double support = mcor_reach_of(job->box, length[i], level);
+      const int level = mcor_tree_level_of(p.h[i], job->box->h_min, job->box->top);
+      const double support = mcor_reach_of(job->box, p.length[i], level);
       double at[3];
       mcor_images images;
       for (int a = 0; a < 3; ++a)
       {
         const double fixed =
-          (x[a][i] / lattice->edge[a] - (double)lattice->origin[a]) * (double)lattice->step[a];
+          (p.x[a][i] / lattice->edge[a] - (double)lattice->origin[a]) * (double)lattice->step[a];
         at[a] = mcor_wrap(job->box, a, fixed) * job->box->unit;
       }
       if (support > farthest && mcor_list_images(job->box, at, support, &images) > 0)

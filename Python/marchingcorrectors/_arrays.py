@@ -85,9 +85,10 @@ SUMMED = "Density"  # of isosurface(), where there is no such array
 
 
 def choose(only, array_of):
-    """Which particles have the values of `only`, {name: value or (low, high)}. array_of(name): an array."""
-    present = True
-    for name, wanted in only.items():
+    """Which particles have the values of `only`: {name: value or (low, high)}, or pairs of these; of several for one
+    array, any may hold. array_of(name): an array."""
+    chosen = {}
+    for name, wanted in only.items() if isinstance(only, Mapping) else only:
         array = as_array(without_unit(array_of(name)), f"array '{name}' of only")
         if array.ndim != 1 or array.dtype.kind not in "fiub":
             raise InvalidArgument(f"only names the array '{name}', of {array.dtype} and of the shape {array.shape}; it must "
@@ -98,8 +99,8 @@ def choose(only, array_of):
         low, high = [convert(float, f"value of '{name}' in only", end) for end in ends]
         if not low <= high:
             raise InvalidArgument(f"only['{name}'] is {wanted!r}; the lower value comes first.")
-        present = present & (array >= low) & (array <= high)
-    return None if present is True else present
+        chosen[name] = chosen.get(name, False) | (array >= low) & (array <= high)
+    return np.all(list(chosen.values()), axis=0) if chosen else None
 
 
 def as_bytes(text):

@@ -176,11 +176,7 @@ def find_words(given, names, particles):
             words["volume"] = given.dp ** dimension
     if given.within is not None:
         words["within"] = given.within
-    chosen = {}
-    for name, ends in given.only:
-        chosen[name] = choose({name: ends}, particles.array) | chosen.get(name, False)
-    if chosen:
-        words["only"] = np.all(list(chosen.values()), axis=0)
+    words["only"] = choose(given.only, particles.array)
     if given.fluid is not None:
         words["solid"] = particles.array(given.fluid[0]) != given.fluid[1]
     if getattr(given, "cubes", None) == "uniform":

@@ -16,6 +16,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import pyvista
+from vtkmodules.vtkIOLegacy import vtkPolyDataWriter, vtkUnstructuredGridWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
 import marchingcorrectors as mc
 from marchingcorrectors import io
@@ -355,8 +358,6 @@ class Layouts(Case):
             self.assertEqual(particles.arrays["id"].tolist(), list(range(len(X))))
 
     def test_bodies(self):
-        import pyvista
-
         for name, chosen in (("WaterBody_1.vtp", ~WALL), ("WallBoundary_1.vtp", WALL)):
             body = pyvista.PolyData(X[chosen])
             body["Density"] = DENSITY[chosen]
@@ -405,8 +406,6 @@ class Layouts(Case):
         self.assertLess(np.abs(particles.arrays["Velocity"][~particles.solid] - X[~WALL]).max(), 1e-6)
 
     def test_walls_by_names(self):
-        import pyvista
-
         for wall in ("rb_particle_data_0_1.vtk", "Obstacle.vtp", "PartBound_0000.vtk", "WallBoundary_0.vtp", "Rigid.vtu"):
             for name, chosen in (("ParticleData_Fluid_1.vtk", ~WALL), (wall, WALL)):
                 body = pyvista.PolyData(X[chosen])
@@ -416,8 +415,6 @@ class Layouts(Case):
 
     def test_partvtk(self):
         """Types tell of walls, in one file and in several, whatever these are called."""
-        import pyvista
-
         kinds = np.where(WALL, 1, 3).astype(np.uint8)
         for name, chosen in (("PartAll_0001.vtk", X[:, 0] < 9), ("PartFluid_0001.vtk", ~WALL), ("PartMoving_0001.vtk", WALL)):
             body = pyvista.PolyData(X[chosen].astype(np.float32))
@@ -430,8 +427,6 @@ class Layouts(Case):
 
     def test_legacy(self):
         """SPlisHSPlasH's ParticleData_Fluid_1.vtk: an unstructured grid, binary."""
-        import pyvista
-
         grid = pyvista.PolyData(X.astype(np.float32)).cast_to_unstructured_grid()
         grid["id"], grid["velocity"] = np.arange(len(X), dtype=np.uint32), X.astype(np.float32)
         grid.save(self.at("ParticleData_Fluid_1.vtk"), binary=True)
@@ -443,9 +438,6 @@ class Layouts(Case):
 
     def test_legacy_of_all_kinds(self):
         """Versions, bytes and text, bodies and grids, arrays of cells: as VTK reads them."""
-        import pyvista
-        from vtkmodules.vtkIOLegacy import vtkPolyDataWriter, vtkUnstructuredGridWriter
-
         for version, text, grid in itertools.product((42, 51), (False, True), (False, True)):
             body = pyvista.PolyData(X.astype(np.float32) if grid else X)
             body["an id"], body["Velocity"], body["t"] = np.arange(len(X)), X.astype(np.float32), np.tile(DENSITY[:, None], 9)
@@ -465,9 +457,6 @@ class Layouts(Case):
 
     def test_xml_of_all_kinds(self):
         """Text, base64 and bytes, packed or not, both byte orders and sizes of headers: as VTK reads them."""
-        import pyvista
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
-
         random = np.random.default_rng(43)
         for mode, packed, order, header in itertools.product(
                 ("Ascii", "Binary", "Appended", "bytes"), ("None", "ZLib", "LZ4", "LZMA"), (0, 1), (32, 64)):
@@ -502,9 +491,6 @@ class Layouts(Case):
 
     def test_vertices_in_a_mesh(self):
         """Points that no vertex uses are a mesh's; arrays of the vertices' cells are theirs. As VTK writes them."""
-        import pyvista
-        from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
-
         box = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
         order = np.random.default_rng(44).permutation(len(X))
         cells = np.concatenate([box.cells, np.column_stack([np.ones(len(X), int), box.n_points + order]).ravel()])
@@ -593,8 +579,6 @@ class Layouts(Case):
 
     def test_quantities(self):
         """What is given takes the place of what the file has, and nothing else; names are those of the core."""
-        import pyvista
-
         body = pyvista.PolyData(X)
         body["Rhop"], body["hsml"], body["m1"], body["Velocity"] = DENSITY, np.full(len(X), H), MASS, X
         body.save(self.at("body.vtp"))
@@ -638,8 +622,6 @@ class Layouts(Case):
 
     def test_legacy_strings(self):
         """Beside numbers, in text and bytes."""
-        import pyvista
-
         for binary in (False, True):
             body = pyvista.PolyData(X)
             body.field_data["constants"], body.field_data["TIME"] = ["h:0.025", "", "m 0.56", "x" * 300], [0.5]
@@ -700,8 +682,6 @@ class Layouts(Case):
 class Conversion(Case):
     def test_blocks(self):
         """Of all blocks as one set; those with names of walls are walls."""
-        import pyvista
-
         blocks = pyvista.MultiBlock()
         for name, chosen in (("water", ~WALL), ("wall", WALL)):
             blocks[name] = pyvista.PolyData(X[chosen])
@@ -728,8 +708,6 @@ class Conversion(Case):
         self.assertLess(np.abs(data["SmoothingLength"] - H).max(), 1e-12)
 
     def test_program(self):
-        import pyvista
-
         for i in range(2):
             write_gadget(self.at(f"s{i}.hdf5"))
         with h5py.File(self.at("s1.hdf5"), "a") as file:

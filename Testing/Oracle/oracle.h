@@ -198,22 +198,6 @@ extern "C"
   void oracle_edge_root(const oracle_lattice* lattice, const oracle_field* field, double iso,
     int64_t edge, double point[3], oracle_sample* sample);
 
-  /* The surface as triangles: point n lies on edge n of the surface; in each valid cell the
-   * crossings of its faces are joined to loops (where a face has four, nodes above iso are kept
-   * apart), each loop is cut into a fan. Right-hand normals point to lower values. Loops that use
-   * an ambiguous face twice can put a diagonal into that face, so this is a measure of area and
-   * volume, not always a manifold. */
-  typedef struct oracle_mesh
-  {
-    int64_t point_count, triangle_count;
-    double* points;     /* [point_count][3] */
-    int32_t* triangles; /* [triangle_count][3] */
-  } oracle_mesh;
-
-  int oracle_create_mesh(oracle_mesh* mesh, const oracle_surface* surface,
-    const oracle_lattice* lattice, const oracle_field* field, double iso);
-  void oracle_free_mesh(oracle_mesh* mesh);
-
 #ifdef __cplusplus
 }
 #endif

@@ -260,36 +260,6 @@ static void case_check_accuracy(case_run* run, int trimmed)
   }
 }
 
-/* Area and volume of the oracle's own polygons, which keep nodes above apart on ambiguous faces.
- * Loops of more than three sides may be cut in other ways, hence the tolerance. */
-static void case_check_measure(case_run* run)
-{
-  const oracle_reference* r = run->reference;
-  oracle_mesh mesh;
-  mesh_report own;
-  if (run->at->rough || r->surface.edge_count > 6000 || r->surface.edge_count == 0 ||
-    run->options.topology != MCOR_TOPOLOGY_TABLE)
-  {
-    return;
-  }
-  if (!oracle_create_mesh(&mesh, &r->surface, &r->lattice, &r->field, r->limits.iso))
-  {
-    case_expect(run, 0, "out of memory");
-    return;
-  }
-  if (mesh_check(mesh.points, mesh.point_count, mesh.triangles, mesh.triangle_count, &own))
-  {
-    case_expect(run, fabs(run->mesh.area / own.area - 1.0) < 0.02, "area %.6g, not %.6g",
-      run->mesh.area, own.area);
-    case_expect(run,
-      run->mesh.boundary_edges > 0 ||
-        fabs(run->mesh.volume - own.volume) < 0.02 * own.area * r->lattice.cube,
-      "volume %.6g, not %.6g", run->mesh.volume, own.volume);
-    mesh_free_report(&own);
-  }
-  oracle_free_mesh(&mesh);
-}
-
 /* Extracts, checks, prints; the surface and its report stay in *run. */
 static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pairs)
 {
@@ -337,7 +307,6 @@ static int case_extract(oracle_suite* suite, case_run* run, int trimmed, int pai
   case_check_accuracy(run, trimmed);
   if (!trimmed && !pairs)
   {
-    case_check_measure(run);
     case_expect(run, !run->at->has_euler || run->mesh.euler == run->at->euler,
       "Euler number %lld, not %d", (long long)run->mesh.euler, run->at->euler);
   }

@@ -403,21 +403,6 @@ static void test_known_sphere(void)
   ORACLE_CHECK(crossed > 100 && crossed == reference.surface.edge_count,
     "%lld crossed edges, not %lld", (long long)reference.surface.edge_count, (long long)crossed);
   ORACLE_CHECK(reference.surface.component_count == 1, "components");
-  oracle_mesh mesh;
-  mesh_report report;
-  ORACLE_CHECK(
-    oracle_create_mesh(&mesh, &reference.surface, &reference.lattice, &reference.field, iso),
-    "no memory");
-  ORACLE_CHECK(
-    mesh_check(mesh.points, mesh.point_count, mesh.triangles, mesh.triangle_count, &report),
-    "no memory");
-  ORACLE_CHECK(report.euler == 2 && report.boundary_edges == 0 && report.components == 1,
-    "Euler number %lld", (long long)report.euler);
-  const double volume = 4.0 / 3.0 * 3.14159265358979323846 * low * low * low;
-  ORACLE_CHECK(fabs(report.volume / volume - 1.0) < 0.01 && report.volume < volume,
-    "volume %g of %g", report.volume, volume);
-  mesh_free_report(&report);
-  oracle_free_mesh(&mesh);
   oracle_free_reference(&reference);
   particle_set_free(&set);
 }

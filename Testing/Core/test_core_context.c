@@ -413,14 +413,13 @@ static int on_building(void* user, double fraction, const char* phase)
   return 0;
 }
 
-/* A context's first run builds, and says so; a later one does not. All that a run takes is building
- * or one of the phases. */
-static void test_build_seconds(void** state)
+/* A context's first run with a kernel builds, and says so; a later one does not. */
+static void test_build(void** state)
 {
   (void)state;
   mcor_context* context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
-  core_set set = core_make_block(24, 0.2, 3, core_slope);
+  core_set set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_options options = core_options(&iso);
   int told = 0;
@@ -431,22 +430,9 @@ static void test_build_seconds(void** state)
   {
     options.sph_kernel = run == 2 ? MCOR_QUADRATIC : MCOR_CUBIC_SPLINE;
     told = 0;
-    const double begin = mcor_seconds();
     mcor_surface surface = core_extract(context, &input, &options);
-    const double whole = mcor_seconds() - begin;
-    double sum = surface.statistics.build_seconds;
-    for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
-    {
-      CORE_CHECK(
-        surface.statistics.seconds[p] > -1e-3, "phase %d: %g s", p, surface.statistics.seconds[p]);
-      sum += surface.statistics.seconds[p];
-    }
-    const bool builds = run != 1;
-    CORE_CHECK((surface.statistics.build_seconds > 0) == builds, "run %d: %g s of building", run,
-      surface.statistics.build_seconds);
-    CORE_CHECK((told > 0) == builds, "run %d: building was told %d times", run, told);
-    /* Others may have the processor between the phases. */
-    CORE_CHECK(sum <= whole && sum > 0.8 * whole - 0.03, "run %d: %g s of %g s", run, sum, whole);
+    CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == (run != 1),
+      "run %d: %g s of building, told %d times", run, surface.statistics.build_seconds, told);
     mcor_free_surface(&surface);
   }
   core_free_set(&set);
@@ -459,6 +445,6 @@ int main(void)
     cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
     cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_kept_buffers),
     cmocka_unit_test(test_devices), cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
-    cmocka_unit_test(test_build_seconds), cmocka_unit_test(test_statistics) };
+    cmocka_unit_test(test_build), cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

@@ -151,7 +151,7 @@ void TestRareArrays()
   }
 }
 
-// One array in several roles, and the same data as arrays of the output before.
+// One array in several roles.
 void TestSharedArrays()
 {
   auto cube = test::MakeCube();
@@ -165,21 +165,6 @@ void TestSharedArrays()
   filter->Update();
   CHECK(!*filter->GetErrorMessage());
   CHECK(filter->GetOutput()->GetNumberOfPoints() == 0); // constant: nowhere half of it
-
-  // The surface's own points as particles.
-  filter = test::MakeSphereFilter(cube);
-  filter->Update();
-  vtkNew<vtkPolyData> first;
-  first->ShallowCopy(filter->GetOutput());
-  const vtkIdType points = first->GetNumberOfPoints();
-  auto second = vtkSmartPointer<vtkMarchingCorrectors>::New();
-  second->SetInputData(first);
-  second->SetSmoothingLength(test::SmoothingLength);
-  second->FreeSurfaceOn();
-  second->Update();
-  CHECK(!*second->GetErrorMessage() && second->GetOutput()->GetNumberOfPoints() > 0);
-  CHECK(first->GetNumberOfPoints() == points);
-  CHECK(first->GetPointData()->GetNormals()->GetNumberOfTuples() == points);
 }
 
 void TestIntegerPoints()

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Two dimensions: lines, and what is filled between them; blocks.
+// Two dimensions: lines, and what is filled between them.
 #include "TestPlaneParticles.h"
 
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkFeatureEdges.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkTriangle.h"
 
 namespace
@@ -60,71 +59,6 @@ void TestBands()
     0); // each edge has two triangles, or is on the border
 }
 
-/** The particles on one side of the middle. */
-vtkSmartPointer<vtkPolyData> TakeHalf(vtkPolyData* all, bool right)
-{
-  auto half = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  half->GetPointData()->CopyAllocate(all->GetPointData());
-  for (vtkIdType i = 0; i < all->GetNumberOfPoints(); ++i)
-  {
-    const double* x = all->GetPoint(i);
-    if ((x[0] >= 0.0) == right)
-    {
-      half->GetPointData()->CopyData(all->GetPointData(), i, points->InsertNextPoint(x));
-    }
-  }
-  half->SetPoints(points);
-  return half;
-}
-
-double LengthOf(vtkMarchingCorrectors* filter)
-{
-  return filter->GetRunStatistics()->GetArray("Length")->GetComponent(0, 0);
-}
-
-// Blocks are one set of particles, with the lines of one data set; or each has lines of its own.
-void TestBlocks()
-{
-  auto whole = test::MakePlaneFilter();
-  auto* particles = vtkPolyData::SafeDownCast(whole->GetInput());
-  whole->FilledOn();
-  whole->Update();
-  vtkPolyData* expected = whole->GetOutput();
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, TakeHalf(particles, true));
-  blocks->SetBlock(2, TakeHalf(particles, false));
-  auto joined = test::MakePlaneFilter();
-  joined->SetInputDataObject(blocks);
-  joined->FilledOn();
-  joined->Update();
-  auto* output = vtkPolyData::SafeDownCast(joined->GetOutputDataObject(0));
-  CHECK(output && output->GetNumberOfCells() == expected->GetNumberOfCells());
-  for (vtkIdType i = 0; output && i < expected->GetNumberOfPoints(); ++i)
-  {
-    double a[3], b[3];
-    output->GetPoint(i, a);
-    expected->GetPoint(i, b);
-    CHECK(a[0] == b[0] && a[1] == b[1] && a[2] == b[2]);
-  }
-  joined->FilledOff();
-  joined->FreeSurfaceOn();
-  joined->SetNumberOfContours(1);
-  joined->SetValue(0, 0.5);
-  joined->Update();
-  CHECK(vtkPolyData::SafeDownCast(joined->GetOutputDataObject(0))->GetNumberOfLines() == 1);
-  CHECK(std::fabs(LengthOf(joined) - 8.4) < 0.3);
-  joined->SetBlocksToApart();
-  joined->Update();
-  auto* apart = vtkMultiBlockDataSet::SafeDownCast(joined->GetOutputDataObject(0));
-  for (const unsigned int i : { 0u, 2u })
-  {
-    auto* half = apart ? vtkPolyData::SafeDownCast(apart->GetBlock(i)) : nullptr;
-    CHECK(half && half->GetNumberOfLines() == 1 && half->GetNumberOfPoints() > 50);
-  }
-}
-
 void TestSpace()
 {
   auto filter = test::MakeSphereFilter(test::MakeCube());
@@ -140,7 +74,6 @@ void TestSpace()
 int TestPlane(int, char*[])
 {
   TestBands();
-  TestBlocks();
   TestSpace();
   return failures;
 }

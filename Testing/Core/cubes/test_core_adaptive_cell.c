@@ -258,113 +258,6 @@ static void test_turned_cells(void** state)
   }
 }
 
-/* ---- which diagonals ---- */
-
-/* Where slots' vertices are, in quarters of the cell's edge. */
-typedef int slot_places[MCOR_ADAPTIVE_SLOTS][3];
-
-static void find_places(const core_shape* cell, slot_places places)
-{
-  for (int f = 0; f < cell->facet_count; ++f)
-  {
-    const core_facet* facet = cell->facets + f;
-    for (int i = 0; i < facet->count; ++i)
-    {
-      const int a = facet->nodes[i], b = facet->nodes[(i + 1) % facet->count];
-      places[facet->slots[i]][0] = a % 3 + b % 3;
-      places[facet->slots[i]][1] = a / 3 % 3 + b / 3 % 3;
-      places[facet->slots[i]][2] = a / 9 + b / 9;
-    }
-  }
-}
-
-/* The shorter the better, rather not in a face of the cell, and in one facet not at all. */
-static int diagonal_cost(const core_shape* cell, const slot_places places, int a, int b)
-{
-  int cost = cell->forbidden[a][b] ? MCOR_ADAPTIVE_FORBIDDEN : 0, in_face = 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int p = places[a][axis], q = places[b][axis];
-    cost += (p - q) * (p - q);
-    in_face |= p == q && p % 4 == 0;
-  }
-  return cost + (in_face ? MCOR_ADAPTIVE_FLAT : 0);
-}
-
-/* The least sum of costs of n - 3 diagonals that cut a loop into triangles. */
-static int least_cost(const core_shape* cell, const slot_places places, const int* loop, int n)
-{
-  static int least[MCOR_ADAPTIVE_VERTICES][MCOR_ADAPTIVE_VERTICES];
-  for (int length = 1; length < n; ++length)
-  {
-    for (int a = 0; a + length < n; ++a)
-    {
-      const int b = a + length;
-      least[a][b] = length > 1 ? 1 << 30 : 0;
-      for (int c = a + 1; c < b; ++c)
-      {
-        const int sum = least[a][c] + least[c][b];
-        least[a][b] = sum < least[a][b] ? sum : least[a][b];
-      }
-      least[a][b] +=
-        length > 1 && length < n - 1 ? diagonal_cost(cell, places, loop[a], loop[b]) : 0;
-    }
-  }
-  return least[0][n - 1];
-}
-
-/* Of all ways to cut a cell's loops into triangles the best is taken. */
-static void check_diagonals(const core_shape* cell, const slot_places places, uint32_t above)
-{
-  uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
-  int8_t next[MCOR_ADAPTIVE_SLOTS];
-  int seen[MCOR_ADAPTIVE_SLOTS] = { 0 }, least = 0, twice = 0;
-  core_link_slots(cell, above, next);
-  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
-  {
-    int loop[MCOR_ADAPTIVE_VERTICES], n = 0;
-    for (int at = slot; next[at] >= 0 && !seen[at]; at = next[at])
-    {
-      seen[at] = 1;
-      loop[n++] = at;
-    }
-    least += n > 3 ? least_cost(cell, places, loop, n) : 0;
-  }
-  const int count = mcor_adaptive_triangulate(cell->split, above, triangles);
-  for (int i = 0; i < 3 * count; ++i)
-  {
-    const int a = triangles[i], b = triangles[i % 3 == 2 ? i - 2 : i + 1];
-    twice += next[a] == b ? 0 : diagonal_cost(cell, places, a, b);
-  }
-  CORE_CHECK(twice == 2 * least, "split %x, above %x: diagonals cost %d, not %d", cell->split,
-    above, twice / 2, least);
-}
-
-static void test_best_diagonals(void** state)
-{
-  static core_shape cell;
-  static uint32_t splits[CORE_SPLIT_CLASSES];
-  static slot_places places;
-  uint32_t random = 1;
-  (void)state;
-  assert_int_equal(core_list_splits(splits), CORE_SPLIT_CLASSES);
-  for (int c = 0; c < CORE_SPLIT_CLASSES; ++c)
-  {
-    core_make_shape(splits[c], &cell);
-    find_places(&cell, places);
-    for (int i = 0; i < 64 && splits[c] != 0; ++i)
-    {
-      uint32_t above = 0;
-      random = random * 1664525u + 1013904223u;
-      for (int k = 0; k < cell.node_count; ++k)
-      {
-        above |= (random >> 5 >> k & 1) << cell.nodes[k];
-      }
-      check_diagonals(&cell, places, above);
-    }
-  }
-}
-
 /* The case table's slot for axis << 3 | lower corner. */
 static int slot_of_edge(int edge)
 {
@@ -417,6 +310,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_no_split_is_the_case_table),
     cmocka_unit_test(test_other_bits_do_not_matter), cmocka_unit_test(test_turned_cells),
-    cmocka_unit_test(test_best_diagonals), cmocka_unit_test(test_all_cells) };
+    cmocka_unit_test(test_all_cells) };
   return cmocka_run_group_tests_name("adaptive_cell", tests, NULL, NULL);
 }

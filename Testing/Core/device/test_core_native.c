@@ -359,32 +359,11 @@ static void test_shares(void** state)
   }
 }
 
-/* What was not compiled is done by a driver, if none is named, and refused else. */
-static void test_what_was_not_compiled(void** state)
-{
-  (void)state;
-  core_set set = core_make_block(7, 0.3, 3, core_ball);
-  const double iso = 2;
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  setenv("MCOR_LANES", "1", 1); /* of a GPU's form nothing is */
-  mcor_context* context = make_native();
-  mcor_surface surface;
-  assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
-  assert_non_null(strstr(mcor_last_error(context), "were not compiled with this library"));
-  unsetenv("MCOR_LANES");
-  CORE_OK(context, mcor_extract(context, &input, &options, &surface));
-  mcor_free_surface(&surface);
-  mcor_free_context(context);
-  core_free_set(&set);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
     cmocka_unit_test(test_loops), cmocka_unit_test(test_fork),
     cmocka_unit_test(test_little_room_for_drivers), cmocka_unit_test(test_contexts_side_by_side),
-    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
-    cmocka_unit_test(test_what_was_not_compiled) };
+    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

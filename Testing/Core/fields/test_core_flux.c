@@ -72,12 +72,6 @@ static void move_uniform(const double x[3], double velocity[3], double* density)
   *density = 1000;
 }
 
-static void move_around(const double x[3], double velocity[3], double* density)
-{
-  memcpy(velocity, (double[3]){ 6 - x[1], x[0] - 11, 0 }, 3 * sizeof *velocity);
-  *density = 1;
-}
-
 static void move_anyhow(const double x[3], double velocity[3], double* density)
 {
   velocity[0] = sin(0.7 * x[1]) + 0.2 * x[0];
@@ -252,26 +246,6 @@ static void test_uniform_in_a_plane(void** state)
     check_reading(&r, 4, 4, "two components, axis", (size_t)axis);
     free_fluid(&made);
   }
-}
-
-/* Around an axis in a perfect lattice's plane of symmetry, of which means are exact there: nothing flows through a disc
- * all around, and as through a rigid body through half of it. */
-static void test_vortex(void** state)
-{
-  const shape across = { MCOR_SECTION_DISC, 2, { 11, 6, 5, 0, 0, 1 }, 3 };
-  const shape beside = { MCOR_SECTION_DISC, 2, { 11, 6, 5, 0, 1, 0 }, 3 };
-  const shape half = { MCOR_SECTION_RECTANGLE, 3, { 11, 6, 3, 11, 6, 7, 14, 6, 3 }, 0 };
-  fluid made = make_fluid(make_pool(0), move_around);
-  const mcor_input input = fluid_input(&made);
-  const mcor_options options = flux_options(MCOR_FLOAT32);
-  const double area = 9 * PI;
-  mcor_flux_reading r = flux_of(*state, &input, &options, &across);
-  CORE_CHECK(fabs(r.area - area) < 1e-6 * area && r.volume_flux == 0, "%g", r.volume_flux);
-  r = flux_of(*state, &input, &options, &beside);
-  CORE_CHECK(fabs(r.volume_flux) < 1e-6 * area, "%g", r.volume_flux);
-  r = flux_of(*state, &input, &options, &half);
-  CORE_CHECK(fabs(r.volume_flux - 18) < 1e-6 * 18, "%.9g", r.volume_flux);
-  free_fluid(&made);
 }
 
 /* ---- integrals of samples ---- */
@@ -563,9 +537,8 @@ static void test_weird(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_uniform),
-    cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_vortex),
-    cmocka_unit_test(test_sides_of_boxes), cmocka_unit_test(test_half_out_of_the_water),
-    cmocka_unit_test(test_corner_on_the_level), cmocka_unit_test(test_same_bits),
-    cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_sides_of_boxes),
+    cmocka_unit_test(test_half_out_of_the_water), cmocka_unit_test(test_corner_on_the_level),
+    cmocka_unit_test(test_same_bits), cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -5,6 +5,7 @@
  * and the surface at opposite sides, against itself. */
 
 #include "core_period.h"
+#include "oracle_period.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,10 +13,10 @@
 
 #define PI 3.14159265358979323846
 
-/* A point of the surface at x to within 1e-4, from number `from` on, or -1. */
-static int64_t find_point_from(const mcor_surface* s, const double x[3], int64_t from)
+/* A point of the surface at x to within 1e-4, or -1. */
+static int64_t find_point(const mcor_surface* s, const double x[3])
 {
-  for (int64_t i = from; i < s->point_count; ++i)
+  for (int64_t i = 0; i < s->point_count; ++i)
   {
     const double* p = s->points + 3 * i;
     if (fabs(p[0] - x[0]) < 1e-4 && fabs(p[1] - x[1]) < 1e-4 && fabs(p[2] - x[2]) < 1e-4)
@@ -24,11 +25,6 @@ static int64_t find_point_from(const mcor_surface* s, const double x[3], int64_t
     }
   }
   return -1;
-}
-
-static int64_t find_point(const mcor_surface* s, const double x[3])
-{
-  return find_point_from(s, x, 0);
 }
 
 /* As many triangles, and all points of one where the other has some, with about the same normals. */
@@ -51,75 +47,22 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
   }
 }
 
-/* Whether two points agree in the bits of all they carry, but for the coordinate along the axis, and
- * which particle is nearest. */
-static int same_bits(mcor_surface* s, int64_t i, int64_t j, int axis)
+/* Opposite sides are alike to the last bit, but for what is trimmed. */
+static void check_sides(const char* name, const mcor_surface* s, const mcor_options* options)
 {
-  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
-  mcor_list_surface_arrays(s, arrays);
-  int same = 1;
+  oracle_lattice lattice = { .cube = s->statistics.cube_size };
+  oracle_seam seam;
   for (int a = 0; a < 3; ++a)
   {
-    same = same && (a == axis || s->points[3 * i + a] == s->points[3 * j + a]);
+    lattice.edge[a] = s->statistics.cube_edges[a];
+    lattice.origin[a] = s->statistics.lattice_origin[a];
+    lattice.end[a] = s->statistics.lattice_cells[a];
   }
-  for (int n = 0; n < MCOR_SURFACE_ARRAYS && same; ++n)
-  {
-    const void* array = *arrays[n].array;
-    const size_t width = arrays[n].width;
-    same = !array || array == s->points || array == s->nearest_particle || array == s->point_keys ||
-      memcmp(
-        (const char*)array + (size_t)i * width, (const char*)array + (size_t)j * width, width) == 0;
-  }
-  return same;
-}
-
-/* Of a point on a side of the period, whether there is the same, to the last bit, a period away; of
- * another one, 0. */
-static int has_partner(mcor_surface* s, const double period[6], int64_t point)
-{
-  int found = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double length = period[2 * a + 1] - period[2 * a];
-    for (int upper = 0; upper < 2 && length > 0; ++upper)
-    {
-      const double side = s->statistics.cube_edges[a] *
-        (double)(s->statistics.lattice_origin[a] + (upper ? s->statistics.lattice_cells[a] : 0));
-      double x[3];
-      memcpy(x, s->points + 3 * point, sizeof x);
-      if (fabs(x[a] - side) < 1e-9)
-      {
-        x[a] += upper ? -length : length;
-        /* Near a node there may be several. */
-        for (int64_t other = find_point(s, x); other >= 0 && !found;
-             other = find_point_from(s, x, other + 1))
-        {
-          found = same_bits(s, point, other, a);
-        }
-      }
-    }
-  }
-  return found;
-}
-
-/* Borders lie on the sides of the period, where each of their points has a partner, but for those of
- * trimming. */
-static void check_sides(const char* name, mcor_surface* s, const double period[6])
-{
   mesh_report report = core_check_mesh(s);
-  int64_t borders = 0;
-  for (int64_t i = 0; i < 2 * report.side_count; ++i)
-  {
-    const mesh_edge* e = report.side + i / 2;
-    const int64_t point = i % 2 ? e->a : e->b;
-    if (mesh_count_sides(&report, e->a, e->b) == 1 && s->boundary_flag[point] == 0)
-    {
-      CORE_CHECK(has_partner(s, period, point), "%s: a border at %g %g %g", name,
-        s->points[3 * point], s->points[3 * point + 1], s->points[3 * point + 2]);
-      ++borders;
-    }
-  }
-  CORE_CHECK(borders > 40, "%s: only %lld points of borders", name, (long long)borders);
+  assert_true(oracle_check_seam(options, &lattice, s, &report, &seam));
+  CORE_CHECK(seam.joined > 20 && seam.open == 0 && seam.torn == 0 && seam.different == 0,
+    "%s: %lld edges of borders are one, %lld are open, %lld torn, %lld points differ", name,
+    (long long)seam.joined, (long long)seam.open, (long long)seam.torn, (long long)seam.different);
   mesh_free_report(&report);
 }
 
@@ -129,7 +72,7 @@ static void check_images(mcor_context* context, const char* name, const core_set
   mcor_input input = core_input(set);
   input.volume = computed ? (mcor_array){ 0 } : input.volume;
   mcor_surface surface = core_extract(context, &input, options);
-  check_sides(name, &surface, options->periodic);
+  check_sides(name, &surface, options);
   core_set all = core_add_images(set, options->periodic);
   mcor_input other = core_input(&all);
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
@@ -357,7 +300,7 @@ static void adaptive_unequal(void** state)
       (long long)cells[0], (long long)cells[1], (long long)cells[2]);
     CORE_CHECK(
       surface.statistics.residual_max < 1e-5, "residual %g", surface.statistics.residual_max);
-    check_sides("adaptive, unequal", &surface, options.periodic);
+    check_sides("adaptive, unequal", &surface, &options);
     options.level_limit = 0;
     mcor_surface uniform = core_extract(*state, &input, &options);
     const double area = surface.statistics.area, expected = uniform.statistics.area;

@@ -30,36 +30,53 @@
 namespace
 {
 
-using Setup = std::function<void(vtkMarchingCorrectors*)>;
+using Setting = std::function<void(vtkMarchingCorrectors*)>;
+using Settings = std::vector<Setting>;
 
 struct Case
 {
   const char* Name;
   const char* File;
-  Setup SetUp;
+  Settings SetUp;
 };
 
-void ContourSpeed(vtkMarchingCorrectors* filter)
+#define SET(call) [](vtkMarchingCorrectors* filter) { filter->Set##call; }
+#define ON(name) [](vtkMarchingCorrectors* filter) { filter->name##On(); }
+#define OFF(name) [](vtkMarchingCorrectors* filter) { filter->name##Off(); }
+
+Setting Contour(const char* array, double value)
 {
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Speed");
-  filter->SetValue(0, 2.0);
+  return [=](vtkMarchingCorrectors* filter)
+  {
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, array);
+    filter->SetValue(0, value);
+  };
 }
 
-void ContourDamBreak(vtkMarchingCorrectors* filter)
-{
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Velocity");
-  filter->SetValue(0, 1.0);
-  filter->SetFluidArrayName("ParticleType");
-}
+const char* const Dams = "double_dam_break_small";
+const char* const Dam = "dam_break_45k";        // with walls
+const char* const TwoSizes = "two sizes";       // no file
+const char* const InPlane = "in a plane";       // the dams, moved into z = 0.5
+const char* const BesideMesh = "beside a mesh"; // the dams
 
-const char* const TwoSizes = "two sizes"; // no file
-const char* const InPlane = "in a plane"; // double_dam_break_small, moved into z = 0.5
-const char* const BesideMesh = "beside a mesh"; // double_dam_break_small
+const Setting Speed = Contour("Speed", 2.0), Free = ON(FreeSurface), Fine = SET(CubeSize(0.025)),
+              Coarse = SET(CubeSizeFactor(1.0));
+const Setting Fluid = SET(FluidArrayName("ParticleType"));
+
+/// Velocities of fluid whose smoothing lengths differ.
+void ContourVaried(vtkMarchingCorrectors* filter)
+{
+  Contour("Velocity", 1.0)(filter);
+  Fluid(filter);
+  filter->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
+  filter->SetCubeSizeFactor(0.8);
+  filter->SetCubeSizeModeToAdaptive();
+}
 
 /// Isolines of particles whose areas, and smoothing lengths, are larger on one side.
 void ContourInPlane(vtkMarchingCorrectors* filter)
 {
-  ContourSpeed(filter);
+  Speed(filter);
   filter->SetValue(1, 1.0);
   filter->SetSmoothingLengthArrayName("h");
   filter->SetVolumeArrayName("area");
@@ -69,221 +86,63 @@ void ContourInPlane(vtkMarchingCorrectors* filter)
 }
 
 const std::vector<Case> Cases = {
-  { "free surface", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f) { f->FreeSurfaceOn(); } },
-  { "trimmed", "double_dam_break_small", ContourSpeed },
-  { "beside a mesh", BesideMesh, ContourSpeed },
-  { "two values, topology of the field, all arrays", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourSpeed(f);
-      f->SetValue(1, 1.2);
-      f->SetTopologyToField();
-      f->ComputeGradientsOn();
-      f->ComputeWeightSumOn();
-      f->ComputeBoundaryEigenvalueOn();
-      f->ComputeBoundaryFlagOn();
-      f->ComputeCorrectionLengthOn();
-    } },
+  { "free surface", Dams, { Free } },
+  { "trimmed", Dams, { Speed } },
+  { "beside a mesh", BesideMesh, { Speed } },
+  { "two values, topology of the field, all arrays", Dams,
+    { Speed, SET(Value(1, 1.2)), SET(TopologyToField()), ON(ComputeGradients), ON(ComputeWeightSum),
+      ON(ComputeBoundaryEigenvalue), ON(ComputeBoundaryFlag), ON(ComputeCorrectionLength) } },
   { "value in the middle of the range, eigenvalue, double precision", "bunny_splash_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Speed");
-      f->SetValue(0, std::nan("")); // no value
-      f->SetBoundaryDetectionToEigenvalue();
-      f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-    } },
-  { "array, value and fluid that are found", "dam_break_45k",
-    [](vtkMarchingCorrectors* f) { f->DetectFluidOn(); } },
-  { "computed volumes, estimated smoothing length", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->DetectArraysOff();
-      f->EstimateSmoothingLengthOn();
-    } },
-  { "M'4, computed volumes, scaled", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->DetectArraysOff();
-      f->SetSmoothingLength(0.06);
-      f->SetKernelToMPrime4();
-      f->SetHScaleFactor(0.9);
-    } },
-  { "box, preview", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourSpeed(f);
-      f->PreviewOn();
-      f->UseBoxOn();
-      f->SetBox(-0.4, 0.51, -10.0, 0.33, -0.2, 10.0);
-    } },
-  { "fewer bricks than ranks", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->SetFluidArrayName("ParticleType");
-      f->SetCubeSize(0.12);
-      f->UseBoxOn();
-      f->SetBox(0.0, 3.0, 0.0, 0.96, 0.0, 0.96);
-    } },
-  { "by particles", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourSpeed(f);
-      f->SetPartitionToByParticles();
-    } },
-  { "periods", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->SetCubeSize(0.025);
-      f->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5);
-    } },
-  { "periods that the particles tell of", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->SetCubeSize(0.025);
-      f->DetectPeriodOn();
-    } },
-  { "periods that no cube divides", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->SetCubeSize(0.025);
-      f->SetPeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.4717);
-    } },
-  { "walls", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourDamBreak(f);
-      f->SetSolids(vtkMarchingCorrectors::SOLIDS_WALL);
-      f->SetCubeSizeFactor(1.0);
-    } },
-  { "adaptive cubes", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourDamBreak(f);
-      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      f->SetCubeSizeFactor(0.8);
-      f->SetCubeSizeModeToAdaptive();
-    } },
-  { "adaptive cubes, periods", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourDamBreak(f);
-      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      f->SetCubeSizeFactor(0.8);
-      f->SetCubeSizeModeToAdaptive();
-      f->SetPeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
-    } },
-  { "smoothing lengths that differ", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourDamBreak(f);
-      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      f->SetCubeSizeFactor(1.0);
-    } },
-  { "smooth", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->SmoothOn();
-    } },
-  { "widened, computed volumes, periods", "double_dam_break_small",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourSpeed(f);
-      f->DetectArraysOff();
-      f->EstimateSmoothingLengthOn();
-      f->SetWidening(1.7);
-      f->SetPeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
-    } },
-  { "widened, adaptive cubes", "dam_break_45k",
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourDamBreak(f);
-      f->SetSmoothingLengthArrayName("SmoothingLengthAdaptive");
-      f->SetCubeSizeFactor(0.8);
-      f->SetCubeSizeModeToAdaptive();
-      f->SetWidening(2.0);
-    } },
+    { Contour("Speed", std::nan("")), SET(BoundaryDetectionToEigenvalue()),
+      SET(Precision(vtkAlgorithm::DOUBLE_PRECISION)) } },
+  { "array, value and fluid that are found", Dam, { ON(DetectFluid) } },
+  { "computed volumes, estimated smoothing length", Dams,
+    { Free, OFF(DetectArrays), ON(EstimateSmoothingLength) } },
+  { "M'4, computed volumes, scaled", Dams,
+    { Free, OFF(DetectArrays), SET(SmoothingLength(0.06)), SET(KernelToMPrime4()),
+      SET(HScaleFactor(0.9)) } },
+  { "box, preview", Dams,
+    { Speed, ON(Preview), ON(UseBox), SET(Box(-0.4, 0.51, -10.0, 0.33, -0.2, 10.0)) } },
+  { "fewer bricks than ranks", Dam,
+    { Free, Fluid, SET(CubeSize(0.12)), ON(UseBox), SET(Box(0.0, 3.0, 0.0, 0.96, 0.0, 0.96)) } },
+  { "by particles", Dams, { Speed, SET(PartitionToByParticles()) } },
+  { "periods", Dams, { Free, Fine, SET(PeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.5)) } },
+  { "periods that the particles tell of", Dams, { Free, Fine, ON(DetectPeriod) } },
+  { "periods that no cube divides", Dams,
+    { Free, Fine, SET(PeriodicBounds(-1.0, 1.0, 0.0, 0.0, -1.0, 0.4717)) } },
+  { "walls", Dam,
+    { Contour("Velocity", 1.0), Fluid, SET(Solids(vtkMarchingCorrectors::SOLIDS_WALL)), Coarse } },
+  { "adaptive cubes", Dam, { ContourVaried } },
+  { "adaptive cubes, periods", Dam,
+    { ContourVaried, SET(PeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0)) } },
+  { "smoothing lengths that differ", Dam, { ContourVaried, SET(CubeSizeModeToUniform()), Coarse } },
+  { "smooth", Dams, { Free, ON(Smooth) } },
+  { "widened, computed volumes, periods", Dams,
+    { Speed, OFF(DetectArrays), ON(EstimateSmoothingLength), SET(Widening(1.7)),
+      SET(PeriodicBounds(0.0, 0.0, 0.0, 1.0, 0.0, 0.0)) } },
+  { "widened, adaptive cubes", Dam, { ContourVaried, SET(Widening(2.0)) } },
   { "computed volumes of large particles beside small ones", TwoSizes,
-    [](vtkMarchingCorrectors* f)
-    {
-      f->FreeSurfaceOn();
-      f->DetectArraysOff();
-      f->SetSmoothingLengthArrayName("h");
-    } },
-  { "lines", InPlane, ContourInPlane },
+    { Free, OFF(DetectArrays), SET(SmoothingLengthArrayName("h")) } },
+  { "lines", InPlane, { ContourInPlane } },
   { "lines, uniform squares, computed areas, eigenvalue", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->SetVolumeArrayName(nullptr);
-      f->DetectArraysOff();
-      f->SetCubeSizeModeToUniform();
-      f->SetBoundaryDetectionToEigenvalue();
-      f->SetVertexThreshold(0.1);
-      f->ComputeBoundaryEigenvalueOn();
-    } },
+    { ContourInPlane, SET(VolumeArrayName(nullptr)), OFF(DetectArrays),
+      SET(CubeSizeModeToUniform()), SET(BoundaryDetectionToEigenvalue()), SET(VertexThreshold(0.1)),
+      ON(ComputeBoundaryEigenvalue) } },
   { "lines, topology of the field, double precision", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->SetTopologyToField();
-      f->SetPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-    } },
+    { ContourInPlane, SET(TopologyToField()), SET(Precision(vtkAlgorithm::DOUBLE_PRECISION)) } },
   { "lines, free surface, periods, capped", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->FreeSurfaceOn();
-      f->SetPeriodicBounds(-1.0, 1.0, -0.2, 0.9, 0.0, 0.0);
-      f->CappingOn();
-    } },
+    { ContourInPlane, Free, SET(PeriodicBounds(-1.0, 1.0, -0.2, 0.9, 0.0, 0.0)), ON(Capping) } },
   { "lines, box in a period, capped", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->SetPeriodicBounds(0.0, 0.0, -0.2, 0.9, 0.0, 0.0);
-      f->UseBoxOn();
-      f->SetBox(-0.7, 0.6, -10.0, 10.0, 0.0, 1.0);
-      f->CappingOn();
-    } },
+    { ContourInPlane, SET(PeriodicBounds(0.0, 0.0, -0.2, 0.9, 0.0, 0.0)), ON(UseBox),
+      SET(Box(-0.7, 0.6, -10.0, 10.0, 0.0, 1.0)), ON(Capping) } },
   { "lines, flat box", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->UseBoxOn();
-      f->SetBox(-0.7, 0.6, -10.0, 10.0, 0.5, 0.5);
-      f->CappingOn();
-    } },
+    { ContourInPlane, ON(UseBox), SET(Box(-0.7, 0.6, -10.0, 10.0, 0.5, 0.5)), ON(Capping) } },
   { "filled, flat box", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->FilledOn();
-      f->UseBoxOn();
-      f->SetBox(-0.7, 0.6, -10.0, 0.4, 0.5, 0.5);
-    } },
-  { "filled", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->FilledOn();
-    } },
+    { ContourInPlane, ON(Filled), ON(UseBox), SET(Box(-0.7, 0.6, -10.0, 0.4, 0.5, 0.5)) } },
+  { "filled", InPlane, { ContourInPlane, ON(Filled) } },
   { "filled, period and box", InPlane,
-    [](vtkMarchingCorrectors* f)
-    {
-      ContourInPlane(f);
-      f->FilledOn();
-      f->SetPeriodicBounds(0.0, 0.0, -0.2, 0.9, 0.0, 0.0);
-      f->UseBoxOn();
-      f->SetBox(-0.7, 0.6, -10.0, 10.0, 0.0, 1.0);
-    } },
+    { ContourInPlane, ON(Filled), SET(PeriodicBounds(0.0, 0.0, -0.2, 0.9, 0.0, 0.0)), ON(UseBox),
+      SET(Box(-0.7, 0.6, -10.0, 10.0, 0.0, 1.0)) } },
 };
 
 /// Small particles for x < 2, beyond these large ones, whose supports hold many small ones: a rank that has
@@ -374,11 +233,15 @@ struct Extracted
   std::array<double, 6 + OfSurfaceCount> Said = {};
 };
 
-Extracted Extract(const Setup& setUp, vtkPolyData* particles, vtkMultiProcessController* controller)
+Extracted Extract(
+  const Settings& setUp, vtkPolyData* particles, vtkMultiProcessController* controller)
 {
   vtkNew<vtkMarchingCorrectors> filter;
   filter->SetController(controller);
-  setUp(filter);
+  for (const Setting& set : setUp)
+  {
+    set(filter);
+  }
   filter->SetInputData(particles);
   filter->Update();
   const double *range = filter->GetFluidScalarRange(), *next = filter->GetNextScalarRange();
@@ -414,7 +277,7 @@ int Check(const Case& tried, const std::string& folder, vtkMPIController* contro
   const bool isInPlane = tried.File == InPlane, isMesh = tried.File == BesideMesh;
   const vtkSmartPointer<vtkPolyData> particles = tried.File == TwoSizes
     ? MakeTwoSizes()
-    : Read(folder + "/" + (isInPlane || isMesh ? "double_dam_break_small" : tried.File) + ".vtp");
+    : Read(folder + "/" + (isInPlane || isMesh ? Dams : tried.File) + ".vtp");
   if (isInPlane)
   {
     MoveIntoPlane(particles);

@@ -24,6 +24,13 @@
 /* Cubes of the grid around a region. */
 #define MCOR_REGION_MARGIN 16
 
+typedef struct mcor_far_tally
+{
+  int64_t used, absent, fluid; /* absent: from now on; fluid: that stays */
+  int64_t first;               /* absent one */
+  double farthest;             /* the largest reach of one that stays */
+} mcor_far_tally;
+
 typedef struct mcor_far_job
 {
   const mcor_context* context;
@@ -34,10 +41,7 @@ typedef struct mcor_far_job
     slack;       /* of a particle, per smoothing length: support radius, and what it needs beyond */
   double radius; /* as if no reach were less */
   double centre[3], half; /* without a region: how far from there the grid may go */
-  /* By slice: particles that are used, and absent from now on; fluid that stays; the first absent one, and the
-   * largest reach of one that stays. */
-  int64_t used[MCOR_SLICES], absent[MCOR_SLICES], fluid[MCOR_SLICES], first[MCOR_SLICES];
-  double farthest[MCOR_SLICES];
+  mcor_far_tally slices[MCOR_SLICES], all; /* all: of all ranks, but for `first` */
 } mcor_far_job;
 
 static bool mcor_is_far(const mcor_far_job* job, const double x[3], double h)
@@ -60,9 +64,7 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
   mcor_far_job* job = data;
   const mcor_input* input = job->input;
   mcor_places p;
-  job->used[slice] = job->absent[slice] = job->fluid[slice] = 0;
-  job->first[slice] = INT64_MAX;
-  job->farthest[slice] = 0;
+  mcor_far_tally tally = { .first = INT64_MAX };
   for (; mcor_read_places(job->context, input, first, last, &p) > 0; first += p.count)
   {
     for (int i = 0; i < p.count; ++i)
@@ -73,41 +75,38 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
       const bool is_used = mcor_is_used(job->context, input, particle);
       const bool is_far = is_used && mcor_is_far(job, at, p.length[i]);
       job->far->solid[particle] = is_far ? MCOR_ABSENT : was;
-      job->used[slice] += is_used;
-      job->absent[slice] += is_far;
-      job->fluid[slice] += !is_far && !was;
-      job->first[slice] = is_far && particle < job->first[slice] ? particle : job->first[slice];
-      job->farthest[slice] = is_used && !is_far
-        ? fmax(job->farthest[slice], p.length[i] * job->reach)
-        : job->farthest[slice];
+      tally.used += is_used;
+      tally.absent += is_far;
+      tally.fluid += !is_far && !was;
+      tally.first = is_far && particle < tally.first ? particle : tally.first;
+      tally.farthest =
+        is_used && !is_far ? fmax(tally.farthest, p.length[i] * job->reach) : tally.farthest;
     }
   }
+  job->slices[slice] = tally;
 }
 
-/* Marks; adds up slices and ranks into those of slice 0. But for `first`, which is this rank's. */
 static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
 {
   int slices;
   MCOR_TRY(
     mcor_parallel_run(context, job->input->count, MCOR_HEAVY_GRAIN, mcor_far_slice, job, &slices));
-  int64_t counts[3] = { 0 };
-  job->far->first = INT64_MAX;
-  double farthest = 0;
+  mcor_far_tally* all = &job->all;
+  *all = (mcor_far_tally){ .first = INT64_MAX };
   for (int s = 0; s < slices; ++s)
   {
-    counts[0] += job->used[s];
-    counts[1] += job->absent[s];
-    counts[2] += job->fluid[s];
-    job->far->first = job->first[s] < job->far->first ? job->first[s] : job->far->first;
-    farthest = fmax(farthest, job->farthest[s]);
+    const mcor_far_tally* slice = &job->slices[s];
+    all->used += slice->used;
+    all->absent += slice->absent;
+    all->fluid += slice->fluid;
+    all->first = slice->first < all->first ? slice->first : all->first;
+    all->farthest = fmax(all->farthest, slice->farthest);
   }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts, 3));
-  MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &farthest));
-  job->used[0] = counts[0];
-  job->absent[0] = counts[1];
-  job->fluid[0] = counts[2];
-  job->farthest[0] = farthest;
-  return MCOR_OK;
+  job->far->first = all->first;
+  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &all->used));
+  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &all->absent));
+  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &all->fluid));
+  return mcor_reduce_double(context, MCOR_GREATEST, &all->farthest);
 }
 
 /* Around a box or points: all that reaches them, and what volumes, pairs and nearest particles there are made of. */
@@ -115,9 +114,9 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 {
   const mcor_options* options = context->run.options;
   MCOR_TRY(mcor_mark_far(context, job));
-  if (job->fluid[0] > 0)
+  if (job->all.fluid > 0)
   {
-    const double largest = job->farthest[0];
+    const double largest = job->all.farthest;
     const double volumes =
       mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
     const double around = (volumes + largest) * (1 + context->run.widest);
@@ -155,10 +154,10 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
     job->centre[a] = mcor_median_of(x, samples.count);
   }
   MCOR_TRY(mcor_mark_far(context, job));
-  const int64_t share = job->used[0] / MCOR_FAR_SHARE;
-  far->count = job->absent[0];
+  const int64_t share = job->all.used / MCOR_FAR_SHARE;
+  far->count = job->all.absent;
   *good = far->count > 0 && far->count <= (share > MCOR_FAR_FEW ? share : MCOR_FAR_FEW) &&
-    2 * far->count < job->used[0] && job->fluid[0] > 0;
+    2 * far->count < job->all.used && job->all.fluid > 0;
   if (!*good)
   {
     return MCOR_OK;

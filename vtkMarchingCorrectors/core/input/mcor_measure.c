@@ -27,26 +27,10 @@
 typedef struct mcor_chunk
 {
   int count;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], scalar[MCOR_CHUNK];
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
   double factor[MCOR_CHUNK]; /* of h, if is_widened; else not read */
   bool is_widened;
 } mcor_chunk;
-
-static void mcor_read_chunk(
-  const mcor_context* context, const mcor_input* input, int64_t first, mcor_chunk* chunk)
-{
-  mcor_read_positions(input, first, chunk->count, chunk->x);
-  mcor_read_smoothing_length(context, input, first, chunk->count, chunk->h);
-  chunk->is_widened = mcor_is_given(&input->widening);
-  if (chunk->is_widened)
-  {
-    mcor_read_array(&input->widening, first, chunk->count, 0, chunk->factor);
-  }
-  if (context->run.options->field != MCOR_WEIGHT_SUM)
-  {
-    mcor_read_scalar(input, first, chunk->count, chunk->scalar);
-  }
-}
 
 /* Indices of the ranges over all particles; slices and ranks merge them alike. */
 enum
@@ -91,30 +75,15 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
   {
     mcor_add_range(r, k, other->least[k], other->most[k]);
   }
-  r->counts[0] += other->counts[0];
-  r->counts[1] += other->counts[1];
-  r->counts[2] += other->counts[2];
+  for (int k = 0; k < 3; ++k)
+  {
+    r->counts[k] += other->counts[k];
+  }
   r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
 }
 
 /* Greatest contribution of one factor to their sum. */
 #define MCOR_MOST_FACTOR 256.0
-
-/* The lengths of kernels; and of fluid the factors. */
-static void mcor_measure_factors(
-  const mcor_chunk* chunk, bool solids, mcor_ranges* r, double* length)
-{
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    const double factor = chunk->factor[i];
-    length[i] = factor * chunk->h[i];
-    if (!solids)
-    {
-      mcor_add_range(r, MCOR_FACTORS, factor, factor);
-      r->counts[2] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
-    }
-  }
-}
 
 /* Measures all but the scalar of a chunk's fluid, or of its solids. If all smoothing lengths are
  * one, the extremes may be taken first: rounding keeps the order of numbers. */
@@ -126,7 +95,16 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
   const double* length = chunk->h;
   if (chunk->is_widened)
   {
-    mcor_measure_factors(chunk, solids, r, widened);
+    for (int i = 0; i < chunk->count; ++i)
+    {
+      const double factor = chunk->factor[i];
+      widened[i] = factor * chunk->h[i];
+      if (!solids)
+      {
+        mcor_add_range(r, MCOR_FACTORS, factor, factor);
+        r->counts[2] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
+      }
+    }
     least = DBL_MAX;
     most = -DBL_MAX;
     length = widened;
@@ -181,25 +159,6 @@ static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk*
   }
 }
 
-/* Measures the scalar of a chunk's fluid particles. */
-static void mcor_measure_scalar(
-  const mcor_input* input, int64_t first, const mcor_chunk* chunk, mcor_ranges* r)
-{
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    const double value = chunk->scalar[i];
-    if (input->solid && input->solid[first + i])
-    {
-      continue;
-    }
-    mcor_add_range(r, MCOR_SCALARS, value, value);
-    if (!isfinite(value) && first + i < r->not_finite)
-    {
-      r->not_finite = first + i;
-    }
-  }
-}
-
 typedef struct mcor_measuring
 {
   const mcor_context* context;
@@ -212,18 +171,36 @@ typedef struct mcor_measuring
 static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measuring* job = data;
+  const mcor_context* context = job->context;
   const mcor_input* input = job->input;
+  const uint8_t* solid = input->solid;
+  const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM;
   mcor_ranges r = mcor_empty_ranges();
   mcor_chunk chunk, solids;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     chunk.count = mcor_chunk_of(last - begin);
-    mcor_read_chunk(job->context, input, begin, &chunk);
-    if (job->context->run.options->field != MCOR_WEIGHT_SUM)
+    mcor_read_positions(input, begin, chunk.count, chunk.x);
+    mcor_read_smoothing_length(context, input, begin, chunk.count, chunk.h);
+    chunk.is_widened = mcor_is_given(&input->widening);
+    if (chunk.is_widened)
     {
-      mcor_measure_scalar(input, begin, &chunk, &r);
+      mcor_read_array(&input->widening, begin, chunk.count, 0, chunk.factor);
     }
-    mcor_part_chunk(input->solid ? input->solid + begin : NULL, &chunk, &solids);
+    if (has_scalar)
+    {
+      double value[MCOR_CHUNK];
+      mcor_read_scalar(input, begin, chunk.count, value);
+      for (int i = 0; i < chunk.count; ++i)
+      {
+        if (!solid || !solid[begin + i])
+        {
+          mcor_add_range(&r, MCOR_SCALARS, value[i], value[i]);
+          r.not_finite = !isfinite(value[i]) && begin + i < r.not_finite ? begin + i : r.not_finite;
+        }
+      }
+    }
+    mcor_part_chunk(solid ? solid + begin : NULL, &chunk, &solids);
     mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
     if (!input->ignore_solids)
     {
@@ -232,7 +209,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
     r.counts[0] += chunk.count;
     r.counts[1] += solids.count;
     mcor_measure_chunk(&chunk, false, job->reach, &r);
-    if (job->context->kept.uses_solids)
+    if (context->kept.uses_solids)
     {
       mcor_measure_chunk(&solids, true, job->reach, &r);
     }
@@ -288,23 +265,6 @@ static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->not_finite;
-  return MCOR_OK;
-}
-
-/* Refuses a magnitude, or a dot product, that overflows although its components are finite. */
-static mcor_status mcor_check_derived(mcor_context* context, const mcor_input* input)
-{
-  const char* name = mcor_array_name(&input->scalar, "scalar");
-  const char* other = mcor_array_name(&input->scalar_dot, "scalar");
-  const long long i = context->measure.not_finite;
-  MCOR_RETURN_IF(i < INT64_MAX && input->scalar_dot.data, context, MCOR_INVALID_DATA,
-    "The dot product of arrays %s and %s at particle %lld is too large for a double. Use other "
-    "units, or remove such particles.",
-    name, other, i);
-  MCOR_RETURN_IF(i < INT64_MAX, context, MCOR_INVALID_DATA,
-    "The magnitude of array %s at particle %lld is too large for a double. Use another unit, or "
-    "remove such particles.",
-    name, i);
   return MCOR_OK;
 }
 
@@ -428,7 +388,16 @@ mcor_status mcor_measure_input(
     m->scalar_min = 0;
     m->scalar_max = 1;
   }
-  MCOR_TRY(mcor_check_derived(context, input));
+  /* A magnitude, or a dot product, may overflow although its components are finite. */
+  const char* name = mcor_array_name(&input->scalar, "scalar");
+  MCOR_RETURN_IF(m->not_finite < INT64_MAX && input->scalar_dot.data, context, MCOR_INVALID_DATA,
+    "The dot product of arrays %s and %s at particle %lld is too large for a double. Use other "
+    "units, or remove such particles.",
+    name, mcor_array_name(&input->scalar_dot, "scalar"), (long long)m->not_finite);
+  MCOR_RETURN_IF(m->not_finite < INT64_MAX, context, MCOR_INVALID_DATA,
+    "The magnitude of array %s at particle %lld is too large for a double. Use another unit, or "
+    "remove such particles.",
+    name, (long long)m->not_finite);
   return mcor_measure_lattice(context, options);
 }
 

@@ -95,25 +95,6 @@ static void mcor_mark_reached(mcor_watch* watch, int s)
   }
 }
 
-static void mcor_watch_particle(mcor_watch* watch, int slice, uint32_t reached, const double x[3])
-{
-  for (int s = 0; reached; ++s, reached >>= 1)
-  {
-    if (reached & 1)
-    {
-      const double reach = watch->support * watch->sample[s].h;
-      double square = 0;
-      for (int a = 0; a < 3; ++a)
-      {
-        square += (x[a] - watch->sample[s].x[a]) * (x[a] - watch->sample[s].x[a]);
-      }
-      watch->neighbours[slice][s] += square < reach * reach;
-      watch->nearest[slice][s] =
-        square > 0 ? fmin(watch->nearest[slice][s], square) : watch->nearest[slice][s];
-    }
-  }
-}
-
 /* ---- A plane that is tilted in space ---- */
 
 /* In smoothing lengths: the greatest extent along the normal, the least one in the plane. */
@@ -164,40 +145,15 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-static void mcor_watch_plane(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
-{
-  const double *n = watch->normal, at = mcor_dot(n, watch->sample[0].x);
-  for (int i = 0; i < count; ++i)
-  {
-    const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - at;
-    watch->beyond[slice][0] = d > watch->beyond[slice][0] ? d : watch->beyond[slice][0];
-    watch->beyond[slice][1] = -d > watch->beyond[slice][1] ? -d : watch->beyond[slice][1];
-  }
-}
-
-static mcor_status mcor_sum_up_plane(mcor_context* context, mcor_watch* watch, int slices)
-{
-  mcor_measure* m = &context->measure;
-  double* beyond = watch->beyond[0];
-  for (int s = 1; s < slices; ++s)
-  {
-    beyond[0] = fmax(beyond[0], watch->beyond[s][0]);
-    beyond[1] = fmax(beyond[1], watch->beyond[s][1]);
-  }
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, beyond, 2));
-  if (beyond[0] + beyond[1] < MCOR_THIN * m->h_median)
-  {
-    memcpy(m->plane_normal, watch->normal, sizeof m->plane_normal);
-    m->plane_extent = beyond[0] + beyond[1];
-  }
-  return MCOR_OK;
-}
-
 void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
 {
-  if (mcor_has_normal(watch))
+  const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
+  double* beyond = watch->beyond[slice];
+  for (int i = 0; i < count && mcor_has_normal(watch); ++i)
   {
-    mcor_watch_plane(watch, slice, count, x);
+    const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
+    beyond[0] = d > beyond[0] ? d : beyond[0];
+    beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
   int cell[MCOR_CHUNK] = { 0 };
   for (int a = 2; a >= 0; --a)
@@ -209,19 +165,45 @@ void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double 
   }
   for (int i = 0; i < count; ++i)
   {
-    if (watch->any[cell[i] / MCOR_WATCH_CELLS] >> cell[i] % MCOR_WATCH_CELLS & 1)
+    if (!(watch->any[cell[i] / MCOR_WATCH_CELLS] >> cell[i] % MCOR_WATCH_CELLS & 1))
     {
-      const double at[3] = { x[0][i], x[1][i], x[2][i] };
-      mcor_watch_particle(watch, slice, watch->reached[cell[i]], at);
+      continue;
+    }
+    uint32_t reached = watch->reached[cell[i]];
+    for (int s = 0; reached; ++s, reached >>= 1)
+    {
+      const double reach = watch->support * watch->sample[s].h;
+      double square = 0, *nearest = &watch->nearest[slice][s];
+      for (int a = 0; a < 3 && (reached & 1); ++a)
+      {
+        const double d = x[a][i] - watch->sample[s].x[a];
+        square += d * d;
+      }
+      watch->neighbours[slice][s] += (reached & 1) && square < reach * reach;
+      *nearest = square > 0 ? fmin(*nearest, square) : *nearest;
     }
   }
 }
 
 /* Takes the medians over the watched particles. */
-static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[MCOR_WATCHED],
-  const double nearest[MCOR_WATCHED], const mcor_space* space, mcor_measure* m)
+mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
 {
-  double count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED], h[MCOR_WATCHED];
+  mcor_measure* m = &context->measure;
+  const mcor_space* space = &context->space;
+  int64_t neighbours[MCOR_WATCHED] = { 0 };
+  double nearest[MCOR_WATCHED], count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED],
+    h[MCOR_WATCHED], *beyond = watch->beyond[0];
+  for (int s = 0; s < watch->count; ++s)
+  {
+    nearest[s] = DBL_MAX;
+    for (int slice = 0; slice < slices; ++slice)
+    {
+      neighbours[s] += watch->neighbours[slice][s];
+      nearest[s] = fmin(nearest[s], watch->nearest[slice][s]);
+    }
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, watch->count));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, nearest, watch->count));
   for (int s = 0; s < watch->count; ++s)
   {
     const double reach = watch->support * watch->sample[s].h, distance = sqrt(nearest[s]);
@@ -235,25 +217,22 @@ static void mcor_sum_up_watch(const mcor_watch* watch, const int64_t neighbours[
   m->spacing = mcor_median_of(spacing, watch->count);
   m->filled = mcor_median_of(filled, watch->count);
   m->h_median = mcor_median_of(h, watch->count);
-}
-
-mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
-{
-  int64_t neighbours[MCOR_WATCHED] = { 0 };
-  double nearest[MCOR_WATCHED];
-  for (int s = 0; s < watch->count; ++s)
+  if (!mcor_has_normal(watch))
   {
-    nearest[s] = DBL_MAX;
-    for (int slice = 0; slice < slices; ++slice)
-    {
-      neighbours[s] += watch->neighbours[slice][s];
-      nearest[s] = fmin(nearest[s], watch->nearest[slice][s]);
-    }
+    return MCOR_OK;
   }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, watch->count));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, nearest, watch->count));
-  mcor_sum_up_watch(watch, neighbours, nearest, &context->space, &context->measure);
-  return mcor_has_normal(watch) ? mcor_sum_up_plane(context, watch, slices) : MCOR_OK;
+  for (int s = 1; s < slices; ++s)
+  {
+    beyond[0] = fmax(beyond[0], watch->beyond[s][0]);
+    beyond[1] = fmax(beyond[1], watch->beyond[s][1]);
+  }
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, beyond, 2));
+  if (beyond[0] + beyond[1] < MCOR_THIN * m->h_median)
+  {
+    memcpy(m->plane_normal, watch->normal, sizeof m->plane_normal);
+    m->plane_extent = beyond[0] + beyond[1];
+  }
+  return MCOR_OK;
 }
 
 mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun)

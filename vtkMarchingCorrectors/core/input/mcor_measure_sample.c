@@ -59,70 +59,40 @@ typedef struct mcor_sampling
   mcor_samples_found* found; /* [MCOR_SLICES] */
 } mcor_sampling;
 
-static void mcor_sample_particle(
-  const mcor_sampling* job, mcor_samples_found* found, int64_t i, const double x[3])
-{
-  const uint64_t hash = mcor_hash_position(x);
-  if (found->count == found->most && hash > found->sample[found->most - 1].hash)
-  {
-    return;
-  }
-  mcor_sample sample = { .hash = hash, .x = { x[0], x[1], x[2] } };
-  if (job->which == MCOR_FLUID_PARTICLES)
-  {
-    mcor_read_smoothing_length(job->context, job->input, i, 1, &sample.h);
-    mcor_read_size(job->input, i, mcor_needs_density(job->input) ? 0 : 1, &sample.volume);
-  }
-  mcor_add_sample(found, &sample);
-}
-
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_sampling* job = data;
-  const uint8_t* solid = job->input->solid;
-  const bool any = job->which == MCOR_ALL_PARTICLES, solids = job->which == MCOR_SOLID_PARTICLES;
   const mcor_input* input = job->input;
+  mcor_samples_found* found = &job->found[slice];
+  const bool any = job->which == MCOR_ALL_PARTICLES, solids = job->which == MCOR_SOLID_PARTICLES;
   double x[3][MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = mcor_chunk_of(last - begin);
-    mcor_read_positions(job->input, begin, count, x);
+    mcor_read_positions(input, begin, count, x);
     for (int i = 0; i < count; ++i)
     {
-      const bool present = any || solids ? mcor_is_present(input, begin + i) : true;
-      const double at[3] = { x[0][i], x[1][i], x[2][i] };
-      if (present && (any || (solid && solid[begin + i]) == solids) && isfinite(at[0]) &&
-        isfinite(at[1]) && isfinite(at[2]))
+      const int64_t particle = begin + i;
+      const bool is_solid = input->solid && input->solid[particle];
+      mcor_sample sample = { .x = { x[0][i], x[1][i], x[2][i] } };
+      if ((is_solid && !mcor_is_present(input, particle)) || (!any && is_solid != solids) ||
+        !isfinite(x[0][i]) || !isfinite(x[1][i]) || !isfinite(x[2][i]))
       {
-        mcor_sample_particle(job, &job->found[slice], begin + i, at);
+        continue;
       }
+      sample.hash = mcor_hash_position(sample.x);
+      if (found->count == found->most && sample.hash > found->sample[found->most - 1].hash)
+      {
+        continue;
+      }
+      if (!any && !solids)
+      {
+        mcor_read_smoothing_length(job->context, input, particle, 1, &sample.h);
+        mcor_read_size(input, particle, mcor_needs_density(input) ? 0 : 1, &sample.volume);
+      }
+      mcor_add_sample(found, &sample);
     }
   }
-}
-
-/* Merges the samples of all slices, then of all ranks. */
-static mcor_status mcor_merge_samples(mcor_context* context, mcor_samples_found* found, int slices)
-{
-  for (int s = 1; s < slices; ++s)
-  {
-    for (int i = 0; i < found[s].count; ++i)
-    {
-      mcor_add_sample(&found[0], &found[s].sample[i]);
-    }
-  }
-  const void* all;
-  int64_t count;
-  MCOR_TRY(
-    mcor_gather(context, found[0].sample, found[0].count, sizeof found[0].sample[0], &all, &count));
-  if (all != found[0].sample)
-  {
-    found[0].count = 0;
-    for (int64_t i = 0; i < count; ++i)
-    {
-      mcor_add_sample(&found[0], (const mcor_sample*)all + i);
-    }
-  }
-  return MCOR_OK;
 }
 
 mcor_status mcor_choose_samples(
@@ -139,7 +109,25 @@ mcor_status mcor_choose_samples(
   int slices;
   mcor_status status =
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, &job, &slices);
-  status = status == MCOR_OK ? mcor_merge_samples(context, job.found, slices) : status;
+  for (int s = 1; s < slices && status == MCOR_OK; ++s)
+  {
+    for (int i = 0; i < job.found[s].count; ++i)
+    {
+      mcor_add_sample(&job.found[0], &job.found[s].sample[i]);
+    }
+  }
+  const mcor_sample* own = job.found[0].sample;
+  const void* all = own;
+  int64_t count = job.found[0].count;
+  status = status == MCOR_OK ? mcor_gather(context, own, count, sizeof *own, &all, &count) : status;
+  if (all != own && status == MCOR_OK)
+  {
+    job.found[0].count = 0;
+    for (int64_t i = 0; i < count; ++i)
+    {
+      mcor_add_sample(&job.found[0], (const mcor_sample*)all + i);
+    }
+  }
   *chosen = job.found[0];
   free(job.found);
   return status;

@@ -73,20 +73,6 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Counts the distances that are at most the number with these bits. Bits of numbers above 0 have
- * the order of the numbers. */
-static int64_t mcor_count_up_to(const mcor_neighbours* nearest, int64_t bits)
-{
-  double limit;
-  memcpy(&limit, &bits, sizeof limit);
-  int count = 0;
-  while (count < nearest->count && nearest->d2[count] <= limit)
-  {
-    ++count;
-  }
-  return count;
-}
-
 /* Finds each sample's farthest neighbour over all ranks, and the number of neighbours: bit by
  * bit, since ranks exchange counts only. */
 static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing* job,
@@ -108,7 +94,15 @@ static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing*
   {
     for (int s = 0; s < count; ++s)
     {
-      found[s] = mcor_count_up_to(&job->nearest[s], below[s] + ((INT64_C(1) << bit) - 1));
+      /* Bits of numbers above 0 have the order of the numbers. */
+      const int64_t bits = below[s] + ((INT64_C(1) << bit) - 1);
+      const mcor_neighbours* nearest = &job->nearest[s];
+      double limit;
+      memcpy(&limit, &bits, sizeof limit);
+      for (found[s] = 0; found[s] < nearest->count && nearest->d2[found[s]] <= limit;)
+      {
+        ++found[s];
+      }
     }
     MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, found, count));
     for (int s = 0; s < count; ++s)
@@ -117,27 +111,6 @@ static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing*
     }
   }
   memcpy(farthest, below, (size_t)count * sizeof *farthest);
-  return MCOR_OK;
-}
-
-/* Finds the power of 2 that scales the coordinates of all ranks to less than 1. */
-static mcor_status mcor_scale_positions(
-  mcor_context* context, const mcor_input* input, mcor_spacing* job)
-{
-  int exponent = 0, most = INT_MIN;
-  double largest[3];
-  job->input = input;
-  for (int a = 0; a < 3; ++a)
-  {
-    largest[a] = mcor_largest(context, input, &input->positions, a);
-  }
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
-  for (int a = 0; a < 3; ++a)
-  {
-    frexp(largest[a], &exponent);
-    most = exponent > most ? exponent : most;
-  }
-  job->scale = ldexp(1, most > -1000 ? -most : 1000);
   return MCOR_OK;
 }
 
@@ -161,10 +134,22 @@ double mcor_cube_root(double value)
 static mcor_status mcor_find_spacing(
   mcor_context* context, const mcor_input* input, mcor_spacing* job, double* estimate)
 {
-  double spacing[MCOR_SAMPLES];
+  double spacing[MCOR_SAMPLES], largest[3];
   int64_t neighbours[MCOR_SAMPLES];
+  int exponent = 0, most = INT_MIN;
   job->samples.most = MCOR_SAMPLES;
-  MCOR_TRY(mcor_scale_positions(context, input, job));
+  job->input = input;
+  for (int a = 0; a < 3; ++a)
+  {
+    largest[a] = mcor_largest(context, input, &input->positions, a);
+  }
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, largest, 3));
+  for (int a = 0; a < 3; ++a)
+  {
+    frexp(largest[a], &exponent);
+    most = exponent > most ? exponent : most;
+  }
+  job->scale = ldexp(1, most > -1000 ? -most : 1000);
   MCOR_TRY(mcor_choose_samples(context, input, MCOR_ALL_PARTICLES, &job->samples));
   const int count = job->samples.count;
   MCOR_TRY(mcor_parallel_run(context, count, 1, mcor_near_slice, job, NULL));

@@ -40,30 +40,6 @@ typedef struct mcor_wall
   int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
 } mcor_wall;
 
-/* Returns W h^3 / norm at an offset. */
-static double mcor_wall_kernel(mcor_sph_kernel kernel, const double d[3], double inv_h)
-{
-  return kernel == MCOR_M_PRIME_4
-    ? mcor_w_of(kernel, fabs(d[0]) * inv_h) * mcor_w_of(kernel, fabs(d[1]) * inv_h) *
-      mcor_w_of(kernel, fabs(d[2]) * inv_h)
-    : mcor_w_of(kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
-}
-
-/* Returns a particle's volume, or its mass where volumes are yet to be computed: shares do not
- * depend on the unit. */
-static double mcor_wall_volume(const mcor_wall* wall, int64_t i, double h)
-{
-  double size;
-  mcor_read_size(wall->input, i, 1, &size);
-  const int axes = mcor_needs_density(wall->input) ? wall->context->space.axes : 0;
-  size = axes > 0 ? size / wall->mass_max : size;
-  for (int a = 0; a < axes; ++a)
-  {
-    size *= h;
-  }
-  return size;
-}
-
 /* Finds the first sample that is not before x along the axis. */
 static int mcor_wall_first(const mcor_wall* wall, double x)
 {
@@ -83,7 +59,9 @@ static void mcor_wall_add(
 {
   const mcor_options* options = wall->context->run.options;
   const bool solid = wall->input->solid && wall->input->solid[i];
-  const double scaled = length * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0;
+  const mcor_sph_kernel kernel = options->sph_kernel;
+  const double scaled = length * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0,
+               inv_h = 1 / scaled;
   double weight = 0;
   for (int s = mcor_wall_first(wall, along - wall->reach); s < wall->count; ++s)
   {
@@ -99,13 +77,28 @@ static void mcor_wall_add(
     {
       break;
     }
-    const double w = near ? mcor_wall_kernel(options->sph_kernel, d, 1 / scaled) : 0;
+    const double w = !near ? 0
+      : mcor_is_tensor(kernel)
+      ? mcor_w_of(kernel, fabs(d[0]) * inv_h) * mcor_w_of(kernel, fabs(d[1]) * inv_h) *
+        mcor_w_of(kernel, fabs(d[2]) * inv_h)
+      : mcor_w_of(kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
+    if (w != 0 && weight == 0)
+    {
+      /* Shares do not depend on the unit of volumes, so masses do where volumes are yet to be
+       * computed; nor on the norm, nor on that of two dimensions. */
+      const int axes = wall->context->space.axes;
+      const bool is_mass = mcor_needs_density(wall->input);
+      mcor_read_size(wall->input, i, 1, &weight);
+      weight = is_mass ? weight / wall->mass_max : weight;
+      for (int a = 0; a < axes && is_mass; ++a)
+      {
+        weight *= h;
+      }
+      weight *= mcor_kernel_norm(kernel);
+      weight /= mcor_power(scaled, axes);
+    }
     if (w != 0)
     {
-      /* Shares do not depend on the norm, nor on that of two dimensions. */
-      weight = weight != 0 ? weight
-                           : mcor_wall_volume(wall, i, h) * mcor_kernel_norm(options->sph_kernel) /
-          mcor_power(scaled, wall->context->space.axes);
       const double most = fmin(fmax(weight * w, -MCOR_MOST_WEIGHT), MCOR_MOST_WEIGHT);
       wall->weights[slice][s][solid] += llrint(most * MCOR_WHOLE_WEIGHT);
     }
@@ -165,11 +158,13 @@ static double mcor_median_share(mcor_wall* wall)
   return MCOR_FREE_WALL_SHARE; /* no fluid is near */
 }
 
-/* Chooses the samples, and sorts them along an axis without a period, if there is one. */
-static mcor_status mcor_place_samples(mcor_context* context, mcor_wall* wall)
+/* Chooses the samples, sorts them along an axis without a period, if there is one, and weighs fluid
+ * and solids there. */
+static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
 {
+  const mcor_input* input = wall->input;
   mcor_samples_found found = { .most = MCOR_SAMPLES };
-  MCOR_TRY(mcor_choose_samples(context, wall->input, MCOR_SOLID_PARTICLES, &found));
+  MCOR_TRY(mcor_choose_samples(context, input, MCOR_SOLID_PARTICLES, &found));
   wall->axis = -1;
   for (int a = 2; a >= 0; --a)
   {
@@ -187,13 +182,6 @@ static mcor_status mcor_place_samples(mcor_context* context, mcor_wall* wall)
     }
     memcpy(wall->sample[to].x, x, sizeof wall->sample[to].x);
   }
-  return MCOR_OK;
-}
-
-static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
-{
-  const mcor_input* input = wall->input;
-  MCOR_TRY(mcor_place_samples(context, wall));
   wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 1;
   MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
   int slices;

@@ -23,20 +23,6 @@ static double mcor_length_at(const mcor_input* input, int64_t i)
   return input->estimate_smoothing_length ? 1.0 : mcor_array_at(&input->smoothing_length, i, 0);
 }
 
-static bool mcor_is_in_box(const mcor_input* input, int64_t i, const double box[6])
-{
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  bool is_in = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double x = mcor_array_at(&positions, i, a);
-    const double low = box[2 * a], high = box[2 * a + 1];
-    is_in = is_in && x >= low && (x < high || x == low); /* a flat box holds flat particles */
-  }
-  return is_in;
-}
-
 double mcor_least_smoothing_length(const mcor_input* input)
 {
   double least = INFINITY;
@@ -57,19 +43,27 @@ static double mcor_sum_cubes(
   const mcor_input* input, const mcor_options* options, double least, bool is_plane)
 {
   const bool has_box = mcor_has_box(options) != 0;
+  mcor_array positions = input->positions;
+  positions.components = 3;
   const bool one_for_all = mcor_has_one_length(input) && !input->solid && !has_box;
   const int levels = options->filled || options->capping ? 0 : options->level_limit;
   double cubes = 0.0;
   for (int64_t i = 0; i < (one_for_all && input->count > 1 ? 1 : input->count); ++i)
   {
-    if ((!input->solid || !input->solid[i]) && (!has_box || mcor_is_in_box(input, i, options->box)))
+    bool counts = !input->solid || !input->solid[i];
+    for (int a = 0; a < 3 && counts && has_box; ++a)
+    {
+      const double x = mcor_array_at(&positions, i, a), *side = options->box + 2 * a;
+      counts = x >= side[0] && (x < side[1] || x == side[0]); /* a flat box holds flat particles */
+    }
+    if (counts)
     {
       double h = mcor_length_at(input, i);
       for (int level = 0; level < levels && h >= 2.0 * least; ++level)
       {
         h *= 0.5;
       }
-      cubes += h * h * (is_plane ? 1.0 : h);
+      cubes += mcor_power(h, is_plane ? 2 : 3);
     }
   }
   return one_for_all && input->count > 1 ? cubes * (double)input->count : cubes;

@@ -114,41 +114,6 @@ void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides
   }
 }
 
-/* Returns the cells that any rank owns; `first` to `last` where there is no end. */
-static void mcor_place_whole(
-  mcor_context* context, const mcor_options* options, int axis, double first, double last)
-{
-  mcor_box* box = &context->box;
-  const double* whole =
-    options->ranks && mcor_is_box(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
-  double side[2] = { first, last };
-  if (whole)
-  {
-    mcor_place_sides(&context->lattice, axis, whole, side);
-  }
-  box->whole_first[axis] = (int)side[0];
-  box->whole_last[axis] = (int)side[1];
-  mcor_place_halves(&context->lattice, axis, whole, box->whole_first[axis], box->whole_last[axis],
-    box->whole_halves);
-}
-
-/* Finds the cells of a probe's points; all of a period where points lie beyond it, as these are
- * moved into it. */
-static void mcor_place_points(
-  mcor_context* context, int axis, double first, double last, double side[2])
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const double* points = context->box.points + 2 * axis;
-  const double origin = (double)lattice->origin[axis], edge = lattice->edge[axis];
-  const double rounding = 0.25 / (double)lattice->step[axis];
-  const double low = points[0] / edge - origin, high = points[1] / edge - origin;
-  if (lattice->period[axis] == 0 || (low >= first - rounding && high <= last + rounding))
-  {
-    side[0] = fmin(fmax(floor(low), first), last);
-    side[1] = fmin(fmax(floor(high) + 1, first), last);
-  }
-}
-
 /* A cell is owned if its centre is in the box. So the side of a box may lie on the lattice's
  * nodes, whatever rounding does to it, and boxes that share a side share no cell. */
 void mcor_place_box(mcor_context* context, const mcor_options* options)
@@ -170,12 +135,32 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     }
     if (box->of_points)
     {
-      mcor_place_points(context, a, first, last, side);
+      /* The cells of a probe's points; all of a period where points lie beyond it, as these are
+       * moved into it. */
+      const double *points = box->points + 2 * a, edge = lattice->edge[a];
+      const double origin = (double)lattice->origin[a], rounding = 0.25 / (double)lattice->step[a];
+      const double low = points[0] / edge - origin, high = points[1] / edge - origin;
+      if (!periodic || (low >= first - rounding && high <= last + rounding))
+      {
+        side[0] = fmin(fmax(floor(low), first), last);
+        side[1] = fmin(fmax(floor(high) + 1, first), last);
+      }
     }
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
-    mcor_place_whole(context, options, a, first, last);
+    /* Those of any rank; all where there is no end. */
+    const double* whole =
+      options->ranks && mcor_is_box(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
+    double all[2] = { first, last };
+    if (whole)
+    {
+      mcor_place_sides(lattice, a, whole, all);
+    }
+    box->whole_first[a] = (int)all[0];
+    box->whole_last[a] = (int)all[1];
+    mcor_place_halves(
+      lattice, a, whole, box->whole_first[a], box->whole_last[a], box->whole_halves);
     box->is_part = box->is_part || periodic || side[0] > first || side[1] < last;
     box->is_empty = box->is_empty || side[0] >= side[1];
   }
@@ -217,39 +202,34 @@ mcor_status mcor_void_bricks(mcor_context* context)
         MCOR_BUFFER(&bricks->seed_bits));
 }
 
-/* Keeps, of the marched bricks' cells, those in the box enlarged by so many cells below and
- * above. Of leaves it keeps all cells of the ring around it. */
-static mcor_status mcor_clip(mcor_context* context, const int sides[6], int lower, int upper,
-  const mcor_buffer* cells, mcor_buffer* clipped)
+/* Keeps, of the marched bricks' cells, those in the box and so many cells around it. Of leaves it
+ * keeps all cells of the ring around it. */
+static mcor_status mcor_clip(
+  mcor_context* context, int ring, const mcor_buffer* cells, mcor_buffer* clipped)
 {
   const bool adaptive = mcor_is_adaptive(&context->lattice);
   const int count = context->bricks.now.count;
   int s[6];
   for (int a = 0; a < 3; ++a)
   {
-    s[a] = sides[a] - (adaptive ? 0 : 2 * lower);
-    s[3 + a] = sides[3 + a] + (adaptive ? 0 : 2 * upper);
+    s[a] = context->box.halves[a] - (adaptive ? 0 : 2 * ring);
+    s[3 + a] = context->box.halves[3 + a] + (adaptive ? 0 : 2 * ring);
   }
   MCOR_TRY(mcor_reserve(context, clipped, (size_t)count * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_box_clip", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.now.bricks), MCOR_SIDES_ARGS(s),
-    MCOR_INT(adaptive ? mcor_level_ring(lower) : 0),
-    MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
+    MCOR_INT(adaptive ? mcor_level_ring(ring) : 0), MCOR_BUFFER(cells), MCOR_BUFFER(clipped));
 }
 
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
 {
-  return mcor_is_limited(context)
-    ? mcor_clip(context, context->box.halves, context->box.ring, context->box.ring, cells, cells)
-    : MCOR_OK;
+  return mcor_is_limited(context) ? mcor_clip(context, context->box.ring, cells, cells) : MCOR_OK;
 }
 
 mcor_status mcor_clip_used(mcor_context* context)
 {
   mcor_buffer* used = &context->mesh.used;
-  return context->box.is_part
-    ? mcor_clip(context, context->box.halves, context->box.ring, context->box.ring, used, used)
-    : MCOR_OK;
+  return context->box.is_part ? mcor_clip(context, context->box.ring, used, used) : MCOR_OK;
 }
 
 mcor_status mcor_find_owned(
@@ -257,8 +237,7 @@ mcor_status mcor_find_owned(
 {
   mcor_buffer* clipped = &context->box.clipped;
   *owned = context->box.is_part ? clipped : cells;
-  return context->box.is_part ? mcor_clip(context, context->box.halves, 0, 0, cells, clipped)
-                              : MCOR_OK;
+  return context->box.is_part ? mcor_clip(context, 0, cells, clipped) : MCOR_OK;
 }
 
 mcor_status mcor_count_cells(
@@ -292,19 +271,6 @@ bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]
   return bounded;
 }
 
-/* Finds the numbers of the images of a particle that come within `reach` of the places where the
- * field is evaluated. at: in cubes from the lattice's origin. Returns false if there is none.
- * Without a period the only number is 0. */
-static bool mcor_find_images(
-  const mcor_reach_box* box, int axis, double at, double reach, int* first, int* last)
-{
-  const double low = box->low[axis] - reach - at, high = box->high[axis] + reach - at;
-  const double period = box->period[axis];
-  *first = period > 0 ? (int)ceil(low / period) : 0;
-  *last = period > 0 ? (int)floor(high / period) : 0;
-  return period > 0 ? *first <= *last : low <= 0 && high >= 0;
-}
-
 int mcor_list_images(
   const mcor_reach_box* box, const double at[3], double support, mcor_images* images)
 {
@@ -312,11 +278,13 @@ int mcor_list_images(
   int count = !box->is_empty;
   for (int a = 0; a < 3 && count > 0; ++a)
   {
-    if (!mcor_find_images(box, a, at[a], reach, &images->first[a], &images->last[a]))
-    {
-      return 0;
-    }
-    count *= images->last[a] - images->first[a] + 1;
+    const double low = box->low[a] - reach - at[a], high = box->high[a] + reach - at[a];
+    const double period = box->period[a];
+    const bool is_near = period > 0 || (low <= 0 && high >= 0);
+    images->first[a] = period > 0 ? (int)ceil(low / period) : 0; /* else 0 is the only one */
+    images->last[a] = period > 0 ? (int)floor(high / period) : 0;
+    const int along = is_near ? images->last[a] - images->first[a] + 1 : 0;
+    count *= along > 0 ? along : 0;
   }
   return count;
 }
@@ -384,25 +352,6 @@ static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
   job->farthest[slice] = farthest;
 }
 
-/* Widens the reach for what is not a sum over supports: a volume sums all particles within the
- * particle's unscaled support; the nearest particle may be nearer than one that reaches; and the
- * other particle of a pair is within the smoothing length. Sums at particles with longer lengths are
- * needed as far as a support from the box. */
-static double mcor_reach_beyond(
-  const mcor_context* context, const mcor_input* input, double farthest)
-{
-  const mcor_options* options = context->run.options;
-  const double volumes = mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
-  if (context->run.widest > 0)
-  {
-    return farthest > 0 ? fmax(volumes, farthest) * (1 + context->run.widest) + 2 : 0;
-  }
-  const double nearest =
-    (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS ? farthest + 2
-                                                                                   : 0;
-  return farthest > 0 ? fmax(volumes, nearest) : 0;
-}
-
 /* Returns where the field is evaluated, in cubes from the lattice's origin; numbers that single
  * precision has, where it is evaluated anywhere. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
@@ -454,7 +403,18 @@ bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_
     {
       farthest = fmax(farthest, job.farthest[s]);
     }
-    reach->radius = mcor_reach_beyond(context, input, farthest);
+    /* Widens the reach for what is not a sum over supports: a volume sums all particles within the
+     * particle's unscaled support; the nearest particle may be nearer than one that reaches; and
+     * the other particle of a pair is within the smoothing length. Sums at particles with longer
+     * lengths are needed as far as a support from the box. */
+    const mcor_options* options = context->run.options;
+    const double volumes =
+      mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
+    const bool far = (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS;
+    const double beyond = context->run.widest > 0
+      ? fmax(volumes, farthest) * (1 + context->run.widest) + 2
+      : fmax(volumes, far ? farthest + 2 : 0);
+    reach->radius = farthest > 0 ? beyond : 0;
   }
   return true;
 }

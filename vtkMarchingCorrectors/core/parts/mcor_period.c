@@ -24,27 +24,20 @@
 /* The longest support, in periods; longer ones would take too many images. */
 #define MCOR_MOST_PERIODS 2
 
-/* Whether all periods are whole numbers of `unit` cubes if the one along `axis` is `count`
- * cubes. */
-static bool mcor_periods_fit(const double length[3], int axis, int64_t count, int64_t unit)
-{
-  bool fit = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double units = length[a] * (double)count / length[axis] / (double)unit;
-    fit = fit && fabs(units - round(units)) <= MCOR_PERIOD_ERROR * units;
-  }
-  return fit;
-}
-
-/* Finds the fewest cubes along `axis`, from `least` to `most`, for which all periods fit; 0:
- * none. */
+/* Finds the fewest cubes along `axis`, from `least` to `most`, for which all periods are whole
+ * numbers of `unit` cubes; 0: none. */
 static int64_t mcor_count_cubes(
   const double length[3], int axis, int64_t least, int64_t most, int64_t unit)
 {
   for (int64_t count = (least + unit - 1) / unit * unit; count <= most; count += unit)
   {
-    if (mcor_periods_fit(length, axis, count, unit))
+    bool fit = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double units = length[a] * (double)count / length[axis] / (double)unit;
+      fit = fit && fabs(units - round(units)) <= MCOR_PERIOD_ERROR * units;
+    }
+    if (fit)
     {
       return count;
     }
@@ -130,14 +123,6 @@ mcor_status mcor_check_digits(mcor_context* context, double low, double high, do
   return MCOR_OK;
 }
 
-/* Returns how far from the period an image may be and still be needed, L. */
-static double mcor_image_reach(
-  const mcor_context* context, const mcor_options* options, double cube)
-{
-  const double beyond = context->run.widest * (1 + 1 / options->h_scale); /* see mcor_reach_beyond */
-  return context->measure.support_max * (2 + 1 / options->h_scale + beyond) + 8 * cube;
-}
-
 /* May lower *top, the highest level. */
 mcor_status mcor_fit_period(
   mcor_context* context, const mcor_options* options, double cube, int* top)
@@ -164,7 +149,9 @@ mcor_status mcor_fit_period(
   }
   MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge, top));
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
-  const double reach = mcor_image_reach(context, options, longest);
+  /* How far from the period an image may be and still be needed, L; see mcor_find_reach. */
+  const double beyond = context->run.widest * (1 + 1 / options->h_scale);
+  const double reach = m->support_max * (2 + 1 / options->h_scale + beyond) + 8 * longest;
   const double margin = *top > 0 ? ldexp(8 * longest, *top) : 0;
   for (int a = 0; a < 3; ++a)
   {
@@ -192,19 +179,6 @@ mcor_status mcor_fit_period(
 /* The least edge, in cubes: 15/16, rounded down a bit. */
 #define MCOR_STEP_RANGE 16
 
-/* Returns the trailing zeros that an edge needs as a fixed-point number. Nodes must be as round
- * as the particles with long supports, and whole numbers of units in a double. */
-static int mcor_rounded_bits(const mcor_context* context, double longest, int64_t extent)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  int exponent;
-  frexp((double)extent + 64, &exponent);
-  const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;
-  const int spared =
-    mcor_spared_bits(context, context->measure.support_max, longest, lattice->levels - 1);
-  return exact > spared ? exact : spared;
-}
-
 /* Chooses the edges in fixed-point units. Particles keep their positions in units of the edge
  * along each axis, so for right distances the edges must be to each other as their numbers of
  * units are. Among the last 1 / MCOR_STEP_RANGE of numbers for the longest edge, takes the one
@@ -215,7 +189,14 @@ void mcor_fit_steps(mcor_context* context, int64_t extent)
   const double* edge = lattice->edge;
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
   const bool equal = edge[0] == edge[1] && edge[1] == edge[2];
-  const int spared = equal ? 0 : mcor_rounded_bits(context, longest, extent);
+  /* The trailing zeros that an edge needs as a fixed-point number: nodes must be as round as the
+   * particles with long supports, and whole numbers of units in a double. */
+  int exponent;
+  frexp((double)extent + 64, &exponent);
+  const int exact = exponent + lattice->fix_bits - DBL_MANT_DIG;
+  const int round_as =
+    mcor_spared_bits(context, context->measure.support_max, longest, lattice->levels - 1);
+  const int spared = equal ? 0 : exact > round_as ? exact : round_as;
   const int bits = lattice->fix_bits - spared > 1 ? lattice->fix_bits - spared : 1;
   const int64_t most = INT64_C(1) << bits, rest = most / MCOR_STEP_RANGE;
   const int64_t tries = equal ? 0 : rest < MCOR_STEP_TRIES ? rest : MCOR_STEP_TRIES;

@@ -36,23 +36,6 @@ mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
   return status;
 }
 
-/* Gives each vertex the owner of the first owned triangle that uses it. */
-static void mcor_list_owners(
-  const cl_int* corners, const cl_ulong* cells, size_t triangles, uint8_t* owners)
-{
-  for (size_t i = 0; i < triangles; ++i)
-  {
-    const uint8_t owner = !(cells[i] & MCOR_RING_CELL) ? MCOR_OWN
-      : cells[i] & MCOR_OTHERS_CELL                    ? MCOR_ANOTHERS
-                                                       : 0;
-    for (size_t c = 0; c < 3; ++c)
-    {
-      uint8_t* of = owners + corners[3 * i + c];
-      *of = *of ? *of : owner;
-    }
-  }
-}
-
 /* *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the
  * lattice is owned. The caller frees it, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
@@ -70,14 +53,17 @@ mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_map(context, &mesh->triangles, triangles * 3 * sizeof(cl_int), false, &corners));
-  mcor_status status =
-    mcor_map(context, &context->box.cells, triangles * sizeof(cl_ulong), false, &cells);
-  if (status == MCOR_OK)
+  const mcor_mapping views[] = { { &mesh->triangles, 3 * triangles * sizeof(cl_int), &corners },
+    { &context->box.cells, triangles * sizeof(cl_ulong), &cells } };
+  const mcor_status status = mcor_map_all(context, views, 2);
+  for (size_t i = 0; i < 3 * triangles && status == MCOR_OK; ++i)
   {
-    mcor_list_owners(corners, cells, triangles, *owners);
-    status = mcor_unmap(context, &context->box.cells, &cells);
+    const cl_ulong cell = ((const cl_ulong*)cells)[i / 3];
+    uint8_t* of = *owners + ((const cl_int*)corners)[i]; /* of the first triangle with the vertex */
+    *of = *of                    ? *of
+      : !(cell & MCOR_RING_CELL) ? MCOR_OWN
+      : cell & MCOR_OTHERS_CELL  ? MCOR_ANOTHERS
+                                 : 0;
   }
-  const mcor_status unmapped = mcor_unmap(context, &mesh->triangles, &corners);
-  return status != MCOR_OK ? status : unmapped;
+  return mcor_unmap_all(context, views, 2, status);
 }

@@ -32,8 +32,10 @@ size_t mcor_count_components(const mcor_input* input)
   return count;
 }
 
-/* Makes room for the list of components, which is empty at first. */
-static mcor_status mcor_clear_components(mcor_context* context, const mcor_input* input)
+/* Decides which attributes to leave out, and lists the components of the others: those that vary
+ * (surface), or all of them (samples). not_finite: [attribute_count], as in mcor_surface. */
+mcor_status mcor_list_components(
+  mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
 {
   mcor_attributes* attributes = &context->attributes;
   const mcor_globals* globals = context->run.options->globals;
@@ -46,35 +48,6 @@ static mcor_status mcor_clear_components(mcor_context* context, const mcor_input
   MCOR_RETURN_IF(globals && globals->component_count != (int)count, context, MCOR_INVALID_ARGUMENT,
     "options.globals was measured for %d components of attributes, but the input has %d.",
     globals->component_count, (int)count);
-  return MCOR_OK;
-}
-
-/* Sets the shift and scale that map a component's samples to [-1, 1]. */
-static mcor_component mcor_scale_component(
-  int attribute, int component, bool of_surface, const mcor_global_component* found)
-{
-  mcor_component scaled = { .attribute = attribute, .component = component };
-  if (of_surface)
-  {
-    scaled.scale = mcor_component_scale(found->largest);
-    return scaled;
-  }
-  const double half = 0.5 * found->high - 0.5 * found->low;
-  scaled.shift = 0.5 * found->high + 0.5 * found->low;
-  scaled.scale = half > 0 ? mcor_component_scale(half) : 1;
-  scaled.low = found->low;
-  scaled.high = found->high;
-  return scaled;
-}
-
-/* Decides which attributes to leave out, and lists the components of the others: those that vary
- * (surface), or all of them (samples). not_finite: [attribute_count], as in mcor_surface. */
-mcor_status mcor_list_components(
-  mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite)
-{
-  mcor_attributes* attributes = &context->attributes;
-  const mcor_globals* globals = context->run.options->globals;
-  MCOR_TRY(mcor_clear_components(context, input));
   for (int a = 0, next = 0; a < input->attribute_count; ++a)
   {
     const mcor_array* array = &input->attributes[a];
@@ -97,8 +70,18 @@ mcor_status mcor_list_components(
       }
       if (found.varies || !of_surface)
       {
-        attributes->varying[attributes->varying_count++] =
-          mcor_scale_component(a, c, of_surface, &found);
+        mcor_component* scaled = &attributes->varying[attributes->varying_count++];
+        *scaled = (mcor_component){ .attribute = a, .component = c };
+        if (of_surface)
+        {
+          scaled->scale = mcor_component_scale(found.largest);
+          continue;
+        }
+        const double half = 0.5 * found.high - 0.5 * found.low; /* samples: to [-1, 1] */
+        scaled->shift = 0.5 * found.high + 0.5 * found.low;
+        scaled->scale = half > 0 ? mcor_component_scale(half) : 1;
+        scaled->low = found.low;
+        scaled->high = found.high;
       }
     }
   }

@@ -21,44 +21,37 @@ void mcor_free_cap_points(mcor_context* context, mcor_cap_points* p)
   free(p->to);
 }
 
-/* Evaluates the field at a batch of points. */
-static mcor_status mcor_evaluate_cap_points(mcor_context* context, mcor_cap_points* p)
-{
-  const size_t n = (size_t)p->count, real = context->cl.real_size;
-  int groups;
-  MCOR_TRY(mcor_write(context, &p->nodes, p->node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_write(context, &p->offsets, p->offset, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &p->values, n * real));
-  MCOR_TRY(mcor_reserve(context, &p->gradients, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &p->weights, n * real));
-  MCOR_TRY(mcor_make_groups(context, &p->nodes, 0, p->count, &groups));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
-    MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&p->offsets), MCOR_BUFFER(&p->values),
-    MCOR_BUFFER(&p->gradients), MCOR_BUFFER(&p->weights), MCOR_INT(0), MCOR_INT(0),
-    MCOR_BUFFER(&p->values), MCOR_BUFFER(&p->weights)));
-  if (!mcor_trims_by_eigenvalue(context))
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_reserve(context, &p->eigenvalues, n * real));
-  return MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
-    MCOR_BUFFER(&p->offsets), MCOR_INT(context->space.flat), MCOR_BUFFER(&p->eigenvalues));
-}
-
 mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)
 {
   if (p->count == 0)
   {
     return MCOR_OK;
   }
-  const size_t bytes = (size_t)p->count * context->cl.real_size;
+  const size_t n = (size_t)p->count, bytes = n * context->cl.real_size;
   const mcor_mapping mappings[] = { { &p->values, bytes, &p->value },
     { &p->gradients, 4 * bytes, &p->gradient }, { &p->weights, bytes, &p->weight },
     { &p->eigenvalues, bytes, &p->eigenvalue } };
   const int mapped = mcor_trims_by_eigenvalue(context) ? 4 : 3;
-  MCOR_TRY(mcor_evaluate_cap_points(context, p));
+  int groups;
+  MCOR_TRY(mcor_write(context, &p->nodes, p->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &p->offsets, p->offset, 4 * bytes));
+  MCOR_TRY(mcor_reserve(context, &p->values, bytes));
+  MCOR_TRY(mcor_reserve(context, &p->gradients, 4 * bytes));
+  MCOR_TRY(mcor_reserve(context, &p->weights, bytes));
+  MCOR_TRY(mcor_make_groups(context, &p->nodes, 0, p->count, &groups));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
+    MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&p->offsets), MCOR_BUFFER(&p->values),
+    MCOR_BUFFER(&p->gradients), MCOR_BUFFER(&p->weights), MCOR_INT(0), MCOR_INT(0),
+    MCOR_BUFFER(&p->values), MCOR_BUFFER(&p->weights)));
+  if (mapped == 4)
+  {
+    MCOR_TRY(mcor_reserve(context, &p->eigenvalues, bytes));
+    MCOR_TRY(
+      MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
+        MCOR_BUFFER(&p->offsets), MCOR_INT(context->space.flat), MCOR_BUFFER(&p->eigenvalues)));
+  }
   mcor_status status = mcor_map_all(context, mappings, mapped);
   for (int i = 0; i < p->count && status == MCOR_OK; ++i)
   {
@@ -180,16 +173,24 @@ mcor_status mcor_append_bytes(
   return status;
 }
 
-/* Appends the vertices' places and flags. */
-static mcor_status mcor_append_places(
-  mcor_context* context, const mcor_cap_vertex* vertices, size_t n)
+mcor_status mcor_append_cap_vertices(
+  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
 {
   mcor_mesh* mesh = &context->mesh;
-  const size_t old = (size_t)mesh->vertex_count, width = 4 * context->cl.real_size;
+  const size_t n = (size_t)count, old = (size_t)mesh->vertex_count,
+               width = 4 * context->cl.real_size;
+  if (count == 0)
+  {
+    return MCOR_OK;
+  }
+  mcor_end_caps(context);
   cl_int* node = calloc(n, 4 * sizeof *node);
   void* offset = calloc(n, width);
   uint8_t* flag = malloc(n);
-  mcor_status status = mcor_allocated(context, node && offset && flag);
+  const bool has_keys = mcor_wants(context, MCOR_OUT_POINT_KEYS);
+  uint64_t* keys = has_keys ? malloc(n * sizeof vertices->key) : NULL;
+  context->mesh.cap_keys = keys;
+  mcor_status status = mcor_allocated(context, node && offset && flag && (keys || !has_keys));
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)
   {
     memcpy(node + 4 * i, vertices[i].node, sizeof vertices[i].node);
@@ -198,52 +199,32 @@ static mcor_status mcor_append_places(
     {
       mcor_put_real(context, offset, (int64_t)(4 * i + a), vertices[i].offset[a]);
     }
+    if (keys)
+    {
+      keys[2 * i] = vertices[i].key[0] & ~MCOR_RING_CELL;
+      keys[2 * i + 1] = vertices[i].key[1];
+    }
   }
+  const struct
+  {
+    mcor_buffer* to;
+    const void* data;
+    size_t width;
+  } arrays[] = { { &mesh->node, node, 4 * sizeof *node }, { &mesh->offset, offset, width },
+    { &mesh->flag, flag, 1 } };
   status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)(old + n)) : status;
-  status =
-    status == MCOR_OK ? mcor_append_bytes(context, &mesh->node, old * 16, node, n * 16) : status;
-  status = status == MCOR_OK
-    ? mcor_append_bytes(context, &mesh->offset, old * width, offset, n * width)
-    : status;
-  status = status == MCOR_OK ? mcor_append_bytes(context, &mesh->flag, old, flag, n) : status;
+  for (int i = 0; i < 3 && status == MCOR_OK; ++i)
+  {
+    const size_t bytes = arrays[i].width;
+    status = mcor_append_bytes(context, arrays[i].to, old * bytes, arrays[i].data, n * bytes);
+  }
   free(node);
   free(offset);
   free(flag);
-  return status;
-}
-
-static mcor_status mcor_keep_cap_keys(
-  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
-{
-  if (!mcor_wants(context, MCOR_OUT_POINT_KEYS))
-  {
-    return MCOR_OK;
-  }
-  mcor_end_caps(context);
-  uint64_t* keys = malloc((size_t)count * sizeof vertices->key);
-  for (int64_t i = 0; i < count && keys; ++i)
-  {
-    keys[2 * i] = vertices[i].key[0] & ~MCOR_RING_CELL;
-    keys[2 * i + 1] = vertices[i].key[1];
-  }
-  context->mesh.cap_keys = keys;
-  return mcor_allocated(context, keys);
-}
-
-mcor_status mcor_append_cap_vertices(
-  mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const int old = mesh->vertex_count;
-  int groups;
-  if (count == 0)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_keep_cap_keys(context, vertices, count));
-  MCOR_TRY(mcor_append_places(context, vertices, (size_t)count));
+  MCOR_TRY(status);
   mesh->vertex_count += (int)count;
-  MCOR_TRY(mcor_make_groups(context, &mesh->node, old, (int)count, &groups));
+  int groups;
+  MCOR_TRY(mcor_make_groups(context, &mesh->node, (int)old, (int)count, &groups));
   return MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
     MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&mesh->offset),

@@ -18,22 +18,6 @@ typedef struct mcor_normals
   bool all;
 } mcor_normals;
 
-static void mcor_triangle_normal(
-  const mcor_surface* surface, const int32_t* t, double scale, double n[3])
-{
-  double u[3], v[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const double corner = surface->points[3 * (int64_t)t[0] + a];
-    u[a] = (surface->points[3 * (int64_t)t[1] + a] - corner) * scale;
-    v[a] = (surface->points[3 * (int64_t)t[2] + a] - corner) * scale;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
-  }
-}
-
 static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_normals* job = data;
@@ -54,24 +38,6 @@ static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
 /* Triangles between two progress reports. */
 #define MCOR_NORMAL_STEP (1 << 18)
 
-/* Runs on one thread: the order in which a point's triangles are added must not change. */
-static mcor_status mcor_add_triangles(mcor_context* context, const mcor_normals* job)
-{
-  const mcor_surface* surface = job->surface;
-  for (int64_t i = 0; i < surface->triangle_count; ++i)
-  {
-    MCOR_TRY(i % MCOR_NORMAL_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
-    const int32_t* t = surface->triangles + 3 * i;
-    double n[3];
-    mcor_triangle_normal(surface, t, job->scale, n);
-    for (int c = 0; c < 9; ++c)
-    {
-      job->sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
-    }
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
 {
   int exponent = 0;
@@ -85,7 +51,28 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
   }
   job.sums = calloc((size_t)surface->point_count * 3 + 1, sizeof(double));
   MCOR_TRY(mcor_allocated(context, job.sums));
-  mcor_status status = mcor_add_triangles(context, &job);
+  mcor_status status = MCOR_OK;
+  /* Runs on one thread: the order in which a point's triangles are added must not change. */
+  for (int64_t i = 0; i < surface->triangle_count && status == MCOR_OK; ++i)
+  {
+    const int32_t* t = surface->triangles + 3 * i;
+    double u[3], v[3], n[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const double corner = surface->points[3 * (int64_t)t[0] + a];
+      u[a] = (surface->points[3 * (int64_t)t[1] + a] - corner) * job.scale;
+      v[a] = (surface->points[3 * (int64_t)t[2] + a] - corner) * job.scale;
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+    }
+    for (int c = 0; c < 9; ++c)
+    {
+      job.sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];
+    }
+    status = i % MCOR_NORMAL_STEP == 0 ? mcor_report_launch(context) : MCOR_OK;
+  }
   status = status == MCOR_OK ? mcor_parallel_run(context, surface->point_count, MCOR_LIGHT_GRAIN,
                                  mcor_store_sums, &job, NULL)
                              : status;

@@ -37,22 +37,20 @@ typedef struct mcor_download
 } mcor_download;
 #define MCOR_DOWNLOADS 12
 
-/* Numbers the vertices that triangles use: scanned[v] becomes how many of them come before v. */
-static mcor_status mcor_count_used(mcor_context* context, int* count)
+/* Numbers the vertices that triangles use, or all: scanned[v] becomes how many of them come before
+ * v. */
+static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* count)
 {
   mcor_mesh* mesh = &context->mesh;
   const int vertices = mesh->vertex_count;
-  MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, ((size_t)vertices + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, 3 * (size_t)mesh->triangle_count,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
-  return mcor_scan(context, &mesh->scanned, vertices, count);
-}
-
-/* Numbers all vertices. */
-static mcor_status mcor_count_all(mcor_context* context, int* count)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->vertex_count + 1;
+  const size_t n = (size_t)vertices + 1;
+  if (!all)
+  {
+    MCOR_TRY(mcor_fill(context, &mesh->scanned, 0, n * sizeof(cl_int)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_used", MCOR_LIGHT, 3 * (size_t)mesh->triangle_count,
+      MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles), MCOR_BUFFER(&mesh->scanned)));
+    return mcor_scan(context, &mesh->scanned, vertices, count);
+  }
   cl_int* scanned = malloc(n * sizeof *scanned);
   MCOR_RETURN_IF(!scanned, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for %zu points could not be allocated.", n);
@@ -60,13 +58,12 @@ static mcor_status mcor_count_all(mcor_context* context, int* count)
   {
     scanned[v] = (cl_int)v;
   }
-  *count = mesh->vertex_count;
+  *count = vertices;
   const mcor_status status = mcor_write(context, &mesh->scanned, scanned, n * sizeof *scanned);
   free(scanned);
   return status;
 }
 
-/* Returns the number of vertices that go to the output. */
 static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
 {
   const mcor_context* context = d->context;
@@ -132,19 +129,6 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
     : 0;
 }
 
-/* Computes how far rounded positions may move the value of vertex v. */
-static double mcor_rounding_of(const mcor_download* d, int64_t v)
-{
-  const mcor_context* context = d->context;
-  double gradient = 0; /* each axis is rounded */
-  for (int a = 0; a < 3; ++a)
-  {
-    gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
-  }
-  return mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient +
-    d->sum_rounding;
-}
-
 /* Estimates what the device's rounding of sums may add to a residual: some units of rounding of
  * the greatest term against the iso value. For a plain sum, whose weights may be any, weights
  * count as 1, as inside of fluid. */
@@ -170,7 +154,15 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   if (flag != 2)
   {
     const double residual = fabs(mcor_get_real(context, d->value, v));
-    tally->residual_max = fmax(tally->residual_max, residual + mcor_rounding_of(d, v));
+    double gradient = 0; /* each axis is rounded, by which the value may move */
+    for (int a = 0; a < 3; ++a)
+    {
+      gradient += fabs(mcor_get_real(context, d->gradient, 4 * v + a));
+    }
+    const double rounding =
+      mcor_rounding(context) / mcor_length_of(d, v, context->lattice.cube) * gradient +
+      d->sum_rounding;
+    tally->residual_max = fmax(tally->residual_max, residual + rounding);
     tally->above_tolerance += residual > tolerance;
   }
   if (flag == 1 || flag == 2)
@@ -183,20 +175,6 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   tally->sum += length;
   tally->squares += length * length;
   tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
-}
-
-static void mcor_add_tally(mcor_context* context, const mcor_tally* tally)
-{
-  mcor_statistics* s = context->run.statistics;
-  s->trim_vertices += tally->trim_vertices;
-  s->trim_vertices_linear += tally->linear;
-  s->vertices_above_tolerance += tally->above_tolerance;
-  context->run.normals_lacking += tally->normals_lacking;
-  context->run.correction_count += tally->count;
-  context->run.correction_sum += tally->sum;
-  context->run.correction_squares += tally->squares;
-  s->correction_max = fmax(s->correction_max, tally->correction_max);
-  s->residual_max = fmax(s->residual_max, tally->residual_max);
 }
 
 /* Computes the normal, opposite to the gradient; zero where that vanishes. Scales first: the
@@ -323,9 +301,19 @@ static mcor_status mcor_deliver_vertices(mcor_context* context, mcor_download* d
   int slices;
   MCOR_TRY(mcor_parallel_run(
     context, context->mesh.vertex_count, MCOR_HEAVY_GRAIN, mcor_deliver_slice, d, &slices));
-  for (int s = 0; s < slices; ++s)
+  mcor_statistics* s = context->run.statistics;
+  for (int i = 0; i < slices; ++i)
   {
-    mcor_add_tally(context, &d->tallies[s]);
+    const mcor_tally* tally = &d->tallies[i];
+    s->trim_vertices += tally->trim_vertices;
+    s->trim_vertices_linear += tally->linear;
+    s->vertices_above_tolerance += tally->above_tolerance;
+    s->correction_max = fmax(s->correction_max, tally->correction_max);
+    s->residual_max = fmax(s->residual_max, tally->residual_max);
+    context->run.normals_lacking += tally->normals_lacking;
+    context->run.correction_count += tally->count;
+    context->run.correction_sum += tally->sum;
+    context->run.correction_squares += tally->squares;
   }
   return MCOR_OK;
 }
@@ -370,30 +358,14 @@ static mcor_status mcor_deliver_triangles(
   return MCOR_OK;
 }
 
-/* Evaluates what only arrays of the surface need. */
-static mcor_status mcor_evaluate_extras(mcor_context* context)
-{
-  const mcor_options* options = context->run.options;
-  mcor_buffer* eigenvalue = &context->trim.eigenvalue;
-  if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
-  {
-    MCOR_TRY(mcor_reserve(
-      context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
-    MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
-  }
-  MCOR_TRY(options->outputs & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
-      ? mcor_find_curvature(context)
-      : MCOR_OK);
-  return (options->outputs & MCOR_OUT_NEAREST_PARTICLE) ? mcor_find_nearest(context) : MCOR_OK;
-}
-
 static mcor_status mcor_append_mesh(
   mcor_context* context, const mcor_input* input, bool all, mcor_download* download)
 {
   mcor_surface* surface = download->surface;
+  const mcor_options* options = context->run.options;
   const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
   int count;
-  MCOR_TRY(all ? mcor_count_all(context, &count) : mcor_count_used(context, &count));
+  MCOR_TRY(mcor_number_vertices(context, all, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
     "The surface would have %lld points; the limit is %d. Use a larger cube size.",
     (long long)(base + count), INT32_MAX);
@@ -401,7 +373,17 @@ static mcor_status mcor_append_mesh(
   {
     mcor_mapping mappings[MCOR_DOWNLOADS];
     const int mapped = mcor_list_mappings(download, mappings);
-    MCOR_TRY(mcor_evaluate_extras(context));
+    if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
+    {
+      mcor_buffer* eigenvalue = &context->trim.eigenvalue;
+      MCOR_TRY(mcor_reserve(
+        context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
+      MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
+    }
+    MCOR_TRY(options->outputs & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
+        ? mcor_find_curvature(context)
+        : MCOR_OK);
+    MCOR_TRY(options->outputs & MCOR_OUT_NEAREST_PARTICLE ? mcor_find_nearest(context) : MCOR_OK);
     MCOR_TRY(mcor_map_all(context, mappings, mapped));
     mcor_number_lines(context, download->scanned, base);
   }
@@ -427,24 +409,6 @@ bool mcor_output_evaluates(const mcor_context* context)
     mcor_attributes_remain(context);
 }
 
-/* Frees what only the mesh needed, so that the output finds room. */
-static void mcor_release_construction(mcor_context* context)
-{
-  mcor_mesh* m = &context->mesh;
-  mcor_release_trim(context);
-  MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
-}
-
-/* Frees the vertices and attributes, so that the caller finds room for what it makes of the
- * surface. */
-static void mcor_release_vertices(mcor_context* context)
-{
-  mcor_mesh* m = &context->mesh;
-  mcor_release_attributes(context);
-  MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
-    &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned, &context->trim.eigenvalue);
-}
-
 /* Appends the mesh of one iso value to the surface. */
 mcor_status mcor_append_output(
   mcor_context* context, const mcor_input* input, bool all, mcor_surface* surface)
@@ -454,11 +418,18 @@ mcor_status mcor_append_output(
     .sum_rounding = mcor_sum_rounding(context),
     .surface = surface };
   mcor_mapping mappings[MCOR_DOWNLOADS];
-  mcor_release_construction(context);
+  mcor_mesh* m = &context->mesh;
+  /* Frees what only the mesh needed, so that the output finds room; then what the output did, for
+   * what the caller makes of the surface. */
+  mcor_release_trim(context);
+  MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_append_mesh(context, input, all, &download);
   const int mapped = mcor_list_mappings(&download, mappings);
   status = mcor_unmap_all(context, mappings, mapped, status);
-  mcor_release_vertices(context);
+  mcor_release_attributes(context);
+  MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
+    &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned,
+    &context->trim.eigenvalue);
   free(download.owned);
   return status;
 }

@@ -113,14 +113,18 @@ static void mcor_pack(void* array, size_t width, const int32_t* number, int64_t 
   }
 }
 
-/* Numbers the points that owned triangles use, in order, and drops the other triangles. */
-static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, int32_t* number)
+/* Keeps the owned triangles and the points that they use alone, in order. */
+mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
-  int64_t triangles = 0, points = 0;
-  for (int64_t i = 0; i < surface->point_count; ++i)
+  const uint8_t* kept = context->box.kept;
+  if (!kept)
   {
-    number[i] = -1;
+    return MCOR_OK;
   }
+  int32_t* number = malloc(((size_t)surface->point_count + 1) * sizeof *number);
+  MCOR_TRY(mcor_allocated(context, number));
+  int64_t triangles = 0, points = 0;
+  memset(number, 0xff, (size_t)surface->point_count * sizeof *number);
   for (int64_t i = 0; i < 3 * surface->triangle_count; ++i)
   {
     if (kept[i / 3])
@@ -144,20 +148,6 @@ static int64_t mcor_drop_triangles(mcor_surface* surface, const uint8_t* kept, i
     surface->triangles[i] = number[surface->triangles[i]];
   }
   surface->triangle_count = triangles;
-  return points;
-}
-
-/* Keeps the owned triangles and their points alone. */
-mcor_status mcor_crop_surface(mcor_context* context, const mcor_input* input, mcor_surface* surface)
-{
-  const uint8_t* kept = context->box.kept;
-  if (!kept)
-  {
-    return MCOR_OK;
-  }
-  int32_t* number = malloc(((size_t)surface->point_count + 1) * sizeof *number);
-  MCOR_TRY(mcor_allocated(context, number));
-  const int64_t points = mcor_drop_triangles(surface, kept, number);
   mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
   mcor_list_surface_arrays(surface, arrays);
   for (int i = 0; i < MCOR_SURFACE_ARRAYS; ++i)

@@ -93,22 +93,6 @@ static mcor_status mcor_evaluate_margins(mcor_context* context)
     MCOR_REAL(mcor_fluid_share(context)), MCOR_BUFFER(&trim->margin));
 }
 
-/* Counts the triangles and cuts that remain; leaves the scanned counts in trim->remaining and
- * trim->cuts. */
-static mcor_status mcor_count_trimmed(mcor_context* context, int batches, int* remaining, int* cuts)
-{
-  mcor_mesh* mesh = &context->mesh;
-  mcor_trim_data* trim = &context->trim;
-  MCOR_TRY(mcor_reserve(context, &trim->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &trim->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_MEDIUM, batches,
-    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
-    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
-    MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
-  MCOR_TRY(mcor_scan(context, &trim->remaining, batches, remaining));
-  return mcor_scan(context, &trim->cuts, batches, cuts);
-}
-
 mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -138,29 +122,6 @@ int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)
   return cut ? (int)(cut - cuts) : -1;
 }
 
-/* Finds where the cut vertices of each level begin. A cut vertex belongs to the level of its
- * edge's lower vertex, by which cuts are sorted. */
-static mcor_status mcor_find_cut_levels(mcor_context* context, int cut_count)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const mcor_buffer* keys = &context->mesh.cut_edges;
-  for (int l = 0; l + 1 < context->lattice.levels; ++l)
-  {
-    int low = 0, high = cut_count;
-    while (low < high)
-    {
-      const int middle = low + (high - low) / 2;
-      cl_ulong key;
-      MCOR_TRY(mcor_read(context, keys, (size_t)middle * sizeof key, &key, sizeof key));
-      const bool before = (int64_t)(key >> 32) < mesh->level_first[0][l + 1];
-      low = before ? middle + 1 : low;
-      high = before ? high : middle;
-    }
-    mesh->level_first[1][l + 1] = mesh->march_count + low;
-  }
-  return MCOR_OK;
-}
-
 /* Places the cut vertices: first linearly, then by solving both equations at once. */
 static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
 {
@@ -178,7 +139,22 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
     MCOR_BUFFER(&mesh->cut_edges), MCOR_INT(vertices), MCOR_REAL(mcor_trim_threshold(context)),
     MCOR_BUFFER(&mesh->node), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(mcor_trim_quantity(context)),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->gradient)));
-  MCOR_TRY(mcor_find_cut_levels(context, cut_count));
+  /* Finds where the cut vertices of each level begin. A cut vertex belongs to the level of its edge's
+   * lower vertex, by which cuts are sorted. */
+  for (int l = 0; l + 1 < context->lattice.levels; ++l)
+  {
+    int low = 0, high = cut_count;
+    while (low < high)
+    {
+      const int middle = low + (high - low) / 2;
+      cl_ulong key;
+      MCOR_TRY(mcor_read(context, &mesh->cut_edges, (size_t)middle * sizeof key, &key, sizeof key));
+      const bool before = (int64_t)(key >> 32) < mesh->level_first[0][l + 1];
+      low = before ? middle + 1 : low;
+      high = before ? high : middle;
+    }
+    mesh->level_first[1][l + 1] = mesh->march_count + low;
+  }
   const char* solve =
     mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
   return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve,
@@ -201,7 +177,14 @@ mcor_status mcor_trim(mcor_context* context)
   }
   MCOR_TRY(mcor_evaluate_margins(context));
   const int batches = mcor_batches(context, mesh->triangle_count);
-  MCOR_TRY(mcor_count_trimmed(context, batches, &remaining, &cuts));
+  MCOR_TRY(mcor_reserve(context, &trim->remaining, ((size_t)batches + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &trim->cuts, ((size_t)batches + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_trim_count", MCOR_MEDIUM, batches,
+    MCOR_INT(mesh->triangle_count), MCOR_BUFFER(&mesh->triangles),
+    MCOR_BUFFER(mcor_trim_quantity(context)), MCOR_REAL(mcor_trim_threshold(context)),
+    MCOR_BUFFER(&trim->remaining), MCOR_BUFFER(&trim->cuts)));
+  MCOR_TRY(mcor_scan(context, &trim->remaining, batches, &remaining));
+  MCOR_TRY(mcor_scan(context, &trim->cuts, batches, &cuts));
   MCOR_TRY(mcor_reserve(context, &trim->keys, (size_t)cuts * sizeof(cl_ulong)));
   MCOR_TRY(
     MCOR_LAUNCH(context, "mcor_trim_edges", MCOR_MEDIUM, batches, MCOR_INT(mesh->triangle_count),

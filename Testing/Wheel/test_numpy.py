@@ -27,7 +27,7 @@ POSITIONS, DISTANCE = lattice()
 
 
 def sphere(**more):
-    return mc.isosurface(POSITIONS, DISTANCE, **{"iso": 0.4, "smoothing_length": H, "volume": V, **more})
+    return mc.isosurface(**{"positions": POSITIONS, "scalar": DISTANCE, "iso": 0.4, "smoothing_length": H, "volume": V, **more})
 
 
 def quietly(function, *arguments, **words):
@@ -157,20 +157,6 @@ class Results(unittest.TestCase):
         solid[near] = 0
         self.assertEqual(sphere(solid=solid), sphere(solid=~near))
 
-    def test_left_out_errors(self):
-        wall = np.arange(N ** 3) % 4
-        for words, sentence in (
-                ({"within": (0, 1)}, "six bounds"), ({"within": (1, 0, 0, 1, 0, 1)}, "lower ones first"),
-                ({"within": "abcdef"}, "within does not hold numbers"), ({"within": (0, np.nan, 0, 1, 0, 1)}, "six bounds"),
-                ({"within": (5, 6, 5, 6, 5, 6)}, "None of the 2744 particles is left by within"),
-                ({"only": {"walls": 1}}, "Did you mean 'wall'.*Attributes: wall, x"), ({"only": {"wall": "a"}}, "not a number"),
-                ({"only": {"wall": (1, 2, 3)}}, "lowest and the highest"), ({"only": {"wall": (3, 1)}}, "lower value"),
-                ({"only": {"x": 1}}, "'x'.*one number for each"), ({"only": wall}, "True or False for each of 2744")):
-            with self.subTest(words), self.assertRaisesRegex((mc.InvalidArgument, mc.InvalidData), sentence):
-                sphere(attributes={"wall": wall, "x": POSITIONS}, **words)
-        with self.assertRaisesRegex(mc.InvalidArgument, "Attributes: none"):
-            mc.gauge(POSITIONS, ((0, 0, 0), (1, 1, 1)), smoothing_length=H, only={"wall": 1})
-
     def test_free_surface(self):
         surface = mc.free_surface(POSITIONS, smoothing_length=H)
         edges = np.sort(np.concatenate([surface.triangles[:, [i, (i + 1) % 3]] for i in range(3)]), axis=1)
@@ -291,63 +277,6 @@ class Inputs(unittest.TestCase):
             marks[0] = 3
             self.assertEqual(arguments.input.solid.contents.value, 3)
 
-    def test_errors(self):
-        bad = POSITIONS.copy()
-        bad[5, 1] = np.nan
-        for error, sentence, call in (
-                (mc.InvalidData, "5", lambda: mc.isosurface(bad, DISTANCE, iso=0.4, smoothing_length=H)),
-                (ValueError, "smoothing length", lambda: sphere(smoothing_length=-1.0)),
-                (mc.InvalidArgument, "estimate", lambda: sphere(smoothing_length=None)),
-                (mc.InvalidArgument, "scalar has the shape",
-                 lambda: mc.isosurface(POSITIONS, DISTANCE[:-1], iso=0.4, smoothing_length=H)),
-                (mc.InvalidArgument, r"\(particles, 3\)",
-                 lambda: mc.isosurface(POSITIONS[:, :2], DISTANCE, iso=0.4, smoothing_length=H)),
-                (mc.InvalidArgument, "iso value", lambda: sphere(iso=None)),
-                (mc.InvalidArgument, "wendland", lambda: sphere(sph_kernel="gaussian")),
-                (TypeError, "no option 'cubesize'", lambda: sphere(cubesize=1.0)),
-                (mc.OutOfCapacity, "(?i)memory|cube", lambda: sphere(memory_limit=1000)),
-                (mc.InvalidArgument, "does not hold numbers", lambda: sphere(volume=np.array(["a"] * N ** 3))),
-                (mc.DeviceError, "no OpenCL device \"nonsuch\"", lambda: sphere(device="nonsuch")),
-                (mc.DeviceError, "", lambda: sphere(device="\udc80"))):
-            with self.assertRaisesRegex(error, sentence):
-                call()
-        self.assertGreater(len(sphere().triangles), 500)  # as if nothing had happened
-
-    def test_arrays_without_columns(self):
-        """The core reads 0 components as 1."""
-        nothing = np.zeros((N ** 3, 0))
-        for words in ({"smoothing_length": nothing}, {"volume": nothing}, {"attributes": {"a": nothing}},
-                      {"scalar_dot": nothing}):
-            with self.assertRaisesRegex(mc.InvalidArgument, "has the shape"):
-                sphere(**words)
-        with self.assertRaisesRegex(mc.InvalidArgument, "scalar has the shape"):
-            mc.isosurface(POSITIONS, nothing, iso=0.4, smoothing_length=H)
-        with self.assertRaisesRegex(mc.InvalidArgument, r"\(particles, 3\)"):
-            mc.free_surface(nothing, smoothing_length=H)
-        with self.assertRaisesRegex(mc.InvalidArgument, r"\(\.\.\., 3\)"):
-            mc.probe(POSITIONS, nothing, smoothing_length=H)
-
-    def test_what_is_no_array_of_numbers(self):
-        masked = np.ma.masked_greater(DISTANCE, 0.9)
-        for words in ({"smoothing_length": "abc"}, {"iso": "x"}, {"iso": 1j}, {"iso": [[0.3, 0.4], [0.5, 0.6]]},
-                      {"volume": [[1, 2], [3]]}, {"volume": masked}, {"attributes": {"a": masked}},
-                      {"solid": np.array(["a"] * N ** 3)}, {"attributes": [DISTANCE]}, {"box": "abcdef"},
-                      {"box": [None] * 6}, {"context": 3}):
-            with self.assertRaises(mc.InvalidArgument, msg=str(words.keys())):
-                sphere(**words)
-        for function in (mc.flow, lambda x: mc.probe(POSITIONS, x, smoothing_length=H)):
-            with self.assertRaises(mc.InvalidArgument):
-                function("x")
-
-    def test_numbers_out_of_range(self):
-        for words in ({"iteration_limit": 2 ** 32 + 5}, {"memory_limit": 2 ** 70}, {"particles_version": 2 ** 64},
-                      {"particles_version": -1}, {"iteration_limit": 3.7}, {"iteration_limit": float("inf")},
-                      {"iteration_limit": None}, {"sph_kernel": None}, {"sph_kernel": [1]},
-                      {"field": 2 ** 32}, {"tolerance": "x"}, {"h_scale": None}, {"precision": object()}):
-            with self.assertRaises(mc.InvalidArgument, msg=str(words)):
-                sphere(**words)
-        self.assertGreater(len(sphere(iteration_limit=np.float64(30), memory_limit=2 ** 40).triangles), 500)
-
     def test_odd_bytes(self):
         def unaligned(array):
             return np.frombuffer(b"0" + array.tobytes(), np.uint8)[1:].view(array.dtype).reshape(array.shape)
@@ -356,6 +285,68 @@ class Inputs(unittest.TestCase):
                               attributes={"name\udc80": unaligned(POSITIONS), "nul\0": DISTANCE})
         self.assertEqual(found.points.tobytes(), sphere().points.tobytes())
         self.assertEqual(list(found.attributes), ["name\udc80", "nul\0"])
+
+
+class Refused(unittest.TestCase):
+    def check(self, error, *cases, call=sphere, **common):
+        """cases: a sentence, then keywords of which each is refused with it."""
+        for sentence, *several in cases:
+            for words in several:
+                with self.subTest(str(words)[:80]), self.assertRaisesRegex(error, sentence):
+                    call(**{**common, **words})
+
+    def test_arguments(self):
+        text, masked, nothing = np.array(["a"] * N ** 3), np.ma.masked_greater(DISTANCE, 0.9), np.zeros((N ** 3, 0))
+        self.check(mc.InvalidArgument,
+                   ("smoothing length", {"smoothing_length": -1.0}), ("estimate", {"smoothing_length": None}),
+                   ("scalar has the shape", {"scalar": DISTANCE[:-1]}, {"scalar": nothing}),
+                   (r"\(particles, 3\)", {"positions": POSITIONS[:, :2]}, {"positions": nothing}),
+                   ("has the shape", {"smoothing_length": nothing}, {"volume": nothing}, {"attributes": {"a": nothing}},
+                    {"scalar_dot": nothing}),  # the core reads 0 components as 1
+                   ("iso value", {"iso": None}), ("The iso value is nan; it must be a finite number", {"iso": np.nan}),
+                   ("The iso value is inf", {"iso": [0.4, np.inf]}),
+                   ("wendland", {"sph_kernel": "gaussian"}), ("does not hold numbers", {"volume": text}),
+                   ("periodic is .*; it must be three lengths", {"periodic": True}, {"periodic": "auto"}),
+                   ("not 'wendlnd'. Did you mean 'wendland'?", {"sph_kernel": "wendlnd"}),
+                   ("", {"smoothing_length": "abc"}, {"iso": "x"}, {"iso": 1j}, {"iso": [[0.3, 0.4], [0.5, 0.6]]},
+                    {"volume": [[1, 2], [3]]}, {"volume": masked}, {"attributes": {"a": masked}}, {"solid": text},
+                    {"attributes": [DISTANCE]}, {"box": "abcdef"}, {"box": [None] * 6}, {"context": 3}))
+        for name in ("smoothing_length", "volume", "mass", "density"):
+            mass = {"volume": None, "mass": None if name == "volume" else 1.0}
+            self.check(mc.InvalidArgument, (f"{name.replace('_', ' ')} is .*; it must be greater than 0",
+                                            *({**mass, name: value} for value in (0, 0.0, -1, np.nan))))
+        probe = {"call": mc.probe, "positions": POSITIONS, "smoothing_length": H}
+        self.check(mc.InvalidArgument, (r"\(\.\.\., 3\)", {"points": nothing}), ("", {"points": "x"}), **probe)
+        self.check(mc.InvalidArgument, ("", {"gradients": "x"}), call=mc.flow)
+
+    def test_numbers_out_of_range(self):
+        self.check(mc.InvalidArgument, ("", *(
+            {name: value} for name, values in (
+                ("iteration_limit", (2 ** 32 + 5, 3.7, np.inf, None)), ("memory_limit", (2 ** 70,)),
+                ("particles_version", (2 ** 64, -1)), ("sph_kernel", (None, [1])), ("field", (2 ** 32,)), ("tolerance", ("x",)),
+                ("h_scale", (None,)), ("precision", (object(),))) for value in values)))
+        self.assertGreater(len(sphere(iteration_limit=np.float64(30), memory_limit=2 ** 40).triangles), 500)
+
+    def test_data_and_devices(self):
+        bad, zeros = POSITIONS.copy(), np.full(N ** 3, H)
+        bad[5, 1], zeros[11] = np.nan, 0
+        self.check(mc.InvalidData, ("5", {"positions": bad}), ("smoothing length.* 11 ", {"smoothing_length": zeros}))
+        self.check(mc.OutOfCapacity, ("(?i)memory|cube", {"memory_limit": 1000}))
+        self.check(mc.DeviceError, ("no OpenCL device \"nonsuch\"", {"device": "nonsuch"}), ("", {"device": "\udc80"}))
+        self.assertGreater(len(sphere().triangles), 500)  # as if nothing had happened
+
+    def test_what_leaves_particles_out(self):
+        wall = np.arange(N ** 3) % 4
+        self.check((mc.InvalidArgument, mc.InvalidData),
+                   ("six bounds", {"within": (0, 1)}, {"within": (0, np.nan, 0, 1, 0, 1)}),
+                   ("lower ones first", {"within": (1, 0, 0, 1, 0, 1)}), ("within does not hold numbers", {"within": "abcdef"}),
+                   ("None of the 2744 particles is left by within", {"within": (5, 6, 5, 6, 5, 6)}),
+                   ("Did you mean 'wall'.*Attributes: wall, x", {"only": {"walls": 1}}), ("not a number", {"only": {"wall": "a"}}),
+                   ("lowest and the highest", {"only": {"wall": (1, 2, 3)}}), ("lower value", {"only": {"wall": (3, 1)}}),
+                   ("'x'.*one number for each", {"only": {"x": 1}}), ("True or False for each of 2744", {"only": wall}),
+                   attributes={"wall": wall, "x": POSITIONS})
+        self.check(mc.InvalidArgument, ("Attributes: none", {"only": {"wall": 1}}), call=mc.gauge, positions=POSITIONS,
+                   lines=((0, 0, 0), (1, 1, 1)), smoothing_length=H)
 
 
 class Neighbours(unittest.TestCase):

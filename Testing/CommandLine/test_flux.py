@@ -125,9 +125,6 @@ class Flux(CommandLineTest):
         failures = [(["--fluxes", "none.txt"], "the sections' file none.txt cannot be read"),
                     (["--fluxes", "/dev/zero"], "/dev/zero is larger than 64 MiB"),
                     (["--flux", "a=none.stl"], "none.stl"), (["--flux", "a=moving.vtp"], "Section 'a' has 0 points|no triangles"),
-                    (["--flux", "a=disc:0,0,0:0,0,0:1"], "Section 'a' has no area"),
-                    (["--flux", "a=box:1,0,0,1,0,1"], "Section 'a' has no area"),
-                    (["--flux", "a=0,0,0:0,0,1"], "Section 'a' is a line"),
                     (["--flux", "a=0,0,0:1e30,0,0:0,1,0"], "Section 'a' needs .* cells"),
                     (["--flux", WALL, "--velocity", "Drift"], "There is no point array 'Drift' for the velocity")]
         for status, cases in ((2, usage), (1, failures)):

@@ -50,7 +50,7 @@ class RealFiles(CommandLineTest):
         in_box = self.volume(file, *H, "--box", "-1,2,-1,2,-1,0.5")
         self.assertGreater(in_box, 0)
         expected = self.volume(file, *H)
-        for far in ([(0.5, 0.5, -1e5)], [(1e7, 0.5, 0.5)], [(3e5 * i, -1e5 * i, 1e6) for i in range(1, 9)]):
+        for far in ([(0.5, 0.5, -1e5)], [(3e5 * i, -1e5 * i, 1e6) for i in range(1, 9)]):
             write_csv(file, near + far, {"A": [1000.0] * len(near) + [math.nan] * len(far)})
             self.assertEqual(self.volume(file, *H, words=f"(?s){len(far)} particles? (is|are) so far away.*"
                                          "particle 1000 is at " + re.escape(f"({far[0][0]:g},") +

@@ -103,6 +103,13 @@ class CommandLineTest(unittest.TestCase):
             with self.subTest(options):
                 self.refuse(self.extract(*common, *options, source=source), status, sentence)
 
+    def write_rising_steps(self, count, up, step=0.25, points=None, **arrays):
+        """step_0.vtp, ... and steps.pvd, which lists them: the block, or these points, higher by `up` in each."""
+        points, arrays = points or self.points, {**self.arrays, **arrays}
+        for i in range(count):
+            files.write_vtp(self.directory / f"step_{i}.vtp", [(x, y, z + up * i) for x, y, z in points], arrays)
+        files.write_pvd(self.directory / "steps.pvd", [(step * i, f"step_{i}.vtp") for i in range(count)])
+
     def misbehaving(self, **variables):
         """The environment for a run with misbehave.c, and its variables MCOR_..."""
         named = {"MCOR_" + name.upper(): str(value) for name, value in variables.items()}

@@ -75,11 +75,8 @@ class Components(CommandLineTest):
 
     def test_numbers_of_a_film(self):
         """A row for each step, between steps, too, with what gauges read; without the pieces that are left out."""
-        for i in range(2):
-            points = [(x, y, z + 0.1 * i) for x, y, z in self.all_points]
-            arrays = {**self.all_arrays, "Id": list(range(len(points))), "Velocity": [(0.0, 0.0, 0.4)] * len(points)}
-            files.write_vtp(self.directory / f"step_{i}.vtp", points, arrays)
-        files.write_pvd(self.directory / "steps.pvd", [(0, "step_0.vtp"), (0.25, "step_1.vtp")])
+        moving = {**self.all_arrays, "Id": list(range(1125)), "Velocity": [(0.0, 0.0, 0.4)] * 1125}
+        self.write_rising_steps(2, 0.1, points=self.all_points, **moving)
         numbers = self.directory / "numbers.csv"
         film = ["steps.pvd", "film.pvd", *FREE, "--times", "0,0.1,0.25", "--numbers", numbers, "--gauge",
                 "mast=0,0,-1:0,0,1"]

@@ -20,14 +20,10 @@ class Flux(CommandLineTest):
     def setUp(self):
         super().setUp()
         self.table = self.directory / "flux.csv"
-        self.write("moving.vtp", 0.0)
+        self.write("moving.vtp")
 
-    def write(self, name, up, velocity=(1.0, -2.0, 3.0), **more):
-        points, arrays = files.lattice()
-        arrays["Velocity"] = [velocity] * len(points)
-        arrays["Id"] = list(range(len(points)))
-        arrays.update(more)
-        files.write_vtp(self.directory / name, [(x, y, z + up) for x, y, z in points], arrays)
+    def write(self, name, **more):
+        files.write_vtp(self.directory / name, self.points, {**self.arrays, "Velocity": [(1.0, -2.0, 3.0)] * 1000, **more})
 
     def rows(self, *options, source="moving.vtp"):
         self.run_good(source, self.table, *options)
@@ -63,11 +59,10 @@ class Flux(CommandLineTest):
             self.assertAlmostEqual(row["volume_flux"], 3 * 0.064, delta=0.002)
 
     def test_velocity_and_density(self):
-        self.write("named.vtp", 0.0, Drift=[(2.0, 0.0, 0.0)] * 1000)
+        self.write("named.vtp", Drift=[(2.0, 0.0, 0.0)] * 1000)
         row, = self.rows("--flux", WALL, "--velocity", "Drift", source="named.vtp")
         self.assertAlmostEqual(row["velocity"], 2, delta=1e-6)
-        points, arrays = files.lattice()
-        files.write_vtp(self.directory / "bare.vtp", points, {name: arrays[name] for name in ("SmoothingLength", "Velocity")})
+        files.write_vtp(self.directory / "bare.vtp", self.points, {name: self.arrays[name] for name in ("SmoothingLength", "Velocity")})
         row, = self.rows("--flux", WALL, source="bare.vtp")
         self.assertTrue(math.isnan(row["mass_flux"]) and math.isnan(row["mass"]) and row["volume"] == 0)
         row, = self.rows("--flux", WALL, "--density", "10", source="bare.vtp")
@@ -75,11 +70,7 @@ class Flux(CommandLineTest):
 
     def test_volume_that_has_passed(self):
         """What flows in through a box's sides is what the volume of fluid in it, as of the capped surface, grows by."""
-        entries = []
-        for i in range(3):
-            self.write(f"step_{i}.vtp", 0.06 * i, (0.0, 0.0, 0.3))
-            entries.append((0.2 * i, f"step_{i}.vtp"))
-        files.write_pvd(self.directory / "steps.pvd", entries)
+        self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
         rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
         self.assertEqual([(row["time"], row["section"]) for row in rows],
                          [(0.2 * i, name) for i in range(3) for name in ("box", "wall")])
@@ -133,9 +124,8 @@ class Flux(CommandLineTest):
                     self.one_sentence(self.run_program("moving.vtp", self.table, *options), status, sentence)
         self.one_sentence(self.run_program("moving.vtp", "flux.vtp", "--flux", WALL), 2, "the output of --flux is a .csv file")
         self.assertEqual(self.table.read_text(), "as it was")
-        points, arrays = files.lattice()
-        del arrays["Velocity"]
-        files.write_vtp(self.directory / "still.vtp", points, arrays)
+        del self.arrays["Velocity"]
+        files.write_vtp(self.directory / "still.vtp", self.points, self.arrays)
         self.one_sentence(self.run_program("still.vtp", self.table, "--flux", WALL), 1, "no velocity.*--velocity")
 
 

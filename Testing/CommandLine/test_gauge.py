@@ -58,13 +58,7 @@ class Gauge(CommandLineTest):
 
     def test_steps(self):
         """Several files, or those of a .pvd file, at their times."""
-        entries = []
-        for i in range(3):
-            points, arrays = files.lattice()
-            moved = [(x, y, z + 0.1 * i) for x, y, z in points]
-            files.write_vtp(self.directory / f"step_{i}.vtp", moved, arrays)
-            entries.append((0.25 * i, f"step_{i}.vtp"))
-        files.write_pvd(self.directory / "steps.pvd", entries)
+        self.write_rising_steps(3, 0.1)
         rows = self.good("--gauge", UP, "--gauge", "other=0.1,0,-1:0.1,0,1", source="steps.pvd")
         self.assertEqual([(float(row["time"]), row["gauge"]) for row in rows],
                          [(0.25 * i, name) for i in range(3) for name in ("mast", "other")])
@@ -77,14 +71,7 @@ class Gauge(CommandLineTest):
 
     def test_times_between_steps(self):
         """The particles move on between two steps, and so does the level."""
-        entries = []
-        for i in range(2):
-            points, arrays = files.lattice()
-            arrays["Id"] = list(range(len(points)))
-            arrays["Velocity"] = [(0.0, 0.0, 0.4)] * len(points)
-            files.write_vtp(self.directory / f"step_{i}.vtp", [(x, y, z + 0.1 * i) for x, y, z in points], arrays)
-            entries.append((0.25 * i, f"step_{i}.vtp"))
-        files.write_pvd(self.directory / "steps.pvd", entries)
+        self.write_rising_steps(2, 0.1, Id=list(range(1000)), Velocity=[(0.0, 0.0, 0.4)] * 1000)
         stored = self.good("--gauge", UP, source="steps.pvd")
         rows = self.good("--gauge", UP, "--times", "0,0.1,0.25", source="steps.pvd")
         self.assertEqual([float(row["time"]) for row in rows], [0, 0.1, 0.25])

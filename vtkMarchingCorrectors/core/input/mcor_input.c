@@ -80,19 +80,6 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
   return places->count;
 }
 
-/* Moves the elements that are not skipped to the front of a chunk that begins with particle
- * `first`, and returns their number. `solid` NULL: skips none. */
-static int mcor_keep(const uint8_t* solid, mcor_skip skip, int64_t first, int count, double* x)
-{
-  int kept = 0;
-  for (int i = 0; i < count && solid; ++i)
-  {
-    x[kept] = x[i];
-    kept += !mcor_is_skipped(solid, skip, first + i) && isfinite(x[i]);
-  }
-  return solid ? kept : count;
-}
-
 int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
 {
   int kept = 0;
@@ -156,8 +143,14 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = mcor_chunk_of(last - begin);
+    int kept = job->solid ? 0 : count;
     mcor_read_array(job->array, begin, count, job->component, x);
-    mcor_widen_range(x, mcor_keep(job->solid, job->skip, begin, count, x), &low, &high);
+    for (int i = 0; i < count && job->solid; ++i)
+    {
+      x[kept] = x[i];
+      kept += !mcor_is_skipped(job->solid, job->skip, begin + i) && isfinite(x[i]);
+    }
+    mcor_widen_range(x, kept, &low, &high);
   }
   job->low[slice] = low;
   job->high[slice] = high;
@@ -233,25 +226,20 @@ static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
   job->illegal[slice] = illegal;
 }
 
-static bool mcor_is_legal(
-  mcor_context* context, const mcor_array* array, int64_t elements, bool positive)
-{
-  mcor_legal_job job = { .array = array, .positive = positive };
-  const int slices =
-    mcor_parallel_for(context, elements, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job);
-  bool illegal = false;
-  for (int s = 0; s < slices; ++s)
-  {
-    illegal = illegal || job.illegal[s];
-  }
-  return !illegal;
-}
-
 int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const uint8_t* solid,
   mcor_skip skip, int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
-  if (array->data && mcor_is_legal(context, array, count * components, positive))
+  mcor_legal_job job = { .array = array, .positive = positive };
+  const int slices = array->data
+    ? mcor_parallel_for(context, count * components, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job)
+    : 0;
+  bool illegal = !array->data;
+  for (int s = 0; s < slices; ++s)
+  {
+    illegal = illegal || job.illegal[s];
+  }
+  if (!illegal)
   {
     return -1;
   }

@@ -205,6 +205,13 @@ void mcor_read_smoothing_length(
 void mcor_widen_lengths(
   const mcor_input* input, int64_t first, int count, const double* h, double* out);
 
+/* mcor_summary.c. Writes a sentence, which the caller frees; NULL if memory ran out. */
+char* mcor_text(const char* format, ...)
+#if defined(__GNUC__)
+  __attribute__((format(printf, 1, 2)))
+#endif
+  ;
+
 /* Whether the device computes volumes from the particles' density. */
 static inline bool mcor_needs_density(const mcor_input* input)
 {

@@ -73,28 +73,6 @@ static void mcor_place_watch(mcor_watch* watch, int64_t particles)
   }
 }
 
-static void mcor_mark_reached(mcor_watch* watch, int s)
-{
-  const double reach = watch->support * watch->sample[s].h;
-  int low[3], high[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    low[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] - reach);
-    high[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] + reach);
-  }
-  for (int z = low[2]; z <= high[2]; ++z)
-  {
-    for (int y = low[1]; y <= high[1]; ++y)
-    {
-      for (int x = low[0]; x <= high[0]; ++x)
-      {
-        watch->reached[(z * MCOR_WATCH_CELLS + y) * MCOR_WATCH_CELLS + x] |= UINT32_C(1) << s;
-        watch->any[z * MCOR_WATCH_CELLS + y] |= UINT64_C(1) << x;
-      }
-    }
-  }
-}
-
 /* ---- A plane that is tilted in space ---- */
 
 /* In smoothing lengths: the greatest extent along the normal, the least one in the plane. */
@@ -251,7 +229,24 @@ mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mco
   }
   for (int s = 0; s < watch->count; ++s)
   {
-    mcor_mark_reached(watch, s);
+    const double reach = watch->support * watch->sample[s].h;
+    int low[3], high[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      low[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] - reach);
+      high[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] + reach);
+    }
+    for (int z = low[2]; z <= high[2]; ++z)
+    {
+      for (int y = low[1]; y <= high[1]; ++y)
+      {
+        for (int x = low[0]; x <= high[0]; ++x)
+        {
+          watch->reached[(z * MCOR_WATCH_CELLS + y) * MCOR_WATCH_CELLS + x] |= UINT32_C(1) << s;
+          watch->any[z * MCOR_WATCH_CELLS + y] |= UINT64_C(1) << x;
+        }
+      }
+    }
     for (int slice = 0; slice < MCOR_SLICES; ++slice)
     {
       watch->nearest[slice][s] = DBL_MAX;

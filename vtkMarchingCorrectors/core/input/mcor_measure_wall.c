@@ -40,20 +40,6 @@ typedef struct mcor_wall
   int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
 } mcor_wall;
 
-/* Finds the first sample that is not before x along the axis. */
-static int mcor_wall_first(const mcor_wall* wall, double x)
-{
-  int low = 0, high = wall->axis >= 0 ? wall->count : 0;
-  while (low < high)
-  {
-    const int middle = (low + high) / 2;
-    const bool before = wall->sample[middle].x[wall->axis] < x;
-    low = before ? middle + 1 : low;
-    high = before ? high : middle;
-  }
-  return low;
-}
-
 static void mcor_wall_add(
   mcor_wall* wall, int slice, int64_t i, const double x[3], double h, double length)
 {
@@ -63,7 +49,15 @@ static void mcor_wall_add(
   const double scaled = length * options->h_scale, along = wall->axis >= 0 ? x[wall->axis] : 0,
                inv_h = 1 / scaled;
   double weight = 0;
-  for (int s = mcor_wall_first(wall, along - wall->reach); s < wall->count; ++s)
+  int first = 0, end = wall->axis >= 0 ? wall->count : 0;
+  while (first < end) /* finds the first sample that is near enough along the axis */
+  {
+    const int middle = (first + end) / 2;
+    const bool before = wall->sample[middle].x[wall->axis] < along - wall->reach;
+    first = before ? middle + 1 : first;
+    end = before ? end : middle;
+  }
+  for (int s = first; s < wall->count; ++s)
   {
     double d[3];
     bool near = true;

@@ -89,12 +89,7 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   return size <= 0.0 ? 0.0 : is_plane ? area / per_area : area * spacing / (per_area * size);
 }
 
-/* NULL if memory ran out. */
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-static char*
-mcor_text(const char* format, ...)
+char* mcor_text(const char* format, ...)
 {
   va_list arguments;
   va_start(arguments, format);

@@ -3,16 +3,12 @@
 
 /* Warnings of inputs that are legal, but hardly ever meant: one sentence each, with figures. */
 
-#include "mcor.h"
+#include "mcor_input.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define MCOR_SENTENCE 800
 
 /* With fewer particles no number of neighbours is unusual. */
 #define MCOR_FEW_PARTICLES 100
@@ -22,21 +18,7 @@ typedef struct mcor_suspicion
   const mcor_input* input;
   const mcor_options* options;
   const mcor_surface* surface;
-  char text[MCOR_SENTENCE];
 } mcor_suspicion;
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
-static bool
-mcor_say(mcor_suspicion* s, const char* format, ...)
-{
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(s->text, sizeof s->text, format, arguments);
-  va_end(arguments);
-  return true;
-}
 
 /* Bounds of smoothing length over distance of the nearest particle, which hardly depends on free
  * surfaces and walls. It is 1 for a lattice of that spacing, up to 1.7 for most solvers, and up
@@ -72,7 +54,7 @@ static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool
                                                                                    : "";
 }
 
-static bool mcor_warn_neighbours(mcor_suspicion* s)
+static char* mcor_warn_neighbours(const mcor_suspicion* s)
 {
   static const char* const usual[][2] = { { "30 to 100", "12 to 40" }, { "30 to 100", "12 to 40" },
     { "30 to 60", "12 to 25" }, { "100 to 250", "30 to 80" }, { "50 to 250", "15 to 60" },
@@ -95,11 +77,11 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   const bool unusual = !s->input->estimate_smoothing_length && (few || many);
   if (n->fluid_particles < MCOR_FEW_PARTICLES || !(unusual || n->filled_median > MCOR_MOST_FILLED))
   {
-    return false;
+    return NULL;
   }
   if (!unusual)
   {
-    return mcor_say(s,
+    return mcor_text(
       "Check the volumes, or masses and densities: they fill the supports of the particles %.3g "
       "times (median), so weights in the fluid are about that, not 1. Perhaps they are not in the "
       "unit of the positions.",
@@ -107,7 +89,7 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
   }
   if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
   {
-    return mcor_say(s,
+    return mcor_text(
       "All %lld fluid particles are at the same point. Is this the array of positions?",
       (long long)n->fluid_particles);
   }
@@ -126,7 +108,7 @@ static bool mcor_warn_neighbours(mcor_suspicion* s)
     snprintf(times, sizeof times, "%.3g times the distance %.4g of the nearest particle",
       h / spacing, spacing);
   }
-  return mcor_say(s,
+  return mcor_text(
     "Check the smoothing length: a fluid particle has %.0f neighbours within its support radius; "
     "its smoothing length is %.4g, "
     "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
@@ -143,18 +125,14 @@ static double mcor_single_step(double largest)
   return largest > 0 && isfinite(largest) ? ldexp(1, ilogb(largest) - 23) : 0;
 }
 
-static double mcor_coordinate(const mcor_input* input, int64_t i)
-{
-  return input->positions.type == MCOR_FLOAT64 ? ((const double*)input->positions.data)[i]
-                                               : (double)((const float*)input->positions.data)[i];
-}
-
 /* Warns where steps at the largest coordinate are too long, and all of the fluid's coordinates are
  * numbers of single precision. */
-static bool mcor_warn_coarse(mcor_suspicion* s)
+static char* mcor_warn_coarse(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_input* input = s->input;
+  mcor_array coordinates = input->positions;
+  coordinates.components = 1;
   const bool known = n->spacing_median > 0 && n->fluid_particles >= MCOR_FEW_PARTICLES;
   const int64_t count = known && input->positions.data ? input->count : 0;
   double largest[3] = { 0 };
@@ -162,7 +140,7 @@ static bool mcor_warn_coarse(mcor_suspicion* s)
   {
     for (int a = 0; a < 3 && !(input->solid && input->solid[i]); ++a)
     {
-      const double x = fabs(mcor_coordinate(input, 3 * i + a));
+      const double x = fabs(mcor_array_at(&coordinates, 3 * i + a, 0));
       largest[a] = x > largest[a] ? x : largest[a];
     }
   }
@@ -173,22 +151,23 @@ static bool mcor_warn_coarse(mcor_suspicion* s)
   bool coarse = step * MCOR_COARSE_STEPS > n->spacing_median;
   for (int64_t i = 0; i < 3 * count && coarse; ++i)
   {
-    const double x = mcor_coordinate(input, i);
+    const double x = mcor_array_at(&coordinates, i, 0);
     coarse = (input->solid && input->solid[i / 3]) || (double)(float)x == x;
   }
-  return coarse &&
-    mcor_say(s,
-      "The positions are too coarse: they were stored in single precision, which rounds %c to "
-      "steps of %.3g, and the nearest particle is %.3g away (median). Surfaces and volumes are "
-      "wrong by about as much. Subtract a constant from the coordinates, or store them in double "
-      "precision, where they are written.",
-      "xyz"[axis], step, n -> spacing_median);
+  return !coarse
+    ? NULL
+    : mcor_text(
+        "The positions are too coarse: they were stored in single precision, which rounds %c to "
+        "steps of %.3g, and the nearest particle is %.3g away (median). Surfaces and volumes are "
+        "wrong by about as much. Subtract a constant from the coordinates, or store them in double "
+        "precision, where they are written.",
+        "xyz"[axis], step, n -> spacing_median);
 }
 
 /* Particles may lie up to this many smoothing lengths beyond a period. */
 #define MCOR_BEYOND_PERIOD 1
 
-static bool mcor_warn_period(mcor_suspicion* s)
+static char* mcor_warn_period(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   for (int a = 0; a < 3; ++a)
@@ -197,17 +176,17 @@ static bool mcor_warn_period(mcor_suspicion* s)
     if (p[1] > p[0] &&
       n->fluid_extent[a] > p[1] - p[0] + MCOR_BEYOND_PERIOD * n->smoothing_length_median)
     {
-      return mcor_say(s,
+      return mcor_text(
         "The fluid particles extend over %.6g along %c, farther than the period %.6g: those beyond "
         "it were moved by "
         "whole periods, onto others. Is the period right?",
         n->fluid_extent[a], "xyz"[a], p[1] - p[0]);
     }
   }
-  return false;
+  return NULL;
 }
 
-static bool mcor_is_flat(mcor_suspicion* s)
+static char* mcor_is_flat(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const double h = n->smoothing_length_median;
@@ -218,7 +197,7 @@ static bool mcor_is_flat(mcor_suspicion* s)
     if (n->dimension != 2 && n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h &&
       other > 8 * h)
     {
-      return mcor_say(s,
+      return mcor_text(
         "The fluid particles lie in a plane: their extent along %c is %.3g, %.4g times the "
         "smoothing length. The kernels are three-dimensional, so in a two-dimensional simulation "
         "the weights in the fluid are not about 1.",
@@ -232,24 +211,34 @@ static bool mcor_is_flat(mcor_suspicion* s)
     normal[a] = floor(n->plane_normal[a] * 1e4 + 0.5) / 1e4;
     tilted = tilted || normal[a] != 0;
   }
-  return tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES &&
-    mcor_say(s,
-      "The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, %.4g), and "
-      "their extent along it is %.3g, %.2g times the smoothing length. They count as "
-      "three-dimensional, so the weights in the fluid are not about 1. In a two-dimensional "
-      "simulation, turn them into a plane of constant x, y or z that all share exactly; otherwise "
-      "set the dimension to 3.",
-      normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
+  return !(tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES)
+    ? NULL
+    : mcor_text(
+        "The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, %.4g), "
+        "and "
+        "their extent along it is %.3g, %.2g times the smoothing length. They count as "
+        "three-dimensional, so the weights in the fluid are not about 1. In a two-dimensional "
+        "simulation, turn them into a plane of constant x, y or z that all share exactly; "
+        "otherwise "
+        "set the dimension to 3.",
+        normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
 }
 
-static bool mcor_warn_plane(mcor_suspicion* s)
+static char* mcor_warn_plane(const mcor_suspicion* s)
 {
-  return mcor_is_flat(s) && !mcor_warn_coarse(s); /* else rounding made it flat */
+  char *flat = mcor_is_flat(s), *coarse = flat ? mcor_warn_coarse(s) : NULL;
+  if (coarse) /* rounding made it flat */
+  {
+    free(flat);
+    flat = NULL;
+  }
+  free(coarse);
+  return flat;
 }
 
 /* Compares the iso value with bounds of the field. A Shepard mean with positive kernels lies
  * between the particles' values; a sum lies between 0 and somewhat above these. */
-static bool mcor_warn_iso_value(mcor_suspicion* s)
+static char* mcor_warn_iso_value(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
@@ -267,7 +256,7 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
   }
   if (o->field == MCOR_WEIGHT_SUM || mcor_has_box(o) || outside == 0 || !(empty || strict))
   {
-    return false;
+    return NULL;
   }
   const char* name = s->input->scalar.name ? s->input->scalar.name : "the scalar";
   char others[40] = "";
@@ -275,19 +264,19 @@ static bool mcor_warn_iso_value(mcor_suspicion* s)
   {
     snprintf(others, sizeof others, " (and %d more)", outside - 1);
   }
-  return mcor_say(s, "Iso value %.6g%s is outside the range of %s, %.6g to %.6g.",
+  return mcor_text("Iso value %.6g%s is outside the range of %s, %.6g to %.6g.",
     o->iso_values[first], others, name, low, high);
 }
 
 /* Where particles fill a small share of space, no cell has all weights above the threshold. */
-static bool mcor_warn_discarded(mcor_suspicion* s)
+static char* mcor_warn_discarded(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
   if (o->field != MCOR_WEIGHT_SUM && !mcor_has_box(o) && n->filled_median > 0 &&
     n->filled_median <= o->node_threshold)
   {
-    return mcor_say(s,
+    return mcor_text(
       "There is no surface, because the node threshold %g discards all cells of lower weight sum: "
       "the particle volumes fill only %.3g of the supports (median). Are volumes, or masses and "
       "densities, in the same units as the smoothing length?",
@@ -295,7 +284,7 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
   }
   if (n->triangles_below_threshold > 0)
   {
-    return mcor_say(s,
+    return mcor_text(
       "The node threshold %g removed the whole surface of %lld %s: all its nodes have a lower "
       "weight sum. If the fluid "
       "ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as the node "
@@ -312,17 +301,19 @@ static bool mcor_warn_discarded(mcor_suspicion* s)
     is_between =
       is_between || (n->scalar_min < o->iso_values[i] && o->iso_values[i] < n->scalar_max);
   }
-  return is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
-    !mcor_has_box(o) && o->node_threshold > 0 &&
-    mcor_say(s,
-      "The field reaches the iso value nowhere that the weight sum is above the node threshold %g. "
-      "If the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as "
-      "the node threshold and the vertex threshold.",
-      o->node_threshold);
+  return !(is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
+           !mcor_has_box(o) && o->node_threshold > 0)
+    ? NULL
+    : mcor_text(
+        "The field reaches the iso value nowhere that the weight sum is above the node threshold "
+        "%g. "
+        "If the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as "
+        "the node threshold and the vertex threshold.",
+        o->node_threshold);
 }
 
 /* Says which threshold may have removed all of an empty surface. */
-static bool mcor_warn_trimmed(mcor_suspicion* s)
+static char* mcor_warn_trimmed(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
@@ -337,7 +328,7 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   if (s->surface->triangle_count > 0 || s->surface->line_count > 0 ||
     n->triangles_before_trimming == 0 || mcor_has_box(o))
   {
-    return false;
+    return NULL;
   }
   if (wall)
   {
@@ -346,13 +337,12 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
   }
   if (o->field == MCOR_WEIGHT_SUM)
   {
-    return mcor_say(s, "All %lld %s were trimmed: everywhere on %s, %s.",
+    return mcor_text("All %lld %s were trimmed: everywhere on %s, %s.",
       (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
       plane ? "them" : "the surface", share);
   }
-  return mcor_say(s,
-    "All %lld %s were trimmed: everywhere on %s the %s is below the vertex "
-    "threshold %g%s%s. %s",
+  return mcor_text("All %lld %s were trimmed: everywhere on %s the %s is below the vertex "
+                   "threshold %g%s%s. %s",
     (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
     plane ? "them" : "the surface", eigenvalue ? "boundary eigenvalue" : "weight sum",
     o->vertex_threshold, wall ? ", or " : "", share,
@@ -369,16 +359,16 @@ static bool mcor_warn_trimmed(mcor_suspicion* s)
 /* A share of the cube size; less where the grid is short. */
 #define MCOR_LONG_GRID_ERROR 1e-6
 
-static bool mcor_warn_precision(mcor_suspicion* s)
+static char* mcor_warn_precision(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const double share = n->position_error / n->smoothing_length_min;
   if (s->options->precision != MCOR_FLOAT32 || n->smoothing_length_min == 0 ||
     share <= MCOR_MOST_POSITION_ERROR || n->position_error < MCOR_LONG_GRID_ERROR * n->cube_size)
   {
-    return false;
+    return NULL;
   }
-  return mcor_say(s,
+  return mcor_text(
     "The virtual grid is so long compared to its cubes of %.3g that single precision rounds "
     "positions by up to %.3g, %.2g of the smallest smoothing length; surfaces near the smallest "
     "particles are off by about that much. Try double precision.",
@@ -390,7 +380,7 @@ static bool mcor_warn_precision(mcor_suspicion* s)
 
 /* Counts the vertices that the correction could not bring to the iso value (a preview does not
  * try). Rounding alone is worth a warning only if a tolerance asks for more. */
-static bool mcor_warn_tolerance(mcor_suspicion* s)
+static char* mcor_warn_tolerance(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_options* o = s->options;
@@ -399,9 +389,9 @@ static bool mcor_warn_tolerance(mcor_suspicion* s)
     n->residual_max <= MCOR_ROUNDED * range;
   if (o->preview || n->vertices_above_tolerance == 0 || is_rounding)
   {
-    return false;
+    return NULL;
   }
-  return mcor_say(s,
+  return mcor_text(
     "%lld of %lld vertices are off the iso value by more than the tolerance %.3g, by %.3g at most, "
     "of a "
     "range of %.4g. Try %s.",
@@ -412,31 +402,26 @@ static bool mcor_warn_tolerance(mcor_suspicion* s)
                                             : "a larger tolerance");
 }
 
-static bool mcor_warn_far(mcor_suspicion* s)
+static char* mcor_warn_far(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
   const bool one = n->far_particles == 1;
-  return n->far_particles > 0 &&
-    mcor_say(s,
-      "%lld %s so far away from all others that the virtual grid cannot reach %s, and %s left out: "
-      "%sparticle %lld is at (%.6g, %.6g, %.6g). If that is not meant, leave %s out by a range of "
-      "positions, or use a larger cube size.",
-      (long long)n->far_particles, one ? "particle is" : "particles are", one ? "it" : "them",
-      one ? "was" : "were", one ? "" : "the first one, ", (long long)n->far_first, n->far_place[0],
-      n->far_place[1], n->far_place[2], one ? "it" : "them");
-}
-
-static char* mcor_copy_text(const char* text)
-{
-  const size_t size = strlen(text) + 1;
-  char* copy = malloc(size);
-  return copy ? memcpy(copy, text, size) : NULL;
+  return n->far_particles == 0
+    ? NULL
+    : mcor_text("%lld %s so far away from all others that the virtual grid cannot reach %s, and %s "
+                "left out: "
+                "%sparticle %lld is at (%.6g, %.6g, %.6g). If that is not meant, leave %s out by a "
+                "range of "
+                "positions, or use a larger cube size.",
+        (long long)n->far_particles, one ? "particle is" : "particles are", one ? "it" : "them",
+        one ? "was" : "were", one ? "" : "the first one, ", (long long)n->far_first,
+        n->far_place[0], n->far_place[1], n->far_place[2], one ? "it" : "them");
 }
 
 char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   const mcor_options* options, const mcor_surface* surface)
 {
-  bool (*const checks[MCOR_WARNING_COUNT])(mcor_suspicion*) = { mcor_warn_neighbours,
+  char* (*const checks[MCOR_WARNING_COUNT])(const mcor_suspicion*) = { mcor_warn_neighbours,
     mcor_warn_plane, mcor_warn_iso_value, mcor_warn_trimmed, mcor_warn_precision,
     mcor_warn_tolerance, mcor_warn_far, mcor_warn_period, mcor_warn_coarse };
   /* With globals, the input is only a part of the particles. */
@@ -445,18 +430,24 @@ char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
   {
     return NULL;
   }
-  mcor_suspicion suspicion = { .input = input, .options = options, .surface = surface };
-  if (!checks[warning](&suspicion))
+  return checks[warning](&(mcor_suspicion){ input, options, surface });
+}
+
+char* mcor_describe_unused_type(
+  const char* name, const double* values, const int64_t* counts, int count)
+{
+  if (!name || !values || !counts || count < 2 || count > MCOR_PARTICLE_TYPES)
   {
     return NULL;
   }
-  return mcor_copy_text(suspicion.text);
-}
-
-/* Suggests the fluid's value, as ", which seems to be 0"; "" where it is not clear. */
-static void mcor_suggest_fluid(
-  const char* name, const double* values, int count, char* text, size_t size)
-{
+  if (strcmp(name, MCOR_WALL_BLOCK) == 0)
+  {
+    return mcor_text(
+      "The names of some blocks suggest walls, but all particles count as fluid. Let the fluid be "
+      "detected, or select '" MCOR_WALL_BLOCK
+      "' as the array that marks the fluid, with the value 0.");
+  }
+  char list[40 * MCOR_PARTICLE_TYPES] = "", seems[50] = "", *end = list;
   double low = values[0], high = values[0], fluid;
   bool whole = true;
   for (int i = 0; i < count; ++i)
@@ -464,39 +455,16 @@ static void mcor_suggest_fluid(
     low = values[i] < low ? values[i] : low;
     high = values[i] > high ? values[i] : high;
     whole = whole && values[i] == floor(values[i]);
-  }
-  text[0] = '\0';
-  if (whole && mcor_find_fluid_value(name, low, high, &fluid))
-  {
-    snprintf(text, size, ", which seems to be %g", fluid);
-  }
-}
-
-char* mcor_describe_unused_type(
-  const char* name, const double* values, const int64_t* counts, int count)
-{
-  char text[MCOR_SENTENCE], seems[50], *end = text;
-  if (!name || !values || !counts || count < 2 || count > MCOR_PARTICLE_TYPES)
-  {
-    return NULL;
-  }
-  if (strcmp(name, MCOR_WALL_BLOCK) == 0)
-  {
-    return mcor_copy_text(
-      "The names of some blocks suggest walls, but all particles count as fluid. Let the fluid be "
-      "detected, or select '" MCOR_WALL_BLOCK
-      "' as the array that marks the fluid, with the value 0.");
-  }
-  mcor_suggest_fluid(name, values, count, seems, sizeof seems);
-  end += snprintf(end, MCOR_SENTENCE / 2,
-    "Point array '%.200s' is not used, and all particles count as fluid: it has", name);
-  for (int i = 0; i < count; ++i)
-  {
     end += snprintf(end, 40, "%s %lld x %g", i ? "," : "", (long long)counts[i], values[i]);
   }
-  snprintf(end, (size_t)(text + sizeof text - end),
-    ". If it tells fluid from walls, select it together with the value of the fluid%s.", seems);
-  return mcor_copy_text(text);
+  if (whole && mcor_find_fluid_value(name, low, high, &fluid))
+  {
+    snprintf(seems, sizeof seems, ", which seems to be %g", fluid);
+  }
+  return mcor_text(
+    "Point array '%.200s' is not used, and all particles count as fluid: it has%s. If it tells "
+    "fluid from walls, select it together with the value of the fluid%s.",
+    name, list, seems);
 }
 
 /* Steps of coordinates as a share of the cube size: some triangles are far smaller than cubes. */
@@ -505,15 +473,11 @@ char* mcor_describe_unused_type(
 char* mcor_describe_single_points(double largest, double cube_size)
 {
   const double step = mcor_single_step(largest);
-  char text[MCOR_SENTENCE];
-  if (!(step > MCOR_MOST_STEP * cube_size))
-  {
-    return NULL;
-  }
-  snprintf(text, sizeof text,
-    "The surface's points are stored in single precision, which rounds coordinates as large as "
-    "%.3g to steps of %.2g, and cubes are %.2g: triangles are distorted or have no area. Set "
-    "Output Points Precision to Double, or subtract a constant from the coordinates.",
-    largest, step, cube_size);
-  return mcor_copy_text(text);
+  return !(step > MCOR_MOST_STEP * cube_size)
+    ? NULL
+    : mcor_text(
+        "The surface's points are stored in single precision, which rounds coordinates as large as "
+        "%.3g to steps of %.2g, and cubes are %.2g: triangles are distorted or have no area. Set "
+        "Output Points Precision to Double, or subtract a constant from the coordinates.",
+        largest, step, cube_size);
 }

@@ -267,17 +267,6 @@ static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face,
   return MCOR_OK;
 }
 
-static mcor_status mcor_fill_squares(mcor_context* context, mcor_filling* fill)
-{
-  mcor_fill_job job = { .context = context, .fill = fill };
-  job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
-  MCOR_TRY(mcor_allocated(context, job.border));
-  const mcor_status status =
-    mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job);
-  free(job.border);
-  return status;
-}
-
 /* ---- Cuts ---- */
 
 /* Chooses the next place of a cut: where a linear margin would be 0; the middle where that would
@@ -484,7 +473,13 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
   }
   free(fill->value); /* the bands are known */
   fill->value = NULL;
-  MCOR_TRY(mcor_fill_squares(context, fill));
+  mcor_fill_job job = { .context = context, .fill = fill };
+  job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
+  MCOR_TRY(mcor_allocated(context, job.border));
+  const mcor_status status =
+    mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job);
+  free(job.border);
+  MCOR_TRY(status);
   MCOR_TRY(mcor_place_fill_cuts(context, fill));
   MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
   return mcor_append_fill_triangles(context, fill, surface);

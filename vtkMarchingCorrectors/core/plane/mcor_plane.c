@@ -62,8 +62,6 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
 {
   mcor_spread_job* job = data;
   const mcor_input* input = job->input;
-  mcor_array positions = input->positions;
-  positions.components = 3;
   mcor_spread spread = job->slices[slice];
   bool everywhere = false;
   for (int64_t begin = first; begin < last && !everywhere; begin += MCOR_CHUNK)
@@ -77,7 +75,7 @@ static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last
       {
         continue;
       }
-      mcor_read_array(&positions, begin, count, a, x);
+      mcor_read_array(&input->positions, begin, count, a, x);
       const bool same = !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
       for (int i = 0; i < count && !same; ++i)
       {
@@ -103,7 +101,9 @@ static bool mcor_has_positions(const mcor_input* input)
 
 static mcor_spread mcor_spread_of(mcor_context* context, const mcor_input* input)
 {
-  mcor_spread_job job = { .input = input };
+  mcor_input given = *input;
+  mcor_spread_job job = { .input = &given };
+  given.positions.components = 3;
   for (int i = 0; i < 6 * MCOR_SLICES; ++i)
   {
     job.slices[i / 6].low[i % 6] = DBL_MAX;
@@ -154,9 +154,8 @@ static mcor_status mcor_refuse_plane(
 {
   const char* const rule = "in two dimensions all particles must lie in one plane. Correct these "
                            "positions, or use three dimensions";
-  mcor_array positions = input->positions;
-  positions.components = 3;
-  if (mcor_find_not_finite(context, &positions, input->solid, input->count) >= 0)
+  const mcor_array* positions = &input->positions;
+  if (mcor_find_not_finite(context, positions, input->solid, input->count) >= 0)
   {
     return MCOR_OK; /* mcor_check_input reports it */
   }
@@ -169,13 +168,13 @@ static mcor_status mcor_refuse_plane(
       solids, rule);
     int64_t i = 0;
     while (in_plane && i < input->count &&
-      (mcor_array_at(&positions, i, a) == at || !mcor_is_present(input, i)))
+      (mcor_array_at(positions, i, a) == at || !mcor_is_present(input, i)))
     {
       ++i;
     }
     MCOR_RETURN_IF(in_plane && i < input->count, context, MCOR_INVALID_DATA,
       "The fluid particles have %c = %.10g, but solid particle %lld has %.10g: %s.", "xyz"[a], at,
-      (long long)i, mcor_array_at(&positions, i, a), rule);
+      (long long)i, mcor_array_at(positions, i, a), rule);
   }
   return mcor_fail(context, MCOR_INVALID_DATA,
     "The particles do not share one coordinate exactly, but two dimensions need that. Turn or move "
@@ -193,8 +192,7 @@ static mcor_status mcor_refuse_plane(
 static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* input,
   const mcor_spread* spread, const mcor_plane* plane, bool* rounding)
 {
-  mcor_array positions = input->positions;
-  positions.components = 3;
+  const mcor_array* positions = &input->positions;
   int64_t counts[3] = { 0 }; /* particles; samples, and those with a twin */
   for (int64_t i = 0; i < input->count; ++i)
   {
@@ -224,7 +222,7 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
       for (int a = 0; a < 2 && has_twin; ++a)
       {
         const int axis = mcor_plane_axis(plane, a);
-        has_twin = mcor_array_at(&positions, i, axis) == mcor_array_at(&positions, k, axis);
+        has_twin = mcor_array_at(positions, i, axis) == mcor_array_at(positions, k, axis);
       }
     }
     counts[1] += mcor_is_present(input, i);
@@ -237,19 +235,12 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
 
 static void mcor_set_plane(mcor_context* context, mcor_plane plane)
 {
+  static const mcor_space spaces[] = { { 3, 0, MCOR_BRICK_NODES, MCOR_REGION_BRICKS * MCOR_BRICK,
+                                         4.0 / 3 * MCOR_PI, "mcor_node_values",
+                                         "mcor_march_triangles" },
+    { 2, 1, MCOR_BRICK * MCOR_BRICK, 0, MCOR_PI, "mcor_plane_nodes", "mcor_plane_lines" } };
   context->plane = plane;
-  context->space = plane.axis > 0 ? (mcor_space){ .axes = 2,
-    .flat = 1,
-    .brick_nodes = MCOR_BRICK * MCOR_BRICK,
-    .ball = MCOR_PI,
-    .evaluate = "mcor_plane_nodes",
-    .emit = "mcor_plane_lines" }
-  : (mcor_space){ .axes = 3,
-    .brick_nodes = MCOR_BRICK_NODES,
-    .region_depth = MCOR_REGION_BRICKS * MCOR_BRICK,
-    .ball = 4.0 / 3 * MCOR_PI,
-    .evaluate = "mcor_node_values",
-    .emit = "mcor_march_triangles" };
+  context->space = spaces[plane.axis > 0];
 }
 
 /* With ranks and globals, all ranks find the same. */
@@ -372,7 +363,7 @@ mcor_status mcor_flatten(
   MCOR_RETURN_IF(options->dimension != 0 && options->dimension != 2 && options->dimension != 3,
     context, MCOR_INVALID_ARGUMENT, "The dimension is %d; it must be 2, 3, or 0 (automatic).",
     options->dimension);
-  MCOR_TRY(mcor_find_plane(context, input, options));
+  MCOR_TRY(mcor_find_plane(context, &flat->input, options));
   o->dimension = context->space.axes;
   if (plane->axis == 0)
   {

@@ -100,19 +100,6 @@ static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
   return status;
 }
 
-static mcor_status mcor_make_caps(mcor_cap_job* job)
-{
-  const mcor_context* context = job->context;
-  MCOR_TRY(mcor_index_cap_edges(job));
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    MCOR_TRY(mcor_cap_sides(job, axis));
-  }
-  const bool places = context->space.flat && !context->run.options->preview;
-  MCOR_TRY(places ? mcor_place_cap_cuts(job) : MCOR_OK);
-  return mcor_caps_walls(context) ? mcor_cap_walls(job) : MCOR_OK;
-}
-
 /* Appends the caps' vertices and triangles to the mesh. */
 static mcor_status mcor_append_caps(mcor_cap_job* job)
 {
@@ -155,7 +142,14 @@ mcor_status mcor_cap(mcor_context* context)
   /* A mesh that is not trimmed has no cuts. */
   const int mapped = n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, views, mapped);
-  status = status == MCOR_OK ? mcor_make_caps(&job) : status;
+  status = status == MCOR_OK ? mcor_index_cap_edges(&job) : status;
+  for (int axis = 0; axis < 3 && status == MCOR_OK; ++axis)
+  {
+    status = mcor_cap_sides(&job, axis);
+  }
+  const bool places = context->space.axes == 2 && !context->run.options->preview;
+  status = status == MCOR_OK && places ? mcor_place_cap_cuts(&job) : status;
+  status = status == MCOR_OK && mcor_caps_walls(context) ? mcor_cap_walls(&job) : status;
   status = mcor_unmap_all(context, views, mapped, status);
   mcor_free_cap_points(context, &job.points);
   status = status == MCOR_OK ? mcor_append_caps(&job) : status;

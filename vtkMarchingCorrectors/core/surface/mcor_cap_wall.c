@@ -354,25 +354,6 @@ static mcor_status mcor_cut_wall_face(
 
 /* ---- Loops ---- */
 
-/* Computes the area of the fan around corner `first`. */
-static double mcor_fan_area(double (*at)[3], int count, int first)
-{
-  double area = 0;
-  for (int i = 1; i + 1 < count; ++i)
-  {
-    const double *p = at[first], *q = at[(first + i) % count], *r = at[(first + i + 1) % count];
-    double square = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      const int b = (a + 1) % 3, c = (a + 2) % 3;
-      const double n = (q[b] - p[b]) * (r[c] - p[c]) - (q[c] - p[c]) * (r[b] - p[b]);
-      square += n * n;
-    }
-    area += sqrt(square);
-  }
-  return area;
-}
-
 /* Fills a loop with the fan of least area, since loops are not flat, and may not be convex. */
 static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, int count)
 {
@@ -389,7 +370,19 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
   }
   for (int i = 0; i < count; ++i)
   {
-    const double area = mcor_fan_area(at, count, i);
+    double area = 0;
+    for (int k = 1; k + 1 < count; ++k)
+    {
+      const double *p = at[i], *q = at[(i + k) % count], *r = at[(i + k + 1) % count];
+      double square = 0;
+      for (int a = 0; a < 3; ++a)
+      {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        const double n = (q[b] - p[b]) * (r[c] - p[c]) - (q[c] - p[c]) * (r[b] - p[b]);
+        square += n * n;
+      }
+      area += sqrt(square);
+    }
     best = area < least ? i : best;
     least = fmin(area, least);
   }
@@ -403,9 +396,21 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
 }
 
 /* Joins the edges of a cell to loops, and fills them. */
-static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* cell)
+static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* cell)
 {
-  mcor_cap_border* border = job->border;
+  mcor_cap_job* cap = job->cap;
+  mcor_cap_border* border = cap->border;
+  mcor_begin_cap_square(cap, MCOR_WALL_CELL | cell->key, cell->node, -1);
+  border->count = 0;
+  for (int side = 0; side < 6; ++side)
+  {
+    MCOR_TRY(mcor_cut_wall_face(cap, cell, side / 2, side % 2));
+  }
+  for (; job->edge < job->edge_count && job->edges[job->edge].cell <= cell->key; ++job->edge)
+  {
+    const mcor_wall_edge* edge = &job->edges[job->edge];
+    MCOR_TRY(edge->cell == cell->key ? mcor_add_cap_border(cap, edge->to, edge->from) : MCOR_OK);
+  }
   for (int start = 0; start < border->count; ++start)
   {
     int32_t loop[MCOR_CAP_BORDER];
@@ -419,30 +424,13 @@ static mcor_status mcor_fill_wall_cell(mcor_cap_job* job, const mcor_wall_cell* 
       {
         --next;
       }
-      MCOR_RETURN_IF(next < 0 && to != loop[0], job->context, MCOR_DEVICE_ERROR,
+      MCOR_RETURN_IF(next < 0 && to != loop[0], cap->context, MCOR_DEVICE_ERROR,
         "A cap at a wall does not fit the surface in cell %d %d %d. Please report this.",
         cell->node[0], cell->node[1], cell->node[2]);
     }
-    MCOR_TRY(count > 2 ? mcor_fill_wall_loop(job, loop, count) : MCOR_OK);
+    MCOR_TRY(count > 2 ? mcor_fill_wall_loop(cap, loop, count) : MCOR_OK);
   }
   return MCOR_OK;
-}
-
-static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* cell)
-{
-  mcor_cap_job* cap = job->cap;
-  mcor_begin_cap_square(cap, MCOR_WALL_CELL | cell->key, cell->node, -1);
-  cap->border->count = 0;
-  for (int side = 0; side < 6; ++side)
-  {
-    MCOR_TRY(mcor_cut_wall_face(cap, cell, side / 2, side % 2));
-  }
-  for (; job->edge < job->edge_count && job->edges[job->edge].cell <= cell->key; ++job->edge)
-  {
-    const mcor_wall_edge* edge = &job->edges[job->edge];
-    MCOR_TRY(edge->cell == cell->key ? mcor_add_cap_border(cap, edge->to, edge->from) : MCOR_OK);
-  }
-  return mcor_fill_wall_cell(cap, cell);
 }
 
 mcor_status mcor_cap_walls(mcor_cap_job* cap)

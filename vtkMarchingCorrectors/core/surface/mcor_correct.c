@@ -17,30 +17,6 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
   return mcor_reserve(context, &mesh->evaluations, (size_t)count);
 }
 
-/* owners: see mcor_find_counted. */
-static mcor_status mcor_count_iterations(mcor_context* context, const uint8_t* owners)
-{
-  mcor_statistics* s = context->run.statistics;
-  const mcor_buffer* buffer = &context->mesh.evaluations;
-  const size_t n = (size_t)context->mesh.march_count;
-  void* view;
-  MCOR_TRY(mcor_map(context, buffer, n, false, &view));
-  const uint8_t* evaluations = view;
-  int most = 0;
-  for (size_t i = 0; i < n; ++i)
-  {
-    s->newton_evaluations += evaluations[i];
-    if (!owners || owners[i] == MCOR_OWN)
-    {
-      ++s->vertices_corrected;
-      context->run.evaluations_counted += evaluations[i];
-    }
-    most = evaluations[i] > most ? evaluations[i] : most;
-  }
-  s->iterations_max = most - 1 > s->iterations_max ? most - 1 : s->iterations_max;
-  return mcor_unmap(context, buffer, &view);
-}
-
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -72,9 +48,26 @@ mcor_status mcor_correct(mcor_context* context)
   {
     return MCOR_OK;
   }
-  uint8_t* owners = NULL;
+  mcor_statistics* s = context->run.statistics;
+  const mcor_buffer* buffer = &context->mesh.evaluations;
+  const size_t n = (size_t)context->mesh.march_count;
+  uint8_t* owners = NULL; /* see mcor_find_counted */
+  void* view = NULL;
   mcor_status status = mcor_find_counted(context, &owners);
-  status = status == MCOR_OK ? mcor_count_iterations(context, owners) : status;
+  status = status == MCOR_OK ? mcor_map(context, buffer, n, false, &view) : status;
+  const uint8_t* evaluations = view;
+  int most = 0;
+  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  {
+    s->newton_evaluations += evaluations[i];
+    if (!owners || owners[i] == MCOR_OWN)
+    {
+      ++s->vertices_corrected;
+      context->run.evaluations_counted += evaluations[i];
+    }
+    most = evaluations[i] > most ? evaluations[i] : most;
+  }
+  s->iterations_max = most - 1 > s->iterations_max ? most - 1 : s->iterations_max;
   free(owners);
-  return status;
+  return status == MCOR_OK ? mcor_unmap(context, buffer, &view) : status;
 }

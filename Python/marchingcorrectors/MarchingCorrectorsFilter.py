@@ -277,7 +277,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return self._ahead
 
     def _look_at(self, points, ahead):
-        """What is known does not wait for the rest: the range needs no smoothing length, the cells no scalar."""
+        """Adds what can be known of these points: the range needs no smoothing length, the cells no scalar."""
         ahead["Array"] = ahead["Array"] or name_of(find_fittest(points))
         choice = self._choice()
         choice.InterpolateAttributes = False
@@ -324,7 +324,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return 1
 
     def _take_vertices(self, data):
-        """What of the data are particles, kept as long as it is the same."""
+        """The particles among the data, kept as long as these are the same."""
         times = [each.GetMTime() for each in (list_all(data) if isinstance(data, vtkDataObjectTree) else [data]) if each]
         if self._taken[:2] != (data, times):
             self._taken = data, times, take_vertices(data)
@@ -534,7 +534,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return bool(self.CheckAbort() if hasattr(self, "CheckAbort") else self.GetAbortExecute())
 
     def _warn_once(self, kind, sentence):
-        """Of several blocks the first one tells, as the others will have the same."""
+        """The first of several blocks tells, as the others will have the same."""
         if sentence and kind not in self._warned:
             self._warned.add(kind)
             self._say(sentence, "Warning")

@@ -192,7 +192,7 @@ class SphAccessor:
     @_method(GAUGE)
     def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
              **words: Unpack[Particles]) -> _flux.Fluxes:
-        """What flows through sections.
+        """Fluxes through sections.
 
         Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
 

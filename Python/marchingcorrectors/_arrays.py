@@ -130,7 +130,7 @@ class Arguments:
         return view
 
     def something(self):
-        """What an empty array points to: NULL would be a constant."""
+        """Memory for an empty array to point to: NULL would be a constant."""
         self.kept.append(ctypes.create_string_buffer(32))
         return self.kept[-1]
 
@@ -340,7 +340,7 @@ def take_all(struct, result, sizes):
 
 
 def take_lines(surface):
-    """Those of two dimensions."""
+    """The arrays of lines, in two dimensions."""
     return {"line_offsets": take(surface.line_offsets, (surface.line_count + 1,)),
             "line_points": take(surface.line_points, (surface.line_point_count,))}
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the functions share: their keywords, particles of files in place of positions, and one call of the core."""
+"""The functions' common part: their keywords, particles of files in place of positions, and one call of the core."""
 from __future__ import annotations
 
 import contextlib
@@ -152,7 +152,7 @@ def _attribute(attributes, name):
 
 
 def _warn_of_ignored(given, options):
-    """What was given, but has no effect beside something else."""
+    """Tells of arguments that have no effect beside others."""
     has = {name for name in QUANTITIES if given[name] is not None}
     if options.get("estimate_smoothing_length") and "smoothing_length" in has:
         warn("smoothing_length is not used, because estimate_smoothing_length takes its place. Leave one of them out.")
@@ -175,7 +175,7 @@ def warn_of_missing(missing):
 
 @contextlib.contextmanager
 def called(function, kind, arguments, *more):
-    """What a function of the core returns, which is freed at the end."""
+    """Yields what a function of the core returns, which is freed at the end."""
     context = arguments.context
     own = context is None
     if not own and not isinstance(context, Context):

@@ -85,7 +85,7 @@ class Context:
         self.close()
 
     def __reduce__(self):
-        """Of pickle and copy: two would give the same device back."""
+        """Refuses pickle and copy: two contexts would give the same device back."""
         raise TypeError("A Context cannot be copied or pickled: make another one for the same device.")
 
     def __del__(self):

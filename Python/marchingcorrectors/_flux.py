@@ -30,7 +30,7 @@ FORMS = ('(3, 3): a rectangle\'s corner and two ends; ("disc", centre, normal, r
 
 @dataclass(eq=False, repr=False)
 class Fluxes(Result):
-    """What flows through the part of each section that is in fluid; units of positions (L), velocities and densities."""
+    """Fluxes through the part of each section that is in fluid; units of positions (L), velocities and densities."""
 
     names: List[str]  #: of the sections; "0", "1", ... where none were given
     area: np.ndarray  #: (sections,) float64: of that part, L^2; in two dimensions a length
@@ -100,7 +100,7 @@ def _take_density(words, count):
 
 @of_particles(GAUGE, masses=True)
 def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Fluxes:
-    """What flows through sections, to 1e-6 of the largest flux that the velocities there allow.
+    """Fluxes through sections, to 1e-6 of the largest flux that the velocities there allow.
 
     Example: flux(x, v, {"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}, smoothing_length=h, mass=m, density=rho).mass_flux
 

@@ -277,7 +277,7 @@ def widening(positions: Positions, iso: Optional[float] = 0.5, *, widen: float =
 
 
 def flow(gradients: ArrayLike) -> Dict[str, np.ndarray]:
-    """What velocity gradients J say of a flow.
+    """Divergence, vorticity and more of a flow, by its velocity gradients J.
 
     Example: flow(gradients)["vorticity"]
 

@@ -44,7 +44,7 @@ class Options(c.CoreOptions, total=False):
 
 
 def of_panel(name):
-    """What the panel says of a property, without a default that is no more than a word."""
+    """The panel's words on a property, without a default that is no more than a word."""
     text = " ".join(PANEL.find(f".//*[@name='{name}']/Documentation").text.split())
     said, _, default = text.partition(" Default: ")
     return text if ", " in default else said

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What progress= may be: a function of the caller, or True for a bar."""
+"""Values of progress=: a function of the caller, or True for a bar."""
 import contextlib
 import sys
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the functions return: a surface, samples, derivatives."""
+"""Results of the functions: a surface, samples, derivatives."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field as dataclass_field, fields
@@ -42,7 +42,7 @@ class Result:
                    if f.name != "statistics")
 
     def _names(self, left_out=()):
-        """Of the arrays that are there."""
+        """Lists the arrays that are there."""
         names = []
         for f in fields(self):
             value = getattr(self, f.name)
@@ -88,7 +88,7 @@ class Surface(Result):
 
     @property
     def lines(self) -> List[np.ndarray]:
-        """Of two dimensions: the points of each polyline, greater values on its left; a closed one ends with its
+        """The points of each polyline, in two dimensions, greater values on its left; a closed one ends with its
         first point."""
         if self.line_offsets is None:
             return []

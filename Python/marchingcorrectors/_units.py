@@ -42,7 +42,7 @@ def convert(thing, unit, role, reference):
 
 
 class Units:
-    """Of one call. Takes arguments as they were given, and makes plain numbers of them."""
+    """Takes the arguments of one call as they were given, and makes plain numbers of them."""
 
     def __init__(self, positions):
         self.length = unit_of(positions)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What of a data set, or of its blocks, are particles; what to call blocks, and all their particles as one set."""
+"""The particles among the points of a data set or of blocks, the names of blocks, and all blocks as one set."""
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints, vtkUnsignedCharArray

@@ -25,7 +25,7 @@ class Unusable(Exception):
 
 
 def real_name(name):
-    """What lists of arrays show in place of an array, as in ParaView's panel, is no name."""
+    """The name, but for words that lists show in place of an array, as in ParaView's panel."""
     return "" if name in ("(automatic)", "(none)") else name
 
 
@@ -38,7 +38,7 @@ def names_of(data):
 
 
 def arrays_of(data):
-    """Those that hold numbers."""
+    """The arrays that hold numbers."""
     return [array for array in map(data.GetArray, range(data.GetNumberOfArrays())) if array is not None]
 
 
@@ -89,7 +89,7 @@ def join_velocity(data, count):
 
 
 def describe_missing_length(data):
-    """What to do where no smoothing length is found."""
+    """A remedy where no smoothing length is found."""
     dual = lib.mcor_find_layout("\n".join(names_of(data)).encode(errors="replace")) == b"DualSPHysics"
     return "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual
 
@@ -356,7 +356,7 @@ class Particles:
         return lib.mcor_estimate_cells(given, ctypes.byref(options), lib.mcor_least_smoothing_length(given))
 
     def signatures(self):
-        """What tells one state of particles and scalar from another. The data set's own time is part
+        """Tells one state of particles and scalar from another. The data set's own time is part
         of it: users change arrays in place and tell the data set."""
 
         def sign(thing):

@@ -59,7 +59,7 @@ def build_mesh(output, surface, arrays):
 
 
 def add_nearest(data, array, nearest):
-    """What each point has from its nearest particle, whatever type it is."""
+    """Adds the values that points have from their nearest particles, of any type."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
         made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
     else:
@@ -77,7 +77,7 @@ def add_nearest(data, array, nearest):
 # -- field data --
 
 def add_run(run, found, particles, arguments):
-    """What a run found, used and cost. Costs are added to those that are there, of other blocks."""
+    """Adds what a run found, used and cost. Costs add up over blocks."""
     s, o = found.statistics, arguments.options
     for name in ("Device", "Platform"):
         add(run, name, s[name.lower()])

@@ -45,7 +45,7 @@ def describe_warnings(arguments, surface):
 
 
 def warn_of_particles(arguments, statistics):
-    """Of calls that make no surface."""
+    """Tells what concerns calls that make no surface, too."""
     kinds, found = c.ENUMS["mcor_warning"], describe_warnings(arguments, c.mcor_surface(statistics=statistics))
     for kind in ("MCOR_WARN_FAR", "MCOR_WARN_PERIOD", "MCOR_WARN_COARSE"):
         if kinds[kind] in found:

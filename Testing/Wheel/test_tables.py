@@ -286,12 +286,6 @@ class Tables(Case):
         self.at("snap.1").unlink()
         self.assert_refused("snap.1 is missing", self.at("snap.0"))
 
-    def test_links(self):
-        write_vtkhdf(self.at("p.vtkhdf"), np.random.default_rng(1), 0)
-        with h5py.File(self.at("p.vtkhdf"), "a") as file:
-            file["VTKHDF/PointData/Secret"] = h5py.ExternalLink("other.h5", "Secret")
-        self.assert_refused("is a link", self.at("p.vtkhdf"))
-
     def test_fuzz(self):
         """Bits turned, or other numbers."""
         random = np.random.default_rng(44)

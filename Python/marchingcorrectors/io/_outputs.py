@@ -99,7 +99,7 @@ def _copy_mode(old, new):
 
 
 class _sentences:
-    """What the system says of a file, with the file's name."""
+    """Tells what the system says of a file, with the file's name."""
 
     def __init__(self, path):
         self._path = path

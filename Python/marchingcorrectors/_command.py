@@ -213,12 +213,15 @@ def run_surface(given, particles):
 
 
 def run_gauge(given, particles):
-    found = gauge(particles, dict(given.gauge), (given.iso or [0.5])[0], **find_words(given, GAUGE, particles))
-    time = 0.0 if particles.time is None else float(particles.time)
-    rows = [[time, name, found.state[i], found.first[i], found.last[i], found.depth[i], len(found.crossings[name]),
-             *found.place[i]] for i, name in enumerate(found.names)]
+    """Measures all steps of a file, as the program does."""
+    rows, is_film = [], len(given.input) == 1
+    for step, each in enumerate(io.read_steps(given.input[0], walls=given.walls) if is_film else [particles]):
+        found = gauge(each, dict(given.gauge), (given.iso or [0.5])[0], **find_words(given, GAUGE, each))
+        time = float(step if each.time is None else each.time)
+        rows += [[time, name, found.state[i], found.first[i], found.last[i], found.depth[i], len(found.crossings[name]),
+                  *found.place[i]] for i, name in enumerate(found.names)]
     write_table(given.output, ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"], rows)
-    return f"{len(rows)} gauge{'s' if len(rows) != 1 else ''}"
+    return f"{len(given.gauge)} gauge{'s' * (len(given.gauge) != 1)}, {step + 1} step{'s' * (step > 0)}"
 
 
 def write_table(output, head, rows):

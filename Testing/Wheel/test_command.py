@@ -69,6 +69,19 @@ class Command(unittest.TestCase):
                 if name in ("first", "depth", "crossings", "y") and one[name]:
                     self.assertAlmostEqual(float(one[name]), float(other[name]), places=6)
 
+    def test_film(self):
+        """All steps of a file are measured, at their times."""
+        line, path = np.arange(-4, 5) * 0.1, Path(self.folder.name) / "in.xyz"
+        block = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
+        path.write_text("".join(f"{len(block)}\nProperties=pos:R:3 Time={0.5 * i}\n"
+                                + "".join(f"{x} {y} {z + 0.2 * i}\n" for x, y, z in block) for i in range(2)))
+        words = ["--smoothing-length", "0.13", "--gauge", "up=0,0,-1:0,0,2"]
+        mine, its = (list(csv.DictReader(Path(table).read_text().splitlines()))
+                     for table in self.run_it("gauge", "a.csv", *words, given=str(path)))
+        self.assertEqual([(row["time"], round(float(row["z"]), 1)) for row in mine], [("0.0", 0.5), ("0.5", 0.7)])
+        for one, other in zip(mine, its):
+            self.assertAlmostEqual(float(one["z"]), float(other["z"]), places=6)
+
     def test_fields(self):
         mine, its = map(pyvista.read, self.run_it("slice", "a.vti", *FLUID, "--slice", "z=0", "--resolution", "80"))
         self.assertEqual(mine.dimensions, its.dimensions)

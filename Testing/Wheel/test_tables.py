@@ -261,6 +261,9 @@ class Tables(Case):
             self.assertTrue(np.array_equal(step.points, io.read(self.at("p.xyz"), step=i).positions))
             self.assertEqual(step["species"].tolist(), io.read(self.at("p.xyz"), step=i).arrays["species"].tolist())
         self.assertEqual(pyvista.read(self.at("film_0003.vtp")).n_points, len(io.read(self.at("snap"))))
+        read = [(each.time, len(each)) for each in io.read_steps([self.at("p.xyz"), self.at("snap")])]
+        self.assertEqual(read, [(0.25 * i, len(io.read(self.at("p.xyz"), step=i))) for i in range(3)]
+                         + [(0.25, len(io.read(self.at("snap"))))])
 
     def test_sentences(self):
         for name, text, words in (

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Sequence, Union
+from typing import Any, Iterator, Sequence, Union
 
 from . import bodies
 from ._particles import FileError, Particles
@@ -16,7 +16,7 @@ from .gadget_binary import is_gadget_binary
 
 ENDINGS = (".hdf5", ".h5", ".bi4", ".bgeo", *bodies.ENDINGS)
 PathName = Union[str, "os.PathLike[str]"]
-__all__ = ["ENDINGS", "FileError", "Particles", "count_steps", "read"]
+__all__ = ["ENDINGS", "FileError", "Particles", "count_steps", "read", "read_steps"]
 
 
 def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, int, Sequence[Union[str, int]]] = None,
@@ -53,6 +53,18 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
 def count_steps(path: PathName) -> int:
     """How many steps a file holds; more than one only in .vtkhdf, .xyz and dumps of LAMMPS."""
     return len(read(path).times or [0]) if bodies.may_hold_steps(Path(path)) else 1
+
+
+def read_steps(path: Union[PathName, Sequence[PathName]], **words: Any) -> Iterator[Particles]:
+    """Particles of each time of a film: of one file after the other, and of all steps that a file holds.
+
+    Example: levels = [gauge(particles, lines).last for particles in read_steps("run.pvd")]
+
+    words: those of read().
+    """
+    for each in [path] if isinstance(path, (str, os.PathLike)) else path:
+        for step in range(count_steps(each)):
+            yield read(each, step=step, **words)
 
 
 def _read(paths, types, walls, step):

@@ -1,13 +1,20 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filter in Python as a plugin of ParaView: the panel's properties, a surface, a sentence. In pvpython.
+"""The filter in Python as a plugin of ParaView: the panel's properties, a surface, a sentence. The reader beside it: solvers'
+files by their endings, a series as time steps, and the filter follows. In pvpython.
 
     test_paraview.py FOLDER_OF_THE_ENVIRONMENT
 """
+import atexit
 import glob
 import inspect
 import os
+import shutil
+import struct
 import sys
+import tempfile
+
+import numpy as np
 
 if not hasattr(inspect, "getargspec"):  # Debian 12's ParaView 5.11 cannot load any plugin in Python without
     inspect.getargspec = inspect.getfullargspec
@@ -19,6 +26,29 @@ if not plugins:
 
 from paraview import servermanager
 from paraview import simple
+
+
+def text(word):
+    return struct.pack("<I", len(word)) + word.encode()
+
+
+def item(name, values, arrays, items):
+    """An item of DualSPHysics' layout; test_files.py, which has it, too, wants more packages than ParaView's Python has."""
+    packed = text("\nVALUES") + struct.pack("<I", len(values)) + b"".join(values) if values else b""
+    base = text("\nITEM\n") + text(name) + struct.pack("<ii", 0, 0) + text("%f") + text("%f")
+    base += struct.pack("<III", len(arrays), len(items), len(packed))
+    return struct.pack("<I", len(base)) + base + packed + b"".join(arrays) + b"".join(items)
+
+
+def write(path, time, points):
+    data = points.astype("<f8").tobytes()
+    base = text("\nARRAY") + text("Posd") + struct.pack("<iiII", 0, 23, len(points), len(data))
+    part = item("PART", [text("TimeStep") + struct.pack("<id", 12, time)],
+                [struct.pack("<I", len(base)) + base + data], [])
+    head = b"#FileJBD JPartDataBi4".ljust(58) + b"\n" + bytes(5)
+    with open(path, "wb") as file:
+        file.write(head + item("JPartDataBi4", [text("H") + struct.pack("<id", 12, 0.13)], [], [part]))
+
 
 simple.LoadPlugin(plugins[0], remote=False, ns=globals())
 reader = simple.XMLPolyDataReader(FileName=[os.environ["MCOR_TEST_DATA"] + "/dam_break_45k.vtp"])
@@ -39,4 +69,62 @@ assert servermanager.Fetch(surface).GetNumberOfCells() == 176740
 surface.SmoothingLengthArray = "Nonsense"
 surface.UpdatePipeline()
 assert servermanager.Fetch(surface).GetNumberOfCells() == 0
+
+line = np.arange(-6, 7) * 0.1
+cube = np.stack(np.meshgrid(line, line, line), -1).reshape(-1, 3)
+folder = tempfile.mkdtemp()
+atexit.register(shutil.rmtree, folder, True)
+names = [os.path.join(folder, f"Part_{i:04d}.bi4") for i in range(3)]
+for i, name in enumerate(names):
+    write(name, 0.25 * i, cube * [1, 1, 1 + 0.1 * i])
+reader = simple.OpenDataFile(names)  # by the ending alone, as File > Open does
+assert reader is not None and "SPHParticleReader" in reader.GetXMLName(), reader
+times = list(reader.TimestepValues)
+assert times == [0.0, 0.25, 0.5], times
+lowest = []
+for time in times:
+    reader.UpdatePipeline(time)
+    data = servermanager.Fetch(reader)
+    assert data.GetNumberOfVerts() == data.GetNumberOfPoints() > 1000, data  # bare points would not be drawn
+    assert data.GetFieldData().GetArray("TimeValue").GetValue(0) == time
+    lowest.append(data.GetBounds()[4])
+assert len(set(lowest)) == len(times), lowest
+
+surface = MarchingCorrectors(Input=reader)  # noqa: F821  by LoadPlugin
+surface.FreeSurface = 1
+cells = []
+for time in times:
+    surface.UpdatePipeline(time)
+    cells.append(servermanager.Fetch(surface).GetNumberOfCells())
+assert min(cells) > 300, cells
+
+# Tables, and files that hold several times.
+with open(os.path.join(folder, "steps.xyz"), "w") as file:
+    for i in range(3):
+        file.write(f"{len(cube)}\nProperties=species:S:1:pos:R:3:h:R:1 Time={0.5 * i}\n")
+        file.writelines(f"O {x} {y} {z * (1 + 0.1 * i)} 0.13\n" for x, y, z in cube)
+with open(os.path.join(folder, "steps.dump"), "w") as file:
+    for i in range(3):
+        file.write(f"ITEM: TIMESTEP\n{i}\nITEM: NUMBER OF ATOMS\n{len(cube)}\nITEM: ATOMS x y z h\n")
+        file.writelines(f"{x} {y} {z * (1 + 0.1 * i)} 0.13\n" for x, y, z in cube)
+with open(os.path.join(folder, "table.csv"), "w") as file:
+    file.write('"Points:0","Points:1","Points:2","h"\n' + "".join(f"{x},{y},{z},0.13\n" for x, y, z in cube))
+for name, wanted in (("steps.xyz", [0, 0.5, 1]), ("steps.dump", [0, 1, 2]), ("table.csv", [0])):
+    reader = SPHParticleReader(FileNames=[os.path.join(folder, name)])  # noqa: F821
+    times = np.ravel(reader.TimestepValues).tolist()
+    assert times == wanted, (name, times)
+    surface = MarchingCorrectors(Input=reader)  # noqa: F821
+    surface.FreeSurface = 1
+    for i, time in enumerate(times):
+        surface.UpdatePipeline(time)
+        data = servermanager.Fetch(reader)
+        assert abs(data.GetBounds()[5] - 0.6 * (1 + 0.1 * i)) < 1e-6 and data.GetNumberOfVerts() == len(cube), data
+        assert servermanager.Fetch(surface).GetNumberOfCells() > 300
+
+damaged = os.path.join(folder, "damaged.bi4")
+with open(damaged, "wb") as file:
+    file.write(b"#FileJBD JPartDataBi4")
+reader = SPHParticleReader(FileNames=[damaged])  # noqa: F821
+reader.UpdatePipeline()
+assert servermanager.Fetch(reader).GetNumberOfPoints() == 0
 print("passed")

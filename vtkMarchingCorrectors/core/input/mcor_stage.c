@@ -345,6 +345,57 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
   return MCOR_OK;
 }
 
+static void mcor_find_farthest(void* data, int slice, int64_t first, int64_t last)
+{
+  mcor_staging* staging = data;
+  const mcor_reach_box* reach = staging->reach;
+  mcor_stage_chunk chunk;
+  double farthest = 0;
+  for (; (chunk.count = mcor_chunk_of(last - first)) > 0; first += chunk.count)
+  {
+    mcor_read_stage_places(staging, first, &chunk);
+    for (int i = 0; i < chunk.count; ++i)
+    {
+      const double support = mcor_reach_of(reach, chunk.h[i], chunk.level[i]);
+      const double at[3] = { chunk.x[0][i] * reach->unit, chunk.x[1][i] * reach->unit,
+        chunk.x[2][i] * reach->unit };
+      mcor_images images;
+      farthest = support > farthest && mcor_list_images(reach, at, support, &images) > 0 ? support
+                                                                                         : farthest;
+    }
+  }
+  staging->slices[slice].farthest = farthest;
+}
+
+/* Widens the reach for what is not a sum over supports: a volume sums all particles within the
+ * particle's unscaled support; the nearest particle may be nearer than one that reaches; and the
+ * other particle of a pair is within the smoothing length. Sums at particles with longer lengths are
+ * needed as far as a support from the box. */
+static void mcor_widen_reach(mcor_staging* staging)
+{
+  mcor_context* context = staging->context;
+  const mcor_options* options = context->run.options;
+  const double widest = context->run.widest;
+  const bool computes = mcor_needs_density(staging->input),
+             nearest = mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE);
+  if (!computes && !nearest && widest == 0 && (!mcor_uses_pairs(context) || context->box.of_points))
+  {
+    return;
+  }
+  const int slices = mcor_parallel_for(
+    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_find_farthest, staging);
+  double farthest = 0;
+  for (int s = 0; s < slices; ++s)
+  {
+    farthest = fmax(farthest, staging->slices[s].farthest);
+  }
+  const double volumes = computes ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
+  const double others = nearest || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
+  const double beyond =
+    widest > 0 ? fmax(volumes, farthest) * (1 + widest) + 2 : fmax(volumes, others);
+  staging->reach->radius = farthest > 0 ? beyond : 0;
+}
+
 mcor_status mcor_stage(mcor_staging* staging)
 {
   mcor_context* context = staging->context;
@@ -353,9 +404,10 @@ mcor_status mcor_stage(mcor_staging* staging)
   staging->size_scale = mcor_size_scale(context, staging->input);
   staging->h_max = 1.000001 * context->measure.support_max / options->h_scale /
     mcor_support_factor(options->sph_kernel);
-  if (mcor_find_reach(context, staging->input, &reach))
+  if (mcor_find_reach(context, &reach))
   {
     staging->reach = &reach;
+    mcor_widen_reach(staging);
     staging->images = malloc((size_t)staging->input->count);
     MCOR_TRY(mcor_allocated(context, staging->images));
   }

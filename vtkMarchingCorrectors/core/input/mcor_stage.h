@@ -14,6 +14,7 @@ typedef struct mcor_stage_slice
   int64_t heavy;    /* the first particle whose weight is too large; -1: none */
   bool changed;     /* not as measured: another thread writes to the arrays */
   double largest_weight;
+  double farthest; /* the largest reach, in cubes, of the particles that reach the box */
 } mcor_stage_slice;
 
 /* The input in the device's form, in input order, without unused solids. The arrays are views of
@@ -31,7 +32,7 @@ typedef struct mcor_staging
   int view_count;
   double size_scale;           /* see mcor_size_scale */
   double h_max;                /* the largest support that was measured, with rounding */
-  const mcor_reach_box* reach; /* NULL: all particles are needed */
+  mcor_reach_box* reach;       /* NULL: all particles are needed */
   uint8_t* images;             /* by particle: whether an image is staged; NULL without reach */
   mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;

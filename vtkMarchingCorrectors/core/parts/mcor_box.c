@@ -19,8 +19,6 @@
 #include "mcor_box.h"
 #include "mcor_adaptive.h"
 #include "mcor_compact.h"
-#include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_tree.h"
 
 #include <math.h>
@@ -166,7 +164,8 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   }
 }
 
-bool mcor_is_limited(const mcor_context* context)
+/* Whether the device lacks particles far from the box, or has images of some. */
+static bool mcor_is_limited(const mcor_context* context)
 {
   const mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
@@ -314,44 +313,6 @@ double mcor_wrap(const mcor_reach_box* box, int axis, double fixed)
   return period > 0 ? rounded - floor((rounded - first) / period) * period : fixed;
 }
 
-typedef struct mcor_reach_job
-{
-  const mcor_context* context;
-  const mcor_input* input;
-  const mcor_reach_box* box;
-  double farthest
-    [MCOR_SLICES]; /* the largest support radius, in cubes, of the particles that reach the box */
-} mcor_reach_job;
-
-static void mcor_reach_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_reach_job* job = data;
-  const mcor_lattice* lattice = &job->context->lattice;
-  double farthest = 0;
-  mcor_places p;
-  for (; mcor_read_places(job->context, job->input, first, last, &p) > 0; first += p.count)
-  {
-    for (int i = 0; i < p.count; ++i)
-    {
-      const int level = mcor_tree_level_of(p.h[i], job->box->h_min, job->box->top);
-      const double support = mcor_reach_of(job->box, p.length[i], level);
-      double at[3];
-      mcor_images images;
-      for (int a = 0; a < 3; ++a)
-      {
-        const double fixed =
-          (p.x[a][i] / lattice->edge[a] - (double)lattice->origin[a]) * (double)lattice->step[a];
-        at[a] = mcor_wrap(job->box, a, fixed) * job->box->unit;
-      }
-      if (support > farthest && mcor_list_images(job->box, at, support, &images) > 0)
-      {
-        farthest = support;
-      }
-    }
-  }
-  job->farthest[slice] = farthest;
-}
-
 /* Returns where the field is evaluated, in cubes from the lattice's origin; numbers that single
  * precision has, where it is evaluated anywhere. */
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3])
@@ -367,54 +328,31 @@ void mcor_find_evaluated(const mcor_context* context, double low[3], double high
   }
 }
 
-bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach)
+bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach)
 {
   const mcor_box* box = &context->box;
-  *reach = (mcor_reach_box){ .fix_bits = context->lattice.fix_bits,
-    .unit = ldexp(1, -context->lattice.fix_bits),
-    .h_min = context->measure.h_min,
-    .top = context->lattice.levels - 1,
-    .ring = box->ring,
-    .is_empty = box->is_empty };
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_options* options = context->run.options;
+  const double support = mcor_support_factor(options->sph_kernel) * options->h_scale;
+  const bool pairs = mcor_uses_pairs(context) && !box->of_points;
   if (!mcor_is_limited(context))
   {
     return false;
   }
-  const bool pairs = mcor_uses_pairs(context) && !box->of_points;
-  reach->support =
-    mcor_support_factor(context->run.options->sph_kernel) * context->run.options->h_scale;
-  reach->support =
-    (pairs ? fmax(reach->support, MCOR_PAIR_REACH) : reach->support) / context->lattice.cube;
+  *reach =
+    (mcor_reach_box){ .support = (pairs ? fmax(support, MCOR_PAIR_REACH) : support) / lattice->cube,
+      .fix_bits = lattice->fix_bits,
+      .unit = ldexp(1, -lattice->fix_bits),
+      .h_min = context->measure.h_min,
+      .top = lattice->levels - 1,
+      .ring = box->ring,
+      .is_empty = box->is_empty };
   mcor_find_evaluated(context, reach->low, reach->high);
   for (int a = 0; a < 3; ++a)
   {
-    const double edge = mcor_edge_of(&context->lattice, a);
-    reach->period[a] = context->lattice.period[a] * edge;
-    reach->first[a] = context->lattice.period_first[a] * edge;
-  }
-  if (mcor_needs_density(input) || mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) || pairs ||
-    context->run.widest > 0)
-  {
-    mcor_reach_job job = { .context = context, .input = input, .box = reach };
-    const int slices =
-      mcor_parallel_for(context, input->count, MCOR_HEAVY_GRAIN, mcor_reach_slice, &job);
-    double farthest = 0;
-    for (int s = 0; s < slices; ++s)
-    {
-      farthest = fmax(farthest, job.farthest[s]);
-    }
-    /* Widens the reach for what is not a sum over supports: a volume sums all particles within the
-     * particle's unscaled support; the nearest particle may be nearer than one that reaches; and
-     * the other particle of a pair is within the smoothing length. Sums at particles with longer
-     * lengths are needed as far as a support from the box. */
-    const mcor_options* options = context->run.options;
-    const double volumes =
-      mcor_needs_density(input) ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
-    const bool far = (options->outputs & MCOR_OUT_NEAREST_PARTICLE) || options->seeds == MCOR_PAIRS;
-    const double beyond = context->run.widest > 0
-      ? fmax(volumes, farthest) * (1 + context->run.widest) + 2
-      : fmax(volumes, far ? farthest + 2 : 0);
-    reach->radius = farthest > 0 ? beyond : 0;
+    const double edge = mcor_edge_of(lattice, a);
+    reach->period[a] = lattice->period[a] * edge;
+    reach->first[a] = lattice->period_first[a] * edge;
   }
   return true;
 }

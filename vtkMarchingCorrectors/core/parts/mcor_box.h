@@ -29,7 +29,7 @@ typedef struct mcor_reach_box
 {
   double low[3], high[3]; /* where the field is evaluated */
   double support;         /* support radius / smoothing length */
-  double radius;          /* added as if no support radius were less */
+  double radius;          /* as if no support radius were less; set later */
   double unit;            /* 2^-fix_bits */
   double h_min;           /* with adaptive cubes, see mcor_reach_of; highest: their highest level */
   int top, ring;
@@ -54,7 +54,7 @@ bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
 /* Returns false where all particles are needed. */
-bool mcor_find_reach(mcor_context* context, const mcor_input* input, mcor_reach_box* reach);
+bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach);
 /* Converts a position to the device's units; with a period it is rounded as on the device, and
  * moved into the first period. */
 double mcor_wrap(const mcor_reach_box* box, int axis, double fixed);
@@ -83,9 +83,6 @@ static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;
 }
-
-/* Whether the device lacks particles far from the box, or has images of some. */
-bool mcor_is_limited(const mcor_context* context);
 
 /* Seeds: makes cubes of one size, or bricks, void where they are off the box. */
 mcor_status mcor_void_cubes(mcor_context* context);

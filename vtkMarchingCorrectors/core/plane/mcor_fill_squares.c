@@ -18,9 +18,9 @@
  * to the next one. */
 typedef struct mcor_fill_corner
 {
-  int32_t ref; /* see mcor_fill_triangle */
-  double margin;
-  int level; /* the line's; -1: a node */
+  mcor_cap_corner corner; /* the first member; vertex: as a corner of mcor_fill_triangle */
+  int level;              /* the line's; -1: a node */
+  bool begins_line;       /* in the polygon under way, a line leads to the next corner */
   int32_t vertex;
   bool falls; /* the border goes from above the line to below */
   int band;   /* the part's */
@@ -31,16 +31,6 @@ typedef struct mcor_fill_corner
   double from, to;
 } mcor_fill_corner;
 
-/* A corner of a polygon, and whether a line leads to the next one. */
-typedef struct mcor_fill_side
-{
-  mcor_fill_corner* corner;
-  bool is_line;
-} mcor_fill_side;
-
-/* Corners of a polygon, at most: nodes, and vertices of the two lines beside its band. */
-#define MCOR_FILL_MOST 12
-
 typedef struct mcor_fill_job
 {
   mcor_context* context;
@@ -49,6 +39,7 @@ typedef struct mcor_fill_job
   int64_t lowest;           /* index of its lowest node */
   mcor_fill_corner* border; /* [4 + 4 * line_count] */
   int count;
+  int band; /* of the polygon under way */
   cl_int u, v;
 } mcor_fill_job;
 
@@ -79,15 +70,15 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
   for (int i = 0; i <= parts; ++i)
   {
     mcor_fill_corner* corner = &job->border[job->count++];
-    *corner = (mcor_fill_corner){ .ref = (int32_t)begin,
-      .margin = face->margin[begin],
-      .level = -1,
-      .falls = last < first,
-      .band = last < first ? first - i : first + i,
-      .node = { face->first[0] + job->u + (s == 1), face->first[1] + job->v + (s == 2), 0 },
-      .axis = s & 1,
-      .part = s < 2 ? i : parts - i,
-      .from = s < 2 ? 0 : 1 };
+    *corner =
+      (mcor_fill_corner){ .corner = { .vertex = (int32_t)begin, .margin = face->margin[begin] },
+        .level = -1,
+        .falls = last < first,
+        .band = last < first ? first - i : first + i,
+        .node = { face->first[0] + job->u + (s == 1), face->first[1] + job->v + (s == 2), 0 },
+        .axis = s & 1,
+        .part = s < 2 ? i : parts - i,
+        .from = s < 2 ? 0 : 1 };
     if (i > 0) /* a line's vertex */
     {
       corner->level = last < first ? first - i : first + i - 1;
@@ -97,8 +88,8 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
       {
         return mcor_does_not_fit(job->context, corner);
       }
-      corner->ref = -1 - line->number[v];
-      corner->margin = line->margin[v];
+      corner->corner.vertex = -1 - line->number[v];
+      corner->corner.margin = line->margin[v];
       corner->vertex = v;
       corner->from = corner[-1].to = line->offset[v];
     }
@@ -125,41 +116,56 @@ static int mcor_fill_mate(const mcor_fill_job* job, int i)
 
 /* ---- Polygons ---- */
 
-static mcor_status mcor_add_fan(mcor_fill_job* job, const int32_t* refs, int count, int band)
+static mcor_status mcor_add_fill_fan(
+  void* data, const mcor_cap_corner* corners, int count, bool is_cut)
 {
+  mcor_fill_job* job = data;
   mcor_filling* fill = job->fill;
   for (int i = 1; i + 1 < count; ++i)
   {
     MCOR_TRY(mcor_make_room(job->context, (void**)&fill->triangles, fill->triangle_count,
       &fill->triangle_room, sizeof *fill->triangles));
     fill->triangles[fill->triangle_count++] = (mcor_fill_triangle){
-      .corner = { refs[0], refs[i], refs[i + 1] }, .band = band, .square = job->square
+      .corner = { corners[0].vertex, corners[i].vertex, corners[i + 1].vertex },
+      .band = job->band,
+      .square = job->square
     };
   }
+  (void)is_cut;
   return MCOR_OK;
 }
 
-/* Finds, or makes, the point where trimming cuts the border from corner p to q. */
-static mcor_status mcor_find_border_cut(
-  mcor_fill_job* job, const mcor_fill_corner* p, const mcor_fill_corner* q, int32_t* ref)
+/* Finds the point where trimming has cut a line, or finds or makes that on the border. */
+static mcor_status mcor_cut_fill_side(
+  void* data, const mcor_cap_corner* from, const mcor_cap_corner* to, mcor_cap_corner* cut)
 {
+  mcor_fill_job* job = data;
   mcor_filling* fill = job->fill;
+  const mcor_fill_corner *p = (const mcor_fill_corner*)from, *q = (const mcor_fill_corner*)to;
+  if (p->begins_line)
+  {
+    const mcor_fill_line* line = &fill->lines[p->level];
+    const int found = mcor_find_cut(line->cuts, line->cut_count, p->vertex, q->vertex);
+    const int32_t number = found < 0 ? -1 : line->number[line->vertex_count + found];
+    cut->vertex = -1 - number;
+    return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
+  }
   const int32_t index =
     mcor_table_number(&fill->cut_of, mcor_edge_part(p, p->part), (int32_t)fill->cut_count);
   MCOR_TRY(mcor_allocated(job->context, index >= 0));
   MCOR_TRY(mcor_make_room(
     job->context, (void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts));
-  *ref = (int32_t)(fill->face.node_count + index);
+  cut->vertex = (int32_t)(fill->face.node_count + index);
   if (index == fill->cut_count)
   {
-    const mcor_fill_corner *first = p->margin > 0 ? p : q, *second = first == p ? q : p;
+    const bool inside = from->margin > 0;
     fill->cuts[fill->cut_count++] =
       (mcor_fill_cut){ .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
                          (uint64_t)p->axis << 32 | (uint32_t)p->part },
         .node = { p->node[0], p->node[1], 0 },
         .axis = p->axis,
-        .bracket = { { first == p ? p->from : p->to, first == p ? p->to : p->from },
-          { first->margin, second->margin }, -1 },
+        .bracket = { { inside ? p->from : p->to, inside ? p->to : p->from },
+          { inside ? from->margin : to->margin, inside ? to->margin : from->margin }, -1 },
         .margin = INFINITY,
         .band = p->band,
         .index = index };
@@ -167,74 +173,32 @@ static mcor_status mcor_find_border_cut(
   return MCOR_OK;
 }
 
-/* Adds what trimming leaves of a polygon: each run of corners inside, between the cuts before
- * and behind it. */
-static mcor_status mcor_add_polygon(
-  mcor_fill_job* job, const mcor_fill_side* sides, int count, int band)
-{
-  int start = 0, length = 0;
-  while (start < count && sides[start].corner->margin > 0)
-  {
-    ++start;
-  }
-  const bool whole = start == count;
-  int32_t run[MCOR_FILL_MOST + 2];
-  for (int i = 1; i <= count; ++i)
-  {
-    const mcor_fill_side* before = &sides[(start + i - 1) % count];
-    const mcor_fill_corner *p = before->corner, *q = sides[(start + i) % count].corner;
-    const bool inside = q->margin > 0;
-    if (inside != (p->margin > 0) && before->is_line) /* the line has been cut there */
-    {
-      const mcor_fill_line* line = &job->fill->lines[p->level];
-      const int cut = mcor_find_cut(line->cuts, line->cut_count, p->vertex, q->vertex);
-      const int32_t number = cut < 0 ? -1 : line->number[line->vertex_count + cut];
-      if (number < 0)
-      {
-        return mcor_does_not_fit(job->context, p);
-      }
-      run[length++] = -1 - number;
-    }
-    else if (inside != (p->margin > 0))
-    {
-      MCOR_TRY(mcor_find_border_cut(job, p, q, &run[length++]));
-    }
-    if (inside)
-    {
-      run[length++] = q->ref;
-    }
-    else
-    {
-      MCOR_TRY(mcor_add_fan(job, run, length, band));
-      length = 0;
-    }
-  }
-  return whole ? mcor_add_fan(job, run, length, band) : MCOR_OK;
-}
-
 /* Adds the polygon that has the border's part from corner i on. */
-static mcor_status mcor_add_polygon_from(mcor_fill_job* job, int i)
+static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
 {
-  mcor_fill_side sides[MCOR_FILL_MOST];
-  const int band = job->border[i].band;
+  const mcor_cap_corner* corners[MCOR_POLYGON_MOST];
   int count = 0;
+  job->band = job->border[i].band;
   for (int at = i; !job->border[at].done;)
   {
-    const int next = (at + 1) % job->count;
-    const bool meets_line = job->border[next].level >= 0;
-    if (count + 1 + meets_line > MCOR_FILL_MOST || job->border[at].band != band)
+    mcor_fill_corner *corner = &job->border[at], *next = &job->border[(at + 1) % job->count];
+    const bool meets_line = next->level >= 0;
+    if (count + 1 + meets_line > MCOR_POLYGON_MOST || corner->band != job->band)
     {
-      return mcor_does_not_fit(job->context, &job->border[at]);
+      return mcor_does_not_fit(job->context, corner);
     }
-    job->border[at].done = true;
-    sides[count++] = (mcor_fill_side){ &job->border[at], false };
+    corner->done = true;
+    corner->begins_line = false;
+    corners[count++] = &corner->corner;
+    at = (at + 1) % job->count;
     if (meets_line)
     {
-      sides[count++] = (mcor_fill_side){ &job->border[next], true };
+      next->begins_line = true;
+      corners[count++] = &next->corner;
+      at = mcor_fill_mate(job, at);
     }
-    at = meets_line ? mcor_fill_mate(job, next) : next;
   }
-  return mcor_add_polygon(job, sides, count, band);
+  return mcor_clip_polygon(corners, count, 1, mcor_cut_fill_side, mcor_add_fill_fan, job);
 }
 
 /* ---- Squares ---- */
@@ -261,8 +225,7 @@ static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face,
   }
   for (int i = 0; i < job->count; ++i)
   {
-    MCOR_TRY(
-      job->border[i].band > 0 && !job->border[i].done ? mcor_add_polygon_from(job, i) : MCOR_OK);
+    MCOR_TRY(job->border[i].band > 0 && !job->border[i].done ? mcor_add_polygon(job, i) : MCOR_OK);
   }
   return MCOR_OK;
 }

@@ -110,6 +110,29 @@ static inline void mcor_narrow_bracket(mcor_bracket* b, double at, double margin
   b->last = moved;
 }
 
+/* ---- mcor_cap_square.c: the clipper ---- */
+
+/* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim margin
+ * (above 0: it remains). */
+typedef struct mcor_cap_corner
+{
+  int32_t vertex;
+  double at[3], margin;
+} mcor_cap_corner;
+
+/* Makes the corner where trimming cuts the side from corner p to q; adds a polygon, the rest of one
+ * that is cut or whole. */
+typedef mcor_status (*mcor_clip_side)(
+  void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut);
+typedef mcor_status (*mcor_add_clipped)(
+  void* data, const mcor_cap_corner* corners, int count, bool is_cut);
+/* Adds what trimming leaves of a polygon of up to MCOR_POLYGON_MOST corners: each run of corners
+ * inside, between the cuts before and behind it. A whole one begins with corner `first`. The most
+ * are nodes of a square, and vertices of the two lines beside a band. */
+#define MCOR_POLYGON_MOST 12
+mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
+  mcor_clip_side cut, mcor_add_clipped add, void* data);
+
 /* ---- mcor_cap_face.c: the nodes of one side ---- */
 
 /* Corners of a square; side k goes from corner k to the next one. */

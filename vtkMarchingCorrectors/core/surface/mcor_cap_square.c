@@ -10,14 +10,6 @@
 
 #include <string.h>
 
-/* Corner of a polygon: its vertex of the mesh, its place in cubes from the lattice's origin, and
- * its trim margin (above 0: it remains). */
-typedef struct mcor_cap_corner
-{
-  int32_t vertex;
-  double at[3], margin;
-} mcor_cap_corner;
-
 /* ---- Vertices ---- */
 
 /* Splits a place, in cubes, into a node and an offset. */
@@ -48,7 +40,7 @@ static mcor_status mcor_find_cap_vertex(
   MCOR_TRY(mcor_make_room(
     context, (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices));
   mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
-  *vertex = (mcor_cap_vertex){ .flag = flag, .key = { job->square, job->lookups } };
+  *vertex = (mcor_cap_vertex){ .flag = flag, .key = { job->number, job->lookups } };
   mcor_put_cap_vertex(vertex, at);
   return MCOR_OK;
 }
@@ -109,8 +101,9 @@ static mcor_status mcor_cap_edge_corner(
 /* Finds the vertex where trimming cuts the line between two corners: the surface's own cut, else
  * one of the cap's, with the line along which it will be moved. */
 static mcor_status mcor_cap_cut(
-  mcor_cap_job* job, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
+  void* data, const mcor_cap_corner* p, const mcor_cap_corner* q, mcor_cap_corner* cut)
 {
+  mcor_cap_job* job = data;
   const mcor_mesh* mesh = &job->context->mesh;
   const mcor_cap_corner *low = p->vertex < q->vertex ? p : q, *high = low == p ? q : p;
   const int own = high->vertex < mesh->march_count
@@ -156,8 +149,8 @@ mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3])
     job->context, (void**)&job->triangles, next, &job->triangle_room, 3 * sizeof *job->triangles));
   MCOR_TRY(
     mcor_make_room(job->context, (void**)&job->cells, next, &job->cell_room, sizeof *job->cells));
-  job->cells[job->triangle_count] = job->square;
-  job->owned_count += !(job->square & MCOR_RING_CELL);
+  job->cells[job->triangle_count] = job->number;
+  job->owned_count += !(job->number & MCOR_RING_CELL);
   memcpy(job->triangles + 3 * job->triangle_count++, corners, 3 * sizeof *corners);
   return MCOR_OK;
 }
@@ -174,13 +167,15 @@ mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to)
 
 /* Adds a polygon as a fan; corners go round as seen from above the axis. For a cap at a wall it
  * adds only the polygon's last edge, if that is a cut. */
-static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* square,
-  const mcor_cap_corner* corners, int count, bool cut)
+static mcor_status mcor_add_cap_fan(
+  void* data, const mcor_cap_corner* corners, int count, bool is_cut)
 {
+  mcor_cap_job* job = data;
+  const mcor_cap_square* square = job->square;
   if (job->border)
   {
     const int32_t first = corners[0].vertex, last = corners[count - 1].vertex;
-    return cut
+    return is_cut
       ? mcor_add_cap_border(job, square->upper ? first : last, square->upper ? last : first)
       : MCOR_OK;
   }
@@ -208,30 +203,31 @@ static mcor_status mcor_add_cap_fan(mcor_cap_job* job, const mcor_cap_square* sq
   return MCOR_OK;
 }
 
-/* Adds what trimming leaves of a polygon of up to 6 corners: each run of corners inside, between
- * the cuts before and behind it. */
-static mcor_status mcor_add_cap_polygon(
-  mcor_cap_job* job, const mcor_cap_square* square, const mcor_cap_corner* corners, int count)
+mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
+  mcor_clip_side cut, mcor_add_clipped add, void* data)
 {
-  int start = 0;
-  while (start < count && corners[start].margin > 0)
+  mcor_cap_corner run[MCOR_POLYGON_MOST + 2];
+  int start = 0, length = 0;
+  while (start < count && corners[start]->margin > 0)
   {
     ++start;
   }
+  for (int i = 0; i < count && start == count; ++i)
+  {
+    run[length++] = *corners[(first + i) % count];
+  }
   if (start == count)
   {
-    return mcor_add_cap_fan(job, square, corners, count, false);
+    return add(data, run, length, false);
   }
-  mcor_cap_corner run[8];
-  int length = 0;
   for (int i = 1; i <= count; ++i)
   {
-    const mcor_cap_corner *before = &corners[(start + i - 1) % count],
-                          *corner = &corners[(start + i) % count];
+    const mcor_cap_corner *before = corners[(start + i - 1) % count],
+                          *corner = corners[(start + i) % count];
     const bool inside = corner->margin > 0;
     if (inside != (before->margin > 0))
     {
-      MCOR_TRY(mcor_cap_cut(job, before, corner, &run[length++]));
+      MCOR_TRY(cut(data, before, corner, &run[length++]));
     }
     if (inside)
     {
@@ -239,7 +235,7 @@ static mcor_status mcor_add_cap_polygon(
     }
     else if (length > 0)
     {
-      MCOR_TRY(mcor_add_cap_fan(job, square, run, length, true));
+      MCOR_TRY(add(data, run, length, true));
       length = 0;
     }
   }
@@ -254,7 +250,7 @@ void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node
   {
     owned = owned && (a == across || (node[a] >= box->first[a] && node[a] < box->last[a]));
   }
-  job->square = MCOR_CAP_SQUARE | number | (owned ? 0 : MCOR_RING_CELL);
+  job->number = MCOR_CAP_SQUARE | number | (owned ? 0 : MCOR_RING_CELL);
   job->lookups = 0;
 }
 
@@ -264,7 +260,13 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
   const int total = above[0] + above[1] + above[2] + above[3];
   const bool apart = total == 2 && above[0] == above[2] && !square->is_joined;
   mcor_cap_corner corners[6];
+  const mcor_cap_corner* polygon[6];
   int count = 0;
+  job->square = square;
+  for (int k = 0; k < 6; ++k)
+  {
+    polygon[k] = &corners[k];
+  }
   for (int k = 0; k < 4; ++k)
   {
     if (apart && above[k])
@@ -279,13 +281,13 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
     {
       MCOR_TRY(mcor_cap_edge_corner(job, square, k, &corners[count++]));
     }
-    if (apart && above[k])
+    if (apart ? above[k] : k == 3)
     {
-      MCOR_TRY(mcor_add_cap_polygon(job, square, corners, count));
+      MCOR_TRY(mcor_clip_polygon(polygon, count, 0, mcor_cap_cut, mcor_add_cap_fan, job));
       count = 0;
     }
   }
-  return apart ? MCOR_OK : mcor_add_cap_polygon(job, square, corners, count);
+  return MCOR_OK;
 }
 
 /* ---- Moving cuts ---- */

@@ -196,6 +196,13 @@ static void mcor_store_normal(const double gradient[3], float normal[3])
   }
 }
 
+/* Writes to an array that the caller wants. */
+#define MCOR_STORE(array, number)                                                                  \
+  if (array)                                                                                       \
+  {                                                                                                \
+    (array)[to] = (number);                                                                        \
+  }
+
 /* Writes vertex v as point `to` of the surface. */
 static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
 {
@@ -203,7 +210,8 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
   mcor_surface* s = d->surface;
   const double cube = mcor_length_of(d, v, context->lattice.cube);
   const cl_int* at = mcor_node_of(d, v);
-  const int level = at[3] >> MCOR_LEVEL_SHIFT;
+  const int level = at[3] >> MCOR_LEVEL_SHIFT, flag = mcor_flag_of(d, v);
+  const cl_int nearest = s->nearest_particle ? ((const cl_int*)d->nearest)[v] : -1;
   double gradient[3];
   for (int a = 0; a < 3; ++a)
   {
@@ -217,52 +225,23 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
       s->gradients[3 * to + a] = gradient[a] / cube;
     }
   }
-  if (s->normals)
+  if (s->normals && mcor_is_cap(context, v))
+  {
+    mcor_cap_normal(context, at, s->normals + 3 * to);
+  }
+  else if (s->normals)
   {
     mcor_store_normal(gradient, s->normals + 3 * to);
-    if (mcor_is_cap(context, v))
-    {
-      mcor_cap_normal(context, at, s->normals + 3 * to);
-    }
   }
-  if (s->weight_sum)
-  {
-    s->weight_sum[to] = (float)mcor_get_real(context, d->weight, v);
-  }
-  if (s->boundary_eigenvalue)
-  {
-    s->boundary_eigenvalue[to] = (float)mcor_get_real(context, d->eigenvalue, v);
-  }
-  if (s->nearest_particle)
-  {
-    const cl_int nearest = ((const cl_int*)d->nearest)[v];
-    s->nearest_particle[to] = nearest < 0 ? -1 : mcor_source_of(context, nearest);
-  }
-  if (s->mean_curvature)
-  {
-    s->mean_curvature[to] = mcor_get_real(context, d->curvature, 2 * v) / cube;
-  }
-  if (s->gauss_curvature)
-  {
-    s->gauss_curvature[to] = mcor_get_real(context, d->curvature, 2 * v + 1) / cube / cube;
-  }
-  if (s->correction_length)
-  {
-    s->correction_length[to] = (float)mcor_correction_of(d, v);
-  }
-  if (s->residual)
-  {
-    s->residual[to] = (float)mcor_get_real(context, d->value, v);
-  }
-  if (s->boundary_flag)
-  {
-    const int flag = mcor_flag_of(d, v);
-    s->boundary_flag[to] = (uint8_t)(flag & MCOR_CAP_FLAG ? MCOR_CAP_FLAG : flag);
-  }
-  if (s->iso_value)
-  {
-    s->iso_value[to] = d->iso;
-  }
+  MCOR_STORE(s->weight_sum, (float)mcor_get_real(context, d->weight, v))
+  MCOR_STORE(s->boundary_eigenvalue, (float)mcor_get_real(context, d->eigenvalue, v))
+  MCOR_STORE(s->nearest_particle, nearest < 0 ? -1 : mcor_source_of(context, nearest))
+  MCOR_STORE(s->mean_curvature, mcor_get_real(context, d->curvature, 2 * v) / cube)
+  MCOR_STORE(s->gauss_curvature, mcor_get_real(context, d->curvature, 2 * v + 1) / cube / cube)
+  MCOR_STORE(s->correction_length, (float)mcor_correction_of(d, v))
+  MCOR_STORE(s->residual, (float)mcor_get_real(context, d->value, v))
+  MCOR_STORE(s->boundary_flag, (uint8_t)(flag & MCOR_CAP_FLAG ? MCOR_CAP_FLAG : flag))
+  MCOR_STORE(s->iso_value, d->iso)
   if (s->point_keys)
   {
     mcor_store_point_key(context, d->node, d->cuts, v, s->point_keys + MCOR_POINT_KEY * to);

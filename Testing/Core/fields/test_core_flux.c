@@ -262,79 +262,6 @@ static double gauss_point(double low, double high, int i, int n, double* share)
   return low + part * (i / 3 + 0.5 + 0.5 * gauss_at[i % 3]);
 }
 
-/* The integral of div(rho v) over a box. */
-static double divergence_in(
-  mcor_context* context, const mcor_input* input, const double* low, const double* high)
-{
-  int n[3];
-  int64_t count = 1;
-  for (int a = 0; a < 3; ++a)
-  {
-    n[a] = high[a] > low[a] ? 3 * (int)ceil((high[a] - low[a]) / 0.15) : 1;
-    count *= n[a];
-  }
-  double* points = malloc(3 * (size_t)count * sizeof(double));
-  double* share = malloc((size_t)count * sizeof(double));
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const int64_t at[3] = { i % n[0], i / n[0] % n[1], i / n[0] / n[1] };
-    share[i] = 1;
-    for (int a = 0; a < 3; ++a)
-    {
-      double part = 1;
-      points[3 * i + a] = n[a] > 1 ? gauss_point(low[a], high[a], (int)at[a], n[a], &part) : low[a];
-      share[i] *= part;
-    }
-  }
-  mcor_options options = flux_options(MCOR_FLOAT64);
-  options.outputs = MCOR_OUT_GRADIENTS;
-  mcor_samples samples;
-  const mcor_array where = core_array(points, 3);
-  CORE_OK(context, mcor_probe(context, input, &options, &where, count, &samples));
-  double sum = 0;
-  for (int64_t i = 0; i < count; ++i)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      sum += share[i] *
-        (samples.values[1][i] * samples.gradients[0][9 * i + 4 * a] +
-          samples.gradients[1][3 * i + a] * samples.values[0][3 * i + a]);
-    }
-  }
-  mcor_free_samples(&samples);
-  free(points);
-  free(share);
-  return sum;
-}
-
-/* Through closed sides flows what the divergence has inside. */
-static void test_sides_of_boxes(void** state)
-{
-  static const shape boxes[] = { { MCOR_SECTION_BOX, 2, { 3, 3, 3, 6.3, 5, 7.1 }, 0 },
-    { MCOR_SECTION_BOX, 2, { 12.2, 7.1, 2.3, 13, 8.5, 4 }, 0 } };
-  fluid made = make_fluid(make_pool(0.4), move_anyhow);
-  fluid slice = make_fluid(make_slice(1), move_anyhow);
-  const mcor_input input = fluid_input(&made), plane = fluid_input(&slice);
-  for (int precision = 0; precision < 2; ++precision)
-  {
-    const mcor_options options = flux_options((mcor_type)precision);
-    for (size_t i = 0; i < 2; ++i)
-    {
-      const double expected = divergence_in(*state, &input, boxes[i].points, boxes[i].points + 3);
-      const mcor_flux_reading r = flux_of(*state, &input, &options, &boxes[i]);
-      CORE_CHECK(fabs(r.mass_flux - expected) < 1e-5 * fabs(expected),
-        "box %zu: %.9g, expected %.9g", i, r.mass_flux, expected);
-    }
-    const shape flat = { MCOR_SECTION_BOX, 2, { 3, 8, 3, 6.3, 8, 7.1 }, 0 };
-    const double expected = divergence_in(*state, &plane, flat.points, flat.points + 3);
-    const mcor_flux_reading r = flux_of(*state, &plane, &options, &flat);
-    CORE_CHECK(fabs(r.mass_flux - expected) < 1e-5 * fabs(expected), "plane: %.9g, expected %.9g",
-      r.mass_flux, expected);
-  }
-  free_fluid(&made);
-  free_fluid(&slice);
-}
-
 #define COLUMNS 360
 #define ROWS 120
 
@@ -537,8 +464,8 @@ static void test_weird(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_uniform),
-    cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_sides_of_boxes),
-    cmocka_unit_test(test_half_out_of_the_water), cmocka_unit_test(test_corner_on_the_level),
-    cmocka_unit_test(test_same_bits), cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_uniform_in_a_plane), cmocka_unit_test(test_half_out_of_the_water),
+    cmocka_unit_test(test_corner_on_the_level), cmocka_unit_test(test_same_bits),
+    cmocka_unit_test(test_period), cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

@@ -147,42 +147,10 @@ static void cuts_through_large_cubes(void** state)
   core_free_set(&set);
 }
 
-/* A box costs what reaches it. */
-static void small_boxes(void** state)
-{
-  static const double half = 0.5;
-  core_set set = core_make_graded(60, 0.3);
-  const mcor_input input = core_input(&set);
-  mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* may be any around */
-  mcor_surface whole = core_extract(*state, &input, &options);
-  const double box[6] = { -70, -45, -20, 20, -20, 20 };
-  memcpy(options.box, box, sizeof box);
-  mcor_surface part = core_extract(*state, &input, &options);
-  assert_in_range(part.triangle_count, 10, whole.triangle_count / 4);
-  assert_in_range(part.statistics.particles_in_reach, 10, set.count / 2);
-  assert_in_range(part.statistics.nodes_evaluated, 10, whole.statistics.nodes_evaluated / 3);
-  mcor_free_surface(&part);
-  options.box[0] = 1000;
-  options.box[1] = 1001;
-  part = core_extract(*state, &input, &options);
-  assert_int_equal(part.triangle_count, 0);
-  assert_int_equal(part.statistics.particles_in_reach, 0);
-  mcor_free_surface(&part);
-  /* Within the set, but where there are no leaves. */
-  const double hole[6] = { -0.01, 0.01, -0.01, 0.01, -0.01, 0.01 };
-  memcpy(options.box, hole, sizeof hole);
-  part = core_extract(*state, &input, &options);
-  assert_int_equal(part.triangle_count, 0);
-  mcor_free_surface(&part);
-  mcor_free_surface(&whole);
-  core_free_set(&set);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(smooth_surfaces),
     cmocka_unit_test(rough_surfaces), cmocka_unit_test(given_levels),
-    cmocka_unit_test(cuts_through_large_cubes), cmocka_unit_test(small_boxes) };
+    cmocka_unit_test(cuts_through_large_cubes) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

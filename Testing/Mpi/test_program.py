@@ -190,6 +190,8 @@ class Program(unittest.TestCase):
         view = ["--resolution", "150", "--project"]
         for name, file, how in (
                 ("gauges.csv", PARTICLES, gauges), ("fluxes.csv", PARTICLES, fluxes),
+                ("fluxes.csv", os.path.join(DATA, "dam_break_45k.vtp"),
+                 ["--flux", "a=disc:0.8,0.1,0:1,0.2,0.1:0.6", "--fluid", "ParticleType=0", "--periodic", "0,0,1"]),
                 ("levels.vti", PARTICLES, ["--gauge-grid", "13,7:-1.5,1.5,-0.1,0.9,-1.6,1.6"]),
                 ("view.vti", PARTICLES, [*view, "z"]), ("view.vti", PARTICLES, [*view, "1,2,3", "--periodic", "0,0,3.1"]),
                 ("view.vti", PARTICLES, [*view, "x", "--smoothing-length", "estimate"]),
@@ -377,29 +379,28 @@ class Program(unittest.TestCase):
 
     def test_components(self):
         """The table of pieces, and the numbers that points have, are those of one process, byte for byte."""
-        how = ["--free-surface", "--components"]
-        least = ["--least-particles", "3"]
-        alone = self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), *how, self.path("alone.csv"), *least))
-        pieces = write_pieces(PARTICLES, self.folder.name, 5)
-        done = self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how, self.path("ranks.csv"), *least))
-        self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
-        line = next(line for line in alone.stdout.splitlines() if line.startswith("surface"))
-        self.assertIn(line, done.stdout.splitlines())
-        self.assertRegex(line, "pieces? of area .*, volume ")
-        self.good(self.run_ranks(pieces, self.path("out.pvtp"), *how, self.path("ranks.csv"), *least))
-        self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
-        whole = read(self.path("alone.vtp"))
-        self.assertGreater(whole.GetPointData().GetArray("ComponentId").GetRange()[1], 1)
-        for other in ("ranks.vtp", "out.pvtp"):
-            ranks = read(self.path(other))
-            if other == "ranks.vtp":
-                np.testing.assert_array_equal(corners(whole), corners(ranks))
-                np.testing.assert_array_equal(vtk_to_numpy(whole.GetPointData().GetArray("ComponentId")),
-                                              vtk_to_numpy(ranks.GetPointData().GetArray("ComponentId")))
-                np.testing.assert_array_equal(vtk_to_numpy(whole.GetCellData().GetArray("ComponentId")),
-                                              vtk_to_numpy(ranks.GetCellData().GetArray("ComponentId")))
-            else:
-                self.assertEqual(difference(ranks, whole), "")
+        walls = ["--fluid", "ParticleType=0", "--solids", "wall", "--wall-share", "0.4", "--capping"]
+        for particles, how in ((PARTICLES, ["--free-surface", "--least-particles", "3"]),
+                               (os.path.join(DATA, "dam_break_45k.vtp"), ["--free-surface", *walls]),
+                               (PARTICLES, ["--scalar", "Speed", "--iso", "2", "--periodic=-1,1,0,0,-1,0.5"])):
+            table = ["--components", self.path("alone.csv"), *how]
+            alone = self.good(self.run_alone(particles, self.path("alone.vtp"), *table))
+            whole = read(self.path("alone.vtp"))
+            self.assertGreater(whole.GetPointData().GetArray("ComponentId").GetRange()[1], 1)
+            line = next(line for line in alone.stdout.splitlines() if line.startswith("surface"))
+            self.assertIn(" pieces of area ", line)
+            pieces = write_pieces(particles, self.folder.name, 5)
+            table[1] = self.path("ranks.csv")
+            self.assertIn(line, self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *table)).stdout.splitlines())
+            self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
+            ranks = read(self.path("ranks.vtp"))
+            np.testing.assert_array_equal(corners(whole), corners(ranks))
+            for data in (lambda surface: surface.GetPointData(), lambda surface: surface.GetCellData()):
+                np.testing.assert_array_equal(vtk_to_numpy(data(whole).GetArray("ComponentId")),
+                                              vtk_to_numpy(data(ranks).GetArray("ComponentId")))
+            self.good(self.run_ranks(pieces, self.path("out.pvtp"), *table))
+            self.assertTrue(filecmp.cmp(self.path("alone.csv"), self.path("ranks.csv"), shallow=False))
+            self.assertEqual(difference(read(self.path("out.pvtp")), whole), "")
 
     def image_arrays(self, file):
         reader = vtkXMLImageDataReader()

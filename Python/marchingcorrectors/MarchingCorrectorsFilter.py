@@ -138,8 +138,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ContourValues, self.FreeSurfaceValues = vtkContourValues(), vtkContourValues()
         self.ContourValues.SetNumberOfContours(0)
         self.FreeSurfaceValues.SetValue(0, 0.5)
-        self._joined = self._taken = None, None, 0
-        self._made = {}  # arrays of sums over neighbours
+        self._kept, self._made = {}, {}  # data sets made of the input, and arrays of sums over neighbours
         self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
@@ -223,21 +222,22 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     def GetKernelName(self):
         return lib.mcor_sph_kernel_name(self.Kernel).decode()
 
+    def _set_list(self, name, *entries):
+        """Adds these, or with none of them leaves nothing."""
+        setattr(self, name, [*getattr(self, name), *entries] if entries else [])
+        self.Modified()
+
     def AddExcludedArray(self, name):
-        self.ExcludedArrays.append(name)
-        self.Modified()
-
-    def AddOnly(self, name, low, high):
-        self.Only.append((name, low, high))
-        self.Modified()
-
-    def ClearOnly(self):
-        self.Only.clear()
-        self.Modified()
+        self._set_list("ExcludedArrays", name)
 
     def ClearExcludedArrays(self):
-        self.ExcludedArrays.clear()
-        self.Modified()
+        self._set_list("ExcludedArrays")
+
+    def AddOnly(self, name, low, high):
+        self._set_list("Only", (name, low, high))
+
+    def ClearOnly(self):
+        self._set_list("Only")
 
     def GetNumberOfExcludedArrays(self):
         return len(self.ExcludedArrays)
@@ -271,7 +271,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             return self._ahead
         self._ahead = {"ScalarRange": (0.0, 0.0), "IsoValue": float("nan"), "Components": 0, "Cells": 0.0, "Dimension": 0,
                        "Fluid": "", "Array": ""}
-        for each in sets_of(self._join(self._take_vertices(data))):
+        for each in sets_of(self._join(self._keep(take_vertices, data))):
             self._look_at(each, self._ahead)
         self._look_time.Modified()
         return self._ahead
@@ -312,7 +312,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         data, output = self.GetInputData(inInfo, 0, 0), self.GetOutputData(outInfo, 0)
         self.ErrorMessage, self.BlockName, self._warned = "", "", set()
         self.RunStatistics = vtkFieldData()
-        taken = self._take_vertices(data)
+        taken = self._keep(take_vertices, data)
         self._warn_once("mesh", describe_mesh(data, taken))
         if isinstance(taken, vtkDataObjectTree) and self.Blocks == self.APART:
             self._process_blocks(taken, output)
@@ -323,21 +323,17 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self._process(particles, output)
         return 1
 
-    def _take_vertices(self, data):
-        """The particles among the data, kept as long as these are the same."""
-        times = [each.GetMTime() for each in (list_all(data) if isinstance(data, vtkDataObjectTree) else [data]) if each]
-        if self._taken[:2] != (data, times):
-            self._taken = data, times, take_vertices(data)
-        return self._taken[2]
+    def _keep(self, make, data):
+        """make(data), which is kept as long as the data are the same."""
+        state = data, [each.GetMTime() for each in list_all(data) if each]
+        if self._kept.get(make, (None,))[0] != state:
+            self._kept[make] = state, make(data)
+        return self._kept[make][1]
 
     def _join(self, data):
-        """The data, or all blocks together, which are kept as long as they are the same."""
-        if not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART:
-            return data
-        times = [each.GetMTime() for each in list_all(data)]
-        if self._joined[:2] != (data, times):
-            self._joined = data, times, join_blocks(data)
-        return self._joined[2]
+        """The data, or all blocks together."""
+        is_one = not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART
+        return data if is_one else self._keep(join_blocks, data)
 
     def _process_blocks(self, data, output):
         """A block that fails leaves its place empty, and the others as they are."""

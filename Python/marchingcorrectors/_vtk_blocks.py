@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The particles among the points of a data set or of blocks, the names of blocks, and all blocks as one set."""
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints, vtkUnsignedCharArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (vtkDataObjectTree, vtkPartitionedDataSet, vtkPointSet, vtkPolyData,
                                            vtkUnstructuredGrid)
 
 from . import _structs as c
 from ._library import lib
 from ._vtk_particles import WALL_BLOCK, name_of
+from ._vtk_surface import add, add_nearest
 from .io._cells import VERTICES, find_vertices
 
 WALL_WORDS = ("wall", "bound", "solid", "obstacle", "rigid")
@@ -34,8 +35,7 @@ def walk(tree, empty=False):
 
 def sets_of(data):
     """The data set itself, or the blocks, that are point sets with points."""
-    return [each for each in (list_all(data) if isinstance(data, vtkDataObjectTree) else [data])
-            if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0]
+    return [each for each in list_all(data) if isinstance(each, vtkPointSet) and each.GetNumberOfPoints() > 0]
 
 
 def cells_of(points):
@@ -59,15 +59,10 @@ def add_values(data, count, chosen, made):
     """These of the arrays that have `count` values, unless there is one of that name."""
     for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
         if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
-            values = array.NewInstance()
-            values.SetName(name_of(array))
-            values.SetNumberOfComponents(array.GetNumberOfComponents())
-            values.CopyComponentNames(array)
-            values.SetNumberOfTuples(chosen.GetNumberOfIds())
-            array.GetTuples(chosen, values)
-            at, attribute = made.AddArray(values), data.IsArrayAnAttribute(i)
+            add_nearest(made, array, chosen)
+            attribute = data.IsArrayAnAttribute(i)
             if attribute >= 0 and made.GetAbstractAttribute(attribute) is None:
-                made.SetActiveAttribute(at, attribute)
+                made.SetActiveAttribute(name_of(array), attribute)
 
 
 def take_vertices(data, have=None):
@@ -102,18 +97,11 @@ def take_vertices(data, have=None):
     chosen = np.flatnonzero(found >= 0)
     if not is_mesh and len(chosen) < count:
         return data
-    lists = vtkIdList(), vtkIdList()  # of points, and of vertices whose values are theirs
-    for ids, numbers in zip(lists, (chosen, found[chosen])):
-        ids.SetNumberOfIds(len(numbers))
-        for i, number in enumerate(numbers.tolist()):
-            ids.SetId(i, number)
-    particles, points = vtkPolyData(), vtkPoints()
-    points.SetDataType(data.GetPoints().GetDataType())
-    points.SetNumberOfPoints(len(chosen))
-    data.GetPoints().GetPoints(lists[0], points)
-    particles.SetPoints(points)
-    add_values(data.GetPointData(), count, lists[0], particles.GetPointData())
-    add_values(data.GetCellData(), len(types), lists[1], particles.GetPointData())
+    particles = vtkPolyData()
+    particles.SetPoints(vtkPoints())
+    particles.GetPoints().SetData(numpy_to_vtk(vtk_to_numpy(data.GetPoints().GetData())[chosen], deep=True))
+    add_values(data.GetPointData(), count, chosen, particles.GetPointData())
+    add_values(data.GetCellData(), len(types), found[chosen], particles.GetPointData())  # of their vertices
     particles.SetFieldData(data.GetFieldData())
     return particles
 
@@ -130,9 +118,9 @@ def name_blocks(tree):
     return ["Block " + (f"'{name}', " if name else "") + f"index {index}" for _, name, leaf, index in walk(tree) if leaf]
 
 
-def list_all(tree):
+def list_all(data):
     """The data set, and all that it is made of."""
-    return [tree, *(data for data, *_ in walk(tree))]
+    return [data, *(each for each, *_ in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
 
 
 def tells_of_walls(name):
@@ -178,14 +166,11 @@ def join_blocks(tree):
     some = len({wall for _, wall in leaves}) == 2
     sets = [(data, wall and some) for data, wall in leaves
             if isinstance(data, vtkPointSet) and data.GetNumberOfPoints() > 0]
-    joined, points, marks = vtkPolyData(), vtkPoints(), vtkUnsignedCharArray()
+    joined, points = vtkPolyData(), vtkPoints()
     if any(block.GetPoints().GetDataType() != points.GetDataType() for block, _ in sets):
         points.SetDataTypeToDouble()
-    marks.SetName(WALL_BLOCK)
-    for block, wall in sets:
+    for block, _ in sets:
         points.InsertPoints(points.GetNumberOfPoints(), block.GetNumberOfPoints(), 0, block.GetPoints())
-        for _ in range(block.GetNumberOfPoints()):
-            marks.InsertNextValue(int(wall))
     joined.SetPoints(points)
     for block, _ in sets:
         data = block.GetPointData()
@@ -193,7 +178,8 @@ def join_blocks(tree):
             if name_of(array) and not joined.GetPointData().HasArray(name_of(array)):
                 join_array(sets, array, joined)
     if some:
-        joined.GetPointData().AddArray(marks)
+        marks = np.array([wall for _, wall in sets], bool)
+        add(joined.GetPointData(), WALL_BLOCK, np.repeat(marks, np.array([each.GetNumberOfPoints() for each, _ in sets], int)))
     for data in reversed(list_all(tree)):  # of several arrays the first stays
         joined.GetFieldData().PassData(data.GetFieldData())
     return joined

@@ -59,7 +59,7 @@ def build_mesh(output, surface, arrays):
 
 
 def add_nearest(data, array, nearest):
-    """Adds the values that points have from their nearest particles, of any type."""
+    """Adds the values, of any type, of particles with these numbers."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
         made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
     else:

@@ -201,7 +201,7 @@ __kernel void mcor_brick_need(const int brick_count, __global const ulong* known
 }
 
 /* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has
- * one. words: 4-byte words that the values of a brick's nodes take. */
+ * one. words: 4-byte words that the values of a brick's nodes take; they are known all or none. */
 __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   __global const int4* old_bricks, __global const ulong* old_known, __global const ulong* old_above,
   __global const ulong* old_valid, const int words, __global const uint* old_value,
@@ -218,7 +218,7 @@ __kernel void mcor_brick_move(MCOR_BRICK_PARAMS, const int old_count,
   known[slot] = old_known[old];
   above[slot] = old_above[old];
   valid[slot] = old_valid[old];
-  for (int n = 0; n < words; ++n)
+  for (int n = 0; n < words && old_known[old]; ++n)
   {
     node_value[slot * (long)words + n] = old_value[old * (long)words + n];
     node_weight[slot * (long)words + n] = old_weight[old * (long)words + n];

@@ -23,15 +23,6 @@
 #define MCOR_LEAST_CUBE 1e-100
 #define MCOR_MOST_CUBE 1e100
 
-/* One chunk of the particles, as double. */
-typedef struct mcor_chunk
-{
-  int count;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK];
-  double factor[MCOR_CHUNK]; /* of h, if is_widened; else not read */
-  bool is_widened;
-} mcor_chunk;
-
 /* Indices of the ranges over all particles; slices and ranks merge them alike. */
 enum
 {
@@ -85,31 +76,13 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
 /* Greatest contribution of one factor to their sum. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Measures all but the scalar of a chunk's fluid, or of its solids. If all smoothing lengths are
- * one, the extremes may be taken first: rounding keeps the order of numbers. */
-static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reach, mcor_ranges* r)
+/* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes may
+ * be taken first: rounding keeps the order of numbers. */
+static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double reach, mcor_ranges* r)
 {
-  double h_min = DBL_MAX, h_max = -DBL_MAX;
+  double h_min = DBL_MAX, h_max = -DBL_MAX, least = DBL_MAX, most = -DBL_MAX;
   mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
-  double least = h_min, most = h_max, widened[MCOR_CHUNK];
-  const double* length = chunk->h;
-  if (chunk->is_widened)
-  {
-    for (int i = 0; i < chunk->count; ++i)
-    {
-      const double factor = chunk->factor[i];
-      widened[i] = factor * chunk->h[i];
-      if (!solids)
-      {
-        mcor_add_range(r, MCOR_FACTORS, factor, factor);
-        r->counts[2] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
-      }
-    }
-    least = DBL_MAX;
-    most = -DBL_MAX;
-    length = widened;
-    mcor_widen_range(length, chunk->count, &least, &most);
-  }
+  mcor_widen_range(chunk->length, chunk->count, &least, &most);
   for (int a = 0; a < 3 && chunk->count > 0; ++a)
   {
     const double* x = chunk->x[a];
@@ -127,7 +100,7 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
     }
     for (int i = 0; i < chunk->count; ++i)
     {
-      const double support = length[i] * reach;
+      const double support = chunk->length[i] * reach;
       mcor_add_range(r, MCOR_REACHES + a, x[i] - support, x[i] + support);
     }
   }
@@ -140,21 +113,20 @@ static void mcor_measure_chunk(const mcor_chunk* chunk, bool solids, double reac
 
 /* Moves the solids out of a chunk, and drops absent particles. `solid`: the marks of the chunk's
  * particles, or NULL. */
-static void mcor_part_chunk(const uint8_t* solid, mcor_chunk* chunk, mcor_chunk* solids)
+static void mcor_part_chunk(const uint8_t* solid, mcor_places* chunk, mcor_places* solids)
 {
   const int count = chunk->count;
   solids->count = 0;
-  solids->is_widened = chunk->is_widened;
   chunk->count = solid ? 0 : count;
   for (int i = 0; i < count && solid; ++i)
   {
-    mcor_chunk* to = solid[i] ? solids : chunk;
+    mcor_places* to = solid[i] ? solids : chunk;
     for (int a = 0; a < 3; ++a)
     {
       to->x[a][to->count] = chunk->x[a][i];
     }
     to->h[to->count] = chunk->h[i];
-    to->factor[to->count] = chunk->is_widened ? chunk->factor[i] : 1;
+    to->length[to->count] = chunk->length[i];
     to->count += solid[i] != MCOR_ABSENT;
   }
 }
@@ -174,30 +146,33 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   const mcor_context* context = job->context;
   const mcor_input* input = job->input;
   const uint8_t* solid = input->solid;
-  const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM;
+  const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM,
+             is_widened = mcor_is_given(&input->widening);
   mcor_ranges r = mcor_empty_ranges();
-  mcor_chunk chunk, solids;
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  mcor_places chunk, solids;
+  for (int64_t begin = first, count; begin < last; begin += count)
   {
-    chunk.count = mcor_chunk_of(last - begin);
-    mcor_read_positions(input, begin, chunk.count, chunk.x);
-    mcor_read_smoothing_length(context, input, begin, chunk.count, chunk.h);
-    chunk.is_widened = mcor_is_given(&input->widening);
-    if (chunk.is_widened)
-    {
-      mcor_read_array(&input->widening, begin, chunk.count, 0, chunk.factor);
-    }
+    double value[MCOR_CHUNK];
+    count = mcor_read_places(context, input, begin, last, &chunk);
     if (has_scalar)
     {
-      double value[MCOR_CHUNK];
       mcor_read_scalar(input, begin, chunk.count, value);
-      for (int i = 0; i < chunk.count; ++i)
+    }
+    for (int i = 0; i < chunk.count && has_scalar; ++i)
+    {
+      if (!solid || !solid[begin + i])
       {
-        if (!solid || !solid[begin + i])
-        {
-          mcor_add_range(&r, MCOR_SCALARS, value[i], value[i]);
-          r.not_finite = !isfinite(value[i]) && begin + i < r.not_finite ? begin + i : r.not_finite;
-        }
+        mcor_add_range(&r, MCOR_SCALARS, value[i], value[i]);
+        r.not_finite = !isfinite(value[i]) && begin + i < r.not_finite ? begin + i : r.not_finite;
+      }
+    }
+    for (int i = 0; i < chunk.count && is_widened; ++i)
+    {
+      if (!solid || !solid[begin + i])
+      {
+        const double factor = mcor_array_at(&input->widening, begin + i, 0);
+        mcor_add_range(&r, MCOR_FACTORS, factor, factor);
+        r.counts[2] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
       }
     }
     mcor_part_chunk(solid ? solid + begin : NULL, &chunk, &solids);

@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Particles that are so far away that the virtual grid around all of them would be too long. A call has then failed
- * where the grid was measured, and runs once more without particles in the way: with a box, or with the points of a
- * probe, without all that do not reach these; else without those that are farthest away, where they are few. Which
- * ones depends on all particles alone, so ranks agree. */
+/* Particles that are so far away that the virtual grid around all of them would be too long. A call
+ * has then failed where the grid was measured, and runs once more without particles in the way:
+ * with a box, or with the points of a probe, without all that do not reach these; else without
+ * those that are farthest away, where they are few. Which ones depends on all particles alone, so
+ * ranks agree. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
@@ -109,7 +110,8 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   return mcor_reduce_double(context, MCOR_GREATEST, &all->farthest);
 }
 
-/* Around a box or points: all that reaches them, and what volumes, pairs and nearest particles there are made of. */
+/* Around a box or points: all that reaches them, and what volumes, pairs and nearest particles
+ * there are made of. */
 static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* job)
 {
   const mcor_options* options = context->run.options;

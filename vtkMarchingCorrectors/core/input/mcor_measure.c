@@ -31,7 +31,7 @@ enum
   MCOR_LENGTHS = 6, /* smoothing lengths of fluid particles */
   MCOR_SUPPORTS = 7,
   MCOR_SCALARS = 8,
-  MCOR_SPOTS = 9, /* positions of all particles in use: x, y, z */
+  MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
   MCOR_RANGES = 13
 };
@@ -76,8 +76,8 @@ static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
 /* Greatest contribution of one factor to their sum. */
 #define MCOR_MOST_FACTOR 256.0
 
-/* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes may
- * be taken first: rounding keeps the order of numbers. */
+/* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes
+ * may be taken first: rounding keeps the order of numbers. */
 static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double reach, mcor_ranges* r)
 {
   double h_min = DBL_MAX, h_max = -DBL_MAX, least = DBL_MAX, most = -DBL_MAX;

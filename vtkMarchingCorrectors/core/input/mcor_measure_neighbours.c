@@ -186,8 +186,7 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
   {
     const double reach = watch->support * watch->sample[s].h, distance = sqrt(nearest[s]);
     count[s] = (double)neighbours[s];
-    filled[s] =
-      count[s] * watch->sample[s].volume / space->ball / mcor_power(reach, space->axes);
+    filled[s] = count[s] * watch->sample[s].volume / space->ball / mcor_power(reach, space->axes);
     spacing[s] = distance < reach ? distance : 0;
     h[s] = watch->sample[s].h;
   }

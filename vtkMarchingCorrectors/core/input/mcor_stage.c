@@ -369,8 +369,8 @@ static void mcor_find_farthest(void* data, int slice, int64_t first, int64_t las
 
 /* Widens the reach for what is not a sum over supports: a volume sums all particles within the
  * particle's unscaled support; the nearest particle may be nearer than one that reaches; and the
- * other particle of a pair is within the smoothing length. Sums at particles with longer lengths are
- * needed as far as a support from the box. */
+ * other particle of a pair is within the smoothing length. Sums at particles with longer lengths
+ * are needed as far as a support from the box. */
 static void mcor_widen_reach(mcor_staging* staging)
 {
   mcor_context* context = staging->context;

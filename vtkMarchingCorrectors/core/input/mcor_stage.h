@@ -30,10 +30,10 @@ typedef struct mcor_staging
   void* level;                          /* uint8_t */
   mcor_mapping views[MCOR_STAGE_VIEWS]; /* of these six, once there are any */
   int view_count;
-  double size_scale;           /* see mcor_size_scale */
-  double h_max;                /* the largest support that was measured, with rounding */
-  mcor_reach_box* reach;       /* NULL: all particles are needed */
-  uint8_t* images;             /* by particle: whether an image is staged; NULL without reach */
+  double size_scale;     /* see mcor_size_scale */
+  double h_max;          /* the largest support that was measured, with rounding */
+  mcor_reach_box* reach; /* NULL: all particles are needed */
+  uint8_t* images;       /* by particle: whether an image is staged; NULL without reach */
   mcor_stage_slice slices[MCOR_SLICES];
 } mcor_staging;
 
@@ -53,7 +53,7 @@ typedef struct mcor_stage_chunk
 {
   int count;
   double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK]; /* h: the kernel's length */
-  uint8_t level[MCOR_CHUNK]; /* of adaptive cubes */
+  uint8_t level[MCOR_CHUNK];                                /* of adaptive cubes */
   int32_t source[MCOR_CHUNK];
 } mcor_stage_chunk;
 

@@ -35,7 +35,8 @@ void mcor_read_stage_places(const mcor_staging* staging, int64_t first, mcor_sta
   mcor_widen_lengths(staging->input, first, count, h, chunk->h);
   for (int i = 0; i < count; ++i)
   {
-    chunk->level[i] = (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->levels - 1);
+    chunk->level[i] =
+      (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->levels - 1);
     chunk->source[i] = (int32_t)(first + i);
   }
 }

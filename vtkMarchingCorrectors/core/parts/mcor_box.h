@@ -48,8 +48,9 @@ typedef struct mcor_images
 /* Returns how near to the box a particle must be to matter, by its kernel's length and its level of
  * adaptive cubes. */
 double mcor_reach_of(const mcor_reach_box* box, double length, int level);
-/* Finds the cells of the particles at which sums are wanted; returns false where all are. Of a particle's
- * images only that in the period counts, or that on its upper side where the lower one is not in the box. */
+/* Finds the cells of the particles at which sums are wanted; returns false where all are. Of a
+ * particle's images only that in the period counts, or that on its upper side where the lower one
+ * is not in the box. */
 bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]);
 
 void mcor_find_evaluated(const mcor_context* context, double low[3], double high[3]);
@@ -73,12 +74,13 @@ int mcor_list_images(
   MCOR_INT((first)[0] - (lower)), MCOR_INT((first)[1] - (lower)), MCOR_INT((first)[2] - (lower)),  \
     MCOR_INT((last)[0] + (upper)), MCOR_INT((last)[1] + (upper)), MCOR_INT((last)[2] + (upper))
 
-/* The cells around the owned ones that are examined, too, are box.ring; and those that caps are made for. */
+/* The cells around the owned ones that are examined, too, are box.ring; and those that caps are
+ * made for. */
 #define MCOR_BOX_RING 1
 /* How far from a box a particle matters beyond its support, in cubes of its level. */
 double mcor_box_slack(const mcor_options* options);
-/* The ring with adaptive cubes, in cells of each level. Two of a wide one for each, as a way there may lead through
- * larger ones. */
+/* The ring with adaptive cubes, in cells of each level. Two of a wide one for each, as a way there
+ * may lead through larger ones. */
 static inline int mcor_level_ring(int ring)
 {
   return ring <= MCOR_BOX_RING ? ring : 2 * ring;

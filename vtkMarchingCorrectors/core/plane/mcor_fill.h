@@ -26,12 +26,11 @@ typedef struct mcor_fill_line
  * polygons. */
 typedef struct mcor_fill_cut
 {
-  uint64_t key[2]; /* the point's key: its node, then axis << 32 | part of the edge */
-  cl_int node[3];  /* lower node of the edge */
+  mcor_cap_vertex vertex; /* its key: its node, then axis << 32 | part of the edge */
   int axis;
   mcor_bracket bracket; /* along the edge, from inside to outside */
   double at, margin;    /* the best place so far, and its margin */
-  int band, index;      /* index: the one that triangles use */
+  int index;            /* the one that triangles use */
 } mcor_fill_cut;
 
 /* corner: a node's index; node_count + a cut's index; or -1 - a point of the surface. */

@@ -160,14 +160,14 @@ static mcor_status mcor_cut_fill_side(
   {
     const bool inside = from->margin > 0;
     fill->cuts[fill->cut_count++] =
-      (mcor_fill_cut){ .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
-                         (uint64_t)p->axis << 32 | (uint32_t)p->part },
-        .node = { p->node[0], p->node[1], 0 },
+      (mcor_fill_cut){ .vertex = { .node = { p->node[0], p->node[1], 0 },
+                         .band = p->band,
+                         .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
+                           (uint64_t)p->axis << 32 | (uint32_t)p->part } },
         .axis = p->axis,
         .bracket = { { inside ? p->from : p->to, inside ? p->to : p->from },
           { inside ? from->margin : to->margin, inside ? to->margin : from->margin }, -1 },
         .margin = INFINITY,
-        .band = p->band,
         .index = index };
   }
   return MCOR_OK;
@@ -259,9 +259,10 @@ static void mcor_narrow_cut(
 
 static int mcor_compare_cuts(const void* x, const void* y)
 {
-  const mcor_fill_cut *a = x, *b = y;
-  const int first = (a->key[0] > b->key[0]) - (a->key[0] < b->key[0]);
-  return first ? first : (a->key[1] > b->key[1]) - (a->key[1] < b->key[1]);
+  const uint64_t *a = ((const mcor_fill_cut*)x)->vertex.key,
+                 *b = ((const mcor_fill_cut*)y)->vertex.key;
+  const int i = a[0] == b[0];
+  return (a[i] > b[i]) - (a[i] < b[i]);
 }
 
 /* Sorts the cuts, and moves them to where the margin is 0; in a preview, to the linear estimate. */
@@ -285,7 +286,7 @@ static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fil
       const mcor_fill_cut* cut = &fill->cuts[i];
       double offset[3] = { 0, 0, 0 };
       offset[cut->axis] = mcor_next_place(&cut->bracket, step == 4);
-      status = mcor_add_cap_point(context, &points, cut->node, offset, i);
+      status = mcor_add_cap_point(context, &points, cut->vertex.node, offset, i);
     }
     status = status == MCOR_OK ? mcor_take_cap_points(context, &points) : status;
   }
@@ -363,10 +364,8 @@ static mcor_status mcor_make_fill_points(
   {
     const mcor_fill_cut* cut = &fill->cuts[i];
     mcor_cap_vertex* vertex = &vertices[nodes + i];
-    *vertex = (mcor_cap_vertex){ .node = { cut->node[0], cut->node[1], 0 },
-      .band = cut->band,
-      .key = { cut->key[0], cut->key[1] },
-      .flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2 };
+    *vertex = cut->vertex;
+    vertex->flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2;
     vertex->offset[cut->axis] = cut->at;
     fill->number[fill->face.node_count + cut->index] = (int32_t)(base + nodes + i);
   }

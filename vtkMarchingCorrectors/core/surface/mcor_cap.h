@@ -112,8 +112,8 @@ static inline void mcor_narrow_bracket(mcor_bracket* b, double at, double margin
 
 /* ---- mcor_cap_square.c: the clipper ---- */
 
-/* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim margin
- * (above 0: it remains). */
+/* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim
+ * margin (above 0: it remains). */
 typedef struct mcor_cap_corner
 {
   int32_t vertex;

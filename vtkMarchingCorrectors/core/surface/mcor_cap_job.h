@@ -45,7 +45,7 @@ typedef struct mcor_cap_job
   int64_t triangle_count, triangle_room, cell_room, owned_count;
   const struct mcor_cap_square* square; /* the square that is being cut */
   cl_ulong number;                      /* its number, or that of a cell of a cap at a wall */
-  uint64_t lookups; /* how often it has looked up a vertex */
+  uint64_t lookups;                     /* how often it has looked up a vertex */
   /* Views of the surface's vertices, and of the edges that its cuts are on, ascending. */
   void *node, *offset, *quantity, *cut_edges;
   double threshold;

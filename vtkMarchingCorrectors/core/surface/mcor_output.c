@@ -32,7 +32,7 @@ typedef struct mcor_download
   /* Views of the mesh's buffers, see mcor_is_output. */
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   void *eigenvalue, *nearest, *curvature, *cuts; /* where the caller asked for them */
-  uint8_t* owned;                    /* see mcor_find_counted */
+  uint8_t* owned;                                /* see mcor_find_counted */
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
 #define MCOR_DOWNLOADS 12
@@ -123,10 +123,9 @@ static double mcor_correction_of(const mcor_download* d, int64_t v)
 {
   const mcor_lattice* lattice = &d->context->lattice;
   const int axis = mcor_node_of(d, v)[3] & 3;
-  return v < d->context->mesh.march_count
-    ? fabs(mcor_get_real(d->context, d->linear, v)) *
+  return v < d->context->mesh.march_count ? fabs(mcor_get_real(d->context, d->linear, v)) *
       mcor_length_of(d, v, axis < 3 ? lattice->edge[axis] : lattice->cube)
-    : 0;
+                                          : 0;
 }
 
 /* Estimates what the device's rounding of sums may add to a residual: some units of rounding of

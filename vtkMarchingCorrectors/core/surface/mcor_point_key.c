@@ -23,7 +23,8 @@ static uint64_t mcor_march_key(const mcor_context* context, const cl_int* nodes,
 {
   const cl_int* node = nodes + 4 * v;
   const bool copy = v > 0 && memcmp(node, node - 4, 4 * sizeof *node) == 0;
-  return mcor_node_key(&context->lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1 | (uint64_t)copy;
+  return mcor_node_key(&context->lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1 |
+    (uint64_t)copy;
 }
 
 void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,

@@ -18,7 +18,8 @@ void mcor_list_surface_arrays(mcor_surface* s, mcor_surface_array arrays[MCOR_SU
     { (void**)&s->boundary_flag, 1 }, { (void**)&s->iso_value, sizeof(double) },
     { (void**)&s->nearest_particle, sizeof(int64_t) },
     { (void**)&s->point_keys, MCOR_POINT_KEY * sizeof(uint64_t) },
-    { (void**)&s->mean_curvature, sizeof(double) }, { (void**)&s->gauss_curvature, sizeof(double) } };
+    { (void**)&s->mean_curvature, sizeof(double) },
+    { (void**)&s->gauss_curvature, sizeof(double) } };
   memcpy(arrays, all, sizeof all);
 }
 

@@ -17,11 +17,12 @@ NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
 
 def add(data, name, values):
     """An array of these values; of one text, number or tuple, with one tuple."""
-    if isinstance(values, str):
+    values = np.asarray(values)
+    if values.dtype.kind == "U":
         array = vtkStringArray()
-        array.InsertNextValue(values)
+        for text in values.ravel().tolist():
+            array.InsertNextValue(text)
     else:
-        values = np.asarray(values)
         array = numpy_to_vtk(values.astype(np.uint8) if values.dtype == bool else values, deep=True)
     array.SetName(name)
     data.AddArray(array)

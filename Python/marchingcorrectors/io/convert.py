@@ -26,27 +26,16 @@ def to_vtk(particles):
     package means it (half of the support radius, of the quintic spline a third, of the quartic 2/5), Mass and ParticleType
     (0 fluid, 1 wall) where the file tells them in another way."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    def array(values, name):
-        values = np.asarray(values)
-        if values.dtype.kind == "U":
-            made = vtkStringArray()
-            for word in values:
-                made.InsertNextValue(word)
-        else:
-            made = numpy_to_vtk(plain(values), deep=True)
-        made.SetName(name)
-        return made
+    from .._vtk_surface import add, build_cells
 
     positions = particles.positions
-    data, points = vtkPolyData(), vtkPoints()
-    points.SetData(array(positions if positions.dtype.kind == "f" else positions.astype(float), "Points"))
-    data.SetPoints(points)
-    vertices, numbers = vtkCellArray(), np.arange(len(positions) + 1)
-    vertices.SetData(array(numbers, "Offsets"), array(numbers[:-1], "Numbers"))
-    data.SetVerts(vertices)
+    data, numbers = vtkPolyData(), np.arange(len(positions) + 1)
+    data.SetPoints(vtkPoints())
+    data.GetPoints().SetData(numpy_to_vtk(plain(positions if positions.dtype.kind == "f" else positions.astype(float)), deep=True))
+    data.SetVerts(build_cells(numbers, numbers[:-1]))
     arrays = {name: particles.arrays[name] for name in particles.arrays}
     h = particles.quantity("smoothing_length")
     if h is not None:
@@ -61,14 +50,14 @@ def to_vtk(particles):
     for name, values in arrays.items():
         if values.ndim in (1, 2) and len(values) == len(positions) and values.size >= len(values):
             if values.dtype.kind in "biuf" or (values.dtype.kind == "U" and values.ndim == 1):
-                data.GetPointData().AddArray(array(values, name))
+                add(data.GetPointData(), name, plain(values))
             else:
                 warn(f"{particles.file}: the array '{name}' ({values.dtype}) is left out, as VTK has no such type.")
     field = {"TimeValue": None if particles.time is None else [float(particles.time)],
              "PeriodicBounds": particles.period}
     for name, values in field.items():
         if values is not None:
-            data.GetFieldData().AddArray(array(np.asarray(values, float), name))
+            add(data.GetFieldData(), name, np.asarray(values, float))
     return data
 
 

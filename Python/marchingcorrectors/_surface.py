@@ -191,41 +191,33 @@ PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "c
 
 
 def _ply_columns(surface):
-    """[(property, column)] of the points. PLY has no whole numbers of 64 bits: they are written as double."""
-    columns = [("xyz"[axis], surface.points[:, axis]) for axis in range(3)]
-    if surface.normals is not None:
-        columns += [("n" + "xyz"[axis], surface.normals[:, axis]) for axis in range(3)]
-    for name, array in surface.point_arrays().items():
-        if name == "Normals" or array.dtype.kind not in "fiub":
-            continue
-        flat = array[:, None] if array.ndim == 1 else array.reshape(len(array), int(np.prod(array.shape[1:])))
-        name = "_".join(name.split())
-        for i in range(flat.shape[1]):
-            columns.append((name if array.ndim == 1 else f"{name}_{i}", flat[:, i]))
-    named = []
-    for name, column in columns:
-        column = column.astype(np.uint8) if column.dtype == bool else column
-        short = column.dtype.str[1:]
-        named.append((name, column if short in PLY_TYPES else column.astype(np.float64)))
-    return named
+    """(property, values) of the points. PLY has no whole numbers of 64 bits: they are written as double."""
+    arrays = surface.point_arrays()
+    arrays.pop("Normals", None)
+    named = [(["x", "y", "z"], surface.points), (["nx", "ny", "nz"], surface.normals)]
+    for name, array in arrays.items():
+        name, width = "_".join(name.split()), int(np.prod(array.shape[1:]))
+        named.append(([name] if array.ndim == 1 else [f"{name}_{i}" for i in range(width)], array))
+    for names, array in named:
+        if array is not None and array.dtype.kind in "fiub":
+            array = array.astype(np.uint8) if array.dtype == bool else array
+            array = array if array.dtype.str[1:] in PLY_TYPES else array.astype(np.float64)
+            yield from zip(names, array.reshape(len(array), len(names)).T)
 
 
 def _save_ply(path, surface):
-    columns = _ply_columns(surface)
-    lines = ["ply", "format binary_little_endian 1.0", "comment marching-correctors",
-             f"element vertex {len(surface.points)}"]
-    lines += [f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns]
-    lines += [f"element face {len(surface.triangles)}", "property list uchar int vertex_indices", "end_header", ""]
-    kinds = [(str(i), "<" + column.dtype.str[1:]) for i, (_, column) in enumerate(columns)]
-    points = np.zeros(len(surface.points), kinds)
+    columns = list(_ply_columns(surface))
+    lines = ["ply", "format binary_little_endian 1.0", "comment marching-correctors", f"element vertex {len(surface.points)}",
+             *(f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns),
+             f"element face {len(surface.triangles)}", "property list uchar int vertex_indices", "end_header", ""]
+    points = np.zeros(len(surface.points), [(str(i), "<" + column.dtype.str[1:]) for i, (_, column) in enumerate(columns)])
     for i, (_, column) in enumerate(columns):
         points[str(i)] = column
     faces = np.zeros(len(surface.triangles), [("count", "u1"), ("corners", "<i4", 3)])
     faces["count"], faces["corners"] = 3, surface.triangles
     with open(path, "wb") as file:
-        file.write("\n".join(lines).encode())
-        file.write(points.tobytes())
-        file.write(faces.tobytes())
+        for part in ("\n".join(lines).encode(), points.tobytes(), faces.tobytes()):
+            file.write(part)
 
 
 @dataclass(eq=False, repr=False)

@@ -11,14 +11,14 @@ import numpy as np
 import pyvista
 
 from . import _flux, _functions, _gauge, _project
-from ._arrays import SUMMED, choose
 from ._call import QUANTITIES, Shared, own_keywords
 from ._library import InvalidArgument
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices
-from ._vtk_particles import (GHOSTS, NO_PERIOD, WALL_BLOCK, describe_missing_length, describe_unused_types, detect,
-                             find_period, join_velocity, name_of)
+from ._vtk_particles import (GHOSTS, NO_PERIOD, WALL_BLOCK, describe_missing_length, detect, find_period, join_velocity,
+                             name_of)
 from ._warnings import warn
+from .io import Particles as FileParticles
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -71,6 +71,44 @@ def _triangles_in(sections):
     return sections
 
 
+class PointData(FileParticles):
+    """The points of a data set as the functions take the particles of files: arrays are told by their names."""
+
+    remedy = "say fluid=('{name}', VALUE)"
+
+    def __init__(self, data):
+        points = data.point_data
+        arrays = {name: lambda name=name: np.asarray(points[name]) for name in points.keys() if name not in (GHOSTS, WALL_BLOCK)}
+        joined = join_velocity(data.GetPointData(), data.n_points)
+        if joined is not None:
+            arrays["Velocity"] = lambda: pyvista.convert_array(joined)
+        super().__init__("The data set", "VTK", lambda: np.asarray(data.points), arrays,
+                         solid=np.asarray(points[WALL_BLOCK]) if WALL_BLOCK in points else None,
+                         **{name: name_of(detect(data.GetPointData(), data.n_points, name)) or None for name in QUANTITIES})
+        self.data = data
+
+    def array(self, name):
+        if name not in self.arrays:
+            raise InvalidArgument(f"There is no point array '{name}'.{did_you_mean(name, self.arrays)} Point arrays: "
+                                  f"{', '.join(self.arrays) or 'none'}.")
+        return self.arrays[name]
+
+    def find_period(self, word):
+        found = find_period(self.data) if word == "auto" else None
+        if word != "auto":
+            raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", three lengths, or six bounds.")
+        if found is None:
+            raise InvalidArgument(NO_PERIOD + " Give periodic=(LX, LY, LZ).")
+        return found
+
+    def check_smoothing_length(self, words):
+        if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None and not self.smoothing_length:
+            raise InvalidArgument(
+                "The particles have no smoothing length: no point array has one of its usual names (SmoothingLength, hsml, h, "
+                "...). Give smoothing_length=, a name or a value, or estimate_smoothing_length=True. "
+                f"{describe_missing_length(self.data.GetPointData())}Point arrays: {', '.join(self.arrays) or 'none'}.")
+
+
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
 class SphAccessor:
     """Surfaces of the points of a data set, taken as SPH particles."""
@@ -108,9 +146,8 @@ class SphAccessor:
         iso: the value of the scalar on the surface, or a list of values.
         scalar_dot: a second vector; the scalar is then the dot product.
         """
-        is_summed = isinstance(scalar, str) and scalar == SUMMED and SUMMED not in self._particles.point_data
-        return _functions.isosurface(self._particles.points, scalar if is_summed else self._array(scalar), iso,
-                                     scalar_dot=self._array(scalar_dot), **self._words(words)).to_pyvista()
+        particles, words = self._prepare(words)
+        return _functions.isosurface(particles, scalar, iso, scalar_dot=scalar_dot, **words).to_pyvista()
 
     @_method(FREE_SURFACE)
     def free_surface(self, iso: Union[float, Sequence[float]] = 0.5,
@@ -121,7 +158,8 @@ class SphAccessor:
 
         Returns a pyvista.PolyData with all point arrays, and the normals of the field.
         """
-        return _functions.free_surface(self._particles.points, iso, **self._words(words)).to_pyvista()
+        particles, words = self._prepare(words)
+        return _functions.free_surface(particles, iso, **words).to_pyvista()
 
     @_method(PROBE)
     def probe(self, points: Union[pyvista.DataSet, np.ndarray],
@@ -135,10 +173,10 @@ class SphAccessor:
 
         points: a data set, or an array (points, 3).
         """
-        keywords = self._words(words)
-        keywords["attributes"] = {k: v for k, v in keywords["attributes"].items() if v.dtype.kind in "fiub"}
+        particles, keywords = self._prepare(words)
+        keywords["attributes"] = [name for name in keywords["attributes"] if particles.array(name).dtype.kind in "fiub"]
         result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(np.asarray(points))
-        found = _functions.probe(self._particles.points, result.points, **keywords)
+        found = _functions.probe(particles, result.points, **keywords)
         for name, values in found.values.items():
             result.point_data[name] = values
         for name, values in found.gradients.items():
@@ -159,8 +197,8 @@ class SphAccessor:
         array: the name of the point array.
         form: "corrected" (exact for linear arrays) or "standard".
         """
-        found = _functions.derivatives(self._particles.points, {"array": self._array(array)}, form=form,
-                                       **self._words(words, with_attributes=False))
+        particles, words = self._prepare(words, with_attributes=False)
+        found = _functions.derivatives(particles, {"array": particles.array(array)}, form=form, **words)
         gradients = found.gradients.get("array")
         if gradients is None:
             raise InvalidArgument(f"The point array '{array}' is NaN or infinite at a particle.")
@@ -187,7 +225,8 @@ class SphAccessor:
         lines: (lines, 2, 3): from and to of each; or one line, (2, 3); or {name: (from, to)}.
         iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
         """
-        return _gauge.gauge(self._particles.points, lines, iso, **self._words(words, with_attributes=False))
+        particles, words = self._prepare(words, with_attributes=False)
+        return _gauge.gauge(particles, lines, iso, **words)
 
     @_method(GAUGE)
     def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
@@ -202,11 +241,10 @@ class SphAccessor:
         velocity: the name of a point array, or an array; by default the point array with a usual name.
         iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
         """
-        keywords = self._words(words, with_attributes=False, masses=True)
+        particles, words = self._prepare(words, with_attributes=False)
         if velocity is None:
-            found = detect(self._particles.GetPointData(), self._particles.n_points, "velocity", 3)
-            velocity = "Velocity" if found is None else name_of(found)
-        return _flux.flux(self._particles.points, self._array(velocity), _triangles_in(sections), iso, **keywords)
+            velocity = name_of(detect(particles.data.GetPointData(), len(particles), "velocity", 3)) or "Velocity"
+        return _flux.flux(particles, velocity, _triangles_in(sections), iso, **words)
 
     @_method(PROJECT)
     def project(self, scalar: Union[None, str, np.ndarray] = None, *, direction: Union[None, str, Sequence[float]] = None,
@@ -222,91 +260,22 @@ class SphAccessor:
         direction, resolution, box: as in marchingcorrectors.project().
         weighted_by: the name of a point array, or an array: the image is the mean of the scalar, with these weights.
         """
-        return _project.project(self._particles.points, self._array(scalar), direction=direction, resolution=resolution,
-                                weighted_by=self._array(weighted_by), box=box,
-                                **self._words(words, with_attributes=False, masses=True))
+        particles, words = self._prepare(words, with_attributes=False)
+        return _project.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,
+                                **words)
 
-    def _array(self, thing):
-        if not isinstance(thing, str):
-            return thing
-        data = self._particles.point_data
-        joined = join_velocity(self._particles.GetPointData(), self._particles.n_points) \
-            if thing == "Velocity" and thing not in data else None
-        if joined is not None:
-            return pyvista.convert_array(joined)
-        if thing not in data:
-            raise InvalidArgument(f"There is no point array '{thing}'.{did_you_mean(thing, data.keys())} Point arrays: "
-                                  f"{', '.join(data.keys()) or 'none'}.")
-        return np.asarray(data[thing])
-
-    def _words(self, given, with_attributes=True, masses=False):
-        """Keywords for the functions of NumPy. masses: masses and densities also beside volumes."""
-        words = dict(given)
-        self._set_quantities(words)
-        for quantity in ("mass", "density") if masses else ():
-            self._detect(words, quantity)
-        fluid: Optional[Tuple[str, float]] = words.pop("fluid", None)
+    def _prepare(self, given: Any, with_attributes: bool = True) -> Any:
+        """Particles, and keywords for the functions of NumPy."""
+        particles, words = PointData(self._particles), dict(given)
+        particles.check_smoothing_length(words)
+        fluid, names = words.pop("fluid", None), words.pop("attributes", None)
         if fluid is not None:
-            words["solid"] = np.asarray(self._array(fluid[0])) != fluid[1]
-        elif WALL_BLOCK in self._particles.point_data:
-            words.setdefault("solid", self._array(WALL_BLOCK))
-        elif words.get("only") is None:
-            self._warn_of_unused_type()
-        if isinstance(words.get("only"), Mapping):
-            words["only"] = choose(words["only"], self._array)
+            words["solid"] = particles.array(fluid[0]) != fluid[1]
         if isinstance(words.get("periodic"), str):
-            words["periodic"] = self._period(words["periodic"])
-        names: Optional[Iterable[str]] = words.pop("attributes", None)
-        if not with_attributes:
-            return words
-        if names is None:
-            data = self._particles.GetPointData()
-            names = [name for name in self._particles.point_data.keys() if name not in (GHOSTS, WALL_BLOCK)]
-            names += ["Velocity"] if join_velocity(data, self._particles.n_points) is not None else []
-        words["attributes"] = {name: self._array(name) for name in names}
-        return words
-
-    def _warn_of_unused_type(self):
-        found = describe_unused_types(self._particles.GetPointData())
-        if found:
-            sentence, name = found
-            warn(sentence.replace("select it together with the value of the fluid", f"say fluid=('{name}', VALUE)"))
-
-    def _period(self, word):
-        found = find_period(self._particles) if word == "auto" else None
-        if word != "auto":
-            raise InvalidArgument(f"periodic is '{word}'; it must be \"auto\", three lengths, or six bounds.")
-        if found is None:
-            raise InvalidArgument(NO_PERIOD + " Give periodic=(LX, LY, LZ).")
-        return found
-
-    def _set_quantities(self, words):
-        """As vtkMarchingCorrectors does: with a mass set, a volume array that is there is not used."""
-        given = {quantity for quantity in QUANTITIES if words.get(quantity) is not None}
-        for quantity in given:
-            is_name = isinstance(words[quantity], str) and (quantity, words[quantity]) != ("volume", "computed")
-            if not np.isscalar(words[quantity]) or is_name:
-                words[quantity] = self._array(words[quantity])
-        if not words.get("estimate_smoothing_length"):
-            self._detect(words, "smoothing_length")
-            if words.get("smoothing_length") is None:
-                raise InvalidArgument(
-                    "The particles have no smoothing length: no point array has one of its usual names "
-                    "(SmoothingLength, hsml, h, ...). Give smoothing_length=, a name or a value, or "
-                    "estimate_smoothing_length=True. " + describe_missing_length(self._particles.GetPointData())
-                    + f"Point arrays: {', '.join(self._particles.point_data.keys()) or 'none'}.")
-        if not given & {"mass", "density"}:
-            self._detect(words, "volume")
-        if words.get("volume") is None:
-            self._detect(words, "mass")
-            if words.get("mass") is not None:
-                self._detect(words, "density")
-
-    def _detect(self, words, quantity):
-        if words.get(quantity) is None:
-            found = detect(self._particles.GetPointData(), self._particles.n_points, quantity)
-            if found is not None:
-                words[quantity] = self._array(name_of(found))
+            words["periodic"] = particles.find_period(words["periodic"])
+        if with_attributes:
+            words["attributes"] = list(particles.arrays if names is None else names)
+        return particles, words
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.MultiBlock)

@@ -111,8 +111,7 @@ def _warn_of_unused_type(particles):
         if lib.mcor_name_priority(c.ENUMS["mcor_quantity"]["MCOR_PARTICLE_TYPE"], as_bytes(name)) >= 0:
             sentence = describe_unused_type(name, particles.arrays[name])
             if sentence:
-                warn(sentence.replace("select it together with the value of the fluid", f"say solid=particles['{name}'] != "
-                                      f"VALUE (in a shell --fluid {name}=VALUE)"))
+                warn(sentence.replace("select it together with the value of the fluid", particles.remedy.format(name=name)))
                 return
 
 

@@ -17,11 +17,13 @@
 static core_set add_particles(const core_set* block, int more)
 {
   core_set set = core_make_set(block->count + more);
-  memcpy(set.position, block->position, 3 * (size_t)block->count * sizeof *set.position);
-  memcpy(set.smoothing_length, block->smoothing_length, (size_t)block->count * sizeof(double));
-  memcpy(set.volume, block->volume, (size_t)block->count * sizeof(double));
-  memcpy(set.scalar, block->scalar, (size_t)block->count * sizeof(double));
-  memset(set.solid, 0, (size_t)set.count);
+  set.count = 0;
+  for (int64_t i = 0; i < block->count; ++i)
+  {
+    core_append(&set, block, i);
+    set.solid[i] = 0;
+  }
+  set.count += more;
   for (int64_t i = block->count; i < set.count; ++i)
   {
     for (int a = 0; a < 3; ++a)

@@ -105,11 +105,13 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
   int* used = calloc((size_t)surface->point_count + 1, sizeof *used);
   assert_non_null(used);
   double wrong = 0, all = 0;
+  int open = 0;
   for (int64_t l = 0; l < surface->line_count; ++l)
   {
     const int64_t first = surface->line_offsets[l], last = surface->line_offsets[l + 1] - 1;
     const int is_closed = surface->line_points[first] == surface->line_points[last];
     CORE_CHECK(last > first && (is_closed || !closed), "line %lld is open", (long long)l);
+    open += !is_closed;
     for (int64_t i = first; i < last + !is_closed; ++i)
     {
       ++used[surface->line_points[i]];
@@ -130,6 +132,9 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
     }
   }
   CORE_CHECK(wrong < 0.03 * all, "%g of %g have the greater side on their right", wrong, all);
+  CORE_CHECK(fabs(surface->statistics.length - all) < 1e-9 * all, "length %g, not %g",
+    surface->statistics.length, all);
+  assert_int_equal(surface->statistics.is_closed, open == 0);
   for (int64_t p = 0; p < surface->point_count; ++p)
   {
     const float* n = surface->normals + 3 * p;

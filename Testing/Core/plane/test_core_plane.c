@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two dimensions: kernels, the plane, weights, what is known of lines by other ways than a reference. */
+/* Two dimensions: kernels, weights, what is a plane, derivatives and gauges, what is kept, bits. Lines are compared in
+ * test_core_plane_lines. */
 
 #include "mcor_plane.h"
 #include "plane_reference.h"
@@ -63,75 +64,6 @@ static void test_weight_is_1_inside(void** state)
       assert_int_equal(samples.statistics.dimension, 2);
       mcor_free_samples(&samples);
     }
-  }
-  core_free_set(&set);
-}
-
-/* A circle: its place, length and area. */
-static void test_circle(void** state)
-{
-  core_set set = plane_make(24, 0, 1, 2, 0, 1);
-  double isos[2] = { 0, -16 };
-  mcor_options options = plane_options(isos);
-  options.iso_count = 2;
-  options.outputs |=
-    MCOR_OUT_ISO_VALUE | MCOR_OUT_GRADIENTS | MCOR_OUT_RESIDUAL | MCOR_OUT_WEIGHT_SUM;
-  mcor_input input = core_input(&set);
-  mcor_surface surface = core_extract(*state, &input, &options);
-  assert_int_equal(surface.line_count, 2);
-  assert_true(surface.statistics.is_closed);
-  const double pi = 3.14159265358979;
-  double area = 0;
-  for (int64_t p = 0; p < surface.point_count; ++p)
-  {
-    const double r = hypot(surface.points[3 * p], surface.points[3 * p + 1]);
-    const double expected = surface.iso_value[p] == 0 ? 3 : 5;
-    /* A mean over the support lowers 9 - r^2 by its second moment. */
-    CORE_CHECK(fabs(r - expected) < 0.4, "radius %g", r);
-    CORE_CHECK(fabs(surface.weight_sum[p] - 1) < 2e-2, "weight %g", surface.weight_sum[p]);
-    area += surface.iso_value[p] == 0 ? 0 : r * r / (double)surface.point_count;
-  }
-  assert_true(area > 0);
-  CORE_CHECK(fabs(surface.statistics.area / pi - (2.7 * 2.7 + 4.8 * 4.8)) < 4, "area %g",
-    surface.statistics.area);
-  CORE_CHECK(
-    fabs(surface.statistics.length / (2 * pi) - 7.6) < 0.5, "length %g", surface.statistics.length);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-}
-
-/* Both detectors cut where both equations hold; the eigenvalue is one of the two axes. */
-static void test_trimming(void** state)
-{
-  core_set set = plane_make(14, 0.2, 1, 0, 2, 3);
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.scalar[i] = set.position[3 * i + 1] + 0.3 * set.position[3 * i + 2];
-  }
-  const double iso = 0.2;
-  mcor_options options = plane_options(&iso);
-  mcor_input input = core_input(&set);
-  options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_WEIGHT_SUM;
-  for (int eigenvalue = 0; eigenvalue < 2; ++eigenvalue)
-  {
-    options.boundary_detection = eigenvalue ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
-    options.vertex_threshold = eigenvalue ? 0.75 : 0.5;
-    mcor_surface surface = core_extract(*state, &input, &options);
-    assert_int_equal(surface.line_count, 1);
-    assert_int_equal(surface.statistics.trim_vertices, 2);
-    int inside = 0;
-    for (int64_t p = 0; p < surface.point_count; ++p)
-    {
-      const float at = eigenvalue ? surface.boundary_eigenvalue[p] : surface.weight_sum[p];
-      CORE_CHECK(!(surface.boundary_flag[p] & 1) || fabs(at - options.vertex_threshold) < 3e-5,
-        "cut at %g", at);
-      inside += fabs(surface.boundary_eigenvalue[p] - 1) < 0.2;
-    }
-    CORE_CHECK(2 * inside > surface.point_count, "%d of %lld near 1", inside,
-      (long long)surface.point_count);
-    const plane_field field = { &set, &options, 0, NULL };
-    plane_check_lines(&field, iso, &surface, 0);
-    mcor_free_surface(&surface);
   }
   core_free_set(&set);
 }
@@ -403,65 +335,6 @@ static void test_bits(void** state)
   core_free_set(&set);
 }
 
-/* The lines of boxes side by side are those of all; a period is closed on itself. */
-static void test_boxes_and_periods(void** state)
-{
-  const double iso = 0.3;
-  core_set set = plane_make(12, 0.3, 1.3, 0, 4, 9);
-  mcor_input input = core_input(&set);
-  mcor_options options = plane_options(&iso);
-  mcor_surface whole = core_extract(*state, &input, &options);
-  double length = 0;
-  int64_t cells = 0;
-  for (int side = 0; side < 4; ++side)
-  {
-    const double box[6] = { 3, 5, side & 1 ? 0.1 : -INFINITY, side & 1 ? INFINITY : 0.1,
-      side & 2 ? -0.7 : -INFINITY, side & 2 ? INFINITY : -0.7 };
-    memcpy(options.box, box, sizeof box);
-    mcor_surface part = core_extract(*state, &input, &options);
-    length += part.statistics.length;
-    cells += part.statistics.cells_used;
-    mcor_free_surface(&part);
-  }
-  CORE_CHECK(fabs(length - whole.statistics.length) < 1e-9 * length && length > 0, "%g of %g",
-    length, whole.statistics.length);
-  assert_int_equal(cells, whole.statistics.cells_used);
-  options.box[0] = 4.5; /* beside the plane */
-  mcor_surface none = core_extract(*state, &input, &options);
-  assert_int_equal(none.line_count, 0);
-  mcor_free_surface(&none);
-  mcor_free_surface(&whole);
-  memset(options.box, 0, sizeof options.box);
-  options.periodic[2] = -6;
-  options.periodic[3] = 6;
-  options.periodic[4] = -6;
-  options.periodic[5] = 6;
-  options.field = MCOR_WEIGHT_SUM;
-  const double nearly = 0.97;
-  options.iso_values = &nearly;
-  mcor_surface periodic = core_extract(*state, &input, &options);
-  assert_true(periodic.line_count > 0);
-  for (int64_t l = 0; l < periodic.line_count; ++l)
-  {
-    const int64_t first = periodic.line_offsets[l], last = periodic.line_offsets[l + 1] - 1;
-    const int32_t ends[2] = { periodic.line_points[first], periodic.line_points[last] };
-    for (int e = 0; e < 2 && ends[0] != ends[1]; ++e)
-    {
-      const double* x = periodic.points + 3 * (int64_t)ends[e];
-      int sides = 0;
-      for (int a = 1; a < 3; ++a)
-      {
-        const double cube = periodic.statistics.cube_size;
-        const double low = cube * (double)periodic.statistics.lattice_origin[a];
-        sides += fabs(x[a] - low) < 1e-9 || fabs(x[a] - low - 12) < 1e-9;
-      }
-      CORE_CHECK(sides > 0, "a line ends at %g %g", x[1], x[2]);
-    }
-  }
-  mcor_free_surface(&periodic);
-  core_free_set(&set);
-}
-
 int main(int argc, char** argv)
 {
   if (argc > 1)
@@ -469,11 +342,9 @@ int main(int argc, char** argv)
     cmocka_set_test_filter(argv[1]);
   }
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_kernels_integrate_to_1),
-    cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_circle),
-    cmocka_unit_test(test_trimming), cmocka_unit_test(test_what_is_no_plane),
+    cmocka_unit_test(test_weight_is_1_inside), cmocka_unit_test(test_what_is_no_plane),
     cmocka_unit_test(test_minus_zero), cmocka_unit_test(test_sentences_of_sides),
     cmocka_unit_test(test_walls_in_another_plane), cmocka_unit_test(test_derivatives_and_gauges),
-    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits),
-    cmocka_unit_test(test_boxes_and_periods) };
+    cmocka_unit_test(test_pairs_and_reuse), cmocka_unit_test(test_bits) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

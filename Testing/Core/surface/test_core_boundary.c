@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The boundary eigenvalue: its value and gradient against sums in double precision on the host,
- * known values, the eigenvalue solver alone, and surfaces that are trimmed by it. */
+/* The boundary eigenvalue: its value and gradient against sums in double precision on the host, the eigenvalue solver
+ * alone, and the array. The oracle compares surfaces that are trimmed by it. */
 
 #include "core_fixture.h"
 
@@ -201,74 +201,6 @@ static void test_values(void** state)
   check_values(*state, MCOR_M_PRIME_4, MCOR_FLOAT32);
 }
 
-/* ---- known values ---- */
-
-/* About 1 in a lattice, half of that where the lattice is cut in two, 0 outside. */
-static void test_lattice(void** state)
-{
-  static const double points[2][3] = { { 0, 0, 0 }, { 0, 0, 20 } };
-  for (int k = 0; k < MCOR_SPH_KERNEL_COUNT; ++k)
-  {
-    double whole[8], half[8];
-    core_set set = core_make_block(12, 0, 1, core_slope);
-    load(*state, &set, (mcor_sph_kernel)k, MCOR_FLOAT64);
-    evaluate(*state, points, 1, whole);
-    set.count /= 2; /* those below the plane z = 0 */
-    load(*state, &set, (mcor_sph_kernel)k, MCOR_FLOAT64);
-    evaluate(*state, points, 2, half);
-    CORE_CHECK(fabs(whole[0] - 1) < 0.1, "kernel %d: %g in the lattice", k, whole[0]);
-    CORE_CHECK(fabs(half[0] - 0.5 * whole[0]) < 1e-12 && half[4] == 0,
-      "kernel %d: %g in the plane, %g outside", k, half[0], half[4]);
-    core_free_set(&set);
-  }
-}
-
-/* Below the surface of a half space, at depth d, M along the normal is 1 less the integral of
- * -W'(r)/r z^2 over all points higher than d: -W' 2 pi / 3 r^3 (1 - (d/r)^3) over all r > d. */
-static double half_space(double h, double d)
-{
-  enum
-  {
-    STEPS = 2000
-  };
-  const double top = oracle_support(ORACLE_CUBIC_SPLINE) * h, step = (top - d) / STEPS;
-  double sum = 0;
-  for (int i = 0; i < STEPS; ++i)
-  {
-    const double r = d + (i + 0.5) * step, at[3] = { r, 0, 0 };
-    double gradient[3];
-    oracle_kernel_value(ORACLE_CUBIC_SPLINE, h, at, gradient);
-    sum -= gradient[0] * 2 * acos(-1.0) / 3 * (r * r * r - d * d * d) * step;
-  }
-  return 1 - sum;
-}
-
-static void test_half_space(void** state)
-{
-  const double h = 3;
-  core_set set = core_make_block(20, 0, 1, core_slope);
-  set.count /= 2;
-  for (int64_t j = 0; j < set.count; ++j)
-  {
-    set.smoothing_length[j] = h;
-  }
-  load(*state, &set, MCOR_CUBIC_SPLINE, MCOR_FLOAT64);
-  for (int i = 1; i <= 3; ++i)
-  {
-    double found[4];
-    const double point[1][3] = { { 0, 0, -i } };
-    evaluate(*state, point, 1, found);
-    CORE_CHECK(fabs(found[0] - half_space(h, i)) < 5e-3, "%g at depth %d, should be %g", found[0],
-      i, half_space(h, i));
-    CORE_CHECK(found[3] < 0 && fabs(found[1]) < 1e-6 && fabs(found[2]) < 1e-6,
-      "gradient %g %g %g does not point inside", found[1], found[2], found[3]);
-  }
-  /* The depths that mcor.h names. */
-  CORE_CHECK(fabs(half_space(1, 0.87) - 0.75) < 5e-3 && fabs(half_space(1, 0.25) - 0.5) < 0.02,
-    "%g and %g", half_space(1, 0.87), half_space(1, 0.25));
-  core_free_set(&set);
-}
-
 /* ---- eigenvalues ---- */
 
 /* xx yy zz xy yz zx */
@@ -337,110 +269,7 @@ static void test_eigenvalues(void** state)
   }
 }
 
-/* ---- trimming ---- */
-
-typedef struct trim_case
-{
-  mcor_sph_kernel kernel;
-  mcor_field field;
-  mcor_type precision;
-  double threshold;
-  int preview, solids, ignore_solids;
-} trim_case;
-
-static const trim_case trim_cases[] = { { .threshold = 0.3 }, { .threshold = 0.75 },
-  { .threshold = 0.3, .solids = 1 }, { .threshold = 0.3, .solids = 1, .ignore_solids = 1 },
-  { .threshold = 0.3, .field = MCOR_SUM }, { .threshold = 0.3, .preview = 1 },
-  { .threshold = 0.3, .precision = MCOR_FLOAT64 }, { .threshold = 0.3, .kernel = MCOR_M_PRIME_4 },
-  { .threshold = 0.3, .kernel = MCOR_QUINTIC_SPLINE, .precision = MCOR_FLOAT64 },
-  { .threshold = 0.5, .kernel = MCOR_SINC_6 },
-  { .threshold = 0.5, .kernel = MCOR_WENDLAND_C6, .precision = MCOR_FLOAT64 } };
-
-typedef struct trim_count
-{
-  int64_t exact, linear;
-} trim_count;
-
-/* One point: what it carries is right, it is inside or on the boundary, and there both equations
- * hold. */
-static void check_point(const oracle_field* field, const trim_case* at, const mcor_surface* surface,
-  int64_t i, double range, trim_count* count)
-{
-  const int flag = surface->boundary_flag[i];
-  oracle_sample sample;
-  double e[3];
-  oracle_evaluate(field, NULL, surface->points + 3 * i, &sample);
-  oracle_boundary_eigenvalues(field, surface->points + 3 * i, e);
-  CORE_CHECK(flag == 0 || flag == 1 || flag == 2 || flag == 4, "flag %d", flag);
-  CORE_CHECK(fabs(e[0] - (double)surface->boundary_eigenvalue[i]) < 1e-5 &&
-      fabs(sample.trim_weight - (double)surface->weight_sum[i]) < 1e-5,
-    "eigenvalue %g and weight %g, reported %g and %g", e[0], sample.trim_weight,
-    (double)surface->boundary_eigenvalue[i], (double)surface->weight_sum[i]);
-  CORE_CHECK(
-    flag == 1 || flag == 2 || e[0] >= at->threshold - 1e-5, "eigenvalue %g, flag %d", e[0], flag);
-  const double iso = at->field == MCOR_SUM ? 0.7 : 0;
-  CORE_CHECK(
-    flag != 1 || (fabs(e[0] - at->threshold) < 1e-4 && fabs(sample.value - iso) < 5e-6 * range),
-    "trim vertex with eigenvalue %.9g and value %.3g", e[0], sample.value - iso);
-  count->exact += flag == 1;
-  count->linear += flag == 2;
-}
-
-static core_set make_slab(const trim_case* at)
-{
-  core_set set = core_make_block(10, 0.2, 3, core_slope);
-  for (int64_t j = 0; j < set.count; ++j)
-  {
-    set.solid[j] = at->solids && set.position[3 * j] < -2;
-  }
-  set.has_solids = at->solids;
-  return set;
-}
-
-static void check_trimmed(mcor_context* context, const trim_case* at)
-{
-  core_set set = make_slab(at);
-  const double iso = at->field == MCOR_SUM ? 0.7 : 0;
-  mcor_input input = core_input(&set);
-  input.ignore_solids = at->ignore_solids;
-  mcor_options options = core_options(&iso);
-  options.sph_kernel = at->kernel;
-  options.field = at->field;
-  options.precision = at->precision;
-  options.preview = at->preview;
-  options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
-  options.vertex_threshold = at->threshold;
-  options.outputs |= MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_BOUNDARY_FLAG;
-  mcor_surface surface = core_extract(context, &input, &options);
-  oracle_particles particles = core_oracle(&set);
-  particles.ignore_solids = at->ignore_solids;
-  oracle_field field;
-  assert_true(
-    oracle_create_field(&field, &particles, (oracle_kernel)at->kernel, (oracle_kind)at->field, 1));
-  trim_count count = { 0, 0 };
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    check_point(&field, at, &surface, i, oracle_scalar_range(&particles), &count);
-  }
-  core_check_flags(&surface);
-  CORE_CHECK(at->preview ? count.linear > 20 && count.exact == 0
-                         : count.exact > 20 && count.linear * 20 <= count.exact,
-    "threshold %g, kernel %d: %lld exact, %lld linear", at->threshold, (int)at->kernel,
-    (long long)count.exact, (long long)count.linear);
-  assert_int_equal(surface.statistics.trim_vertices, count.exact + count.linear);
-  assert_int_equal(surface.statistics.trim_vertices_linear, count.linear);
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-}
-
-static void test_trimmed(void** state)
-{
-  for (size_t c = 0; c < sizeof trim_cases / sizeof trim_cases[0]; ++c)
-  {
-    check_trimmed(*state, trim_cases + c);
-  }
-}
+/* ---- the array ---- */
 
 /* The array is there on request whatever trims, and on the free surface, which nothing trims. */
 static void test_array(void** state)
@@ -480,8 +309,6 @@ static void test_array(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_eigenvalues),
-    cmocka_unit_test(test_values), cmocka_unit_test(test_lattice),
-    cmocka_unit_test(test_half_space), cmocka_unit_test(test_trimmed),
-    cmocka_unit_test(test_array) };
+    cmocka_unit_test(test_values), cmocka_unit_test(test_array) };
   return cmocka_run_group_tests_name("boundary", tests, core_set_up, core_tear_down);
 }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Normals, gradients, attributes and nearest particles. */
+/* Normals by triangles, attributes and nearest particles; the oracle compares normals by the field, and gradients. */
 
 #include "core_fixture.h"
 
@@ -11,66 +11,6 @@
 static double length_of(const double x[3])
 {
   return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-}
-
-/* Gradients and normals against double precision; normals look to lower values. */
-static void check_normals(
-  mcor_context* context, mcor_sph_kernel kernel, mcor_field kind, mcor_type precision)
-{
-  core_set set = core_make_block(10, 0.2, 3, core_ball);
-  const double iso = kind == MCOR_WEIGHT_SUM ? 0.5 : 1.5;
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  options.outputs |= MCOR_OUT_GRADIENTS;
-  options.sph_kernel = kernel;
-  options.field = kind;
-  options.precision = precision;
-  mcor_surface surface = core_extract(context, &input, &options);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, (oracle_kind)kind, 1));
-  const double degrees = precision == MCOR_FLOAT64 ? 0.001 : 0.5;
-  CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    oracle_sample sample;
-    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
-    const double slope = length_of(sample.gradient);
-    double n[3], cross[3], dot = 0, difference = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      n[a] = (double)surface.normals[3 * i + a];
-      dot -= n[a] * sample.gradient[a] / slope;
-      difference = fmax(difference, fabs(surface.gradients[3 * i + a] - sample.gradient[a]));
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      const int u = (a + 1) % 3, v = (a + 2) % 3;
-      cross[a] = (n[u] * sample.gradient[v] - n[v] * sample.gradient[u]) / slope;
-    }
-    CORE_CHECK(fabs(length_of(n) - 1) < 1e-5, "length %g of a normal", length_of(n));
-    if (slope > 1e-2 * sample.gradient_scale)
-    {
-      const double angle = asin(fmin(length_of(cross), 1)) * 57.29578;
-      CORE_CHECK(dot > 0 && angle < degrees, "kernel %s, field %d: %g degrees off",
-        mcor_sph_kernel_name(kernel), (int)kind, angle);
-    }
-    CORE_CHECK(difference < 1e-4 * (slope + sample.gradient_scale), "gradient off by %g of %g",
-      difference, slope);
-  }
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-}
-
-static void test_normals(void** state)
-{
-  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
-  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64);
-  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32);
-  check_normals(*state, MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32);
-  check_normals(*state, MCOR_M_PRIME_4, MCOR_SHEPARD, MCOR_FLOAT64);
-  check_normals(*state, MCOR_WENDLAND_C2, MCOR_SHEPARD, MCOR_FLOAT64);
 }
 
 /* Normals by triangles: the sum of the cross products around each point, made unit length. */
@@ -274,8 +214,7 @@ static void test_nearest(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_normals),
-    cmocka_unit_test(test_triangle_normals), cmocka_unit_test(test_attributes),
-    cmocka_unit_test(test_nearest) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_triangle_normals),
+    cmocka_unit_test(test_attributes), cmocka_unit_test(test_nearest) };
   return cmocka_run_group_tests_name("normal", tests, core_set_up, core_tear_down);
 }

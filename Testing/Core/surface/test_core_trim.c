@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Trimming: the five cases of Fig. 3 with hand-made weights, shared cut vertices, exact
- * boundaries. */
+/* Trimming: the five cases of Fig. 3 with hand-made weights, shared cut vertices, limits. The oracle compares what is
+ * cut of real surfaces. */
 
 #include "core_fixture.h"
 
@@ -232,81 +232,6 @@ static void test_shared_cuts(void** state)
   }
 }
 
-/* A block of fluid whose isosurface meets its free surface: flags, weights and values there. With
- * solids its outermost layer is of them, so that most of the weight there is theirs. */
-static void check_boundary(mcor_context* context, mcor_type precision, int preview, int solids)
-{
-  core_set set = core_make_block(10, 0.2, 3, core_slope);
-  set.has_solids = solids;
-  for (int i = 0; i < 1000; ++i)
-  {
-    const int at[3] = { i % 10, i / 10 % 10, i / 100 };
-    for (int a = 0; a < 3; ++a)
-    {
-      set.solid[i] = set.solid[i] || at[a] % 9 == 0;
-    }
-  }
-  const double iso = 0;
-  const mcor_input input = core_input(&set);
-  mcor_options options = core_options(&iso);
-  options.outputs |= MCOR_OUT_WEIGHT_SUM | MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_RESIDUAL;
-  options.precision = precision;
-  options.preview = preview;
-  mcor_surface surface = core_extract(context, &input, &options);
-  oracle_particles particles = core_oracle(&set);
-  uint8_t none[1000] = { 0 };
-  particles.solid = solids ? set.solid : none;
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
-  const double range = oracle_scalar_range(&particles);
-  int64_t exact = 0, linear = 0;
-  double worst = 0;
-  for (int64_t i = 0; i < surface.point_count; ++i)
-  {
-    const int flag = surface.boundary_flag[i];
-    worst = fmax(worst, flag == 2 ? 0 : fabs((double)surface.residual[i]));
-    oracle_sample sample;
-    oracle_evaluate(&field, NULL, surface.points + 3 * i, &sample);
-    CORE_CHECK(flag == 0 || flag == 1 || flag == 2 || flag == 4, "flag %d", flag);
-    CORE_CHECK(flag == 1 || flag == 2 || sample.trim_weight >= 0.5 - 1e-5, "weight %g, flag %d",
-      sample.trim_weight, flag);
-    CORE_CHECK(fabs(sample.trim_weight - (double)surface.weight_sum[i]) < 1e-5,
-      "weight %g, reported %g", sample.trim_weight, (double)surface.weight_sum[i]);
-    if (flag == 1)
-    {
-      CORE_CHECK(fabs(sample.trim_weight - 0.5) < 1e-4 && fabs(sample.value) < 5e-6 * range,
-        "trim vertex with weight %.9g and value %.3g", sample.trim_weight, sample.value);
-    }
-    exact += flag == 1;
-    linear += flag == 2;
-  }
-  core_check_flags(&surface);
-  CORE_CHECK(preview ? linear > 20 : exact > 20 && linear * 50 <= exact, "%lld exact, %lld linear",
-    (long long)exact, (long long)linear);
-  assert_int_equal(surface.statistics.trim_vertices, exact + linear);
-  assert_int_equal(surface.statistics.trim_vertices_linear, linear);
-  const double told = surface.statistics.residual_max;
-  CORE_CHECK(worst <= 1.0001 * told && told <= worst + 1e-6 * range,
-    "residual %g, told %g, of a range of %g", worst, told, range);
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-  core_free_set(&set);
-}
-
-static void test_boundary(void** state)
-{
-  check_boundary(*state, MCOR_FLOAT32, 0, 0);
-  check_boundary(*state, MCOR_FLOAT64, 0, 0);
-  check_boundary(*state, MCOR_FLOAT32, 1, 0);
-}
-
-/* Without the solids' part in the weight's gradient most cuts would stay linear. */
-static void test_boundary_with_solids(void** state)
-{
-  check_boundary(*state, MCOR_FLOAT32, 0, 1);
-  check_boundary(*state, MCOR_FLOAT32, 1, 1);
-}
-
 /* Thresholds of 0 trim nothing, high ones everything; in between the surface shrinks. */
 static void test_thresholds(void** state)
 {
@@ -367,8 +292,7 @@ static void test_vertex_limit(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_figure_3),
-    cmocka_unit_test(test_shared_cuts), cmocka_unit_test(test_boundary),
-    cmocka_unit_test(test_boundary_with_solids), cmocka_unit_test(test_thresholds),
+    cmocka_unit_test(test_shared_cuts), cmocka_unit_test(test_thresholds),
     cmocka_unit_test(test_vertex_limit) };
   return cmocka_run_group_tests_name("trim", tests, core_set_up, core_tear_down);
 }

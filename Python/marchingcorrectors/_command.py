@@ -155,16 +155,12 @@ def find_words(given, names, particles):
             raise InvalidArgument(f"{word} is not for the free surface: leave it out, or give --scalar and --iso.")
         if value is not None:
             words[name] = kind[value] if isinstance(kind, dict) else value
-    for name in ("volume", "mass", "density"):
-        value = getattr(given, name)
-        if value is not None:
-            is_name = isinstance(value, str) and (name, value) != ("volume", "computed")
-            words[name] = particles.array(value) if is_name else value
+    words.update((name, getattr(given, name)) for name in ("volume", "mass", "density") if getattr(given, name) is not None)
     length = given.smoothing_length
     if isinstance(length, str) and length.partition("=")[0] in ("estimate", "neighbours", "neighbors"):
         words["estimate_smoothing_length"] = True if length == "estimate" else length
     elif length is not None:
-        words["smoothing_length"] = particles.array(length) if isinstance(length, str) else length
+        words["smoothing_length"] = length
     if given.dp is not None:
         if length is not None:
             raise InvalidArgument("--dp and --smoothing-length both give the smoothing length; leave one of them out.")
@@ -195,8 +191,7 @@ def find_words(given, names, particles):
 
 def attributes_of(given, particles):
     names = list(particles.arrays) if given.attributes is None else given.attributes
-    found = {name: particles.array(name) for name in names}
-    return {name: array for name, array in found.items() if array.dtype.kind in "fiub"}
+    return [name for name in names if particles.array(name).dtype.kind in "fiub"]
 
 
 def run_surface(given, particles):

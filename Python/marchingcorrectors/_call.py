@@ -78,9 +78,8 @@ def of_particles(options: Sequence[str], masses: bool = False) -> Callable[[Func
             check_names(call, words, options)
             if hasattr(positions, "words"):
                 given = signature.bind(positions, *arguments, **words).arguments
-                words = {**given, **given.get("words", {})}
-                words.pop("words", None)
-                return function(**_words_of_file(words.pop("positions"), words, masses))
+                more = given.pop("words", {})
+                return function(**_words_of_file(given.pop("positions"), {**given, **more}, masses))
             return function(positions, *arguments, **words)
 
         show(call, own_keywords(Keywords), options)

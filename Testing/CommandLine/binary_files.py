@@ -28,7 +28,7 @@ def compressed(data):
 
 
 def unpacked(text):
-    """Of an array that VTK has packed with LZ4: a header of four numbers, then one block of sequences, each of bytes to
+    """Unpacks an array that VTK has packed with LZ4: a header of four numbers, then one block of sequences, each of bytes to
     copy from the block and of bytes to repeat from what is there already."""
     blocks, _, _, _ = struct.unpack("<4I", base64.b64decode(text[:24])[:16])
     assert blocks == 1

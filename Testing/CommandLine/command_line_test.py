@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the program marching-correctors share."""
+"""Runs of the program marching-correctors, for its tests."""
 import csv
 import ctypes
 import json
@@ -66,7 +66,7 @@ class CommandLineTest(unittest.TestCase):
         return self.run_program(source or self.input, self.output, *options, **run_options)
 
     def run_good(self, *arguments, **options):
-        """The same, which must succeed without a word on stderr."""
+        """Runs the program, which must succeed without a word on stderr."""
         result = self.run_program(*arguments, **options)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         return result

@@ -255,7 +255,7 @@ class BadData(CommandLineTest):
                         f"{name} is a solver's own file; 'python -m marchingcorrectors convert .*{name} particles.vtp'")
 
     def test_correction_that_ends_early(self):
-        """What each sentence advises is an option."""
+        """Options are as each sentence advises."""
         result = self.extract(*ISO, "--iteration-limit", "1", "--tolerance", "1e-9")
         self.assertRegex(result.stderr, "warning: .* off the iso value .*Try a higher iteration limit .--iteration-limit")
         statistics = self.succeed(*ISO, "--tolerance", "0.5")
@@ -390,7 +390,7 @@ class Options(CommandLineTest):
         self.assertRegex(result.stderr, "no point array 'Nonsense'.*Radius")
 
     def write_points(self):
-        """The same five points on the x axis, two of them outside, in several kinds of files."""
+        """Writes five points on the x axis, two of them outside, in several kinds of files."""
         xs = [-5.0, 0.0, 0.1, 0.2, 0.3]
         files.write_vtp(self.directory / "points.vtp", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
         files.write_vtu(self.directory / "points.vtu", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
@@ -466,7 +466,7 @@ class Options(CommandLineTest):
         return path
 
     def test_sizes_of_probes(self):
-        """What cannot be is said at once, and names the file."""
+        """Impossible sizes are told at once, with the file's name."""
         output = self.directory / "out.vti"
         for extent, sentence in [("0 99999 0 99999 0 99999", "has 1000000000000000 points; at most 2147483647"),
                                  ("0 -5 0 4 0 4", "cannot be read: (Whole)?Extent is -4; it may be damaged"),
@@ -525,7 +525,7 @@ class Options(CommandLineTest):
         self.assertNotEqual(plane["triangles"], magnitude["triangles"])
 
     def test_suspicious_input(self):
-        """What may be wrong is said on stderr and stands among the statistics."""
+        """Warnings are on stderr and among the statistics."""
         statistics = self.directory / "statistics.json"
         self.assertEqual(self.succeed(*ISO)["warnings"], [])
         for arguments, words in [

@@ -63,7 +63,7 @@ class Film(CommandLineTest):
     def without_mark(self, path):
         return re.sub("\n<!--.*?-->", "", path.read_text(), count=1)
 
-    # What a film is
+    # Films
 
     def test_ten_steps_by_one_command(self):
         """Five of them interpolated."""
@@ -171,7 +171,7 @@ class Film(CommandLineTest):
             self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
             self.assertGreater(len(picture), 20000)
 
-    # What fails
+    # Failures
 
     def test_failing_step(self):
         paths = self.write_steps(5)
@@ -222,7 +222,7 @@ class Film(CommandLineTest):
         self.assertEqual(self.surfaces(), [])
 
     def test_signal(self):
-        """What was done so far stays, and is listed; a second run goes over it."""
+        """Steps that were done stay, and are listed; a second run goes over them."""
         self.write_steps(3)
         run = subprocess.Popen([self.program, "steps.pvd", self.film, *FREE, "--quiet"],
                                cwd=self.directory, env=self.misbehaving(rename_seconds=1))
@@ -310,7 +310,7 @@ class Film(CommandLineTest):
         files.write_pvd(self.directory / "steps.pvd", [(0, "nothing.vtp")])
         self.one_sentence(self.make("steps.pvd"), 1, "nothing.vtp cannot be read: No such file")
 
-    # What it costs
+    # Costs
 
     def test_memory_is_flat(self):
         """100 steps, of which 50 are interpolated, take no more than the first 20 do."""

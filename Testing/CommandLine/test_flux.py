@@ -69,7 +69,7 @@ class Flux(CommandLineTest):
         self.assertAlmostEqual(row["mass_flux"], 10 * row["volume_flux"], delta=1e-6)
 
     def test_volume_that_has_passed(self):
-        """What flows in through a box's sides is what the volume of fluid in it, as of the capped surface, grows by."""
+        """The volume of fluid in a box, as of the capped surface, grows by what flows in through its sides."""
         self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
         rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
         self.assertEqual([(row["time"], row["section"]) for row in rows],

@@ -34,7 +34,7 @@ class OutputFiles(CommandLineTest):
         self.assertTrue(text.startswith("<?xml") and text.rstrip().endswith("</VTKFile>"))
         return text
 
-    # What is no regular file
+    # Outputs that are no regular files
 
     def device(self, name, minor):
         """A device of our own where we may make one: the fault would cost the machine its own."""
@@ -148,7 +148,7 @@ class OutputFiles(CommandLineTest):
         self.good()
         status = self.output.stat()
         self.assertEqual((status.st_uid, status.st_gid, mode_of(self.output)), (12345, 54321, 0o666))
-        # Who cannot keep owner and group gives nobody what the old group had.
+        # A user who cannot keep owner and group gives nobody what the old group had.
         self.good(preexec_fn=drop_privileges)
         self.assertEqual((self.output.stat().st_uid, oct(mode_of(self.output))), (0, oct(0o606)))
 
@@ -172,7 +172,7 @@ class OutputFiles(CommandLineTest):
             self.assertEqual((victim.read_text(), part.read_text()), ("precious", "precious"))
             part.unlink()
 
-    # The same file twice
+    # One file twice
 
     def test_same_file(self):
         hard = self.directory / "hard.vtp"
@@ -196,7 +196,7 @@ class OutputFiles(CommandLineTest):
         self.one_sentence(result, 2, "log.json would be written twice: standard output goes there, too")
 
     def test_pieces_are_inputs(self):
-        """What a list of pieces names is read, too, and not written over, under any name."""
+        """Files that a list of pieces names are read, too, and not written over, under any name."""
         piece = self.directory / "piece.vtp"
         self.input.rename(piece)
         before = piece.read_text()

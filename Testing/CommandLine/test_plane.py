@@ -112,7 +112,7 @@ class Plane(CommandLineTest):
             self.assertEqual((self.directory / output.replace("%04d", "0000")).read_text(), "Line\n")
 
     def test_points_as_a_table(self):
-        """Of two lines, one after the other; a closed one ends with its first point."""
+        """Two lines stand one after the other; a closed one ends with its first point."""
         table = self.directory / "surface.csv"
         self.run_good(self.input, table, "--scalar", "Radius", "--iso", "0.3,0.6")
         rows = read_table(table)
@@ -154,7 +154,7 @@ class Plane(CommandLineTest):
         return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", unpacked(text))]
 
     def test_tables(self):
-        """Of a film's lines, and of gauges in their plane."""
+        """A film's lines, and gauges in their plane, have tables."""
         files.write_pvd(self.directory / "steps.pvd", [("0", "particles.vtp"), ("1", "particles.vtp")])
         table = self.directory / "numbers.csv"
         self.run_good("steps.pvd", "film_%d.vtp", "--free-surface", "--numbers", table)
@@ -178,7 +178,7 @@ class Plane(CommandLineTest):
         self.refuse(self.extract(*ISO, "--components", self.directory / "surface.csv"), 1, "give lines")
 
     def test_particle_distance(self):
-        """Of DualSPHysics, whose smoothing length is that of the dimension."""
+        """DualSPHysics' smoothing length is that of the dimension."""
         del self.arrays["SmoothingLength"]
         files.write_vtp(self.input, self.points, self.arrays)
         lengths = self.succeed("--free-surface", "--dp", "0.1")["statistics"]["smoothing_length_range"]

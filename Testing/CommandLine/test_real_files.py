@@ -25,11 +25,11 @@ def write_csv(path, points, arrays):
 
 class RealFiles(CommandLineTest):
     def refuse(self, result, status, sentence):
-        """Of a run that may have a surface of one before it."""
+        """Checks a run that may have a surface of one before it."""
         self.one_sentence(result, status, sentence)
 
     def volume(self, source, *options, words=""):
-        """Of the free surface; `words` must stand in what is said, which is nothing where there are none."""
+        """The free surface's; `words` must stand in what is said, which is nothing where there are none."""
         self.statistics = self.succeed(*FREE, *options, source=source, told=words)["statistics"]
         return self.statistics.get("volume", self.statistics.get("area"))
 

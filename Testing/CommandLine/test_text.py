@@ -9,13 +9,13 @@ import xml.etree.ElementTree
 import particle_files as files
 from command_line_test import ISO, CommandLineTest, main
 
-# What a terminal acts upon: control characters, also the ones of two bytes in UTF-8, line separators
+# Characters that a terminal acts upon: control characters, also the ones of two bytes in UTF-8, line separators
 # and marks that turn the direction of writing.
 UNSAFE = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]")
 
 
 class Text(CommandLineTest):
-    """What is printed cannot steer a terminal, and every file written is valid."""
+    """Printed text cannot steer a terminal, and every file written is valid."""
 
     def printed(self, result):
         """Standard error and output, which must be UTF-8 without control characters."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What particles lack: volumes, smoothing lengths, densities. test_volumes.py PROGRAM PRELOAD"""
+"""Particles that lack volumes, smoothing lengths, densities. test_volumes.py PROGRAM PRELOAD"""
 import particle_files as files
 from command_line_test import CommandLineTest, main, read_table
 

@@ -74,7 +74,7 @@ class Walls(CommandLineTest):
         self.assertEqual([path.read_bytes() for path in frame], [wanted] * 3)
 
     def test_walls_of_each_step(self):
-        """Those of the number in the step's name, or that a list has, beside ones that stand still."""
+        """Walls go by the number in the step's name, or by a list, beside ones that stand still."""
         steps, wanted = (0, 12), []
         still = self.write("Still.vtp", lambda kind, point: kind == 1 and point[1] < 0)
         for step, fluid in zip(steps, ("Fluid_0000.vtp", "Fluid_0012.vtp")):

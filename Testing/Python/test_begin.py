@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What filters choose where nobody has: places, resolutions, arrays and colours; what becomes of a forgotten input."""
+"""Filters choose where nobody has: places, resolutions, arrays and colours; what becomes of a forgotten input."""
 import unittest
 
 import numpy

@@ -25,7 +25,7 @@ def read(name):
 
 
 def triangles(surface):
-    """Of each the bytes of its points, with all of their arrays."""
+    """Bytes of the points of each, with all of their arrays."""
     if surface.GetNumberOfCells() == 0:
         return []
     data = surface.GetPointData()

@@ -65,7 +65,7 @@ def gradient_error(n, jitter):
 
 class TestOrder(unittest.TestCase):
     def test_of_gradients(self):
-        """Of second order where particles lie on a lattice, else of first order, as corrected SPH gradients are."""
+        """Errors are of second order where particles lie on a lattice, else of first order, as those of corrected SPH gradients are."""
         self.assertGreater(math.log2(gradient_error(10, 0) / gradient_error(20, 0)), 1.8)
         self.assertGreater(math.log2(gradient_error(10, 0.1) / gradient_error(20, 0.1)), 0.9)
 
@@ -144,7 +144,7 @@ class TestDerivatives(unittest.TestCase):
             self.assertLess(b, 0.1, name)
 
     def test_chain(self):
-        """What is derived can be contoured."""
+        """Derived arrays can be contoured."""
         extract = vtkMarchingCorrectors()
         extract.SetInputArrayToProcess(0, 0, 0, POINTS, "Lambda2")
         surface, _ = run(extract, derive(make_vortex(20)), Value=(0, -15))
@@ -210,7 +210,7 @@ class TestProbe(unittest.TestCase):
         self.assertTrue(results[0] == results[1])
 
     def test_changed_arrays(self):
-        """What a probe keeps of the arrays is not taken for others."""
+        """Arrays that a probe keeps are not taken for others."""
         probe = self.make()
         before = values_of(run(probe)[0], "Velocity").copy()
         velocity = probe.GetSource().GetPointData().GetArray("Velocity")

@@ -83,7 +83,7 @@ def check_surfaces(extract):
 
 
 def value_of(proxy, name):
-    """Of a property by its name or label: a list, a text, or a number."""
+    """The value of a property by its name or label: a list, a text, or a number."""
     value = proxy.GetProperty(name)
     if hasattr(value, "__len__") and not isinstance(value, str):
         value = list(value) if len(value) != 1 or name == "Isosurfaces" else value[0]
@@ -91,7 +91,7 @@ def value_of(proxy, name):
 
 
 def check_in_use(reader):
-    """What the panel tells after Apply, for walls left out, a component and a dot product."""
+    """Checks what the panel tells after Apply, for walls left out, a component and a dot product."""
     extract = MarchingCorrectors(Input=reader)  # noqa: F821
     extract.FluidArray = "ParticleType"
     extract.ContourBy = ["POINTS", "Velocity"]

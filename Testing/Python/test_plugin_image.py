@@ -12,7 +12,7 @@ from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 NAME = "TestPluginImage.png"
 BASELINE = os.path.join(os.environ["MCOR_TEST_BASELINES"], NAME)
 OUTPUT = os.path.join(os.environ["MCOR_TEST_OUTPUT"], NAME)
-# Of vtkImageDifference, which tolerates shifts of a pixel: about the number of pixels that differ.
+# The limit of vtkImageDifference, which tolerates shifts of a pixel: about the number of pixels that differ.
 THRESHOLD = 30.0
 
 

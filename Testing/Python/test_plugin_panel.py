@@ -75,7 +75,7 @@ def run(paraview, events, folder):
 
 
 def first_apply(folder):
-    """What the panel shows of choices that are not applied yet: the box, the number of cells, the red warning."""
+    """The panel shows choices that are not applied yet: the box, the number of cells, the red warning."""
     return [
         FILTERS, ADVANCED, PAUSE,
         *greyed("ContourValues", "Filled"),  # walls are found, so the water is what is shown first
@@ -144,7 +144,7 @@ SHOWN = ("Next", "Used", "Estimated", "FluidScalarRange", "Statistics", "Surface
 
 
 def properties(file):
-    """What a user may set of the filter in a saved state: a list of values each."""
+    """Properties that a user may set, in a saved state: a list of values each."""
     proxy = xml.parse(file).find(".//Proxy[@type='MarchingCorrectors']")
     return {p.get("name"): [e.get("value") for e in p.findall("Element")] for p in proxy.findall("Property")
             if not p.get("name").startswith(SHOWN)}

@@ -32,7 +32,7 @@ NOT_IN_XML = {
 
 
 def get(made, command):
-    """What the setter `command` has set."""
+    """The value that the setter `command` has set."""
     if command == "SetPanelComponent":
         component = made.GetScalarComponent()
         return 3 if component == made.MAGNITUDE else component
@@ -95,8 +95,8 @@ class TestPluginXml(unittest.TestCase):
         label = self.main.get("label").lower()
         for word in ("sph", "isosurface", "free surface", "contour"):
             self.assertIn(word, label)
-        # Of labels that begin with what was typed the first one is taken: of ParaView's SPH Dataset Interpolator,
-        # and of all that the plugin has.
+        # The first of the labels that begin with what was typed is taken: among ParaView's SPH Dataset Interpolator,
+        # and all that the plugin has.
         labels = [proxy.get("label").lower() for proxy in self.proxies]
         self.assertGreater(len(labels), 8)
         self.assertEqual(min(each for each in labels + ["sph dataset interpolator"] if each.startswith("sph")), label)
@@ -128,7 +128,7 @@ class TestPluginXml(unittest.TestCase):
         self.assertEqual([port.get("index") for port in proxies["SPHComponents"].findall("OutputPort")], ["0", "1"])
 
     def test_information(self):
-        """What the panel shows of the last update has the type and size of its getter."""
+        """Properties that show the last update have the types and sizes of their getters."""
         empty = marchingcorrectors.vtkMarchingCorrectors()
         information = [e for e in self.main if e.get("information_only")]
         self.assertEqual(len(information), 18)

@@ -80,13 +80,13 @@ def interpolator(steps):
 
 class TestTemporal(unittest.TestCase):
     def told(self, film, time, **settings):
-        """What the filter says at this time."""
+        """Sentences of the filter at this time."""
         film.UpdateInformation()
         film.GetOutputInformation(0).Set(Pipeline.UPDATE_TIME_STEP(), time)
         return run(film, **settings)[1]
 
     def at(self, film, time, **settings):
-        """What it makes for this time without an error."""
+        """Output for this time, without an error."""
         self.told(film, time, **settings)
         self.assertEqual(film.GetErrorMessage(), "")
         return film.GetOutputDataObject(0)
@@ -216,7 +216,7 @@ class TestTemporal(unittest.TestCase):
             self.assert_points(film.GetOutput(), [(0, 0, 0), (1, 0, 0)])
 
     def test_threads_change_nothing(self):
-        """Of so many particles that there is work for several threads."""
+        """There are so many particles that several threads have work."""
         rng, count = numpy.random.default_rng(4), 30000
         steps = {}
         for time in (0.0, 0.2):
@@ -302,7 +302,7 @@ class TestTemporal(unittest.TestCase):
         for i in (0, 3):
             self.assertLess(self.farthest(output.GetBlock(i), 0.05), 3e-6)
 
-    # What is refused or told
+    # Refusals and warnings
 
     def test_no_numbers(self):
         film = interpolator({0.0: rotating(0.0), 0.2: rotating(0.2)})

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of VTK's filters share: particles, blocks of them, and a run with all that it says."""
+"""Particles, blocks of them, and a run with all that it says, for the tests of VTK's filters."""
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkPoints
@@ -72,6 +72,6 @@ def points_of(data):
 
 
 def bytes_of(data):
-    """Of the points and all their arrays."""
+    """Bytes of the points and all their arrays."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays)]

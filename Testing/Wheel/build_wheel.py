@@ -14,10 +14,10 @@ import sys
 import time
 from pathlib import Path
 
-# What the system trusts, where that is more than pip does by itself.
+# Certificates that the system trusts, where these are more than pip's own.
 CERTIFICATES = "/etc/ssl/certs/ca-certificates.crt"
 EXTRAS = "pyvista,vtk"
-# What users have beside it: tests alone need these.
+# Packages that users have beside it: tests alone need these.
 OTHERS = ("h5py", "pandas", "pint", "unyt", "tqdm", "meshio", "trimesh", "nbclient", "ipykernel", "mypy",
           "pyright[nodejs]")
 SKIPPED = 77

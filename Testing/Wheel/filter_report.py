@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the VTK filter, whichever there is, says and makes of particle files, as JSON.
+"""Reports what the VTK filter, whichever there is, says and makes of particle files, as JSON.
 
     filter_report.py CASES.json
 CASES: [[file, scalar, iso value, {property: value}]]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same files through the wheel's filter, its accessor, the C++ filter and the program: the same warnings, errors,
+"""Files through the wheel's filter, its accessor, the C++ filter and the program: the same warnings, errors,
 arrays, bits and statistics. The C++ filter runs in the Python that it was built for."""
 import json
 import os
@@ -160,7 +160,7 @@ class Test(unittest.TestCase):
 
     @unittest.skipUnless(os.environ.get("MCOR_TEST_PROGRAM"), "the program was not built")
     def test_program(self):
-        """What it says beside the filter's sentence: how to give its own options, and that a surface is empty."""
+        """It says, beside the filter's sentence, how to give its own options, and that a surface is empty."""
         folder = Path(self.folder.name)
         for (name, (file, scalar, value, properties)), found in zip(self.cases.items(), self.wheel["cases"]):
             output, statistics = folder / "program.vtp", folder / "program.json"

@@ -41,7 +41,7 @@ class Command(unittest.TestCase):
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
     def test_left_out(self):
-        """Of several ranges of one array any counts, of several arrays, and the bounds, all."""
+        """Any of several ranges of one array counts; several arrays, and the bounds, all do."""
         words = ["--within", "-inf,2,0.05,inf,-inf,inf", "--only", "Density=0:990", "--only", "Density=1000:2000", "--only",
                  "ParticleType=0"]
         mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"]))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What python -m marchingcorrectors convert writes, and what it leaves alone."""
+"""Files that python -m marchingcorrectors convert writes, and files that it leaves alone."""
 import os
 import signal
 import stat
@@ -138,7 +138,7 @@ class Convert(unittest.TestCase):
         self.assertFalse([p for p in self.folder.iterdir() if p.name.startswith(".")])
 
     def test_commands(self):
-        """What the other commands write follows the same rules."""
+        """Outputs of the other commands follow the same rules."""
         os.rename(self.at("run_0000.vtp"), self.at("in.vtp"))
         self.at("link.npz").symlink_to("in.vtp")
         self.at("old.csv").write_text("old")

@@ -567,7 +567,7 @@ class Layouts(Case):
                 io.read(self.at(kind))
 
     def test_quantities(self):
-        """What is given takes the place of what the file has, and nothing else; names are those of the core."""
+        """Arguments take the place of what the file has, and of nothing else; names are those of the core."""
         body = pyvista.PolyData(X)
         body["Rhop"], body["hsml"], body["m1"], body["Velocity"] = DENSITY, np.full(len(X), H), MASS, X
         body.save(self.at("body.vtp"))
@@ -670,7 +670,7 @@ class Layouts(Case):
 
 class Conversion(Case):
     def test_blocks(self):
-        """Of all blocks as one set; those with names of walls are walls."""
+        """All blocks are one set; those with names of walls are walls."""
         blocks = pyvista.MultiBlock()
         for name, chosen in (("water", ~WALL), ("wall", WALL)):
             blocks[name] = pyvista.PolyData(X[chosen])

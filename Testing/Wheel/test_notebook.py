@@ -22,7 +22,7 @@ FILE = SOURCES / "Examples" / "Notebook" / "dam_break.ipynb"
 
 
 def texts(cell):
-    """What it prints and shows, without what drivers say on stderr."""
+    """Texts that it prints and shows, without what drivers say on stderr."""
     return "".join(output["text"] if output.output_type == "stream" else output.get("data", {}).get("text/plain", "")
                    for output in cell.get("outputs", []) if output.get("name") != "stderr"
                    and "image/png" not in output.get("data", {}))

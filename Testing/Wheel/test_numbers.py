@@ -118,7 +118,7 @@ class Project(unittest.TestCase):
 
 class OtherParticles(unittest.TestCase):
     def particles(self, x, columns):
-        """The same as PyVista's, and from a file; and their places."""
+        """Particles as PyVista's, and from a file; and their places."""
         data = pyvista.PolyData(x)
         for name, values in columns.items():
             data[name] = values

@@ -188,7 +188,7 @@ class Results(unittest.TestCase):
         self.assertLessEqual(compact["residual_max"], 1.5 * usual["residual_max"])
 
     def test_lines(self):
-        """Of two dimensions: one of a circle, with greater values outside on its left."""
+        """A circle in two dimensions has greater values outside, on its left."""
         flat = np.stack(np.meshgrid(np.arange(N) * 0.1, [0.5], np.arange(N) * 0.1, indexing="ij"), -1).reshape(-1, 3)
         distance = np.hypot(flat[:, 0] - 0.65, flat[:, 2] - 0.65)
         surface = mc.isosurface(flat, distance, 0.4, smoothing_length=H, volume=0.01, weight_sum=True)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What people at a prompt meet: signatures and help, misspelt names, repr and ==, warnings, units, data frames,
+"""People at a prompt meet signatures and help, misspelt names, repr and ==, warnings, units, data frames,
 DLPack, bars, files, copies."""
 import contextlib
 import copy
@@ -79,7 +79,7 @@ class Signatures(unittest.TestCase):
         self.assertNotIn("capping", inspect.signature(mc.probe).parameters)
 
     def test_shown_defaults_are_the_defaults(self):
-        """What the signature says, said again, changes nothing."""
+        """Defaults of the signature, given, change nothing."""
         shown = {name: parameter.default for name, parameter in inspect.signature(mc.isosurface).parameters.items()
                  if name in _options.ISOSURFACE}
         again = sphere(**shown)

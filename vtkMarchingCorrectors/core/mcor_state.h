@@ -139,6 +139,8 @@ typedef struct mcor_tree
   const mcor_lattice* lattice;
   int top;       /* highest level of leaves; bricks have one more */
   bool is_plane; /* all bricks are of the lowest layer */
+  /* The first period, in bricks of each level; 0: none along this axis. */
+  int period[MCOR_TREE_LEVEL_LIMIT + 2][3], period_first[MCOR_TREE_LEVEL_LIMIT + 2][3];
   mcor_brick_set split[MCOR_TREE_LEVEL_LIMIT + 2];
   int leaf_count;
   int block_count, first_block[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */

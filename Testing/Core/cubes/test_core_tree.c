@@ -156,6 +156,7 @@ static void measure(
   options->sph_kernel = is_cube ? MCOR_M_PRIME_4 : MCOR_CUBIC_SPLINE;
   context->run.options = options;
   context->kept.uses_solids = false;
+  context->space.axes = 3;
   CORE_OK(context, mcor_measure_input(context, input, options));
 }
 

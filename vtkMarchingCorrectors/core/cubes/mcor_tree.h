@@ -15,9 +15,12 @@
 #define MCOR_LEAF_LIMIT (INT32_MAX / 64)
 #define MCOR_SPLIT_LIMIT (MCOR_LEAF_LIMIT / 7)
 
-/* mcor_tree_brick.c. Adds bricks of a cluster to a set. Returns false if memory ran out or there
+/* mcor_tree_brick.c. Returns the number of bits that are set. */
+int mcor_bit_count(uint64_t bits);
+/* Adds bricks of a cluster to a set. Returns false if memory ran out or there
  * would be too many leaves, before the sets take much memory. */
 bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks);
+bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3]);
 bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other);
 /* Whether the sets of all levels together make too many leaves. */
 bool mcor_are_too_many(const mcor_brick_set* levels);
@@ -80,13 +83,14 @@ mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mc
 /* mcor_tree_key.c. Lists the keys of all split bricks, ascending. Free them with free(). */
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
-/* Sorts keys. other: has as much room. The result is in *keys. */
-mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** other, size_t count);
+void mcor_sort_keys(uint64_t* keys, size_t count);
 /* Finds the position of the brick with a key. */
 void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 /* Splits the bricks with these keys. */
 mcor_status mcor_take_splits(
   mcor_context* context, mcor_tree* tree, const uint64_t* keys, int64_t count);
+/* Splits the bricks that other ranks' particles split. */
+mcor_status mcor_join_splits(mcor_context* context, mcor_tree* tree);
 
 /* Bits of a brick's key in keys of points or triangles; the rest is an edge or a cell of the
  * brick. */

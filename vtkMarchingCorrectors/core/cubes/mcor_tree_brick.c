@@ -45,6 +45,8 @@ mcor_status mcor_number_bricks(mcor_context* context, mcor_tree* tree)
       rung->n[a] = tree->is_plane && a == 2 ? 1 : (int)((along + 7) >> 3);
       blocks *= (uint64_t)rung->n[a];
       most *= l == 0 ? rung->n[a] : 1;
+      tree->period[l][a] = lattice->period[a] / (MCOR_BRICK << l);
+      tree->period_first[l][a] = lattice->period_first[a] / (MCOR_BRICK << l);
     }
     MCOR_RETURN_IF(most > MCOR_BRICK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
       "The virtual grid is too large for adaptive cubes of %d levels. Choose fewer levels, or "
@@ -64,14 +66,9 @@ bool mcor_place_brick(const mcor_tree* tree, int level, const int brick[3], int 
   bool within = true;
   for (int a = 0; a < 3; ++a)
   {
-    placed[a] = brick[a];
-    const int edge = MCOR_BRICK << level;
-    if (tree->lattice->period[a] >= edge) /* avoids divisions, which cost much here */
-    {
-      const int period = tree->lattice->period[a] / edge;
-      const int first = tree->lattice->period_first[a] / edge, from = brick[a] - first;
-      placed[a] = (from % period + period) % period + first;
-    }
+    const int period = tree->period[level][a], first = tree->period_first[level][a];
+    const int from = brick[a] - first;
+    placed[a] = period > 0 ? (from % period + period) % period + first : brick[a];
     within = within && placed[a] >= 0 && placed[a] >> 3 < rung->n[a];
   }
   return within;
@@ -89,14 +86,12 @@ bool mcor_tree_is_split(const mcor_tree* tree, int level, const int brick[3])
 
 bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
 {
-  const mcor_lattice* lattice = tree->lattice;
-  const int edge = MCOR_BRICK << level;
   bool within = true;
   for (int a = 0; a < 3; ++a)
   {
-    const int period = lattice->period[a] / edge;
-    const int begin = period > 0 ? lattice->period_first[a] / edge : 0;
-    const int end = period > 0 ? begin + period : 8 * lattice->rungs[level].n[a];
+    const int period = tree->period[level][a];
+    const int begin = period > 0 ? tree->period_first[level][a] : 0;
+    const int end = period > 0 ? begin + period : 8 * tree->lattice->rungs[level].n[a];
     within = within && first[a] >= begin && first[a] + MCOR_CLUSTER <= end;
   }
   return within;
@@ -105,16 +100,16 @@ bool mcor_has_cluster(const mcor_tree* tree, int level, const int first[3])
 mcor_status mcor_fail_leaves(mcor_context* context)
 {
   return mcor_fail(context, MCOR_OUT_OF_CAPACITY,
-    "Adaptive cubes would have more than %d leaves, or more than fit in host memory. Use a larger "
-    "cube size.",
-    MCOR_LEAF_LIMIT);
+    "The virtual grid is too large: with cube size %g adaptive cubes would have more than %d "
+    "leaves, or more than fit in host memory. Use a larger cube size.",
+    context->lattice.cube, MCOR_LEAF_LIMIT);
 }
 
 /* ---- Sets of bricks ---- */
 
-static size_t mcor_bit_count(uint64_t bits)
+int mcor_bit_count(uint64_t bits)
 {
-  size_t count = 0;
+  int count = 0;
   for (; bits; bits &= bits - 1)
   {
     ++count;
@@ -131,10 +126,15 @@ bool mcor_set_add(mcor_brick_set* set, uint64_t key, uint64_t bricks)
   uint64_t* cluster = set->count > MCOR_SPLIT_LIMIT ? NULL : mcor_table_add(&set->clusters, key);
   if (cluster)
   {
-    set->count += mcor_bit_count(bricks & ~*cluster);
+    set->count += (size_t)mcor_bit_count(bricks & ~*cluster);
     *cluster |= bricks;
   }
   return cluster != NULL;
+}
+
+bool mcor_set_add_brick(mcor_brick_set* set, const mcor_rung* rung, const int brick[3])
+{
+  return mcor_set_add(set, mcor_cluster_key(rung, brick), UINT64_C(1) << mcor_cluster_bit(brick));
 }
 
 bool mcor_set_add_all(mcor_brick_set* set, const mcor_brick_set* other)

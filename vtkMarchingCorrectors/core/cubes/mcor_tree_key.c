@@ -4,54 +4,20 @@
 /* Adaptive cubes: keys of split bricks, which are numbers of the bricks of all levels. Other
  * ranks and calls get split bricks as keys. */
 
+#include "mcor_ranks.h"
 #include "mcor_tree.h"
 
 #include <stdlib.h>
 
-/* Keys in one qsort. */
-#define MCOR_SORTED_KEYS 65536
-
-static int mcor_compare_keys(const void* a, const void* b)
+static int mcor_compare_brick_keys(const void* a, const void* b)
 {
   const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
   return (x > y) - (x < y);
 }
 
-/* Merges two sorted runs of keys, the second one from `middle` on. */
-static void mcor_merge_keys(const uint64_t* keys, size_t middle, size_t end, uint64_t* to)
+void mcor_sort_keys(uint64_t* keys, size_t count)
 {
-  size_t i = 0, j = middle;
-  while (i < middle || j < end)
-  {
-    const bool first = j >= end || (i < middle && keys[i] < keys[j]);
-    *to++ = first ? keys[i++] : keys[j++];
-  }
-}
-
-/* Sorts runs, then merges them into longer ones. */
-mcor_status mcor_sort_keys(mcor_context* context, uint64_t** keys, uint64_t** other, size_t count)
-{
-  for (size_t i = 0; i < count; i += MCOR_SORTED_KEYS)
-  {
-    const size_t rest = count - i;
-    qsort(*keys + i, rest < MCOR_SORTED_KEYS ? rest : MCOR_SORTED_KEYS, sizeof **keys,
-      mcor_compare_keys);
-    MCOR_TRY(mcor_report_launch(context));
-  }
-  for (size_t run = MCOR_SORTED_KEYS; run < count; run *= 2)
-  {
-    for (size_t i = 0; i < count; i += 2 * run)
-    {
-      const size_t rest = count - i;
-      mcor_merge_keys(
-        *keys + i, rest < run ? rest : run, rest < 2 * run ? rest : 2 * run, *other + i);
-      MCOR_TRY(mcor_report_launch(context));
-    }
-    uint64_t* sorted = *other;
-    *other = *keys;
-    *keys = sorted;
-  }
-  return MCOR_OK;
+  qsort(keys, count, sizeof *keys, mcor_compare_brick_keys);
 }
 
 /* Writes the keys of a level's split bricks. Returns their number. */
@@ -85,17 +51,14 @@ mcor_status mcor_list_splits(
     total += tree->split[l].count;
   }
   *keys = malloc((total + 1) * sizeof **keys);
-  uint64_t* other = malloc((total + 1) * sizeof *other);
-  mcor_status status = mcor_allocated(context, *keys && other);
+  MCOR_TRY(mcor_allocated(context, *keys));
   *count = 0;
-  for (int l = 0; l <= tree->top + 1 && status == MCOR_OK; ++l)
+  for (int l = 0; l <= tree->top + 1; ++l)
   {
     *count += (int64_t)mcor_write_keys(tree, l, *keys + *count);
-    status = mcor_report_launch(context);
   }
-  status = status == MCOR_OK ? mcor_sort_keys(context, keys, &other, total) : status;
-  free(other);
-  return status;
+  mcor_sort_keys(*keys, total);
+  return mcor_report_launch(context);
 }
 
 void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3])
@@ -127,10 +90,21 @@ mcor_status mcor_take_splits(
     const mcor_rung* rung = &tree->lattice->rungs[level];
     int b[3];
     mcor_brick_of_key(rung, keys[i], b);
-    const bool added = mcor_set_add(
-      &tree->split[level], mcor_cluster_key(rung, b), UINT64_C(1) << mcor_cluster_bit(b));
-    MCOR_TRY(added ? MCOR_OK : mcor_fail_leaves(context));
+    MCOR_TRY(
+      mcor_set_add_brick(&tree->split[level], rung, b) ? MCOR_OK : mcor_fail_leaves(context));
     MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
   }
   return MCOR_OK;
+}
+
+mcor_status mcor_join_splits(mcor_context* context, mcor_tree* tree)
+{
+  uint64_t* own = NULL;
+  const void* all;
+  int64_t count;
+  mcor_status status = mcor_list_splits(context, tree, &own, &count);
+  status = status == MCOR_OK ? mcor_gather(context, own, count, sizeof *own, &all, &count) : status;
+  status = status == MCOR_OK ? mcor_take_splits(context, tree, all, count) : status;
+  free(own);
+  return status;
 }

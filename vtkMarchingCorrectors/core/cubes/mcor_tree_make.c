@@ -69,7 +69,7 @@ static mcor_status mcor_add_parts(
       int low[3], high[3], at[3];
       for (int a = 0; a < 3; ++a)
       {
-        const int period = tree->lattice->period[a] / (MCOR_BRICK << (level + 1));
+        const int period = tree->period[level + 1][a];
         const int begin = first[a] + by[a] * period;
         exists = exists && (by[a] == 0 || period > 0);
         low[a] = begin / MCOR_CLUSTER - 1;
@@ -126,18 +126,23 @@ static int mcor_fill_block(const mcor_tree* tree, const mcor_box* box, int level
   }
   memset(leaves, 0, MCOR_BLOCK_WORDS * sizeof *leaves);
   memset(split, 0, MCOR_BLOCK_WORDS * sizeof *split);
-  for (int m = 0; m < MCOR_BLOCK_BRICKS && parents != 0; ++m)
+  for (int row = 0; row < 64 && parents != 0; ++row)
   {
-    const int x = m & 7, y = m >> 3 & 7, z = m >> 6;
-    const int brick[3] = { first[0] + x, first[1] + y, first[2] + z };
-    const bool is_part = parents >> (x >> 1 | (y >> 1) << 2 | (z >> 1) << 4) & 1;
-    const bool is_split =
-      parts[x >> 2 | (y >> 2) << 1 | (z >> 2) << 2] >> mcor_cluster_bit(brick) & 1;
-    const bool is_leaf = is_part && !is_split && !(tree->is_plane && z > 0) &&
-      mcor_is_wanted(box, level, level, brick);
-    split[m >> 5] |= (cl_uint)is_split << (m & 31);
-    leaves[m >> 5] |= (cl_uint)is_leaf << (m & 31);
-    count += is_leaf;
+    const int y = row & 7, z = row >> 3, shift = 4 * (y & 3) + 16 * (z & 3);
+    const uint64_t* along = &parts[(y >> 2) << 1 | (z >> 2) << 2];
+    const cl_uint is_split =
+      (cl_uint)(along[0] >> shift & 15) | (cl_uint)(along[1] >> shift & 15) << 4;
+    const cl_uint above = (cl_uint)(parents >> (4 * (y >> 1) + 16 * (z >> 1)) & 15);
+    const cl_uint spread = (above & 1) | (above & 2) << 1 | (above & 4) << 2 | (above & 8) << 3;
+    cl_uint is_leaf = tree->is_plane && z > 0 ? 0 : 3 * spread & ~is_split;
+    for (int x = 0; x < 8 && box->is_part; ++x)
+    {
+      const int brick[3] = { first[0] + x, first[1] + y, first[2] + z };
+      is_leaf &= mcor_is_wanted(box, level, level, brick) ? UINT32_MAX : ~(1u << x);
+    }
+    split[row >> 2] |= is_split << 8 * (row & 3);
+    leaves[row >> 2] |= is_leaf << 8 * (row & 3);
+    count += mcor_bit_count(is_leaf);
   }
   return count;
 }
@@ -147,23 +152,20 @@ static mcor_status mcor_list_blocks(
   mcor_context* context, mcor_tree* tree, const mcor_table* blocks)
 {
   const size_t n = blocks->count;
-  uint64_t* other = malloc((n + 1) * sizeof *other);
   tree->block_keys = malloc((n + 1) * sizeof *tree->block_keys);
   tree->leaves = malloc((n + 1) * MCOR_BLOCK_WORDS * sizeof *tree->leaves);
   tree->is_split = malloc((n + 1) * MCOR_BLOCK_WORDS * sizeof *tree->is_split);
-  mcor_status status =
-    mcor_allocated(context, other && tree->block_keys && tree->leaves && tree->is_split);
-  for (size_t i = 0; i < blocks->capacity && status == MCOR_OK; ++i)
+  MCOR_TRY(mcor_allocated(context, tree->block_keys && tree->leaves && tree->is_split));
+  for (size_t i = 0; i < blocks->capacity; ++i)
   {
     if (blocks->entries[i].value != 0)
     {
       tree->block_keys[tree->block_count++] = blocks->entries[i].key;
     }
   }
-  status = status == MCOR_OK ? mcor_sort_keys(context, &tree->block_keys, &other, n) : status;
-  free(other);
+  mcor_sort_keys(tree->block_keys, n);
   int level = 0;
-  for (size_t i = 0; i < n && status == MCOR_OK; ++i)
+  for (size_t i = 0; i < n; ++i)
   {
     const size_t words = i * MCOR_BLOCK_WORDS;
     for (; tree->block_keys[i] >= tree->lattice->rungs[level + 1].base; ++level)
@@ -172,14 +174,13 @@ static mcor_status mcor_list_blocks(
     }
     tree->leaf_count += mcor_fill_block(tree, &context->box, level, tree->block_keys[i],
       tree->leaves + words, tree->is_split + words);
-    status = i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK;
+    MCOR_TRY(i % MCOR_TREE_STEP == 0 ? mcor_report_launch(context) : MCOR_OK);
   }
   for (; level <= tree->top; ++level)
   {
     tree->first_block[level + 1] = (int)n;
   }
-  return status == MCOR_OK && tree->leaf_count > MCOR_LEAF_LIMIT ? mcor_fail_leaves(context)
-                                                                 : status;
+  return tree->leaf_count > MCOR_LEAF_LIMIT ? mcor_fail_leaves(context) : MCOR_OK;
 }
 
 mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)

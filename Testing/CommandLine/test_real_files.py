@@ -308,7 +308,7 @@ class RealFiles(CommandLineTest):
         self.check_table("crlf.csv", paraview.replace("\n", "\r\n") + "\r\n")
         self.check_table("spaces.csv", "x, y , z, rho\n" + "\n".join(f"{x}, {y}, {z}, 1e3" for x, y, z in points))
         self.check_table("excel.csv", "\ufeffPos.x [m];Pos.y [m];Pos.z [m];Rhop [kg/m^3]\n" + "\n".join(
-            ";".join(repr(v).replace(".", ",") for v in (*p, 1000.5)) for p in points))
+            ";".join(repr(v).replace(".", ",").lstrip("0") + "0" * 600 for v in (*p, 1000.5)) for p in points))
         self.check_table("bare.tsv", "\n".join("\t".join(map(repr, p)) for p in points))
         self.extract_good("--scalar", "Vel", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
         self.refuse_texts("bad.csv", [
@@ -321,6 +321,9 @@ class RealFiles(CommandLineTest):
         body = "\n".join(f" {x:.6E}  {y:.6e}\t{z:+.6f} 1.0D3 {i}" for i, (x, y, z) in enumerate(points))
         self.check_table("run.txt", "# a header\n# x y z rho id\n" + body + "\n# the end\n")
         self.assertRegex(self.output.read_text(), 'type="Int64"[^>]*Name="id"')
+        self.check_table("splash.dat", "# [01  x] [02  y] [03  z] [04 rho] [05 id]\n" + body)
+        self.assertRegex(self.output.read_text(), 'type="Int64"[^>]*Name="id"')
+        self.check_table("commas.txt", "\n".join(f"{x}, {y}, {z}" for x, y, z in points))
         self.check_table("unnamed.dat", body)
         self.assertIn('Name="Column4"', self.output.read_text())
         self.check_table("two.txt", "\n".join(f"{x} {y}" for x, y, z in points if z < 0.1), volume=0.36)

@@ -16,11 +16,14 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace
 {
@@ -47,8 +50,7 @@ std::string Small(View text)
   return small;
 }
 
-/// A number as it stands in tables: with a leading plus, a D of Fortran, or a comma; nan, inf; nothing is no number
-/// either.
+/// A number as it stands in tables: with a leading plus, a D of Fortran, or a comma; nan, inf.
 bool ToNumber(View text, double& value)
 {
   std::string copy;
@@ -57,7 +59,7 @@ bool ToNumber(View text, double& value)
     text.remove_prefix(1);
   }
   auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end.ec == std::errc() && end.ptr != text.data() + text.size() && text.size() < 512)
+  if (end.ec != std::errc::result_out_of_range && end.ptr != text.data() + text.size())
   {
     copy = std::string(text);
     std::replace_if(
@@ -68,12 +70,9 @@ bool ToNumber(View text, double& value)
   }
   if (end.ec == std::errc::result_out_of_range)
   {
-    value = text.find("e-") != View::npos || text.find("E-") != View::npos
-      ? 0.0
-      : std::numeric_limits<double>::infinity();
-    return true;
+    value = std::strtod(std::string(text).c_str(), nullptr); // infinite, or 0
   }
-  return end.ec == std::errc() && end.ptr == text.data() + text.size();
+  return end.ec != std::errc::invalid_argument && end.ptr == text.data() + text.size();
 }
 
 bool ToInteger(View text, vtkTypeInt64& value)
@@ -158,63 +157,61 @@ private:
   std::size_t Number = 0;
 };
 
-/// Columns of numbers, and of words.
-struct Table
+struct Column
 {
-  std::vector<std::string> Names;
-  std::vector<std::vector<double>> Numbers;
-  std::vector<std::vector<std::string>> Words; ///< of a column that is not of numbers; else empty
-  std::vector<std::vector<vtkTypeInt64>>
-    Whole; ///< of a column that may have identifiers; else empty
-  vtkIdType Rows = 0;
+  std::string Name;
+  std::vector<double> Numbers;
+  std::vector<std::string> Words;  ///< of one that is not of numbers; else empty
+  std::vector<vtkTypeInt64> Whole; ///< of one that may have identifiers; else empty
 
-  void SetNames(const std::vector<std::string>& names)
+  void Add(View cell)
   {
-    this->Names = names;
-    this->Numbers.resize(names.size());
-    this->Words.resize(names.size());
-    this->Whole.resize(names.size());
-  }
-
-  void AddRow(const Lines& lines, const std::vector<View>& cells)
-  {
-    if (cells.size() != this->Names.size())
-    {
-      Fail(lines.File,
-        lines.Where() + " has " + std::to_string(cells.size()) + " values for " +
-          std::to_string(this->Names.size()) + " columns");
-    }
-    for (std::size_t c = 0; c < cells.size(); ++c)
-    {
-      this->AddCell(c, cells[c]);
-    }
-    ++this->Rows;
-  }
-
-private:
-  void AddCell(std::size_t c, View cell)
-  {
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    double number = none;
-    const auto rows = static_cast<std::size_t>(this->Rows);
+    double number = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t rows = this->Numbers.size();
     const bool isNumber = cell.empty() || ToNumber(cell, number);
     vtkTypeInt64 whole = 0;
-    if (this->Whole[c].size() == rows && ToInteger(cell, whole))
+    if (this->Whole.size() == rows && ToInteger(cell, whole))
     {
-      this->Whole[c].push_back(whole);
+      this->Whole.push_back(whole);
     }
     else
     {
-      this->Whole[c].clear();
+      this->Whole.clear();
     }
-    if (!this->Words[c].empty() || (!isNumber && rows == 0))
+    if (!this->Words.empty() || (!isNumber && rows == 0))
     {
-      this->Words[c].emplace_back(cell);
+      this->Words.emplace_back(cell);
     }
     // One word among numbers is no number; a column of words has words from its beginning on.
-    this->Numbers[c].push_back(isNumber ? number : none);
+    this->Numbers.push_back(isNumber ? number : std::numeric_limits<double>::quiet_NaN());
   }
 };
+
+using Table = std::vector<Column>;
+
+Table TableOf(const std::vector<std::string>& names)
+{
+  Table table;
+  for (const std::string& name : names)
+  {
+    table.push_back({ name, {}, {}, {} });
+  }
+  return table;
+}
+
+void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
+{
+  if (cells.size() != table.size())
+  {
+    Fail(lines.File,
+      lines.Where() + " has " + std::to_string(cells.size()) + " values for " +
+        std::to_string(table.size()) + " columns");
+  }
+  for (std::size_t c = 0; c < cells.size(); ++c)
+  {
+    table[c].Add(cells[c]);
+  }
+}
 
 /// Whether a column of whole numbers tells particles, or kinds of them, apart.
 bool IsIdentifier(const std::string& name)
@@ -261,25 +258,26 @@ int ComponentOf(const std::string& name, std::string& base)
 }
 
 /// Columns that are the components of a vector, by its name.
-std::map<std::string, std::vector<std::size_t>> FindVectors(const std::vector<std::string>& names)
+std::map<std::string, std::vector<std::size_t>> FindVectors(const Table& table)
 {
   std::map<std::string, std::map<int, std::size_t>> parts;
-  for (std::size_t c = 0; c < names.size(); ++c)
+  std::set<std::string> names;
+  for (std::size_t c = 0; c < table.size(); ++c)
   {
     std::string base;
-    const int component = ComponentOf(names[c], base);
+    const int component = ComponentOf(table[c].Name, base);
     if (component >= 0 && !base.empty())
     {
       parts[base].emplace(component, c);
     }
+    names.insert(table[c].Name);
   }
   std::map<std::string, std::vector<std::size_t>> vectors;
   for (const auto& [base, columns] : parts)
   {
-    const auto count = static_cast<int>(columns.size());
-    const bool isFree = std::find(names.begin(), names.end(), base) == names.end();
-    if ((count == 2 || count == 3 || count == 6 || count == 9) && isFree &&
-      columns.rbegin()->first == count - 1)
+    const std::size_t count = columns.size();
+    if ((count == 2 || count == 3 || count == 6 || count == 9) && !names.count(base) &&
+      columns.rbegin()->first == static_cast<int>(count) - 1)
     {
       for (const auto& column : columns)
       {
@@ -290,10 +288,26 @@ std::map<std::string, std::vector<std::size_t>> FindVectors(const std::vector<st
   return vectors;
 }
 
-/// The columns of positions, two or three; none where no name tells.
-std::vector<std::size_t> FindPositions(const std::vector<std::string>& names,
-  const std::map<std::string, std::vector<std::size_t>>& vectors)
+/// The columns called x, y and z, with these letters behind; one of them is none.
+std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind)
 {
+  std::vector<std::size_t> found;
+  for (const char axis : { 'x', 'y', 'z' })
+  {
+    const auto at = std::find_if(table.begin(), table.end(),
+      [name = axis + behind](const Column& column) { return Small(column.Name) == name; });
+    if (at != table.end())
+    {
+      found.push_back(static_cast<std::size_t>(at - table.begin()));
+    }
+  }
+  return found.size() >= 2 ? found : std::vector<std::size_t>();
+}
+
+/// The columns of positions, two or three; none where no name tells.
+std::vector<std::size_t> FindPositions(const Table& table)
+{
+  const auto vectors = FindVectors(table);
   for (const char* usual : { "points", "point", "position", "positions", "pos", "coordinates",
          "coordinate", "coords", "coord", "xyz", "r" })
   {
@@ -305,73 +319,62 @@ std::vector<std::size_t> FindPositions(const std::vector<std::string>& names,
       }
     }
   }
-  std::vector<std::size_t> found;
-  for (const char* axis : { "x", "y", "z" })
-  {
-    const auto at = std::find_if(
-      names.begin(), names.end(), [axis](const std::string& name) { return Small(name) == axis; });
-    if (at != names.end())
-    {
-      found.push_back(static_cast<std::size_t>(at - names.begin()));
-    }
-  }
-  return found.size() >= 2 ? found : std::vector<std::size_t>();
+  return FindAxes(table, "");
 }
 
-vtkSmartPointer<vtkDataArray> JoinColumns(
-  const Table& table, const std::vector<std::size_t>& columns)
+vtkSmartPointer<vtkDoubleArray> JoinColumns(
+  const Table& table, const std::vector<std::size_t>& columns, int components)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetNumberOfComponents(static_cast<int>(columns.size()));
-  array->SetNumberOfTuples(table.Rows);
+  const std::size_t rows = table[columns[0]].Numbers.size();
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(rows));
+  array->Fill(0.0);
   for (std::size_t k = 0; k < columns.size(); ++k)
   {
-    for (vtkIdType row = 0; row < table.Rows; ++row)
+    for (std::size_t row = 0; row < rows; ++row)
     {
       array->SetTypedComponent(
-        row, static_cast<int>(k), table.Numbers[columns[k]][static_cast<std::size_t>(row)]);
+        static_cast<vtkIdType>(row), static_cast<int>(k), table[columns[k]].Numbers[row]);
     }
   }
   return array;
 }
 
-vtkSmartPointer<vtkAbstractArray> ColumnOf(const Table& table, std::size_t c)
+vtkSmartPointer<vtkAbstractArray> ArrayOf(
+  const Table& table, const std::vector<std::size_t>& columns)
 {
-  const auto rows = static_cast<std::size_t>(table.Rows);
-  if (table.Words[c].size() == rows && rows > 0)
+  const Column& first = table[columns[0]];
+  if (columns.size() == 1 && !first.Words.empty())
   {
     auto words = vtkSmartPointer<vtkStringArray>::New();
-    for (const std::string& word : table.Words[c])
+    for (const std::string& word : first.Words)
     {
       words->InsertNextValue(word);
     }
     return words;
   }
-  if (table.Whole[c].size() == rows && IsIdentifier(table.Names[c]))
+  if (columns.size() == 1 && !first.Whole.empty() && IsIdentifier(first.Name))
   {
     auto whole = vtkSmartPointer<vtkTypeInt64Array>::New();
-    whole->SetNumberOfTuples(table.Rows);
-    std::copy(table.Whole[c].begin(), table.Whole[c].end(), whole->GetPointer(0));
+    whole->SetNumberOfTuples(static_cast<vtkIdType>(first.Whole.size()));
+    std::copy(first.Whole.begin(), first.Whole.end(), whole->GetPointer(0));
     return whole;
   }
-  return JoinColumns(table, { c });
+  return JoinColumns(table, columns, static_cast<int>(columns.size()));
 }
 
-/// `positions`: the columns of positions where no names tell.
+/// `positions`: the columns of positions; where there are none, names tell.
 vtkSmartPointer<vtkPolyData> ParticlesOf(
-  const std::string& file, const Table& table, std::vector<std::size_t> positions = {})
+  const std::string& file, const Table& table, std::vector<std::size_t> positions)
 {
-  const auto vectors = FindVectors(table.Names);
-  if (positions.empty())
-  {
-    positions = FindPositions(table.Names, vectors);
-  }
+  positions = positions.empty() ? FindPositions(table) : positions;
   if (positions.empty())
   {
     std::string list;
-    for (std::size_t c = 0; c < table.Names.size() && list.size() < 200; ++c)
+    for (std::size_t c = 0; c < table.size() && list.size() < 200; ++c)
     {
-      list += (c ? ", " : "") + table.Names[c];
+      list += (c ? ", " : "") + table[c].Name;
     }
     Fail(file,
       "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
@@ -380,47 +383,37 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
   }
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(table.Rows);
-  for (vtkIdType row = 0; row < table.Rows; ++row)
-  {
-    double x[3] = { 0.0, 0.0, 0.0 };
-    for (std::size_t a = 0; a < positions.size(); ++a)
-    {
-      x[a] = table.Numbers[positions[a]][static_cast<std::size_t>(row)];
-    }
-    points->SetPoint(row, x);
-  }
+  points->SetData(JoinColumns(table, positions, 3));
   particles->SetPoints(points);
-  std::vector<bool> isDone(table.Names.size());
-  for (const std::size_t c : positions)
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> arrays; // where a first column is
+  arrays.resize(table.size());
+  for (std::size_t c = 0; c < table.size(); ++c)
   {
-    isDone[c] = true;
+    arrays[c] = { table[c].Name, { c } };
   }
-  const auto add = [&particles](
-                     const vtkSmartPointer<vtkAbstractArray>& array, const std::string& name)
+  for (const auto& vector : FindVectors(table))
   {
-    array->SetName(name.c_str());
-    particles->GetPointData()->AddArray(array);
-  };
-  for (std::size_t c = 0; c < table.Names.size(); ++c)
+    const auto& columns = vector.second;
+    if (std::find(positions.begin(), positions.end(), columns[0]) == positions.end())
+    {
+      for (const std::size_t column : columns)
+      {
+        arrays[column].second.clear();
+      }
+      arrays[*std::min_element(columns.begin(), columns.end())] = vector;
+    }
+  }
+  for (const std::size_t column : positions)
   {
-    const auto vector = std::find_if(vectors.begin(), vectors.end(),
-      [c](const auto& each)
-      { return std::find(each.second.begin(), each.second.end(), c) != each.second.end(); });
-    if (isDone[c])
+    arrays[column].second.clear();
+  }
+  for (const auto& [name, columns] : arrays)
+  {
+    if (!columns.empty())
     {
-      continue;
-    }
-    if (vector == vectors.end())
-    {
-      add(ColumnOf(table, c), table.Names[c]);
-      continue;
-    }
-    add(JoinColumns(table, vector->second), vector->first);
-    for (const std::size_t column : vector->second)
-    {
-      isDone[column] = true;
+      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(table, columns);
+      array->SetName(name.c_str());
+      particles->GetPointData()->AddArray(array);
     }
   }
   return particles;
@@ -430,12 +423,12 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
 std::vector<std::string> NamesOf(const std::vector<View>& cells)
 {
   std::vector<std::string> names;
+  std::set<std::string> taken;
   for (const View cell : cells)
   {
-    const std::size_t unit = cell.find(" [");
-    std::string name(Trimmed(unit == View::npos ? cell : cell.substr(0, unit)));
+    std::string name(Trimmed(cell.substr(0, cell.find(" ["))));
     name = name.empty() ? "Column" + std::to_string(names.size() + 1) : name;
-    while (std::find(names.begin(), names.end(), name) != names.end())
+    while (!taken.insert(name).second)
     {
       name += "_";
     }
@@ -461,63 +454,88 @@ bool AreNumbers(const std::vector<View>& cells)
     [&number](View cell) { return cell.empty() || ToNumber(cell, number); });
 }
 
+/// Splits what may be names in a comment: x y z, or x, y, z, or [01 x] [02 y] [03 z].
+std::vector<View> WordsOf(View comment)
+{
+  std::vector<View> words;
+  const std::size_t open = comment.find('['), blank = comment.find(' ', open);
+  double number;
+  if (blank == View::npos || !ToNumber(comment.substr(open + 1, blank - open - 1), number))
+  {
+    Split(comment, comment.find(',') != View::npos ? ',' : ' ', words);
+    return words;
+  }
+  for (std::size_t at = open; at != View::npos; at = comment.find('[', at + 1))
+  {
+    const View part = comment.substr(at, comment.find(']', at) - at);
+    words.push_back(Trimmed(part.substr(std::min(part.find(' '), part.size()))));
+  }
+  return words;
+}
+
+/// The sign between the columns of a table with this line; blanks, which may be tabs, count as one.
+char SeparatorOf(View line, bool isBlankTab)
+{
+  for (const char sign : { ';', '\t', ',' })
+  {
+    if (line.find(sign) != View::npos && !(sign == '\t' && isBlankTab))
+    {
+      return sign;
+    }
+  }
+  return ' ';
+}
+
 /// Rows of values, after one of names, which may stand in a comment.
-vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, char separator)
+vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, bool isBlankTab)
 {
   constexpr std::size_t mostColumns = 10000;
   Lines lines(file);
   Table table;
   std::vector<View> cells;
   std::string comment;
+  char separator = 0;
   while (lines.Next())
   {
     View line = Trimmed(lines.Get());
     if (line.empty() || line[0] == '#' || line[0] == '%' || line[0] == '!')
     {
-      comment = line.empty() ? comment
-                             : std::string(line.substr(line.find_first_not_of("#%! ") == View::npos
-                                   ? line.size()
-                                   : line.find_first_not_of("#%! ")));
+      const std::size_t begin = line.find_first_not_of("#%! \t");
+      comment = line.empty() ? comment : std::string(line.substr(std::min(begin, line.size())));
       continue;
     }
+    separator = separator == 0 ? SeparatorOf(line, isBlankTab) : separator;
     line = separator == ' ' ? line.substr(0, line.find('#')) : lines.Get();
-    if (table.Names.empty() && separator == 0)
-    {
-      separator = line.find(';') != View::npos ? ';'
-        : line.find('\t') != View::npos        ? '\t'
-        : line.find(',') != View::npos         ? ','
-                                               : ' ';
-    }
     Split(line, separator, cells);
-    if (table.Names.empty())
+    if (table.empty())
     {
       if (cells.size() > mostColumns)
       {
         Fail(file, lines.Where() + " has " + std::to_string(cells.size()) + " columns");
       }
-      if (!AreNumbers(cells))
+      const std::vector<View> words = WordsOf(comment);
+      const bool isHead = !AreNumbers(cells);
+      table = TableOf(isHead                                   ? NamesOf(cells)
+          : words.size() == cells.size() && !AreNumbers(words) ? NamesOf(words)
+                                                               : NumberedNames(cells.size()));
+      if (isHead)
       {
-        table.SetNames(NamesOf(cells));
         continue;
       }
-      std::vector<View> words;
-      Split(comment, comment.find(',') != std::string::npos ? ',' : ' ', words);
-      const bool areNames = words.size() == cells.size() && !AreNumbers(words);
-      table.SetNames(areNames ? NamesOf(words) : NumberedNames(cells.size()));
     }
-    table.AddRow(lines, cells);
+    AddRow(table, lines, cells);
   }
-  if (table.Names.empty())
+  if (table.empty())
   {
     Fail(file, "it has no row of values");
   }
-  const bool isTold = !FindPositions(table.Names, FindVectors(table.Names)).empty();
-  std::vector<std::size_t> first;
-  for (std::size_t c = 0; !isTold && separator == ' ' && c < 3 && c < table.Names.size(); ++c)
+  std::vector<std::size_t> positions = FindPositions(table);
+  for (std::size_t c = 0; c < 3 && c < table.size() && separator == ' ' && positions.size() <= c;
+       ++c)
   {
-    first.push_back(c);
+    positions.push_back(c); // the first ones
   }
-  return ParticlesOf(file, table, first);
+  return ParticlesOf(file, table, positions);
 }
 
 void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<double>& values)
@@ -529,22 +547,6 @@ void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<doub
     array->InsertNextValue(value);
   }
   particles->GetFieldData()->AddArray(array);
-}
-
-/// Adds the period as six bounds, which are 0 for axes without a period.
-void AddPeriod(vtkPolyData* particles, const std::array<double, 6>& bounds, const bool periodic[3])
-{
-  std::vector<double> period(6);
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    const bool isGood = periodic[a] && bounds[2 * a] < bounds[2 * a + 1];
-    period[2 * a] = isGood ? bounds[2 * a] : 0.0;
-    period[2 * a + 1] = isGood ? bounds[2 * a + 1] : 0.0;
-  }
-  if (std::any_of(period.begin(), period.end(), [](double side) { return side != 0.0; }))
-  {
-    AddNumbers(particles, "PeriodicBounds", period);
-  }
 }
 
 /// A count that a line says, or one below 0 that it does not.
@@ -573,7 +575,7 @@ std::string ValueOf(const std::string& comment, const std::string& key)
   return comment.substr(at + quoted, end == std::string::npos ? end : end - at - quoted);
 }
 
-std::vector<double> NumbersOf(const std::string& text)
+std::vector<double> NumbersOf(View text)
 {
   std::vector<View> words;
   std::vector<double> numbers;
@@ -595,7 +597,7 @@ std::vector<std::string> PropertiesOf(const std::string& file, const std::string
   std::vector<std::string> names;
   std::size_t begin = 0;
   std::vector<std::string> parts;
-  while (begin <= text.size())
+  while (begin < text.size())
   {
     const std::size_t end = std::min(text.find(':', begin), text.size());
     parts.push_back(text.substr(begin, end - begin));
@@ -616,151 +618,109 @@ std::vector<std::string> PropertiesOf(const std::string& file, const std::string
   return names;
 }
 
-/// Reads one step of an .xyz file, from the line after its count on.
-vtkSmartPointer<vtkPolyData> ReadXyzStep(Lines& lines, vtkTypeInt64 count)
+/// One of several steps in a file: what stands before its particles.
+struct Step
 {
+  vtkTypeInt64 Count = 0;
+  std::vector<std::string> Names; ///< empty: as many as the first row has values
+  std::array<double, 6> Bounds = {};
+  std::array<bool, 3> Periodic = {};
+  double Time = std::numeric_limits<double>::quiet_NaN(); ///< where it is told
+};
+
+/// Goes to the next step; its particles are still to be read. Returns false if there is none.
+using StepFinder = bool (*)(Lines& lines, Step& step);
+
+bool FindXyzStep(Lines& lines, Step& step)
+{
+  step = {};
+  do
+  {
+    if (!lines.Next())
+    {
+      return false;
+    }
+  } while (Trimmed(lines.Get()).empty());
+  step.Count = CountOf(lines.Get());
+  if (step.Count < 0)
+  {
+    Fail(lines.File, lines.Where() + " does not say how many particles a step has");
+  }
   lines.Need("the second line of a step");
   const std::string comment(lines.Get());
-  Table table;
-  std::vector<View> cells;
-  const std::string properties = ValueOf(comment, "properties");
-  if (!properties.empty())
-  {
-    table.SetNames(PropertiesOf(lines.File, properties));
-  }
-  for (vtkTypeInt64 i = 0; i < count; ++i)
-  {
-    lines.Need("all particles of a step");
-    Split(lines.Get(), ' ', cells);
-    if (table.Names.empty())
-    {
-      std::vector<std::string> names = NumberedNames(cells.size());
-      if (cells.size() > 3)
-      {
-        names = NumberedNames(cells.size() - 1);
-        names.insert(names.begin(), "species");
-      }
-      table.SetNames(names);
-    }
-    table.AddRow(lines, cells);
-  }
-  if (count == 0)
-  {
-    table.SetNames({ "x", "y", "z" });
-  }
-  const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(lines.File, table);
-  const std::vector<double> lattice = NumbersOf(ValueOf(comment, "lattice"));
+  step.Names = PropertiesOf(lines.File, ValueOf(comment, "properties"));
+  const std::vector<double> side = NumbersOf(ValueOf(comment, "lattice"));
+  const bool isBox = side.size() == 9 && side[1] == 0.0 && side[2] == 0.0 && side[3] == 0.0 &&
+    side[5] == 0.0 && side[6] == 0.0 && side[7] == 0.0;
+  std::vector<View> words;
   const std::string periodic = ValueOf(comment, "pbc");
-  const bool isBox = lattice.size() == 9 && lattice[1] == 0.0 && lattice[2] == 0.0 &&
-    lattice[3] == 0.0 && lattice[5] == 0.0 && lattice[6] == 0.0 && lattice[7] == 0.0;
-  if (isBox)
+  Split(periodic, ' ', words);
+  const std::vector<double> origin = NumbersOf(ValueOf(comment, "origin"));
+  for (std::size_t a = 0; a < 3 && isBox; ++a)
   {
-    std::vector<View> words;
-    Split(periodic, ' ', words);
-    bool isPeriodic[3] = { true, true, true };
-    for (std::size_t a = 0; a < 3 && words.size() == 3; ++a)
-    {
-      isPeriodic[a] = words[a] != "F" && words[a] != "0" && words[a] != "False";
-    }
-    const std::vector<double> o = NumbersOf(ValueOf(comment, "origin"));
-    const double low[3] = { o.size() == 3 ? o[0] : 0.0, o.size() == 3 ? o[1] : 0.0,
-      o.size() == 3 ? o[2] : 0.0 };
-    AddPeriod(particles,
-      { low[0], low[0] + lattice[0], low[1], low[1] + lattice[4], low[2], low[2] + lattice[8] },
-      isPeriodic);
+    step.Periodic[a] =
+      words.size() != 3 || (words[a] != "F" && words[a] != "0" && words[a] != "False");
+    step.Bounds[2 * a] = origin.size() == 3 ? origin[a] : 0.0;
+    step.Bounds[2 * a + 1] = step.Bounds[2 * a] + side[4 * a];
   }
   const std::vector<double> time = NumbersOf(ValueOf(comment, "time"));
-  if (time.size() == 1)
-  {
-    AddNumbers(particles, "TimeValue", time);
-  }
-  return particles;
+  step.Time = time.size() == 1 ? time[0] : step.Time;
+  return true;
 }
-
-/// Goes to the next step of an .xyz file. Returns its number of particles, below 0 if there is
-/// none; its second line is still to be read.
-vtkTypeInt64 FindXyzStep(Lines& lines)
-{
-  while (lines.Next())
-  {
-    if (!Trimmed(lines.Get()).empty())
-    {
-      const vtkTypeInt64 count = CountOf(lines.Get());
-      if (count < 0)
-      {
-        Fail(lines.File, lines.Where() + " does not say how many particles a step has");
-      }
-      return count;
-    }
-  }
-  return -1;
-}
-
-/// Numbers that a dump gives of a step before its particles.
-struct DumpHead
-{
-  double Time = 0.0;
-  vtkTypeInt64 Count = 0;
-  std::array<double, 6> Bounds = {};
-  bool Periodic[3] = { false, false, false };
-  std::vector<std::string> Names;
-};
 
 bool StartsWith(View text, View start)
 {
   return text.substr(0, start.size()) == start;
 }
 
-/// Goes to the next step of a dump; its particles are still to be read. Returns false if there is
-/// none.
-bool FindDumpStep(Lines& lines, DumpHead& head)
+bool FindDumpStep(Lines& lines, Step& step)
 {
-  head = {};
+  step = {};
   bool isTold = false; // of a time in its own unit
   while (lines.Next())
   {
     const View line = Trimmed(lines.Get());
-    if (StartsWith(line, "ITEM: TIMESTEP") || StartsWith(line, "ITEM: TIME"))
+    std::vector<View> words;
+    Split(line, ' ', words);
+    if (StartsWith(line, "ITEM: TIME"))
     {
-      const bool isStep = StartsWith(line, "ITEM: TIMESTEP");
-      lines.Need("the number of a step");
+      const bool isStep = words[1] == "TIMESTEP";
       double time = 0.0;
+      lines.Need("the number of a step");
       if (!ToNumber(Trimmed(lines.Get()), time))
       {
         Fail(lines.File, lines.Where() + " is no time");
       }
-      head.Time = isStep && isTold ? head.Time : time;
+      step.Time = isStep && isTold ? step.Time : time;
       isTold = isTold || !isStep;
     }
     else if (StartsWith(line, "ITEM: NUMBER OF ATOMS"))
     {
       lines.Need("the number of particles");
-      head.Count = CountOf(lines.Get());
-      if (head.Count < 0)
+      step.Count = CountOf(lines.Get());
+      if (step.Count < 0)
       {
         Fail(lines.File, lines.Where() + " is no number of particles");
       }
     }
     else if (StartsWith(line, "ITEM: BOX BOUNDS"))
     {
-      std::vector<View> words;
-      const std::string copy(line);
-      Split(copy, ' ', words);
       for (std::size_t a = 0; a < 3; ++a)
       {
-        head.Periodic[a] = words.size() >= 6 && words[words.size() - 3 + a] == "pp";
+        step.Periodic[a] = words.size() >= 6 && words[words.size() - 3 + a] == "pp";
+      }
+      for (std::size_t a = 0; a < 3; ++a)
+      {
         lines.Need("the bounds of the box");
-        const std::vector<double> bounds = NumbersOf(std::string(lines.Get()));
-        head.Bounds[2 * a] = bounds.empty() ? 0.0 : bounds[0];
-        head.Bounds[2 * a + 1] = bounds.size() < 2 ? 0.0 : bounds[1];
+        const std::vector<double> bounds = NumbersOf(lines.Get());
+        step.Bounds[2 * a] = bounds.empty() ? 0.0 : bounds[0];
+        step.Bounds[2 * a + 1] = bounds.size() < 2 ? 0.0 : bounds[1];
       }
     }
     else if (StartsWith(line, "ITEM: ATOMS"))
     {
-      std::vector<View> words;
-      Split(line, ' ', words);
       words.erase(words.begin(), words.begin() + 2);
-      head.Names = NamesOf(words);
+      step.Names = NamesOf(words);
       return true;
     }
     else if (StartsWith(line, "ITEM:"))
@@ -775,49 +735,83 @@ bool FindDumpStep(Lines& lines, DumpHead& head)
   return false;
 }
 
-vtkSmartPointer<vtkPolyData> ReadDumpStep(Lines& lines, DumpHead& head)
+/// The columns of positions of a step: as they are, unwrapped, or in units of the box, which are taken away.
+std::vector<std::size_t> PositionsOf(Table& table, const Step& step)
 {
-  Table table;
+  std::vector<std::size_t> positions = FindPositions(table);
+  for (const char* kind : { "u", "s", "su" })
+  {
+    if (!positions.empty())
+    {
+      break;
+    }
+    positions = FindAxes(table, kind);
+    for (const std::size_t column : positions)
+    {
+      const auto a = static_cast<std::size_t>(Small(table[column].Name)[0] - 'x');
+      for (double& x : table[column].Numbers)
+      {
+        x =
+          *kind == 's' ? step.Bounds[2 * a] + x * (step.Bounds[2 * a + 1] - step.Bounds[2 * a]) : x;
+      }
+    }
+  }
+  return positions;
+}
+
+vtkSmartPointer<vtkDataObject> ReadStep(
+  const std::string& file, StepFinder find, std::size_t number)
+{
+  Lines lines(file);
+  Step step;
+  for (std::size_t k = 0; k <= number; ++k)
+  {
+    for (vtkTypeInt64 i = 0; i < step.Count; ++i)
+    {
+      lines.Need("all particles of a step");
+    }
+    if (!find(lines, step))
+    {
+      Fail(file, "it has no step " + std::to_string(number));
+    }
+  }
+  Table table = TableOf(step.Names);
   std::vector<View> cells;
-  table.SetNames(head.Names);
-  for (vtkTypeInt64 i = 0; i < head.Count; ++i)
+  for (vtkTypeInt64 i = 0; i < step.Count; ++i)
   {
     lines.Need("all particles of a step");
     Split(lines.Get(), ' ', cells);
-    table.AddRow(lines, cells);
-  }
-  std::vector<std::size_t> positions;
-  for (const char* kind : { "", "u", "s", "su" }) // as they are, unwrapped, in units of the box
-  {
-    positions.clear();
-    for (const char axis : { 'x', 'y', 'z' })
+    if (table.empty())
     {
-      const auto at = std::find(head.Names.begin(), head.Names.end(), std::string(1, axis) + kind);
-      if (at != head.Names.end())
+      std::vector<std::string> names = NumberedNames(cells.size());
+      if (cells.size() > 3)
       {
-        positions.push_back(static_cast<std::size_t>(at - head.Names.begin()));
+        names = NumberedNames(cells.size() - 1);
+        names.insert(names.begin(), "species");
       }
+      table = TableOf(names);
     }
-    if (positions.size() < 2)
-    {
-      continue;
-    }
-    for (std::size_t a = 0; *kind == 's' && a < positions.size(); ++a)
-    {
-      for (double& x : table.Numbers[positions[a]])
-      {
-        x = head.Bounds[2 * a] + x * (head.Bounds[2 * a + 1] - head.Bounds[2 * a]);
-      }
-    }
-    break;
+    AddRow(table, lines, cells);
   }
-  if (positions.size() < 2)
+  table = table.empty() ? TableOf({ "x", "y", "z" }) : table;
+  const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(file, table, PositionsOf(table, step));
+  std::vector<double> period(6);
+  for (std::size_t a = 0; a < 3; ++a)
   {
-    positions.clear();
+    if (step.Periodic[a] && step.Bounds[2 * a] < step.Bounds[2 * a + 1])
+    {
+      period[2 * a] = step.Bounds[2 * a];
+      period[2 * a + 1] = step.Bounds[2 * a + 1];
+    }
   }
-  const vtkSmartPointer<vtkPolyData> particles = ParticlesOf(lines.File, table, positions);
-  AddPeriod(particles, head.Bounds, head.Periodic);
-  AddNumbers(particles, "TimeValue", { head.Time });
+  if (std::any_of(period.begin(), period.end(), [](double side) { return side != 0.0; }))
+  {
+    AddNumbers(particles, "PeriodicBounds", period);
+  }
+  if (!std::isnan(step.Time))
+  {
+    AddNumbers(particles, "TimeValue", { step.Time });
+  }
   return particles;
 }
 
@@ -840,78 +834,38 @@ bool HasCount(const std::string& file)
 
 vtkSmartPointer<vtkDataObject> ReadCsv(const std::string& file)
 {
-  return ReadRows(file, 0);
+  return ReadRows(file, false);
 }
 
 vtkSmartPointer<vtkDataObject> ReadColumns(const std::string& file, std::size_t step)
 {
-  return IsDump(file) ? ReadLammps(file, step) : ReadRows(file, ' ');
+  return IsDump(file) ? ReadLammps(file, step) : ReadRows(file, true);
 }
 
 vtkSmartPointer<vtkDataObject> ReadXyz(const std::string& file, std::size_t step)
 {
-  if (!HasCount(file))
-  {
-    return ReadRows(file, ' ');
-  }
-  Lines lines(file);
-  vtkTypeInt64 count = FindXyzStep(lines);
-  for (std::size_t k = 0; k < step && count >= 0; ++k)
-  {
-    for (vtkTypeInt64 i = -1; i < count; ++i)
-    {
-      lines.Need("all particles of a step");
-    }
-    count = FindXyzStep(lines);
-  }
-  if (count < 0)
-  {
-    Fail(file, "it has no step " + std::to_string(step));
-  }
-  return ReadXyzStep(lines, count);
+  return HasCount(file) ? ReadStep(file, FindXyzStep, step) : ReadRows(file, true);
 }
 
 vtkSmartPointer<vtkDataObject> ReadLammps(const std::string& file, std::size_t step)
 {
-  Lines lines(file);
-  DumpHead head;
-  for (std::size_t k = 0; k <= step; ++k)
-  {
-    for (vtkTypeInt64 i = 0; k > 0 && i < head.Count; ++i)
-    {
-      lines.Need("all particles of a step");
-    }
-    if (!FindDumpStep(lines, head))
-    {
-      Fail(file, "it has no step " + std::to_string(step));
-    }
-  }
-  return ReadDumpStep(lines, head);
+  return ReadStep(file, FindDumpStep, step);
 }
 
 std::vector<double> ListTimesInText(const std::string& file)
 {
   std::vector<double> times;
-  Lines lines(file);
-  if (IsDump(file))
+  const bool isDump = IsDump(file);
+  if (!isDump && !HasCount(file))
   {
-    DumpHead head;
-    while (FindDumpStep(lines, head))
-    {
-      times.push_back(head.Time);
-      for (vtkTypeInt64 i = 0; i < head.Count && lines.Next(); ++i)
-      {
-      }
-    }
     return times;
   }
-  vtkTypeInt64 count = HasCount(file) ? FindXyzStep(lines) : -1;
-  for (; count >= 0; count = FindXyzStep(lines))
+  Lines lines(file);
+  Step step;
+  while (isDump ? FindDumpStep(lines, step) : FindXyzStep(lines, step))
   {
-    lines.Need("the second line of a step");
-    const std::vector<double> time = NumbersOf(ValueOf(std::string(lines.Get()), "time"));
-    times.push_back(time.size() == 1 ? time[0] : static_cast<double>(times.size()));
-    for (vtkTypeInt64 i = 0; i < count && lines.Next(); ++i)
+    times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);
+    for (vtkTypeInt64 i = 0; i < step.Count && lines.Next(); ++i)
     {
     }
   }

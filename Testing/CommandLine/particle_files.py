@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Particle files written by hand, as ASCII: no VTK between a test and the bytes that it means."""
+import itertools
 import math
 
 SPACING = 0.1
@@ -55,16 +56,17 @@ def write_vtp(path, points, arrays, extra=""):
         f'<Points>{xml_array("Points", points, width=3)}</Points></Piece></PolyData></VTKFile>')
 
 
-def write_vtu(path, points, arrays):
-    """An unstructured grid of vertices, as many SPH codes write."""
-    count = len(points)
-    cells = (xml_array("connectivity", list(range(count)), "Int64") +
-             xml_array("offsets", list(range(1, count + 1)), "Int64") +
-             xml_array("types", [1] * count, "UInt8"))
+def write_vtu(path, points, arrays, cells=None):
+    """An unstructured grid of vertices, as many SPH codes write, or of cells: (type, points)."""
+    cells = [(1, [i]) for i in range(len(points))] if cells is None else cells
+    count = len(cells)
+    ends = list(itertools.accumulate(len(ids) for _, ids in cells))
+    cells = (xml_array("connectivity", [i for _, ids in cells for i in ids], "Int64") + xml_array("offsets", ends, "Int64") +
+             xml_array("types", [kind for kind, _ in cells], "UInt8"))
     data = "".join(xml_array(name, values) for name, values in arrays.items())
     path.write_text(
         '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" '
-        f'byte_order="LittleEndian"><UnstructuredGrid><Piece NumberOfPoints="{count}" '
+        f'byte_order="LittleEndian"><UnstructuredGrid><Piece NumberOfPoints="{len(points)}" '
         f'NumberOfCells="{count}"><PointData>{data}</PointData>'
         f'<Points>{xml_array("Points", points, width=3)}</Points><Cells>{cells}</Cells></Piece>'
         '</UnstructuredGrid></VTKFile>')

@@ -225,7 +225,8 @@ class Film(CommandLineTest):
         """Steps that were done stay, and are listed; a second run goes over them."""
         self.write_steps(3)
         run = subprocess.Popen([self.program, "steps.pvd", self.film, *FREE, "--quiet"],
-                               cwd=self.directory, env=self.misbehaving(rename_seconds=1))
+                               cwd=self.directory, env=self.misbehaving(
+                                   rename_seconds=1000, failing_folder=self.directory / "film_0002"))
         self.addCleanup(run.kill)
         while not self.film.exists():
             self.assertIsNone(run.poll())

@@ -205,6 +205,25 @@ class RealFiles(CommandLineTest):
             run = self.succeed("--scalar", "Height", "--iso", "0.07", *H, "--quiet", source=file, told="are nodes of a mesh")
             self.assertAlmostEqual(run["statistics"]["scalar_range"][1], 0.25 * 0.55)
 
+    def test_pieces_of_meshes(self):
+        """Pieces without a vertex hold particles only where none has one; points without cells always are."""
+        tank, corners = block((6, 6, 6)), block((2, 2, 2), 5, (9, 9, 9))
+        files.write_vtu(self.directory / "water.vtu", tank, {})
+        files.write_vtu(self.directory / "hull.vtu", corners, {}, [(12, range(8))])
+        files.write_vtu(self.directory / "spray.vtu", [(3, 3, 3)], {}, [])
+        names = {"all.pvtu": ["hull", "water", "spray"], "hull.pvtu": ["hull", "spray"]}
+        for name, pieces in names.items():
+            (self.directory / name).write_text(
+                '<?xml version="1.0"?><VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>' +
+                "".join(f'<Piece Source="{piece}.vtu"/>' for piece in pieces) + "</PUnstructuredGrid></VTKFile>")
+        files.write_pvd(self.directory / "all.pvd", [(0, self.directory / f"{piece}.vtu") for piece in names["all.pvtu"]])
+        for name, count in (("all.pvtu", 217), ("hull.pvtu", 9), ("hull.vtu", 8)):
+            listed = self.run_program("--list-arrays", self.directory / name)
+            self.assertRegex(listed.stdout, f"particles         {count}\n")
+            self.assertEqual("8 of 8 points of" in listed.stderr, count == 217)
+        levels = self.levels([self.directory / "all.pvd"], *H, words="8 of 8 points of")
+        self.assertEqual([round(level, 1) for _, _, level in levels], [0.6])
+
     # ---- vectors of two components ----
 
     def test_vectors_in_a_plane(self):
@@ -227,6 +246,7 @@ class RealFiles(CommandLineTest):
             low, high = self.succeed("--derive", "velocity", "--scalar", "Divergence", "--iso", "1", *H, source=file,
                                      told="(?s).*")["statistics"]["scalar_range"]
             self.assertLess(max(abs(low), abs(high)), 1e-5)
+        self.assertRegex(self.run_program("--list-arrays", file).stdout, "velocity          velocity\n")
         self.refuse(self.extract("--free-surface", source=file), 1,
                     "By 'particle_spacing', particles are 0.1 apart: 0.13 is usual. ")
 

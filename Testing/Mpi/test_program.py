@@ -23,7 +23,7 @@ import numpy as np
 from particle_pieces import corners, difference, read, take, write, write_pieces
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDoubleArray
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
 
 PROGRAM, MPIRUN, DATA, RANKS, PRELOAD = sys.argv[1:6]
@@ -89,14 +89,42 @@ class Program(unittest.TestCase):
         particles.GetPointData().RemoveArray("Density")
         write(particles, self.path("in.vtp"))
         pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
-        for how in (["--free-surface"], ["--scalar", "Density", "--iso", "600"], ["--free-surface", "--periodic", "0,0,5"]):
+        for how in (["--free-surface"], ["--scalar", "Density", "--iso", "600"], ["--free-surface", "--periodic", "0,0,5"],
+                    ["--free-surface", "--quiet"]):
+            if how[-1] == "--quiet":  # with one particle far away, which is left out
+                particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
+                write(particles, self.path("in.vtp"))
+                pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
             words = [*how, "--smoothing-length", "neighbours"]
-            self.good(self.run_alone(self.path("in.vtp"), self.path("alone.vtp"), *words))
-            self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *words))
+            done = [self.good(self.run_alone(self.path("in.vtp"), self.path("alone.vtp"), *words)),
+                    self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *words))]
+            self.assertEqual([run.stderr.count("1 particle is so far away") for run in done], [how[-1] == "--quiet"] * 2)
             alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
             self.assertGreater(alone.GetNumberOfPolys(), 1000)
             np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
             self.check_point_data(alone, ranks)
+
+    def test_pieces_of_meshes(self):
+        """A piece of polygons among pieces of vertices has no particles, whichever process reads it."""
+        water = read(PARTICLES)
+        vertices, polygon = vtkCellArray(), vtkCellArray()
+        for i in range(water.GetNumberOfPoints()):
+            vertices.InsertNextCell(1, [i])
+        polygon.InsertNextCell(3, [0, 1, 2])
+        water.SetVerts(vertices)
+        hull = take(water, [0, 1, 2])
+        hull.SetVerts(vtkCellArray())
+        hull.SetPolys(polygon)
+        write(water, self.path("water.vtp"))
+        write(hull, self.path("hull.vtp"))
+        with open(self.path("all.pvtp"), "w", encoding="utf-8") as list_:
+            list_.write('<VTKFile type="PPolyData"><PPolyData><Piece Source="hull.vtp"/><Piece Source="water.vtp"/>'
+                        '</PPolyData></VTKFile>')
+        self.good(self.run_alone(self.path("water.vtp"), self.path("alone.vtp"), "--free-surface"))
+        done = self.good(self.run_ranks(self.path("all.pvtp"), self.path("ranks.vtp"), "--free-surface"))
+        self.assertEqual(done.stderr.count("3 of 3 points of"), 1, done.stderr)
+        np.testing.assert_array_equal(*(vtk_to_numpy(read(self.path(name)).GetPoints().GetData())
+                                        for name in ("alone.vtp", "ranks.vtp")))
 
     def write_plane(self):
         """The particles, moved into the plane z = 0.5; with smoothing lengths of 1 to 4."""

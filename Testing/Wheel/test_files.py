@@ -511,6 +511,11 @@ class Layouts(Case):
             self.assertTrue(np.array_equal(particles.arrays["Velocity"], X * 2), name)
             self.assertTrue(np.array_equal(particles.arrays["rho"], DENSITY), name)
             self.assertEqual(particles.density, "rho")
+        box.save(self.at("box.vtu"))
+        for names, count in ((("box.vtu", "grid.vtu"), len(X)), (("box.vtu", "box.vtu"), 128)):  # as VTK's pieces are
+            self.at("p.pvtu").write_text('<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>' + "".join(
+                f'<Piece Source="{name}"/>' for name in names) + "</PUnstructuredGrid></VTKFile>")
+            self.assertEqual(len(quietly(io.read, self.at("p.pvtu"))), count)
 
     def test_xml_in_pieces(self):
         """Arrays that all pieces have, one after the other."""

@@ -21,6 +21,7 @@ vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles)
   vtkSPHParticlesChoice choice;
   const bool isJoined = vtkSPHParticles(choice, particles).JoinVelocity() != nullptr;
   found.Velocity = isJoined ? "vx, vy, vz as Velocity" : find(MCOR_VELOCITY, 3);
+  found.Velocity = found.Velocity.empty() ? find(MCOR_VELOCITY, 2) : found.Velocity; // in a plane
   vtkSPHParticles::FindFluid(choice, particles);
   found.Fluid = choice.FluidArrayName;
   found.FluidValue = choice.FluidValue;

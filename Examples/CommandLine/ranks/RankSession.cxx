@@ -229,8 +229,14 @@ vtkSmartPointer<vtkPolyData> RankSession::Merge(vtkPolyData* part)
 vtkSmartPointer<vtkPointSet> RankSession::Part(const std::string& file, bool mayBeEmpty)
 {
   Particles particles;
-  this->OnAll([&]
-    { particles = ReadParticlesPart(file, this->GetRank(), this->GetCount(), this->Messages); });
+  ParticleSets sets;
+  this->OnAll(
+    [&] { sets = ReadParticlesPart(file, this->GetRank(), this->GetCount(), this->Messages); });
+  const int own = sets.HaveVertices ? 1 : 0;
+  int any = own;
+  this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
+  sets.HaveVertices = any > 0;
+  this->OnAll([&] { particles = JoinSets(sets); });
   return this->Complete(particles, mayBeEmpty);
 }
 

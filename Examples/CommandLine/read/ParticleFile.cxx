@@ -280,12 +280,13 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
 
 /// The points' arrays alone, all that is used of the data: no cells (one per particle, for nothing),
 /// and nothing that was not checked.
-vtkSmartPointer<vtkPointSet> TakeParticles(const std::string& file, vtkPointSet* all)
+vtkSmartPointer<vtkPointSet> TakeParticles(
+  const std::string& file, vtkPointSet* all, bool haveVertices)
 {
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   CheckArrays(file, all->GetPointData(), all->GetNumberOfPoints(), " points");
   CheckArrays(file, all->GetCellData(), all->GetNumberOfCells(), " cells");
-  const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, vtkSPHHaveVertices(all));
+  const vtkSmartPointer<vtkDataObject> taken = vtkSPHTakeVertices(all, haveVertices);
   auto* data = vtkPointSet::SafeDownCast(taken);
   const vtkIdType others = all->GetNumberOfPoints() - data->GetNumberOfPoints();
   static bool isSaid = false; // of a film's steps once
@@ -327,8 +328,8 @@ void TakeStep(std::string& file, std::size_t& step)
   }
 }
 
-/// Reads a file, which may have no points. Throws std::runtime_error.
-vtkSmartPointer<vtkPointSet> ReadFile(std::string file, MessageCapture* messages)
+/// Adds what a file holds, unless it has no points. Throws std::runtime_error.
+void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
 {
   std::size_t step = 0;
   TakeStep(file, step);
@@ -347,7 +348,17 @@ vtkSmartPointer<vtkPointSet> ReadFile(std::string file, MessageCapture* messages
       (data ? std::string("a ") + data->GetClassName() : std::string("no VTK data")) +
       ", not particles (poly data or an unstructured grid)");
   }
-  return points->GetNumberOfPoints() == 0 ? NoParticles() : TakeParticles(file, points);
+  if (points->GetNumberOfPoints() > 0)
+  {
+    const bool haveVertices = vtkSPHHaveVertices(points);
+    sets.HaveVertices = sets.HaveVertices || haveVertices;
+    sets.Files.push_back(file);
+    sets.Sets.emplace_back(points);
+    if (haveVertices)
+    {
+      sets.Sets.back() = TakeParticles(file, points, true); // so much less to keep
+    }
+  }
 }
 
 bool IsList(const std::string& file)
@@ -375,17 +386,6 @@ std::vector<std::string> ListParts(const std::string& file, MessageCapture* mess
   return parts;
 }
 
-/// Adds what the file holds, unless it holds no points.
-void ReadPart(const std::string& file, std::vector<vtkSmartPointer<vtkPointSet>>& parts,
-  MessageCapture* messages)
-{
-  vtkSmartPointer<vtkPointSet> points = ReadFile(file, messages);
-  if (points->GetNumberOfPoints() > 0)
-  {
-    parts.push_back(points);
-  }
-}
-
 }
 
 std::string ParticleFileEndings()
@@ -401,24 +401,20 @@ vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCaptu
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty)
 {
-  std::vector<vtkSmartPointer<vtkPointSet>> parts;
+  ParticleSets sets;
   for (const std::string& file : files)
   {
     for (const std::string& part : ListParts(file, messages))
     {
-      ReadPart(part, parts, messages);
+      ReadSet(part, sets, messages);
     }
   }
-  if (parts.empty() && mayBeEmpty)
-  {
-    return NoParticles();
-  }
-  if (parts.empty())
+  if (sets.Sets.empty() && !mayBeEmpty)
   {
     throw std::runtime_error(files.front() + " holds no points");
   }
-  const bool isWhole = parts.size() == 1 && files.size() == 1 && !IsList(files.front());
-  return isWhole ? parts.front() : JoinParts(parts);
+  sets.IsList = files.size() > 1 || IsList(files.front());
+  return JoinSets(sets);
 }
 
 std::vector<double> ListTimes(const std::string& file)
@@ -465,21 +461,35 @@ std::vector<std::string> ListFiles(const std::vector<std::string>& files, Messag
   return all;
 }
 
-vtkSmartPointer<vtkPointSet> ReadParticlesPart(
+ParticleSets ReadParticlesPart(
   const std::string& file, int rank, int count, MessageCapture* messages)
 {
   const std::vector<std::string> all = ListParts(file, messages);
-  std::vector<vtkSmartPointer<vtkPointSet>> parts;
+  ParticleSets sets;
   for (auto i = static_cast<std::size_t>(rank); i < all.size();
        i += static_cast<std::size_t>(count))
   {
-    ReadPart(all[i], parts, messages);
+    ReadSet(all[i], sets, messages);
   }
-  if (parts.empty())
+  sets.IsList = IsList(file);
+  return sets;
+}
+
+vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
+{
+  std::vector<vtkSmartPointer<vtkPointSet>> parts;
+  for (std::size_t i = 0; i < sets.Sets.size(); ++i)
   {
-    return vtkSmartPointer<vtkPolyData>::New();
+    const vtkSmartPointer<vtkPointSet> part =
+      TakeParticles(sets.Files[i], sets.Sets[i], sets.HaveVertices);
+    if (part->GetNumberOfPoints() > 0)
+    {
+      parts.push_back(part);
+    }
   }
-  return IsList(file) || parts.size() > 1 ? JoinParts(parts) : parts.front();
+  return parts.empty()                ? NoParticles()
+    : sets.IsList || parts.size() > 1 ? JoinParts(parts)
+                                      : parts.front();
 }
 
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)

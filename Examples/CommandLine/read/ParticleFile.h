@@ -37,10 +37,23 @@ vtkSmartPointer<vtkPointSet> ReadWalls(
 /// These files, and those that they list as pieces: all that is read, as far as lists can be.
 std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages);
 
+/// What files hold at one time. Where any of it has vertices, points of meshes without these are no particles, so cells are
+/// kept until all is read.
+struct ParticleSets
+{
+  std::vector<std::string> Files;
+  std::vector<vtkSmartPointer<vtkPointSet>> Sets; ///< none is empty
+  bool HaveVertices = false;
+  bool IsList = false; ///< of pieces, which may hold copies of others' particles
+};
+
 /// The part that this one of `count` processes reads: every so manieth piece of a file that lists
-/// pieces; another file is the first one's. May have no points.
-vtkSmartPointer<vtkPointSet> ReadParticlesPart(
+/// pieces; another file is the first one's.
+ParticleSets ReadParticlesPart(
   const std::string& file, int rank, int count, MessageCapture* messages);
+
+/// The particles, which may be none.
+vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
 /// Reads a data set of any class, with the same care; as it is, but for names.
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages);

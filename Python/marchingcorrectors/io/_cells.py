@@ -32,10 +32,15 @@ def find_vertices(types, offsets, points, count):
     return found
 
 
+def tell_mesh(body, is_vertex):
+    return body._replace(is_mesh=not is_vertex.any()) if len(is_vertex) else body
+
+
 def take_vertices(file, body, types, offsets, points, cell_arrays):
     """Where there are vertices and other cells, the points of the vertices: other points are a mesh's. Arrays of cells are
     then those of the vertices' points, unless these have one of that name; also where each point has a vertex."""
     is_vertex, count = np.isin(types, VERTICES), len(body.points)
+    body = tell_mesh(body, is_vertex)
     cell_of = find_vertices(types, offsets, points, count)
     if not is_vertex.any() or is_vertex.all() and (not cell_arrays or (cell_of < 0).any()):
         return body

@@ -219,16 +219,24 @@ def by_name(file, pairs):
 
 
 class Body(NamedTuple):
-    """The points of a file at one of its times; times: those of all steps, None where it is no film."""
+    """The points of a file at one of its times; times: those of all steps, None where it is no film. is_mesh: whether it has
+    cells, and none of them is a vertex; None where it has none."""
     points: np.ndarray
     arrays: Dict[str, np.ndarray]
     time: Optional[float] = None
     period: Optional[Sequence[float]] = None
     times: Optional[Sequence[float]] = None
+    is_mesh: Optional[bool] = None
 
 
 def join_bodies(bodies):
-    """Several as one, with the arrays that all have that have points; without points that are another's (vtkGhostType)."""
+    """Several as one, with the arrays that all have that have points; without points that are another's (vtkGhostType), and
+    without the points of meshes where there are vertices beside them."""
+    meshes = [body for body in bodies if body.is_mesh] if any(body.is_mesh is False for body in bodies) else []
+    if meshes:
+        warn(f"{sum(len(body.points) for body in meshes)} points of pieces without vertices are nodes of meshes and no "
+             "particles, as other pieces have vertices.")
+        bodies = [body for body in bodies if not body.is_mesh]
     parts = [body for body in bodies if len(body.points)] or list(bodies[:1])
     if len(parts) > 1 or GHOSTS in parts[0].arrays:
         own = [np.flatnonzero(np.asarray(body.arrays.get(GHOSTS, np.zeros(len(body.points), int))).astype(int) & 1 == 0)

@@ -15,7 +15,7 @@ from xml.parsers import expat
 import numpy as np
 
 from .._warnings import warn
-from ._cells import VERTICES, take_vertices
+from ._cells import VERTICES, take_vertices, tell_mesh
 from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies
 from ._text import parse_numbers
 
@@ -154,7 +154,7 @@ class XmlFile:
                  for name, arrays in sections.items()]
         is_vertex = np.isin(np.concatenate(types), VERTICES) if types else np.zeros(0, bool)
         if not is_vertex.any() or is_vertex.all() and not piece["CellData"]:
-            return body
+            return tell_mesh(body, is_vertex)
         offsets, points = [np.zeros(1, int)], []
         for arrays in sections.values():
             ends, connectivity = self.values(arrays["offsets"]), arrays["connectivity"]

@@ -85,13 +85,13 @@ static void caps_place(caps_case* c, const mcor_surface* s)
   for (int i = 0; i < 4; ++i)
   {
     const int from = 2 * ((c->axis + 1 + i / 2) % 3) + i % 2;
-    const int periodic = o->periodic[from - i % 2] < o->periodic[from - i % 2 + 1];
+    const double period = o->periodic[from - i % 2 + 1] - o->periodic[from - i % 2];
     const double box = o->box[from];
     const int has_box = box != 0 && !isinf(box);
     const double low = cube * (double)s->statistics.lattice_origin[from / 2];
-    c->side[i] = periodic && !has_box ? low + i % 2 * (o->periodic[from] - o->periodic[from - 1])
-      : has_box                       ? ceil(box / cube - 0.5) * cube
-                                      : INFINITY;
+    c->side[i] = has_box ? ceil(box / cube - 0.5) * cube
+      : period > 0       ? low + i % 2 * period
+                         : INFINITY;
   }
 }
 

@@ -70,8 +70,9 @@ static void check_tank(mcor_context* context, double share, mcor_topology topolo
   assert_true(!open.statistics.is_closed && open.point_count > 1000);
   cap_check_prefix(&open, &closed);
   assert_true(closed.statistics.is_closed);
-  const mesh_report report = core_check_pinched_mesh(&closed);
+  mesh_report report = core_check_pinched_mesh(&closed);
   assert_int_equal(report.boundary_edges, 0);
+  mesh_free_report(&report);
   cap_check_volume(&closed, &set, tank, iso, share);
   for (int64_t p = open.point_count; p < closed.point_count; ++p)
   {

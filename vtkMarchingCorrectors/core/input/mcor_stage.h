@@ -7,7 +7,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
-/* What one slice of the input stages. */
+/* One slice of the input, as it is staged. */
 typedef struct mcor_stage_slice
 {
   int64_t used, to; /* images; where they begin */

@@ -147,7 +147,7 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
     box->first[a] = (int)side[0];
     box->last[a] = (int)side[1];
     mcor_place_halves(lattice, a, sides, box->first[a], box->last[a], box->halves);
-    /* Those of any rank; all where there is no end. */
+    /* Finds the cells that any rank owns; all where there is no end. */
     const double* whole =
       options->ranks && mcor_is_box(options->ranks->whole_box) ? options->ranks->whole_box : NULL;
     double all[2] = { first, last };

@@ -23,6 +23,8 @@ typedef struct mcor_tally
   double count, sum, squares, correction_max, residual_max;
 } mcor_tally;
 
+#define MCOR_DOWNLOADS 12
+
 /* The vertices of one iso value on their way to the surface. */
 typedef struct mcor_download
 {
@@ -33,9 +35,10 @@ typedef struct mcor_download
   void *scanned, *node, *offset, *linear, *value, *gradient, *weight, *flag;
   void *eigenvalue, *nearest, *curvature, *cuts; /* where the caller asked for them */
   uint8_t* owned;                                /* see mcor_find_counted */
+  mcor_mapping mappings[MCOR_DOWNLOADS];         /* of these views */
+  int mapped;
   mcor_tally tallies[MCOR_SLICES];
 } mcor_download;
-#define MCOR_DOWNLOADS 12
 
 /* Numbers the vertices that triangles use, or all: scanned[v] becomes how many of them come before
  * v. */
@@ -64,7 +67,7 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
   return status;
 }
 
-static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNLOADS])
+static void mcor_list_mappings(mcor_download* d)
 {
   const mcor_context* context = d->context;
   const mcor_mesh* mesh = &context->mesh;
@@ -76,6 +79,7 @@ static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNL
     { &mesh->field_value, n * real, &d->value }, { &mesh->gradient, n * 4 * real, &d->gradient },
     { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag } };
   int count = 8;
+  mcor_mapping* mappings = d->mappings;
   memcpy(mappings, all, sizeof all);
   if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE)
   {
@@ -95,7 +99,7 @@ static int mcor_list_mappings(mcor_download* d, mcor_mapping mappings[MCOR_DOWNL
   {
     mappings[count++] = (mcor_mapping){ &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts };
   }
-  return count;
+  d->mapped = count;
 }
 
 static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
@@ -349,8 +353,6 @@ static mcor_status mcor_append_mesh(
     (long long)(base + count), INT32_MAX);
   if (count > 0)
   {
-    mcor_mapping mappings[MCOR_DOWNLOADS];
-    const int mapped = mcor_list_mappings(download, mappings);
     if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
     {
       mcor_buffer* eigenvalue = &context->trim.eigenvalue;
@@ -362,7 +364,8 @@ static mcor_status mcor_append_mesh(
         ? mcor_find_curvature(context)
         : MCOR_OK);
     MCOR_TRY(options->outputs & MCOR_OUT_NEAREST_PARTICLE ? mcor_find_nearest(context) : MCOR_OK);
-    MCOR_TRY(mcor_map_all(context, mappings, mapped));
+    mcor_list_mappings(download);
+    MCOR_TRY(mcor_map_all(context, download->mappings, download->mapped));
     mcor_number_lines(context, download->scanned, base);
   }
   MCOR_TRY(mcor_keep_cells(context, surface));
@@ -395,15 +398,13 @@ mcor_status mcor_append_output(
     .iso = context->run.iso.value,
     .sum_rounding = mcor_sum_rounding(context),
     .surface = surface };
-  mcor_mapping mappings[MCOR_DOWNLOADS];
   mcor_mesh* m = &context->mesh;
   /* Frees what only the mesh needed, so that the output finds room; then what the output did, for
    * what the caller makes of the surface. */
   mcor_release_trim(context);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_append_mesh(context, input, all, &download);
-  const int mapped = mcor_list_mappings(&download, mappings);
-  status = mcor_unmap_all(context, mappings, mapped, status);
+  status = mcor_unmap_all(context, download.mappings, download.mapped, status);
   mcor_release_attributes(context);
   MCOR_RELEASE(context, &m->node, &m->offset, &m->linear, &m->field_value, &m->gradient,
     &m->vertex_weight, &m->means, &m->curvature, &m->flag, &m->cut_edges, &m->scanned,

@@ -80,21 +80,6 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
   return places->count;
 }
 
-int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK])
-{
-  int kept = 0;
-  for (int i = 0; i < count && input->solid; ++i)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      x[a][kept] = x[a][i];
-    }
-    kept += mcor_is_present(input, first + i) && isfinite(x[0][i]) && isfinite(x[1][i]) &&
-      isfinite(x[2][i]);
-  }
-  return input->solid ? kept : count;
-}
-
 /* Elements that are tested together; one by one, each test would wait for the one before. */
 #define MCOR_ELEMENTS 4
 
@@ -136,7 +121,7 @@ typedef struct mcor_range_job
   double low[MCOR_SLICES], high[MCOR_SLICES];
 } mcor_range_job;
 
-static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_component_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_range_job* job = data;
   double x[MCOR_CHUNK], low = DBL_MAX, high = -DBL_MAX;
@@ -160,7 +145,8 @@ void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8
   mcor_skip skip, int64_t count, int component, double range[2])
 {
   mcor_range_job job = { .array = array, .solid = solid, .skip = skip, .component = component };
-  const int slices = mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_range_slice, &job);
+  const int slices =
+    mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_component_slice, &job);
   range[0] = DBL_MAX;
   range[1] = -DBL_MAX;
   for (int s = 0; s < slices; ++s)

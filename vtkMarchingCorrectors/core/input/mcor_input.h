@@ -90,8 +90,6 @@ typedef struct mcor_places
 /* Reads the next chunk of [first, last); returns its count, 0 at the end. */
 int mcor_read_places(const mcor_context* context, const mcor_input* input, int64_t first,
   int64_t last, mcor_places* places);
-/* Moves the positions of present, finite particles to the front; returns their number. */
-int mcor_keep_present(const mcor_input* input, int64_t first, int count, double x[3][MCOR_CHUNK]);
 /* Reads at most MCOR_CHUNK values. A derived scalar that is too large for a number is not
  * finite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);

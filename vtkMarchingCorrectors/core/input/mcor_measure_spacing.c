@@ -55,9 +55,19 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   double x[3][MCOR_CHUNK], d2[MCOR_CHUNK];
   for (int64_t begin = 0; begin < job->input->count; begin += MCOR_CHUNK)
   {
-    int count = mcor_chunk_of(job->input->count - begin);
-    mcor_read_positions(job->input, begin, count, x);
-    count = mcor_keep_present(job->input, begin, count, x);
+    const int read = mcor_chunk_of(job->input->count - begin);
+    int count = 0; /* of present, finite particles, which move to the front */
+    mcor_read_positions(job->input, begin, read, x);
+    for (int i = 0; i < read; ++i)
+    {
+      for (int a = 0; a < 3; ++a)
+      {
+        x[a][count] = x[a][i];
+      }
+      count += !job->input->solid ||
+        (mcor_is_present(job->input, begin + i) && isfinite(x[0][i]) && isfinite(x[1][i]) &&
+          isfinite(x[2][i]));
+    }
     for (int64_t s = first; s < last; ++s)
     {
       const double* at = job->samples.sample[s].x;

@@ -28,7 +28,7 @@ typedef struct mcor_wall_sample
   int64_t fluid, solid; /* whole weights */
 } mcor_wall_sample;
 
-typedef struct mcor_wall
+typedef struct mcor_wall_measure
 {
   const mcor_context* context;
   const mcor_input* input;
@@ -38,10 +38,10 @@ typedef struct mcor_wall
   double mass_max;
   mcor_wall_sample sample[MCOR_SAMPLES];
   int64_t weights[MCOR_SLICES][MCOR_SAMPLES][2]; /* of fluid, of solids */
-} mcor_wall;
+} mcor_wall_measure;
 
 static void mcor_wall_add(
-  mcor_wall* wall, int slice, int64_t i, const double x[3], double h, double length)
+  mcor_wall_measure* wall, int slice, int64_t i, const double x[3], double h, double length)
 {
   const mcor_options* options = wall->context->run.options;
   const bool solid = wall->input->solid && wall->input->solid[i];
@@ -101,7 +101,7 @@ static void mcor_wall_add(
 
 static void mcor_wall_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_wall* wall = data;
+  mcor_wall_measure* wall = data;
   mcor_places p;
   for (; mcor_read_places(wall->context, wall->input, first, last, &p) > 0; first += p.count)
   {
@@ -125,7 +125,7 @@ static int mcor_compare_shares(const void* a, const void* b)
 
 /* Sorts the samples by share, and returns the share at which half of the fluid's weight is
  * counted. */
-static double mcor_median_share(mcor_wall* wall)
+static double mcor_median_share(mcor_wall_measure* wall)
 {
   int count = 0;
   double sum = 0, counted = 0;
@@ -154,7 +154,7 @@ static double mcor_median_share(mcor_wall* wall)
 
 /* Chooses the samples, sorts them along an axis without a period, if there is one, and weighs fluid
  * and solids there. */
-static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall* wall)
+static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall_measure* wall)
 {
   const mcor_input* input = wall->input;
   mcor_samples_found found = { .most = MCOR_SAMPLES };
@@ -212,7 +212,7 @@ mcor_status mcor_measure_wall(mcor_context* context, const mcor_input* input)
     m->wall_share = MCOR_FREE_WALL_SHARE;
     return MCOR_OK;
   }
-  mcor_wall* wall = calloc(1, sizeof *wall);
+  mcor_wall_measure* wall = calloc(1, sizeof *wall);
   MCOR_TRY(mcor_allocated(context, wall));
   wall->context = context;
   wall->input = input;

@@ -116,7 +116,7 @@ static int mcor_next_run(const mcor_staging* staging, int64_t* begin, int64_t la
 }
 
 /* Counts the images that a slice stages, and keeps the marks of particles that have any. */
-static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_staging* staging = data;
   mcor_stage_chunk chunk;
@@ -279,7 +279,7 @@ static mcor_status mcor_make_stage_room(mcor_staging* staging)
   int slices;
   int64_t total = 0;
   MCOR_TRY(mcor_parallel_run(
-    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_count_slice, staging, &slices));
+    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_count_staged, staging, &slices));
   for (int i = 0; i < slices; ++i)
   {
     staging->slices[i].to = total;
@@ -345,7 +345,7 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
   return MCOR_OK;
 }
 
-static void mcor_find_farthest(void* data, int slice, int64_t first, int64_t last)
+static void mcor_find_reaching(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_staging* staging = data;
   const mcor_reach_box* reach = staging->reach;
@@ -383,7 +383,7 @@ static void mcor_widen_reach(mcor_staging* staging)
     return;
   }
   const int slices = mcor_parallel_for(
-    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_find_farthest, staging);
+    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_find_reaching, staging);
   double farthest = 0;
   for (int s = 0; s < slices; ++s)
   {

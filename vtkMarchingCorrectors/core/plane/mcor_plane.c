@@ -58,7 +58,7 @@ static bool mcor_is_all_at(const double* x, int count, double low, double high)
 }
 
 /* Stops along an axis once the fluid is not flat there: how far it goes then does not matter. */
-static void mcor_spread_slice(void* data, int slice, int64_t first, int64_t last)
+static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_spread_job* job = data;
   const mcor_input* input = job->input;
@@ -110,7 +110,7 @@ static mcor_spread mcor_spread_of(mcor_context* context, const mcor_input* input
     job.slices[i / 6].high[i % 6] = -DBL_MAX;
   }
   const int slices = mcor_has_positions(input)
-    ? mcor_parallel_for(context, input->count, MCOR_LIGHT_GRAIN, mcor_spread_slice, &job)
+    ? mcor_parallel_for(context, input->count, MCOR_LIGHT_GRAIN, mcor_extent_slice, &job)
     : 0;
   for (int i = 0; i < 6 * slices; ++i)
   {

@@ -43,7 +43,7 @@ static bool mcor_create_joining(int64_t points, mcor_joining* j)
   return true;
 }
 
-static void mcor_add_line(mcor_joining* j, int32_t from, int32_t to)
+static void mcor_join_line(mcor_joining* j, int32_t from, int32_t to)
 {
   ++j->count;
   j->next[from] = to;
@@ -57,7 +57,7 @@ static bool mcor_is_line(const int32_t* t)
 }
 
 /* Reads the lines; trimming may leave two triangles of one line, see mcor_trim_cut. */
-static mcor_status mcor_read_lines(
+static mcor_status mcor_read_joining(
   mcor_context* context, const mcor_surface* surface, mcor_joining* j)
 {
   MCOR_TRY(mcor_allocated(context, mcor_create_joining(surface->point_count, j)));
@@ -66,7 +66,7 @@ static mcor_status mcor_read_lines(
     const int32_t* t = surface->triangles + 3 * i;
     if (t[0] != t[2] && mcor_is_line(t)) /* no second half of a quad that stands for a line */
     {
-      mcor_add_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
+      mcor_join_line(j, t[1] == t[2] ? t[0] : t[2], t[1]);
     }
   }
   return MCOR_OK;
@@ -142,7 +142,7 @@ mcor_status mcor_join_lines(
   bool made = mcor_create_joining(surface->point_count, &joining);
   for (int64_t i = 0; i < count && made; ++i)
   {
-    mcor_add_line(&joining, pieces[i][0], pieces[i][1]);
+    mcor_join_line(&joining, pieces[i][0], pieces[i][1]);
   }
   made = made && mcor_join(&joining, surface);
   mcor_free_joining(&joining);
@@ -159,7 +159,7 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
 {
   const bool all = context->run.options->preview || context->run.options->triangle_normals;
   mcor_joining joining;
-  const mcor_status status = mcor_read_lines(context, surface, &joining);
+  const mcor_status status = mcor_read_joining(context, surface, &joining);
   for (int64_t i = 0; i < surface->point_count && status == MCOR_OK; ++i)
   {
     float* n = surface->normals + 3 * i;
@@ -184,7 +184,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
 {
   const mcor_plane* plane = &context->plane;
   mcor_joining joining;
-  mcor_status status = mcor_read_lines(context, surface, &joining);
+  mcor_status status = mcor_read_joining(context, surface, &joining);
   status = status == MCOR_OK ? mcor_allocated(context, mcor_join(&joining, surface)) : status;
   mcor_free_joining(&joining);
   MCOR_TRY(status);

@@ -16,11 +16,16 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHReals.h"
+#include "vtkSPHRun.h"
+#if MCOR_HAS_RANKS
+#include "vtkSPHSharedRun.h"
+#endif
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -146,22 +151,24 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   }
 }
 
-void vtkMarchingCorrectors::FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
+void vtkMarchingCorrectors::FillChoice(
+  vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
   static_cast<vtkSPHParticlesChoice&>(choice) = *this;
-  this->FillRequests(choice, particles);
+  this->FillRequests(choice, particles, merge);
   choice.ScalarComponent = this->ScalarComponent;
   choice.FreeSurface = this->FreeSurface != 0;
   choice.InterpolateAttributes = this->InterpolateAttributes != 0;
   choice.ComputeScalars = this->ComputeScalars != 0;
+  this->FindFluid(choice, particles, merge);
 }
 
-void vtkMarchingCorrectors::FillRequests(
-  vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles)
+void vtkMarchingCorrectors::FillRequests(vtkMarchingCorrectorsChoice& choice,
+  vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
   if (!this->FreeSurface) // which contours no array: all of their values need not be seen
   {
-    choice.Scalar = this->FindFirstRequest(particles);
+    choice.Scalar = this->FindFirstRequest(particles, merge);
     choice.ScalarDot = this->FindRequest(1, particles);
   }
 }
@@ -170,43 +177,52 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 {
   this->ClearSummary();
   auto* particles = vtkPointSet::SafeDownCast(data);
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->ProcessDistributed(particles, vtkPolyData::SafeDownCast(output));
-    return;
-  }
-#endif
-  if (data && !particles)
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  if (data && !particles && !run->IsShared())
   {
     this->Warn(
       std::string("A ") + data->GetClassName() + " has no points of its own, and so no surface.");
     return;
   }
-  if (!particles || particles->GetNumberOfPoints() == 0 || this->IsAborted())
+  if (!run->Begin(particles) || run->Particles == 0)
   {
     this->SetUsedNames(nullptr);
     return;
   }
-  mcor_options options;
   vtkMarchingCorrectorsChoice choice;
-  this->FillOptions(options);
-  this->FillChoice(choice, particles);
-  this->FindFluid(choice, particles);
-  choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(options);
-  vtkMarchingCorrectorsInput input(choice, particles);
-  if (this->IsTaken(input, particles, options))
+  this->FillOptions(run->Options);
+  this->FillChoice(choice, run->Own, run->MergeRanges());
+  choice.ComputedArrays = vtkMarchingCorrectorsOutput::ComputedArrays(run->Options);
+  vtkMarchingCorrectorsInput input(choice, run->Own);
+  if (!this->IsTaken(*run, input))
   {
-    this->Extract(input, options, vtkPolyData::SafeDownCast(output));
+    return;
   }
+  std::vector<double> isoValues;
+  run->CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      this->ListIsoValues(input, ranks, isoValues);
+      return !isoValues.empty();
+    });
+  run->Options.iso_values = isoValues.data();
+  run->Options.iso_count = static_cast<int>(isoValues.size());
+#if MCOR_HAS_RANKS
+  if (run->IsShared())
+  {
+    this->ContourDistributed(
+      static_cast<vtkSharedRun&>(*run), choice, input, vtkPolyData::SafeDownCast(output));
+    return;
+  }
+#endif
+  this->Extract(*run, input, vtkPolyData::SafeDownCast(output));
 }
 
 // Whether the particles have all that is needed, and fluid among them.
-bool vtkMarchingCorrectors::IsTaken(
-  vtkMarchingCorrectorsInput& input, vtkPointSet* particles, mcor_options& options)
+bool vtkMarchingCorrectors::IsTaken(vtkRun& run, vtkMarchingCorrectorsInput& input)
 {
-  const bool isTaken = this->Accept(input, input.Collect(), "no surface") && input.FluidCount > 0 &&
-    this->SetPeriod(particles, options);
+  const bool isTaken = run.Accept(input, input.Collect(), "no surface") && run.HasFluid &&
+    (run.IsShared() || run.Measure(input, false));
   if (!isTaken)
   {
     this->SetUsedNames(&input, false); // no volumes were used
@@ -216,23 +232,25 @@ bool vtkMarchingCorrectors::IsTaken(
 
 bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
 {
-  mcor_options options;
+  vtkRun run(this);
+  run.Begin(particles);
+  mcor_options& options = run.Options;
   vtkMarchingCorrectorsChoice choice;
   this->FillOptions(options);
   this->FillChoice(choice, particles);
-  this->FindFluid(choice, particles);
   choice.InterpolateAttributes = false;
   vtkMarchingCorrectorsInput input(choice, particles);
   std::vector<double> isoValues;
   mcor_widening widening = {};
-  if (!this->IsTaken(input, particles, options))
+  if (!this->IsTaken(run, input))
   {
     return false;
   }
   this->ListIsoValues(input, nullptr, isoValues);
   options.iso_values = isoValues.data();
   options.iso_count = static_cast<int>(isoValues.size());
-  if (!this->CallCore(input, options, [&](mcor_context* context)
+  if (!run.Call(input,
+        [&](mcor_context* context)
         { return mcor_widen(context, &input.Core, &options, &widening); }))
   {
     return false;
@@ -270,19 +288,16 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
 
 // Reads first what an observer of the progress may change during the run.
 void vtkMarchingCorrectors::Extract(
-  vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output)
+  vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output)
 {
   const int precision = this->OutputPointsPrecision;
-  std::vector<double> isoValues;
-  this->ListIsoValues(input, nullptr, isoValues);
-  options.iso_values = isoValues.data();
-  options.iso_count = static_cast<int>(isoValues.size());
+  mcor_options& options = run.Options;
   options.outputs |= input.FromNearest.empty() ? 0 : MCOR_OUT_NEAREST_PARTICLE;
   this->EstimatedCells =
     mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   this->WarnOfHugeRun();
   mcor_surface surface = {};
-  if (!this->CallCore(input, options,
+  if (!run.Call(input,
         [&](mcor_context* context)
         { return mcor_extract(context, &input.Core, &options, &surface); }))
   {
@@ -372,7 +387,6 @@ void vtkMarchingCorrectors::LookAhead(vtkPointSet* particles, const mcor_options
   vtkAhead& next = this->Next;
   vtkMarchingCorrectorsChoice choice;
   this->FillChoice(choice, particles);
-  this->FindFluid(choice, particles);
   choice.InterpolateAttributes = false;
   vtkMarchingCorrectorsInput contoured(choice, particles);
   const bool isJoined = contoured.JoinVelocity() != nullptr;

@@ -569,22 +569,20 @@ private:
   vtkMarchingCorrectors(const vtkMarchingCorrectors&) = delete;
   void operator=(const vtkMarchingCorrectors&) = delete;
 
-  void ProcessDistributed(vtkPointSet* particles, vtkPolyData* output);
-  void EstimateDistributed(vtkSPHRanks& ranks, const mcor_input& own, const mcor_options& options);
-  bool WidenDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& mine);
-  void ContourDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsChoice& choice,
+  void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
     vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
-  void ExtractDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsChoice& choice,
-    const mcor_input& own, vtkPolyData* output);
-  void FinishDistributed(vtkSPHRanksRun& run, vtkMarchingCorrectorsInput& input,
+  bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine);
+  void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input,
     mcor_options options, mcor_surface& surface, vtkPolyData* output);
   /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);
-  bool IsTaken(vtkMarchingCorrectorsInput& input, vtkPointSet* particles, mcor_options& options);
-  void Extract(vtkMarchingCorrectorsInput& input, mcor_options& options, vtkPolyData* output);
-  void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
-  void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles);
+  bool IsTaken(vtkRun& run, vtkMarchingCorrectorsInput& input);
+  void Extract(vtkRun& run, vtkMarchingCorrectorsInput& input, vtkPolyData* output);
+  void FillChoice(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles,
+    const vtkSPHMergeRanges& merge = nullptr);
+  void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles,
+    const vtkSPHMergeRanges& merge = nullptr);
   void FillOptions(mcor_options& options);
   void ClearSummary();
   /** Findings of the next update, ahead of it. */

@@ -14,11 +14,9 @@
 #include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
-#if MCOR_HAS_RANKS
-#include "vtkSPHRanks.h"
-#endif
 
 #include <algorithm>
 #include <cstring>
@@ -257,50 +255,11 @@ void vtkSPHAlgorithm::Warn(const std::string& message)
   vtkWarningMacro(<< this->BlockName << message);
 }
 
-void vtkSPHAlgorithm::WarnOfFluid(
-  vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence)
-{
-  if (fluidCount > 0)
-  {
-    this->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
-    return;
-  }
-  const std::string problem = particles.DescribeNoFluid();
-  vtkWarningMacro(<< this->BlockName << problem << ", so there is no fluid and " << consequence
-                  << ".");
-}
-
-bool vtkSPHAlgorithm::Accept(
-  vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
-{
-  this->SetUsedNames(&particles, isUsable);
-  if (isUsable)
-  {
-    this->WarnOfFluid(particles, particles.FluidCount, consequence);
-  }
-  else
-  {
-    this->Fail(particles.Error);
-  }
-  return isUsable;
-}
-
 void vtkSPHAlgorithm::WarnOnce(int kind, const std::string& message)
 {
   if (!message.empty() && this->Warned.insert(kind).second)
   {
-    vtkWarningMacro(<< this->BlockName << message);
-  }
-}
-
-void vtkSPHAlgorithm::WarnOfParticles(
-  const mcor_input& core, const mcor_options& options, const mcor_statistics& statistics)
-{
-  mcor_surface surface = {};
-  surface.statistics = statistics;
-  for (const mcor_warning kind : { MCOR_WARN_FAR, MCOR_WARN_PERIOD, MCOR_WARN_COARSE })
-  {
-    this->WarnOnce(kind, vtkSPHTakeText(mcor_describe_warning(kind, &core, &options, &surface)));
+    this->Warn(message);
   }
 }
 
@@ -326,17 +285,15 @@ int vtkSPHAlgorithm::RequestData(
   this->RunStatistics = vtkSmartPointer<vtkFieldData>::New();
   this->Internals->BeginRun();
   this->Gather = nullptr;
-#if MCOR_HAS_RANKS
   if (this->IsShared())
   {
     this->Gather = [this](const std::vector<double>& mine)
     {
-      auto all = vtkSPHRanks(this->Controller).Gather(mine);
+      auto all = vtkRun::Make(this)->Gather(mine);
       all.erase(all.begin() + this->Controller->GetLocalProcessId());
       return all;
     };
   }
-#endif
   vtkDataObject* all = vtkDataObject::GetData(inputVector[this->GetParticlesPort()]);
   vtkDataObject* particles = this->TakeVertices(all);
   this->WarnOfMesh(all, particles);
@@ -364,56 +321,6 @@ int vtkSPHAlgorithm::RequestData(
   }
   this->Internals->EndRun();
   return 1;
-}
-
-// Returns a mcor_status; `message` says why it is not MCOR_OK, unless the user cancelled. It reads
-// first what an observer of the progress may change. This is number `place` of `count` processes on
-// this machine.
-int vtkSPHAlgorithm::RunCore(vtkSPHParticles& particles, mcor_options& options,
-  const std::function<int(mcor_context*)>& call, std::string& message, int place, int count)
-{
-  const bool keep = this->KeepDeviceData != 0;
-  message = this->Internals->Prepare(this->Device, place, count);
-  if (!message.empty())
-  {
-    return MCOR_DEVICE_ERROR;
-  }
-  if (keep)
-  {
-    this->Internals->SetVersions(particles);
-  }
-  options.progress_user = this;
-  options.progress = [](void* user, double fraction, const char* phase)
-  {
-    auto* filter = static_cast<vtkSPHAlgorithm*>(user);
-    filter->SetProgressText(phase);
-    filter->UpdateProgress(fraction);
-    return filter->IsAborted() ? 1 : 0;
-  };
-  mcor_context* context = this->Internals->Context;
-  const auto status = static_cast<mcor_status>(call(context));
-  if (!keep)
-  {
-    mcor_release_memory(context);
-  }
-  if (status != MCOR_OK)
-  {
-    message = status == MCOR_CANCELLED ? "" : mcor_last_error(context);
-    this->Internals->Forget(status);
-  }
-  return status;
-}
-
-bool vtkSPHAlgorithm::CallCore(
-  vtkSPHParticles& particles, mcor_options& options, const std::function<int(mcor_context*)>& call)
-{
-  std::string message;
-  const int status = this->RunCore(particles, options, call, message, 0, 1);
-  if (!message.empty())
-  {
-    this->Fail(message);
-  }
-  return status == MCOR_OK;
 }
 
 bool vtkSPHAlgorithm::IsShared() const

@@ -35,17 +35,14 @@
 #include "vtkSmartPointer.h" // For members
 
 #include <cstdint>    // For members
-#include <functional> // For the call of the core
+#include <functional> // For members
 #include <map>        // For members
 #include <memory>     // For the device state
 #include <set>
 #include <string> // For members
 #include <vector> // For members
 
-struct mcor_context;
-struct mcor_input;
 struct mcor_options;
-struct mcor_statistics;
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObjectTree;
@@ -54,9 +51,6 @@ class vtkMultiProcessController;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
-class vtkSPHRanks;
-struct vtkSPHRanksBalance;
-struct vtkSPHRanksRun;
 struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
@@ -528,19 +522,6 @@ protected:
   void Warn(const std::string& message);
 
   /**
-   * Warns that no particle is fluid, and so `consequence`; or that an array tells fluid from
-   * solids but is not used.
-   */
-  void WarnOfFluid(
-    vtkSPHParticles& particles, vtkIdType fluidCount, const std::string& consequence);
-
-  /**
-   * Notes which arrays were found, and warns about the fluid. Returns false, after an error, if
-   * the particles are not usable.
-   */
-  bool Accept(vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
-
-  /**
    * Warns, naming the block; once in a run for each kind, however many blocks there are. Kinds
    * are those of the core (mcor_warning) and these.
    */
@@ -552,10 +533,6 @@ protected:
     WARN_SINGLE_POINTS     ///< single precision is too coarse for the output's points
   };
 
-  /** Gives the warnings of the core that need no surface. */
-  void WarnOfParticles(
-    const mcor_input& core, const mcor_options& options, const mcor_statistics& statistics);
-
   /** Returns the array chosen by SetInputArrayToProcess(index, ...). */
   vtkSPHRequest FindRequest(int index, vtkPointSet* particles);
 
@@ -565,51 +542,8 @@ protected:
    */
   vtkSPHRequest FindFirstRequest(vtkPointSet* particles, const vtkSPHMergeRanges& merge = nullptr);
 
-  /**
-   * Calls the core: `call` gets a context for the device, and returns the core's status. Returns
-   * false if the call failed, which is reported, or was cancelled.
-   */
-  bool CallCore(vtkSPHParticles& particles, mcor_options& options,
-    const std::function<int(mcor_context*)>& call);
-  /** Calls the core, as number `place` of `count` processes of this machine. Returns its status; `message` says why it
-   * failed, unless it was cancelled. */
-  int RunCore(vtkSPHParticles& particles, mcor_options& options,
-    const std::function<int(mcor_context*)>& call, std::string& message, int place, int count);
-
   /** Whether processes share a run; always false in a build without MPI. */
   bool IsShared() const;
-
-  ///@{
-  /**
-   * Steps of a run that ranks share, in their order. All are collective, and return the same
-   * everywhere: false if one rank failed, which all report, or the run was cancelled.
-   */
-  /** Takes this rank's particles. taken: the ones of these that were chosen. */
-  bool BeginDistributed(
-    vtkSPHRanksRun& run, vtkPointSet* particles, std::vector<vtkIdType>* taken = nullptr);
-  /** Whether the particles, once collected, can be used on all ranks, and whether there is fluid on any. */
-  bool AcceptDistributed(
-    vtkSPHRanksRun& run, vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
-  /** Calls WarnOfParticles() with a rank's particles and the findings of a call about all. */
-  void WarnOfParticlesDistributed(
-    vtkSPHRanksRun& run, mcor_input core, const mcor_statistics& statistics);
-  /**
-   * Measures everything global, for a surface or for mcor_probe and mcor_derive; also finds the
-   * period and the dimension.
-   */
-  bool MeasureDistributed(vtkSPHRanksRun& run, vtkSPHParticles& particles, bool forSamples);
-  /**
-   * Sends particles, which the core has as `input`, to the ranks whose boxes need them. Calls
-   * then run for the rank's box.
-   */
-  void ShareDistributed(vtkSPHRanksRun& run, const mcor_input& input, vtkPolyData* particles,
-    const vtkSPHRanksBalance& balance);
-  /** Returns false if a rank has a problem. */
-  bool AgreeDistributed(vtkSPHRanks& ranks, std::string problem);
-  /** Does CallCore() with the run's options, on all ranks together. */
-  bool CallCoreDistributed(
-    vtkSPHRanksRun& run, vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
-  ///@}
 
   /** Returns the input that has the particles, and its port. */
   vtkDataObject* GetParticles();
@@ -618,18 +552,8 @@ protected:
   /** Names the fluid in the choice, if it is to be detected and is found. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
     const vtkSPHMergeRanges& merge = nullptr);
-  int FindDimensionDistributed(vtkPointSet* particles);
   void FillOptions(mcor_options& options) const;
 
-  /**
-   * Gives the options the period of these particles. Returns false, after an error, if there
-   * should be one and is not.
-   */
-  bool SetPeriod(vtkPointSet* particles, mcor_options& options);
-  /** Finds the period on all ranks together. Each passes its own particles. */
-  bool SetPeriodDistributed(vtkPointSet* particles, mcor_options& options);
-  /** Returns false, after an error, if none was found or there is a problem. */
-  bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
   void SetUsedNames(const vtkSPHParticles* particles, bool isUsable = true);
   /** A line "Name: 1 2 3" of PrintSelf(). */
   static void PrintNumbers(
@@ -659,6 +583,8 @@ protected:
   vtkSmartPointer<vtkFieldData> RunStatistics;
   std::string Statistics;
   class vtkInternals;
+  class vtkRun;
+  class vtkSharedRun;
   std::unique_ptr<vtkInternals> Internals;
 
 private:

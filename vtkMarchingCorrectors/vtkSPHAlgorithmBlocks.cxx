@@ -20,11 +20,8 @@
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHReals.h"
+#include "vtkSPHRun.h"
 #include "vtkSPHVertices.h"
-#if MCOR_HAS_RANKS
-#include "vtkSPHRanks.h"
-#include "vtkSPHRanksParticles.h"
-#endif
 
 #include <algorithm>
 #include <array>
@@ -76,21 +73,15 @@ vtkIdType CountPoints(vtkDataObject* data)
 // All processes take part in the run of each block.
 bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 {
-  bool good = true;
-#if !MCOR_HAS_RANKS
-  static_cast<void>(blocks);
-#else
-  vtkSPHRanks ranks(this->Controller);
   const double count = blocks ? static_cast<double>(vtkSPHNameBlocks(blocks).size()) : -1.0;
   double range[2] = { count, count };
-  ranks.ReduceRanges(range, 1);
-  good = range[0] == range[1];
-#endif
-  if (!good)
+  const auto run = vtkRun::Make(this);
+  run->MergeRanges()(range, 1);
+  if (range[0] < range[1])
   {
     this->Fail("The processes have different numbers of blocks. Merge the blocks of each process.");
   }
-  return good;
+  return range[0] == range[1];
 }
 
 // A block that fails leaves its place empty, and does not touch the others.
@@ -124,15 +115,9 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
 void vtkSPHAlgorithm::WarnOfMesh(vtkDataObject* data, vtkDataObject* taken)
 {
   std::int64_t counts[2] = { CountPoints(data), CountPoints(taken) };
-  bool isFirst = true;
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    vtkSPHRanks(this->Controller).Reduce(vtkSPHRanks::SUM, counts, 2);
-    isFirst = this->Controller->GetLocalProcessId() == 0;
-  }
-#endif
-  if (isFirst && counts[1] < counts[0])
+  const auto run = vtkRun::Make(this);
+  run->Sum(counts, 2);
+  if (run->IsFirst() && counts[1] < counts[0])
   {
     this->Warn(std::to_string(counts[0] - counts[1]) + " of " + std::to_string(counts[0]) +
       " points are nodes of a mesh and no particles, as no vertex cell uses them.");
@@ -144,12 +129,7 @@ vtkDataObject* vtkSPHAlgorithm::TakeVertices(vtkDataObject* data)
 {
   vtkInternals& kept = *this->Internals;
   std::int64_t haveVertices = vtkSPHHaveVertices(data) ? 1 : 0;
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    vtkSPHRanks(this->Controller).Reduce(vtkSPHRanks::GREATEST, &haveVertices, 1);
-  }
-#endif
+  vtkRun::Make(this)->Sum(&haveVertices, 1);
   auto* tree = vtkDataObjectTree::SafeDownCast(data);
   if (!data || kept.TakenFrom.GetPointer() != data || kept.TakenAmong != haveVertices ||
     (tree ? vtkSPHTimeOfBlocks(tree) : data->GetMTime()) > kept.TakenTime.GetMTime())
@@ -246,34 +226,22 @@ void vtkSPHAlgorithm::FindFluid(
 bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
 {
   using List = std::vector<double>;
-  vtkSPHParticlesChoice choice(*this);
-  vtkSmartPointer<vtkPointSet> own = particles;
-  std::function<List(const List&)> gather = [](const List& mine) { return mine; };
-#if MCOR_HAS_RANKS
-  std::unique_ptr<vtkSPHRanks> ranks;
-  if (this->IsShared())
+  const auto run = vtkRun::Make(this);
+  run->Begin(particles);
+  run->Own = this->TakePresent(run->Own);
+  const vtkSPHParticlesChoice choice = run->Choose();
+  vtkPointSet* own = run->Own;
+  const auto gather = [&run](const List& mine)
   {
-    ranks.reset(new vtkSPHRanks(this->Controller));
-    own = vtkSPHTakeParticles(*ranks, particles, choice);
-    this->FindFluid(choice, own, ranks->MergeRanges());
-    gather = [&ranks](const List& mine)
+    List all;
+    for (const List& theirs : run->Gather(mine))
     {
-      List all;
-      for (const List& theirs : ranks->Gather(mine))
-      {
-        all.insert(all.end(), theirs.begin(), theirs.end());
-      }
-      return all;
-    };
-  }
-  else
-#endif
-  {
-    own = this->TakePresent(particles);
-    this->FindFluid(choice, own);
-  }
+      all.insert(all.end(), theirs.begin(), theirs.end());
+    }
+    return all;
+  };
   vtkDataArray* fluid = own->GetPointData()->GetArray(choice.FluidArrayName.c_str());
-  const auto forEach = [&choice, &own, fluid](auto&& visit)
+  const auto forEach = [&choice, own, fluid](auto&& visit)
   {
     double x[3];
     for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
@@ -368,14 +336,16 @@ vtkDataObject* vtkSPHAlgorithm::GetParticles()
 
 int vtkSPHAlgorithm::FindDimension(vtkPointSet* particles)
 {
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    return this->FindDimensionDistributed(particles);
-  }
-#endif
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, particles);
-  return vtkSPHParticles(choice, particles).FindDimension(nullptr, this->Dimension);
+  const auto run = vtkRun::Make(this);
+  run->Begin(particles);
+  vtkSPHParticles mine(run->Choose(), run->Own);
+  int found = 0;
+  run->CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      found = mine.FindDimension(ranks, this->Dimension);
+      return true;
+    });
+  return found;
 }
 VTK_ABI_NAMESPACE_END

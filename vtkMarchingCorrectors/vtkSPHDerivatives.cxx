@@ -4,15 +4,17 @@
 
 #include "mcor.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHDerivativesWanted.h"
-#include "vtkSPHParticles.h"
+#include "vtkSPHRun.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <memory>
+#include <string>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -37,24 +39,28 @@ std::vector<double> InSpace(const mcor_derivatives& derivatives)
 }
 }
 
-bool vtkSPHDerivatives::vtkWanted::Quantity::AddTo(vtkPointData* data,
-  const mcor_derivatives& derivatives, const double* gradients, bool asFloat) const
+/** The arrays that a run adds to the particles, as they were wanted when it began. */
+struct vtkSPHDerivatives::vtkWanted
 {
-  const auto values =
-    static_cast<size_t>(derivatives.count) * static_cast<size_t>(this->Components);
-  auto* made = static_cast<double*>(std::malloc((values + 1) * sizeof(double)));
-  if (!made)
+  /** One of the arrays made of the gradient of a vector. */
+  struct Quantity
   {
-    return false;
-  }
-  mcor_flow flow = {};
-  flow.*this->Values = made;
-  mcor_decompose_gradients(gradients, derivatives.count, &flow);
-  vtkSPHAddArray(
-    data, this->Name.c_str(), vtkSPHAdoptReal(made, this->Components, derivatives.count, asFloat));
-  std::free(made); // where there are no particles
-  return true;
-}
+    std::string Name;
+    int Components;
+    double* mcor_flow::*Values;
+    bool IsWanted;
+  };
+
+  /**
+   * Takes over memory of `derivatives`, which were made from the array `from`. Returns false if
+   * memory ran out.
+   */
+  bool AddTo(vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const;
+
+  std::vector<Quantity> Quantities;
+  bool Gradient;
+  std::string GradientName;
+};
 
 bool vtkSPHDerivatives::vtkWanted::AddTo(
   vtkPointData* data, mcor_derivatives& derivatives, const vtkSPHAttribute& from) const
@@ -68,11 +74,23 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
   {
     const bool exists = // two dimensions have no middle eigenvalue
       !isPlane || quantity.Values != &mcor_flow::lambda2;
-    if (quantity.IsWanted && exists && from.Components == (inSpace.empty() ? 3 : 2) &&
-      !quantity.AddTo(data, derivatives, gradients, asFloat))
+    if (!quantity.IsWanted || !exists || from.Components != (inSpace.empty() ? 3 : 2))
+    {
+      continue;
+    }
+    const auto values =
+      static_cast<size_t>(derivatives.count) * static_cast<size_t>(quantity.Components);
+    auto* made = static_cast<double*>(std::malloc((values + 1) * sizeof(double)));
+    if (!made)
     {
       return false;
     }
+    mcor_flow flow = {};
+    flow.*quantity.Values = made;
+    mcor_decompose_gradients(gradients, derivatives.count, &flow);
+    vtkSPHAddArray(data, quantity.Name.c_str(),
+      vtkSPHAdoptReal(made, quantity.Components, derivatives.count, asFloat));
+    std::free(made); // where there are no particles
   }
   if (this->Gradient)
   {
@@ -89,12 +107,6 @@ bool vtkSPHDerivatives::vtkWanted::AddTo(
     }
   }
   return true;
-}
-
-std::string vtkSPHDerivatives::vtkWanted::DescribeNoMemory(vtkIdType particles)
-{
-  return "Host memory for the derivatives of " + std::to_string(particles) +
-    " particles could not be allocated.";
 }
 
 vtkStandardNewMacro(vtkSPHDerivatives);
@@ -134,92 +146,100 @@ vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particle
     this->ComputeGradient != 0, name(this->ResultArrayName.c_str()) };
 }
 
+// Reads first what an observer of the progress may change during the run.
 void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 {
   auto* particles = vtkPointSet::SafeDownCast(data);
+  auto* derived = vtkPointSet::SafeDownCast(output);
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
   this->SetUsedNames(nullptr);
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->ProcessDistributed(particles, vtkPointSet::SafeDownCast(output));
-    return;
-  }
-#endif
-  if (data && !particles)
+  if (data && !particles && !run->IsShared())
   {
     this->Warn(std::string("A ") + data->GetClassName() +
       " has no points of its own, and so no derivatives.");
     return;
   }
-  if (!particles || this->IsAborted())
+  if (!run->Begin(particles))
   {
     return;
   }
-  if (particles->GetNumberOfPoints() == 0)
+  vtkSPHParticles mine(run->Choose(), run->Own);
+  if (run->Particles > 0)
   {
-    output->ShallowCopy(particles);
+    const bool isUsable = mine.CollectArray(this->FindFirstRequest(run->Own, run->MergeRanges())) &&
+      mine.CollectParticles();
+    if (!run->Accept(mine, isUsable, "there are no derivatives"))
+    {
+      return;
+    }
+  }
+  if (!run->HasFluid)
+  {
+    if (particles && derived)
+    {
+      derived->ShallowCopy(particles);
+    }
     return;
   }
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, particles);
-  vtkSPHParticles input(choice, particles);
-  const bool isUsable =
-    input.CollectArray(this->FindFirstRequest(particles)) && input.CollectParticles();
-  if (!this->Accept(input, isUsable, "there are no derivatives"))
-  {
-    return;
-  }
-  if (input.FluidCount == 0)
-  {
-    output->ShallowCopy(particles);
-    return;
-  }
-  this->Derive(input, particles, vtkPointSet::SafeDownCast(output));
-}
-
-// Reads first what an observer of the progress may change during the run.
-void vtkSPHDerivatives::Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output)
-{
-  const vtkWanted wanted = this->ListWanted(particles);
+  const vtkWanted wanted = this->ListWanted(run->Own);
   const mcor_gradient form =
     this->CorrectGradients ? MCOR_GRADIENT_CORRECTED : MCOR_GRADIENT_STANDARD;
-  mcor_options options;
-  this->FillOptions(options);
-  if (!this->SetPeriod(particles, options))
+  this->FillOptions(run->Options);
+  if (!run->Measure(mine, true))
   {
     return;
   }
+  const std::string name = mine.Interpolated[0].Name;
+  const auto collect = [&name](vtkSPHParticles& near)
+  {
+    vtkAbstractArray* array = near.GetPoints()->GetPointData()->GetAbstractArray(name.c_str());
+    return near.CollectArray({ array, name, true }) && near.CollectParticles();
+  };
+  vtkSPHParticles* input = run->Share(mine, collect);
   mcor_derivatives derivatives = {};
-  if (!this->CallCore(input, options,
-        [&](mcor_context* context)
-        { return mcor_derive(context, &input.Core, &options, form, &derivatives); }))
+  const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(
+    &derivatives, mcor_free_derivatives);
+  if (!input ||
+    !run->Call(*input,
+      [&](mcor_context* context)
+      { return mcor_derive(context, &input->Core, &run->Options, form, &derivatives); }))
   {
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, derivatives.statistics);
-  this->WarnOfParticles(input.Core, options, derivatives.statistics);
-  const vtkSPHAttribute& array = input.Interpolated[0];
-  if (derivatives.attribute_not_finite[0] >= 0)
+  vtkNew<vtkPointData> found;
+  std::string problem;
+  if (derivatives.attribute_not_finite && derivatives.attribute_not_finite[0] >= 0)
   {
-    this->FailNotFinite(array.Name, derivatives.attribute_not_finite[0]);
+    problem = "The point array '" + name + "' is NaN or infinite at particle " +
+      std::to_string(derivatives.attribute_not_finite[0]) +
+      ", so its gradients are undefined there. Correct its values, or choose another array.";
   }
-  else
+  else if (!wanted.AddTo(found, derivatives, input->Interpolated[0]))
   {
-    output->ShallowCopy(particles);
-    if (!wanted.AddTo(output->GetPointData(), derivatives, array))
+    problem = "Host memory for the derivatives of " + std::to_string(derivatives.count) +
+      " particles could not be allocated.";
+  }
+  run->WarnOfParticles(input->Core, derivatives.statistics);
+  if (!run->Agree(problem))
+  {
+    return;
+  }
+  const std::string active = found->GetScalars() ? found->GetScalars()->GetName() : std::string();
+  run->Return(found, particles);
+  run->AddShares();
+  if (particles && derived)
+  {
+    derived->ShallowCopy(particles);
+    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
     {
-      output->Initialize();
-      this->Fail(vtkWanted::DescribeNoMemory(derivatives.count));
+      derived->GetPointData()->AddArray(found->GetAbstractArray(i));
+    }
+    if (!active.empty())
+    {
+      derived->GetPointData()->SetActiveScalars(active.c_str());
     }
   }
-  mcor_free_derivatives(&derivatives);
-}
-
-void vtkSPHDerivatives::FailNotFinite(const std::string& array, vtkIdType particle)
-{
-  this->Fail("The point array '" + array + "' is NaN or infinite at particle " +
-    std::to_string(particle) +
-    ", so its gradients are undefined there. Correct its values, or choose another array.");
 }
 
 void vtkSPHDerivatives::PrintSelf(ostream& os, vtkIndent indent)

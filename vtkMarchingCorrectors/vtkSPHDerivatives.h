@@ -122,11 +122,6 @@ private:
   struct vtkWanted;
   std::string NameResult(const std::string& name, vtkPointSet* particles) const;
   vtkWanted ListWanted(vtkPointSet* particles) const;
-  void Derive(vtkSPHParticles& input, vtkPointSet* particles, vtkPointSet* output);
-  void FailNotFinite(const std::string& array, vtkIdType particle);
-  void ProcessDistributed(vtkPointSet* particles, vtkPointSet* output);
-  void DeriveDistributed(vtkSPHRanksRun& run, vtkSPHParticles& mine,
-    const std::vector<vtkIdType>& numbers, vtkPointSet* particles, vtkPointSet* output);
 };
 VTK_ABI_NAMESPACE_END
 

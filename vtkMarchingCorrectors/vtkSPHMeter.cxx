@@ -9,11 +9,13 @@
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHMeterColumn.h"
-#include "vtkSPHParticles.h"
+#include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
+#include <limits>
 #include <set>
+#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -105,53 +107,93 @@ bool vtkSPHMeter::CheckNames(const std::vector<Place>& places)
   return true;
 }
 
+// Without fluid, each process measures for itself that there is none.
 void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
 {
-  auto* particles = vtkPointSet::SafeDownCast(data);
   auto* table = vtkTable::SafeDownCast(output);
   this->SetUsedNames(nullptr);
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->ProcessDistributed(particles, table);
-    return;
-  }
-#endif
-  const std::vector<Place> places = this->ListPlaces(this->More);
-  if (!particles || this->IsAborted() || !this->CheckNames(places))
+  std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  const bool isFirst = run->IsFirst();
+  const std::vector<Place> places = Merge(*run, this->ListPlaces(this->More));
+  if (!run->Begin(vtkPointSet::SafeDownCast(data)) || !this->CheckNames(places))
   {
     return;
   }
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, particles);
-  vtkSPHParticles input(choice, particles);
-  if (particles->GetNumberOfPoints() == 0 ||
-    this->Accept(input, this->Collect(input), this->GetConsequence()))
-  {
-    this->Measure(input, particles, places, table);
-  }
-}
-
-void vtkSPHMeter::Measure(vtkSPHParticles& input, vtkPointSet* particles,
-  const std::vector<Place>& places, vtkTable* output)
-{
-  mcor_options options;
-  this->FillOptions(options);
-  if (!this->SetPeriod(particles, options))
+  vtkSPHParticles mine(run->Choose(), run->Own);
+  if (run->Particles > 0 && !run->Accept(mine, this->Collect(mine), this->GetConsequence()))
   {
     return;
   }
-  options.iso_values = &this->Level;
-  options.iso_count = 1;
+  const bool hasFluid = run->HasFluid;
+  if (!hasFluid)
+  {
+    const vtkSmartPointer<vtkPointSet> own = run->Own;
+    run = std::make_unique<vtkRun>(this);
+    run->Own = own;
+  }
+  this->FillOptions(run->Options);
+  run->Options.field = MCOR_WEIGHT_SUM;
+  run->Options.level_limit = 0;
+  run->Options.iso_values = &this->Level;
+  run->Options.iso_count = 1;
+  if (!run->Measure(mine, false))
+  {
+    return;
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  double low[3] = { infinity, infinity, infinity }, high[3] = { -infinity, -infinity, -infinity };
+  for (const Place& place : places)
+  {
+    this->AddBounds(place, low, high);
+  }
+  run->PlaceBox(low, high);
+  vtkSPHParticles* input =
+    run->Share(mine, [this](vtkSPHParticles& near) { return this->Collect(near); });
   const std::unique_ptr<Found> found = this->MakeFound();
-  if (!this->CallCore(input, options,
-        [&](mcor_context* context) { return found->Call(context, input.Core, options, places); }))
+  if (!input ||
+    !run->Call(*input,
+      [&](mcor_context* context)
+      { return found->Call(context, input->Core, run->Options, places); }))
   {
     return;
   }
   vtkSPHAddRunStatistics(this->RunStatistics, found->GetStatistics());
-  this->WarnOfParticles(input.Core, options, found->GetStatistics());
-  this->Fill(output, places, *found, input.FluidCount > 0);
+  run->WarnOfParticles(input->Core, found->GetStatistics());
+  this->Fill(table, places, *found, isFirst && hasFluid);
+  if (!isFirst)
+  {
+    table->SetNumberOfRows(0);
+  }
+}
+
+// Merges the places of all processes, each once. Numbers may be NaN, so their bytes are compared.
+std::vector<vtkSPHMeter::Place> vtkSPHMeter::Merge(vtkRun& run, const std::vector<Place>& mine)
+{
+  std::vector<vtkRun::Named> own;
+  for (const Place& place : mine)
+  {
+    own.emplace_back(place.Name, place.Numbers);
+    own.back().second.push_back(place.Shape);
+  }
+  std::vector<Place> all;
+  std::set<std::pair<std::string, std::string>> known;
+  for (const std::vector<vtkRun::Named>& theirs : run.Gather(own))
+  {
+    const auto before = known; // CheckNames() reports two of one process
+    for (const vtkRun::Named& place : theirs)
+    {
+      const std::vector<double>& numbers = place.second;
+      const std::pair<std::string, std::string> one(place.first,
+        { reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double) });
+      if (before.count(one) == 0)
+      {
+        known.insert(one);
+        all.push_back({ place.first, static_cast<int>(numbers.back()),
+          std::vector<double>(numbers.begin(), numbers.end() - 1) });
+      }
+    }
+  }
+  return all;
 }
 
 void vtkSPHMeter::Fill(

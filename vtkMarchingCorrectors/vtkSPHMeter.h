@@ -28,6 +28,10 @@
 #include <string> // For places
 #include <vector> // For places
 
+struct mcor_context;
+struct mcor_input;
+struct mcor_statistics;
+
 VTK_ABI_NAMESPACE_BEGIN
 class vtkTable;
 
@@ -116,15 +120,8 @@ private:
   void operator=(const vtkSPHMeter&) = delete;
 
   bool CheckNames(const std::vector<Place>& places);
-  void Measure(vtkSPHParticles& input, vtkPointSet* particles, const std::vector<Place>& places,
-    vtkTable* output);
   void Fill(vtkTable* output, const std::vector<Place>& places, const Found& found, bool hasFluid);
-
-  // Steps of a run that processes share.
-  void ProcessDistributed(vtkPointSet* particles, vtkTable* output);
-  void MeasureTogether(
-    vtkSPHRanksRun& run, vtkSPHParticles& mine, const std::vector<Place>& places, vtkTable* output);
-  static std::vector<Place> Merge(vtkSPHRanks& ranks, const std::vector<Place>& mine);
+  static std::vector<Place> Merge(vtkRun& run, const std::vector<Place>& mine);
 
   vtkDataObject* More = nullptr; // the second input, while a run lasts
   double InputTime = 0.0;

@@ -15,8 +15,8 @@
 #include "vtkPointSet.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHParticles.h"
 #include "vtkSPHReals.h"
+#include "vtkSPHRun.h"
 #include "vtkSPHSamples.h"
 
 #include <algorithm>
@@ -235,79 +235,93 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
     this->Fail("Choose the particles, the second input: there are none to probe.");
     return;
   }
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->ProcessDistributed(points, vtkDataSet::SafeDownCast(output));
-    return;
-  }
-#endif
-  if (data && !points)
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  if (data && !points && !run->IsShared())
   {
     this->Warn(std::string("A ") + data->GetClassName() + " has no points to probe at.");
     return;
   }
-  if (!points || !this->Particles || this->IsAborted())
+  if (!run->Begin(this->Particles) || (!points && !run->IsShared()))
   {
     return;
   }
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, this->Particles);
-  vtkSPHParticles input(choice, this->Particles);
-  if (this->Particles->GetNumberOfPoints() > 0)
+  std::int64_t pointCount = points ? points->GetNumberOfPoints() : 0;
+  run->Sum(&pointCount, 1);
+  const auto collect = [this](vtkSPHParticles& particles)
   {
-    if (!this->Accept(input, input.CollectParticles(), "no point is valid"))
+    const bool isUsable = particles.CollectParticles();
+    if (isUsable && this->InterpolateAttributes)
+    {
+      particles.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
+    }
+    return isUsable;
+  };
+  vtkSPHParticles mine(run->Choose(), run->Own);
+  if (run->Particles > 0 && !run->Accept(mine, collect(mine), "no point is valid"))
+  {
+    return;
+  }
+  this->FillOptions(run->Options);
+  run->Options.field = this->ShepardNormalization ? MCOR_SHEPARD : MCOR_SUM;
+  run->Options.node_threshold = this->WeightThreshold;
+  run->Options.outputs = this->ComputeGradients ? MCOR_OUT_GRADIENTS : 0;
+  run->Points = points;
+  const bool evaluates = run->HasFluid && pointCount > 0;
+  vtkSPHParticles* input = &mine;
+  if (evaluates)
+  {
+    if (!run->Measure(mine, true))
     {
       return;
     }
-    if (this->InterpolateAttributes)
+    run->PlacePoints(points);
+    input = run->Share(mine, collect);
+    if (!input)
     {
-      input.CollectAttributes({ "WeightSum", this->ValidPointMaskArrayName });
+      return;
     }
   }
-  this->Probe(input, points, vtkDataSet::SafeDownCast(output));
-}
-
-void vtkSPHProbe::FillProbeOptions(mcor_options& options) const
-{
-  this->FillOptions(options);
-  options.field = this->ShepardNormalization ? MCOR_SHEPARD : MCOR_SUM;
-  options.node_threshold = this->WeightThreshold;
-  options.outputs = this->ComputeGradients ? MCOR_OUT_GRADIENTS : 0;
-}
-
-// Reads first what an observer of the progress may change during the run.
-void vtkSPHProbe::Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output)
-{
-  mcor_options options;
-  this->FillProbeOptions(options);
-  if (!this->SetPeriod(this->Particles, options))
+  // Reads here what an observer of the progress may change during the run.
+  vtkSPHSamples samples(*input, run->Options, this->ValidPointMaskArrayName,
+    run->Points ? run->Points->GetNumberOfPoints() : 0,
+    this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue);
+  vtkNew<vtkPointData> found;
+  if (evaluates)
   {
-    return;
+    vtkFieldData* statistics = this->RunStatistics;
+    run->FindNotFinite(*input, samples.NotFinite);
+    if (!run->Call(*input,
+          [&](mcor_context* context) {
+            return EvaluateAt(run->Points, context, input->Core, run->Options, samples, statistics);
+          }))
+    {
+      return;
+    }
   }
-  vtkSPHSamples samples(
-    input, options, this->ValidPointMaskArrayName, points->GetNumberOfPoints(), this->GetNull());
-  vtkFieldData* statistics = this->RunStatistics;
-  if (input.FluidCount > 0 && points->GetNumberOfPoints() > 0 &&
-    !this->CallCore(input, options,
-      [&](mcor_context* context)
-      { return EvaluateAt(points, context, input.Core, options, samples, statistics); }))
+  samples.AddTo(found);
+  if (evaluates)
   {
-    return;
+    run->Return(found, points);
+    run->AddShares();
   }
-  this->WarnOfParticles(input.Core, options, samples.Statistics);
-  for (const std::string& sentence : input.ListLeftOut(samples.NotFinite.data(), "the output"))
+  run->WarnOfParticles(input->Core, samples.Statistics);
+  for (const std::string& sentence : input->ListLeftOut(samples.NotFinite.data(), "the output"))
   {
-    this->Warn(sentence);
+    if (run->IsFirst())
+    {
+      this->Warn(sentence);
+    }
   }
-  output->ShallowCopy(points);
-  samples.AddTo(output->GetPointData());
-  this->FinishOutput(output);
-}
-
-double vtkSPHProbe::GetNull() const
-{
-  return this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue;
+  auto* probed = vtkDataSet::SafeDownCast(output);
+  if (points && probed)
+  {
+    probed->ShallowCopy(points);
+    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
+    {
+      probed->GetPointData()->AddArray(found->GetAbstractArray(i));
+    }
+    this->FinishOutput(probed);
+  }
 }
 
 // Makes the best array active. The values of the particles decide: points that are not valid have a

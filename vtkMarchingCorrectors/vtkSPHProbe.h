@@ -47,6 +47,9 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
+struct mcor_context;
+struct mcor_input;
+
 VTK_ABI_NAMESPACE_BEGIN
 class vtkSPHSamples;
 
@@ -140,16 +143,10 @@ private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;
   void operator=(const vtkSPHProbe&) = delete;
 
-  void FillProbeOptions(mcor_options& options) const;
-  void Probe(vtkSPHParticles& input, vtkDataSet* points, vtkDataSet* output);
-  void ProcessDistributed(vtkDataSet* points, vtkDataSet* output);
-  void ProbeDistributed(
-    vtkSPHRanksRun& run, vtkSPHParticles& mine, vtkDataSet* points, vtkDataSet* output);
   /** A mcor_status: of the core, some points at a time. */
   static int EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
     mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics);
 
-  double GetNull() const;
   void FinishOutput(vtkDataSet* output) const;
 };
 VTK_ABI_NAMESPACE_END

@@ -10,7 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHParticles.h"
+#include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -77,17 +77,7 @@ int vtkSPHProjection::RequestInformation(
     this->GetInputAlgorithm(0, 0)->Update(); // not read so far
   }
   const vtkSmartPointer<vtkPointSet> particles = this->TakeParticles(data);
-  mcor_projection placed = {};
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->PlaceDistributed(particles, placed);
-  }
-  else
-#endif
-  {
-    this->Place(particles, placed);
-  }
+  const mcor_projection placed = this->Place(particles);
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
   if (placed.size[0] > 0)
   {
@@ -99,27 +89,25 @@ int vtkSPHProjection::RequestInformation(
 }
 
 // Finds the image without values. Errors are left to the run.
-void vtkSPHProjection::Place(vtkPointSet* particles, mcor_projection& placed)
+mcor_projection vtkSPHProjection::Place(vtkPointSet* particles)
 {
-  if (!particles || particles->GetNumberOfPoints() == 0)
+  mcor_projection placed = {};
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  run->IsQuiet = true;
+  if (!run->Begin(particles) || run->Particles == 0)
   {
-    return;
+    return placed;
   }
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, particles);
-  vtkSPHParticles input(choice, particles);
-  mcor_options options;
-  this->FillOptions(options);
+  vtkSPHParticles mine(run->Choose(), run->Own);
+  this->FillOptions(run->Options);
   const mcor_view view = this->MakeView();
-  std::string message;
-  if (input.CollectParticles() && this->SetPeriod(particles, options))
+  if (run->Agree(mine.CollectParticles() ? "" : mine.Error) && run->MeasureLengths(mine))
   {
-    this->RunCore(
-      input, options,
+    run->Call(mine,
       [&](mcor_context* context)
-      { return mcor_place_view(context, &input.Core, &options, &view, &placed); },
-      message, 0, 1);
+      { return mcor_place_view(context, &mine.Core, &run->Options, &view, &placed); });
   }
+  return placed;
 }
 
 int vtkSPHProjection::RequestData(
@@ -135,8 +123,9 @@ int vtkSPHProjection::RequestData(
   return this->Superclass::RequestData(request, inputVector, outputVector);
 }
 
-bool vtkSPHProjection::Collect(vtkSPHParticles& particles, vtkPointSet* points, mcor_view& view)
+bool vtkSPHProjection::Collect(vtkSPHParticles& particles, mcor_view& view)
 {
+  vtkPointSet* points = particles.GetPoints();
   vtkSPHRequest scalar = this->FindRequest(0, points);
   if (!this->ScalarArrayName.empty() && this->ScalarArrayName != "(density)")
   {
@@ -147,43 +136,50 @@ bool vtkSPHProjection::Collect(vtkSPHParticles& particles, vtkPointSet* points, 
     scalar, this->ScalarComponent, this->WeightArrayName, view.weight);
 }
 
+// Sums are exact, so each process projects its own particles, and the core adds up the images;
+// only where volumes are computed do particles go to the process that owns their place.
 void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
 {
-  auto* particles = vtkPointSet::SafeDownCast(data);
-  auto* image = vtkImageData::SafeDownCast(output);
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
   this->SetUsedNames(nullptr);
-#if MCOR_HAS_RANKS
-  if (this->IsShared())
-  {
-    this->ProcessDistributed(particles, image);
-    return;
-  }
-#endif
-  if (!particles || particles->GetNumberOfPoints() == 0 || this->IsAborted())
+  if (!run->Begin(vtkPointSet::SafeDownCast(data)) || run->Particles == 0)
   {
     return;
   }
-  vtkSPHParticlesChoice choice(*this);
-  this->FindFluid(choice, particles);
-  vtkSPHParticles input(choice, particles);
+  vtkSPHParticles mine(run->Choose(), run->Own);
   mcor_view view = this->MakeView();
-  mcor_options options;
-  this->FillOptions(options);
-  if (!this->Accept(input, this->Collect(input, particles, view), "nothing is seen") ||
-    !this->SetPeriod(particles, options))
+  this->FillOptions(run->Options);
+  if (!run->Accept(mine, this->Collect(mine, view), "nothing is seen"))
   {
     return;
+  }
+  const bool needsVolumes =
+    mine.Core.scalar.data || view.weight.data || !mcor_is_given(&mine.Core.mass);
+  const bool computes =
+    run->IsShared() && needsVolumes && run->HasFluid && vtkSPHComputesVolumes(mine.Core);
+  if (!(computes ? run->Measure(mine, true) : run->MeasureLengths(mine)))
+  {
+    return;
+  }
+  const std::string name = mine.Core.scalar.data ? mine.Interpolated[0].Name : "ColumnDensity";
+  vtkSPHParticles* input = &mine;
+  if (computes)
+  {
+    input =
+      run->Share(mine, [this, &view](vtkSPHParticles& near) { return this->Collect(near, view); });
+    view.counted = run->MarkOwned();
   }
   mcor_projection found = {};
   const std::unique_ptr<mcor_projection, decltype(&mcor_free_projection)> freeFound(
     &found, mcor_free_projection);
-  if (this->CallCore(input, options,
-        [&](mcor_context* context)
-        { return mcor_project(context, &input.Core, &options, &view, &found); }))
+  if (input &&
+    run->Call(*input,
+      [&](mcor_context* context)
+      { return mcor_project(context, &input->Core, &run->Options, &view, &found); }))
   {
     vtkSPHAddRunStatistics(this->RunStatistics, found.statistics);
-    this->WarnOfParticles(input.Core, options, found.statistics);
-    this->Fill(image, input.Core.scalar.data ? input.Interpolated[0].Name : "ColumnDensity", found);
+    run->WarnOfParticles(input->Core, found.statistics);
+    this->Fill(vtkImageData::SafeDownCast(output), name, found);
   }
 }
 

@@ -121,13 +121,9 @@ private:
   void operator=(const vtkSPHProjection&) = delete;
 
   mcor_view MakeView() const;
-  bool Collect(vtkSPHParticles& particles, vtkPointSet* points, mcor_view& view);
-  void Place(vtkPointSet* particles, mcor_projection& placed);
+  bool Collect(vtkSPHParticles& particles, mcor_view& view);
+  mcor_projection Place(vtkPointSet* particles);
   void Fill(vtkImageData* image, const std::string& name, mcor_projection& found);
-
-  // For many processes together.
-  void PlaceDistributed(vtkPointSet* particles, mcor_projection& placed);
-  void ProcessDistributed(vtkPointSet* particles, vtkImageData* image);
 
   int UpdateExtent[6] = { 0, -1, 0, -1, 0, -1 }; // asked of this process
 };

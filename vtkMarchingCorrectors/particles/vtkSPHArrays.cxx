@@ -112,17 +112,9 @@ void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text
 
 namespace
 {
-enum How
-{
-  SAME,
-  SUM,
-  MOST,
-  OTHER
-};
-
 /// Adds up the counts of several runs.
 template <typename T>
-void AddToRun(vtkFieldData* run, How how, const char* name, const T& value)
+void AddToRun(vtkFieldData* run, vtkSPHHow how, const char* name, const T& value)
 {
   vtkDataArray* array = run->GetArray(name);
   const T before = array && how != SAME ? static_cast<T>(array->GetComponent(0, 0)) : T();
@@ -130,7 +122,7 @@ void AddToRun(vtkFieldData* run, How how, const char* name, const T& value)
 }
 
 template <typename T, std::size_t N>
-void AddToRun(vtkFieldData*, How, const char*, const T (&)[N])
+void AddToRun(vtkFieldData*, vtkSPHHow, const char*, const T (&)[N])
 {
 }
 }

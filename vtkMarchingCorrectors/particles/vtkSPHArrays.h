@@ -79,6 +79,15 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&v)[N])
 }
 ///@}
 
+/** The ways in which a statistic of several parts or runs becomes one, see mcor_statistics.def. */
+enum vtkSPHHow
+{
+  SAME,
+  SUM,
+  MOST,
+  OTHER
+};
+
 /** Adds the cost of a call of the core to that of earlier calls. Costs differ from run to run. */
 void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& statistics);
 

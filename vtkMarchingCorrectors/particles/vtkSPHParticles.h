@@ -137,6 +137,8 @@ public:
    */
   std::string DescribeUnusedType();
 
+  vtkPointSet* GetPoints() const { return this->Points; }
+
   const vtkSPHParticlesChoice Description;
   mcor_input Core = {};
   std::string Error;

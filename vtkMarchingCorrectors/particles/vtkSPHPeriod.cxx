@@ -5,10 +5,7 @@
 #include "mcor.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
-#include "vtkPointSet.h"
-#include "vtkSPHAlgorithm.h"
 
-#include <algorithm>
 #include <deque>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -59,33 +56,4 @@ std::vector<double> vtkSPHBoundsOfPeriod(const std::vector<double>& period, cons
   return bounds;
 }
 
-bool vtkSPHAlgorithm::CheckPeriod(const vtkSPHPeriod& found, const std::string& problem)
-{
-  const std::string sentence = !problem.empty() ? problem
-    : !found.Period.empty()
-    ? ""
-    : "The field data of the particles give no period: there is no array PeriodicBounds, "
-      "BoxSize, or box with boundaryType.";
-  if (!sentence.empty())
-  {
-    this->Fail(sentence + " Set the periodic bounds, and turn their detection off.");
-  }
-  return sentence.empty();
-}
-
-bool vtkSPHAlgorithm::SetPeriod(vtkPointSet* particles, mcor_options& options)
-{
-  if (!this->DetectPeriod)
-  {
-    return true;
-  }
-  const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
-  if (!this->CheckPeriod(found, ""))
-  {
-    return false;
-  }
-  const std::vector<double> bounds = vtkSPHBoundsOfPeriod(found.Period, particles->GetBounds());
-  std::copy(bounds.begin(), bounds.end(), options.periodic);
-  return true;
-}
 VTK_ABI_NAMESPACE_END

@@ -7,23 +7,19 @@
 #include "vtkSPHComponents.h"
 
 #include "mcor.h"
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
-#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksParticles.h"
+#include "vtkSPHRanksSurface.h"
 #include "vtkTable.h"
 
-#include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -31,55 +27,6 @@ VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Ids = std::vector<vtkIdType>;
-
-/** Returns numbers of any type as ids. */
-Ids NumbersOf(vtkDataSetAttributes* data, vtkIdType count)
-{
-  Ids numbers;
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    numbers.push_back(static_cast<vtkIdType>(data->GetGlobalIds()->GetComponent(i, 0)));
-  }
-  return numbers;
-}
-
-std::vector<double> ListPlaces(vtkPolyData* mesh)
-{
-  std::vector<double> places(3 * static_cast<std::size_t>(mesh->GetNumberOfPoints()));
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-  {
-    mesh->GetPoint(i, &places[3 * static_cast<std::size_t>(i)]);
-  }
-  return places;
-}
-
-/** Lists the corners of triangles by the points' numbers in the whole. */
-Ids ListCorners(vtkPolyData* mesh, const Ids& numbers)
-{
-  Ids corners;
-  vtkNew<vtkIdList> triangle;
-  for (vtkIdType t = 0; t < mesh->GetNumberOfPolys(); ++t)
-  {
-    mesh->GetPolys()->GetCellAtId(t, triangle);
-    for (int i = 0; i < 3; ++i)
-    {
-      corners.push_back(numbers[static_cast<std::size_t>(triangle->GetId(i))]);
-    }
-  }
-  return corners;
-}
-
-/** Returns how many there are in the whole. */
-vtkIdType CountOf(const vtkSPHRanksLists& numbers)
-{
-  vtkIdType count = 0;
-  for (const Ids& theirs : numbers)
-  {
-    count =
-      theirs.empty() ? count : std::max(count, 1 + *std::max_element(theirs.begin(), theirs.end()));
-  }
-  return count;
-}
 
 /**
  * Sends back what the first rank knows of the whole: the pieces, and numbers among what stays.
@@ -146,10 +93,7 @@ vtkSmartPointer<vtkPointSet> vtkSPHComponents::GatherParticles(
       fluid->GetPointData()->AddArray(array);
     }
   }
-  vtkSPHRanksLists to(static_cast<std::size_t>(ranks.GetCount()));
-  to[0].resize(static_cast<std::size_t>(own->GetNumberOfPoints()));
-  std::iota(to[0].begin(), to[0].end(), vtkIdType(0));
-  return vtkSPHSendParticles(ranks, fluid, to).Get();
+  return vtkSPHSendParticles(ranks, fluid, vtkSPHAllToFirst(ranks, own->GetNumberOfPoints())).Get();
 }
 
 // Returns what is wrong, on all ranks alike. No rank may return here while another goes on.
@@ -174,23 +118,14 @@ std::string vtkSPHComponents::SplitDistributed(
   ranks.Reduce(vtkSPHRanks::GREATEST, &given, 1);
   const vtkSmartPointer<vtkPointSet> all =
     given > 0 ? this->GatherParticles(ranks, particles) : nullptr;
-  const Ids pointNumbers = NumbersOf(mesh->GetPointData(), pointCount);
-  const vtkSPHRanksLists points = ranks.GatherOnFirst(pointNumbers),
-                         triangles =
-                           ranks.GatherOnFirst(NumbersOf(mesh->GetCellData(), triangleCount));
-  vtkNew<vtkPoints> places;
-  vtkNew<vtkIdTypeArray> corners;
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkPolyData> whole;
-  places->SetDataTypeToDouble();
-  places->SetNumberOfPoints(CountOf(points));
-  corners->SetNumberOfValues(3 * CountOf(triangles));
-  vtkSPHPlaceOnFirst(
-    ranks, points, ListPlaces(mesh), static_cast<double*>(places->GetVoidPointer(0)));
-  vtkSPHPlaceOnFirst(ranks, triangles, ListCorners(mesh, pointNumbers), corners->GetPointer(0));
-  cells->SetData(3, corners);
-  whole->SetPoints(places);
-  whole->SetPolys(cells);
+  vtkNew<vtkPolyData> bare;
+  bare->SetPoints(mesh->GetPoints());
+  bare->SetPolys(mesh->GetPolys());
+  bare->GetPointData()->SetGlobalIds(mesh->GetPointData()->GetGlobalIds());
+  bare->GetCellData()->SetGlobalIds(mesh->GetCellData()->GetGlobalIds());
+  vtkSPHRanksLists points, triangles;
+  vtkSmartPointer<vtkPolyData> whole = vtkSPHGatherSurface(ranks, bare, points, triangles);
+  whole = whole ? whole : vtkSmartPointer<vtkPolyData>::New();
   const Numbers found = this->Split(whole, all, table);
   vtkNew<vtkIdTypeArray> newPoints, newTriangles;
   const Numbers own = { Return(ranks, points, found.OfPoint, newPoints),

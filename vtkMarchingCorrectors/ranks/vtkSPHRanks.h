@@ -9,6 +9,7 @@
 #ifndef vtkSPHRanks_h
 #define vtkSPHRanks_h
 
+#include "mcor_parts.h"
 #include "vtkDIYUtilities.h"
 #include "vtkMPIController.h"
 #include "vtkSPHAlgorithm.h"
@@ -67,10 +68,6 @@ public:
    * round.
    */
   void ReduceRanges(double* ranges, int count);
-  vtkSPHMergeRanges MergeRanges()
-  {
-    return [this](double* ranges, int count) { this->ReduceRanges(ranges, count); };
-  }
 
   /** Gathers one value from each rank, in the order of ranks. */
   template <typename T>
@@ -167,6 +164,37 @@ void vtkSPHPlaceOnFirst(
     }
   }
 }
+/** The ranks' callbacks for the core. A rank that fails does not leave the others waiting. */
+class vtkSPHRanksCalls
+{
+public:
+  /** `whole`: the box of all ranks; null until space is divided. */
+  explicit vtkSPHRanksCalls(vtkSPHRanks& ranks, const double* whole = nullptr);
+
+  /** Returns the callbacks, for mcor_options during one call of the core. */
+  const mcor_ranks* Get() const { return &this->Core; }
+
+  /** Called by all ranks after the core's call, however that ended. */
+  void End(bool failed);
+
+  /** Whether this rank was told that another one failed. */
+  bool WasStopped() const { return this->Stopped; }
+
+private:
+  vtkSPHRanksCalls(const vtkSPHRanksCalls&) = delete;
+  void operator=(const vtkSPHRanksCalls&) = delete;
+
+  bool AllGoOn(bool self);
+  template <typename T>
+  static int Reduce(void* user, mcor_reduction reduction, T* values, int count);
+  static int Gather(void* user, const void* records, std::int64_t count, std::size_t width,
+    const void** all, std::int64_t* allCount);
+
+  vtkSPHRanks& Ranks;
+  mcor_ranks Core = {};
+  bool Stopped = false;
+  std::vector<char> Gathered;
+};
 VTK_ABI_NAMESPACE_END
 
 #endif

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: particles that travel between ranks, with all their point arrays.
- */
+/** Private to the module: tuples of arrays, and particles with all their arrays, that travel between ranks. */
 #ifndef vtkSPHRanksParticles_h
 #define vtkSPHRanksParticles_h
 
@@ -12,10 +10,42 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkAbstractArray;
+class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
 class vtkSPHParticles;
 struct vtkSPHParticlesChoice;
+
+using vtkSPHRanksArrays = std::vector<vtkSmartPointer<vtkAbstractArray>>;
+
+vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data);
+/** Lists the positions, then the point arrays. */
+vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
+/**
+ * Makes points of such arrays; each array gets the role (scalars, vectors, ...) that it has in
+ * `like`.
+ */
+vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
+
+/**
+ * Sends to each rank the tuples listed for it. The arrays must have the same forms on all ranks,
+ * and values that lie side by side. Returns arrays of what has arrived, in the order of ranks;
+ * from: how many tuples from each. Collective.
+ */
+vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
+
+/** Lists this rank's tuples, so many, for the first rank. */
+vtkSPHRanksLists vtkSPHAllToFirst(const vtkSPHRanks& ranks, vtkIdType count);
+
+/**
+ * Sends results back: of each array, to each rank the tuples that `back` lists for it. Returns
+ * arrays of `homeCount` tuples, in which `home` lists the places of what comes from each rank;
+ * the rest is 0. Collective.
+ */
+vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
+  const vtkSPHRanksLists& back, const vtkSPHRanksLists& home, vtkIdType homeCount);
 
 /**
  * Takes this rank's particles, without those that vtkGhostType marks as another rank's, and
@@ -28,13 +58,13 @@ vtkSmartPointer<vtkPolyData> vtkSPHTakeParticles(vtkSPHRanks& ranks, vtkPointSet
   const vtkSPHParticlesChoice& choice, std::vector<vtkIdType>* taken = nullptr);
 
 /** Keeps only the arrays that describe the particles or are interpolated. */
-vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPolyData* own, const vtkSPHParticles& used);
+vtkSmartPointer<vtkPolyData> vtkSPHKeepUsed(vtkPointSet* own, const vtkSPHParticles& used);
 
 /**
  * Sends to each rank the particles listed for it. Returns what has arrived, in the order of
  * ranks; from: how many from each. The particles are those of vtkSPHTakeParticles(). Collective.
  */
-vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPolyData* particles,
+vtkSmartPointer<vtkPolyData> vtkSPHSendParticles(vtkSPHRanks& ranks, vtkPointSet* particles,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);
 
 /**

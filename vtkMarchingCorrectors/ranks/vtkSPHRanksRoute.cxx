@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksRoute.h"
 
-#include "vtkPolyData.h"
+#include "vtkDataSet.h"
 #include "vtkSPHReals.h"
+#include "vtkSPHRun.h"
 
 #include <algorithm>
 #include <cmath>
@@ -294,7 +295,7 @@ int vtkSPHRanksRoute::FindOwner(const double at[3]) const
   return this->Partition->FindOwner(place);
 }
 
-vtkSPHRanksLists vtkSPHRanksRoute::ListOwners(vtkPolyData* points) const
+vtkSPHRanksLists vtkSPHRanksRoute::ListOwners(vtkDataSet* points) const
 {
   vtkSPHRanksLists owners(this->To.size());
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
@@ -302,18 +303,6 @@ vtkSPHRanksLists vtkSPHRanksRoute::ListOwners(vtkPolyData* points) const
     owners[static_cast<std::size_t>(this->FindOwner(points->GetPoint(i)))].push_back(i);
   }
   return owners;
-}
-
-vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers)
-{
-  for (std::vector<vtkIdType>& list : places)
-  {
-    for (vtkIdType& place : list)
-    {
-      place = numbers[static_cast<std::size_t>(place)];
-    }
-  }
-  return places;
 }
 
 void vtkSPHRanksRoute::FindReached(const double at[3], double reach, std::vector<int>& found) const

@@ -13,14 +13,7 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
-class vtkPolyData;
-
-/** Whether the core computes the particles' volumes. */
-inline bool vtkSPHComputesVolumes(const mcor_input& input)
-{
-  return !mcor_is_given(&input.volume) &&
-    !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
-}
+class vtkDataSet;
 
 /** One period, as the core has it: it begins at a node of the lattice. */
 struct vtkSPHRanksPeriod
@@ -41,7 +34,7 @@ struct vtkSPHRanksRoute
   int FindOwner(const double at[3]) const;
 
   /** Lists, for each rank, those of this rank's points that its box holds. */
-  vtkSPHRanksLists ListOwners(vtkPolyData* points) const;
+  vtkSPHRanksLists ListOwners(vtkDataSet* points) const;
 
   /** Finds the ranks whose boxes, or images of them, are within `reach` of a place. */
   void FindReached(const double at[3], double reach, std::vector<int>& found) const;
@@ -56,9 +49,6 @@ struct vtkSPHRanksRoute
   std::int64_t Work = 0; ///< of all ranks' particles in this rank's box, see vtkSPHRanksBalance
 };
 
-/** Replaces the places in the lists by the numbers at these places. */
-vtkSPHRanksLists vtkSPHListAt(vtkSPHRanksLists places, const std::vector<vtkIdType>& numbers);
-
 /** The work to divide evenly. */
 struct vtkSPHRanksBalance
 {
@@ -70,6 +60,21 @@ struct vtkSPHRanksBalance
     return this->Work.empty() ? 1 : this->Work[static_cast<std::size_t>(particle)];
   }
 };
+
+/**
+ * Returns 1 for each of this rank's particles, but 0 for those that the surface does not depend
+ * on: solids, if it uses none.
+ */
+std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options);
+
+/**
+ * The same, plus a share of the surface's cost where the surface is expected: in cells of a
+ * coarse grid that have values on both sides of an iso value around them, or, for a free
+ * surface, far fewer particles beside them. The number of cells does not grow with the
+ * particles. The same to the last bit however particles are spread over ranks. Collective.
+ */
+std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
+  const mcor_options& options, const mcor_globals& globals);
 
 /**
  * Divides space evenly, and finds for each particle, by its own smoothing length, the ranks

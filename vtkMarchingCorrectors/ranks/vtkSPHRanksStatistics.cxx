@@ -17,22 +17,14 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-enum How
-{
-  SAME,
-  SUM,
-  MOST,
-  OTHER
-};
-
 template <typename T>
-void Merge(How how, T& all, T one)
+void Merge(vtkSPHHow how, T& all, T one)
 {
   all = how == SUM ? all + one : how == MOST ? std::max(all, one) : all;
 }
 
 template <typename T, std::size_t N>
-void Merge(How how, T (&all)[N], const T (&one)[N])
+void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
 {
   for (std::size_t i = 0; i < N; ++i)
   {

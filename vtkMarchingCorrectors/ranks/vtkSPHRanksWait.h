@@ -1,19 +1,30 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: waiting for other ranks. MPI's own calls keep a processor busy while
+ * Private to the project: waiting for other ranks, and their parts of a surface. MPI's own calls keep a processor busy while
  * they wait, which slows down ranks that compute on it.
  */
 #ifndef vtkSPHRanksWait_h
 #define vtkSPHRanksWait_h
 
 #include "vtkMPIController.h"
+#include "vtkMarchingCorrectorsModule.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkPolyData;
+
+/**
+ * Puts parts of a surface together on the first process, by GlobalPointIds and GlobalCellIds, which
+ * go; null on the others. Collective.
+ */
+VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
+  vtkMultiProcessController* controller, vtkPolyData* part);
+
 /** Tests at once, then less and less often. */
 inline void vtkSPHAwait(vtkMPICommunicator::Request& request)
 {

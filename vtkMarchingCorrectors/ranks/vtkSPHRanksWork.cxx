@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vtkSPHRanksWork.h"
+#include "vtkSPHRanksRoute.h"
 
-#include "vtkSPHRanks.h"
 #include "vtkSPHReals.h"
 
 #include <algorithm>

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: a run that many processes (ranks) share. Each hands over the particles
+ * that it has. Space is divided among the ranks, particles are sent where they reach, each rank
+ * calls the core for its box, and results go back to where points and particles came from.
+ */
+#ifndef vtkSPHSharedRun_h
+#define vtkSPHSharedRun_h
+
+#include "mcor_parts.h"
+#include "vtkPolyData.h"
+#include "vtkSPHRanks.h"
+#include "vtkSPHRanksRoute.h"
+#include "vtkSPHRun.h"
+
+VTK_ABI_NAMESPACE_BEGIN
+class vtkSPHAlgorithm::vtkSharedRun : public vtkSPHAlgorithm::vtkRun
+{
+public:
+  explicit vtkSharedRun(vtkSPHAlgorithm* filter);
+  ~vtkSharedRun() override { mcor_free_globals(&this->Globals); }
+
+  bool IsShared() const override { return true; }
+  bool IsFirst() const override { return this->Ranks.GetRank() == 0; }
+  void Sum(std::int64_t* values, int count) override
+  {
+    this->Ranks.Reduce(vtkSPHRanks::SUM, values, count);
+  }
+  vtkSPHMergeRanges MergeRanges() override
+  {
+    return [this](double* ranges, int count) { this->Ranks.ReduceRanges(ranges, count); };
+  }
+  std::vector<std::vector<double>> Gather(const std::vector<double>& mine) override
+  {
+    return this->Ranks.Gather(mine);
+  }
+  std::vector<std::vector<Named>> Gather(const std::vector<Named>& mine) override
+  {
+    return this->Ranks.Gather(mine);
+  }
+  bool Agree(const std::string& problem) override;
+  bool Begin(vtkPointSet* particles) override;
+  bool Measure(vtkSPHParticles& particles, bool forSamples) override;
+  bool MeasureLengths(vtkSPHParticles& particles) override;
+  void PlaceBox(const double low[3], const double high[3]) override;
+  void PlacePoints(vtkDataSet* points) override;
+  vtkSPHParticles* Share(vtkSPHParticles& mine, const Collect& collect) override;
+  const std::uint8_t* MarkOwned() override;
+  bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call) override;
+  void CallAside(const std::function<bool(const mcor_ranks*)>& call) override;
+  void Return(vtkPointData* found, vtkDataSet* home) override;
+  void FindNotFinite(const vtkSPHParticles& input, std::vector<std::int64_t>& notFinite) override;
+  void AddShares() override;
+  void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics) override;
+
+  /** Sends particles, which the core has as `core`, to the ranks whose boxes need them. */
+  void Scatter(const mcor_input& core, vtkPointSet* particles);
+  /** Makes of a rank's particles, of which the warnings read no positions, those of all ranks. */
+  void OfAll(mcor_input& core, mcor_options& options) const;
+  /** Whether this rank's box holds a particle that was sent to it. */
+  bool Owns(vtkIdType near) const;
+
+  vtkSPHRanks Ranks;
+  mcor_globals Globals = {};
+  vtkSPHRanksBalance Balance;
+  vtkSPHRanksRoute Route;
+  vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
+
+private:
+  bool SetPeriod();
+
+  std::vector<vtkIdType> Numbers; ///< of its particles among those that it was given
+  std::vector<vtkIdType> From;    ///< how many particles came from each rank
+  std::unique_ptr<vtkSPHParticles> Input;
+  std::vector<std::uint8_t> Owned;
+  vtkSmartPointer<vtkPolyData> Places; ///< its points with finite coordinates
+  std::vector<vtkIdType> PlaceNumbers; ///< of these among its points
+  vtkSPHRanksLists PlacesTo;           ///< those that each rank evaluates
+  std::vector<vtkIdType> PlacesFrom;   ///< how many points came from each rank
+};
+VTK_ABI_NAMESPACE_END
+
+#endif

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSPHRun.h"
+
+#include "vtkSPHAlgorithmInternals.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHPeriod.h"
+#if MCOR_HAS_RANKS
+#include "vtkSPHSharedRun.h"
+#endif
+
+#include <algorithm>
+
+VTK_ABI_NAMESPACE_BEGIN
+std::unique_ptr<vtkSPHAlgorithm::vtkRun> vtkSPHAlgorithm::vtkRun::Make(vtkSPHAlgorithm* filter)
+{
+#if MCOR_HAS_RANKS
+  if (filter->IsShared())
+  {
+    return std::make_unique<vtkSharedRun>(filter);
+  }
+#endif
+  return std::make_unique<vtkRun>(filter);
+}
+
+void vtkSPHAlgorithm::vtkRun::Fail(const std::string& message)
+{
+  if (!this->IsQuiet)
+  {
+    this->Filter->Fail(message);
+  }
+}
+
+bool vtkSPHAlgorithm::vtkRun::Agree(const std::string& problem)
+{
+  if (!problem.empty())
+  {
+    this->Fail(problem);
+  }
+  return problem.empty();
+}
+
+bool vtkSPHAlgorithm::vtkRun::Begin(vtkPointSet* particles)
+{
+  this->Own = particles;
+  this->Particles = particles ? particles->GetNumberOfPoints() : 0;
+  return particles && !this->Filter->IsAborted();
+}
+
+vtkSPHParticlesChoice vtkSPHAlgorithm::vtkRun::Choose()
+{
+  vtkSPHParticlesChoice choice(*this->Filter);
+  this->Filter->FindFluid(choice, this->Own, this->MergeRanges());
+  return choice;
+}
+
+bool vtkSPHAlgorithm::vtkRun::Accept(
+  vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
+{
+  this->Filter->SetUsedNames(&particles, isUsable);
+  if (!this->Agree(isUsable ? "" : particles.Error))
+  {
+    return false;
+  }
+  std::int64_t fluid = particles.FluidCount;
+  this->Sum(&fluid, 1);
+  this->HasFluid = fluid > 0;
+  if (this->IsFirst() && this->HasFluid)
+  {
+    this->Filter->WarnOnce(WARN_TYPE_ARRAY, particles.DescribeUnusedType());
+  }
+  else if (this->IsFirst())
+  {
+    this->Filter->Warn(
+      particles.DescribeNoFluid() + ", so there is no fluid and " + consequence + ".");
+  }
+  return true;
+}
+
+bool vtkSPHAlgorithm::vtkRun::CheckPeriod(const vtkSPHPeriod& found, const std::string& problem)
+{
+  const std::string sentence = !problem.empty() ? problem
+    : !found.Period.empty()
+    ? ""
+    : "The field data of the particles give no period: there is no array PeriodicBounds, "
+      "BoxSize, or box with boundaryType.";
+  if (!sentence.empty())
+  {
+    this->Fail(sentence + " Set the periodic bounds, and turn their detection off.");
+  }
+  return sentence.empty();
+}
+
+bool vtkSPHAlgorithm::vtkRun::Measure(vtkSPHParticles&, bool)
+{
+  if (!this->Filter->DetectPeriod)
+  {
+    return true;
+  }
+  const vtkSPHPeriod found = vtkSPHFindPeriod(this->Own->GetFieldData());
+  if (!this->CheckPeriod(found, ""))
+  {
+    return false;
+  }
+  const std::vector<double> bounds = vtkSPHBoundsOfPeriod(found.Period, this->Own->GetBounds());
+  std::copy(bounds.begin(), bounds.end(), this->Options.periodic);
+  return true;
+}
+
+bool vtkSPHAlgorithm::vtkRun::Call(
+  vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call)
+{
+  std::string message;
+  const int status = this->CallCore(particles, call, message, 0, 1);
+  return this->Agree(message) && status == MCOR_OK;
+}
+
+// It reads first what an observer of the progress may change.
+int vtkSPHAlgorithm::vtkRun::CallCore(vtkSPHParticles& particles,
+  const std::function<int(mcor_context*)>& call, std::string& message, int place, int count)
+{
+  vtkInternals& internals = *this->Filter->Internals;
+  const bool keep = this->Filter->KeepDeviceData != 0;
+  message = internals.Prepare(this->Filter->Device, place, count);
+  if (!message.empty())
+  {
+    return MCOR_DEVICE_ERROR;
+  }
+  if (keep)
+  {
+    internals.SetVersions(particles);
+  }
+  this->Options.progress_user = this->Filter;
+  this->Options.progress = [](void* user, double fraction, const char* phase)
+  {
+    auto* filter = static_cast<vtkSPHAlgorithm*>(user);
+    filter->SetProgressText(phase);
+    filter->UpdateProgress(fraction);
+    return filter->IsAborted() ? 1 : 0;
+  };
+  mcor_context* context = internals.Context;
+  const auto status = static_cast<mcor_status>(call(context));
+  if (!keep)
+  {
+    mcor_release_memory(context);
+  }
+  if (status != MCOR_OK)
+  {
+    message = status == MCOR_CANCELLED ? "" : mcor_last_error(context);
+    internals.Forget(status);
+  }
+  return status;
+}
+
+void vtkSPHAlgorithm::vtkRun::WarnOfParticles(
+  const mcor_input& core, const mcor_statistics& statistics)
+{
+  mcor_surface surface = {};
+  surface.statistics = statistics;
+  for (const mcor_warning kind : { MCOR_WARN_FAR, MCOR_WARN_PERIOD, MCOR_WARN_COARSE })
+  {
+    this->Filter->WarnOnce(
+      kind, vtkSPHTakeText(mcor_describe_warning(kind, &core, &this->Options, &surface)));
+  }
+}
+VTK_ABI_NAMESPACE_END

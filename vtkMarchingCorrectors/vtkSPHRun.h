@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Private to the module: one run of a filter over particles, by this process alone. That of many
+ * processes is vtkSharedRun in ranks/. Filters do the same steps with both, in the order below.
+ * In a shared run all processes call all of them, and each returns the same everywhere: false if
+ * one of them failed, which all report, or the run was cancelled.
+ */
+#ifndef vtkSPHRun_h
+#define vtkSPHRun_h
+
+#include "mcor.h"
+#include "vtkDataSet.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkSPHAlgorithm.h"
+#include "vtkSPHParticles.h"
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+VTK_ABI_NAMESPACE_BEGIN
+/** Whether the core computes the particles' volumes. */
+inline bool vtkSPHComputesVolumes(const mcor_input& input)
+{
+  return !mcor_is_given(&input.volume) &&
+    !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
+}
+
+class vtkSPHAlgorithm::vtkRun
+{
+public:
+  using Collect = std::function<bool(vtkSPHParticles& particles)>;
+
+  /** Makes a shared run if processes share the filter's runs. */
+  static std::unique_ptr<vtkRun> Make(vtkSPHAlgorithm* filter);
+
+  explicit vtkRun(vtkSPHAlgorithm* filter)
+    : Filter(filter)
+  {
+  }
+  virtual ~vtkRun() = default;
+  vtkRun(const vtkRun&) = delete;
+  void operator=(const vtkRun&) = delete;
+
+  virtual bool IsShared() const { return false; }
+  /** Whether this process tells what is to be told once. */
+  virtual bool IsFirst() const { return true; }
+  virtual void Sum(std::int64_t*, int) {}
+  virtual vtkSPHMergeRanges MergeRanges() { return nullptr; }
+  /** Returns the lists of all processes, this one's among them, in one order. */
+  virtual std::vector<std::vector<double>> Gather(const std::vector<double>& mine)
+  {
+    return { mine };
+  }
+  using Named = std::pair<std::string, std::vector<double>>;
+  virtual std::vector<std::vector<Named>> Gather(const std::vector<Named>& mine)
+  {
+    return { mine };
+  }
+  /** Returns false, after an error, if a process has a problem. */
+  virtual bool Agree(const std::string& problem);
+
+  /** Takes this process's particles, which may be null. */
+  virtual bool Begin(vtkPointSet* particles);
+  /** Returns the filter's description of the particles, with the fluid that is detected. */
+  vtkSPHParticlesChoice Choose();
+  /** Notes which arrays were found, and warns about the fluid. */
+  virtual bool Accept(vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
+  /**
+   * Finds the period and, for many processes, everything global: for a surface, or for mcor_probe
+   * and mcor_derive.
+   */
+  virtual bool Measure(vtkSPHParticles& particles, bool forSamples);
+  /**
+   * Finds the period alone, and, from all particles, the smoothing length if it is estimated.
+   */
+  virtual bool MeasureLengths(vtkSPHParticles& particles) { return this->Measure(particles, true); }
+  /** Limits the run to the box around places. */
+  virtual void PlaceBox(const double[3], const double[3]) {}
+  /** Takes the points at which to evaluate, which may be null. */
+  virtual void PlacePoints(vtkDataSet* points) { this->Points = points; }
+  /**
+   * Sends particles, and points, to the processes that need them. Returns `mine`, or those that
+   * came, once they are collected; null if they are not usable.
+   */
+  virtual vtkSPHParticles* Share(vtkSPHParticles& mine, const Collect&) { return &mine; }
+  /** Marks the particles that Share() sent to this process for its own; null: all are. */
+  virtual const std::uint8_t* MarkOwned() { return nullptr; }
+  /** Calls the core: `call` gets a context for the device, and returns the core's status. */
+  virtual bool Call(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call);
+  /** Calls a function of the core that needs no context; it returns false if that fails. */
+  virtual void CallAside(const std::function<bool(const mcor_ranks*)>& call) { call(nullptr); }
+  /**
+   * Sends what was found, a tuple for each of the points, or else of the particles, back to where
+   * these came from: to this process's `home`, which may be null.
+   */
+  virtual void Return(vtkPointData*, vtkDataSet*) {}
+  /** Says at which particles interpolated arrays are not finite, which all processes may not see. */
+  virtual void FindNotFinite(const vtkSPHParticles&, std::vector<std::int64_t>&) {}
+  /** Adds what each process has done to the statistics of the run. */
+  virtual void AddShares() {}
+  /** Gives the warnings of the core that need no surface. */
+  virtual void WarnOfParticles(const mcor_input& core, const mcor_statistics& statistics);
+
+  bool IsQuiet = false;             ///< errors are not reported
+  vtkSmartPointer<vtkPointSet> Own; ///< this process's particles
+  std::int64_t Particles = 0;       ///< of all processes
+  bool HasFluid = false;            ///< any process
+  mcor_options Options = {};
+  vtkSmartPointer<vtkDataSet> Points; ///< those that this process evaluates
+
+protected:
+  void Fail(const std::string& message);
+  bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
+  /**
+   * Calls the core, as number `place` of `count` processes of this machine. Returns its status;
+   * `message` says why it failed, unless it was cancelled.
+   */
+  int CallCore(vtkSPHParticles& particles, const std::function<int(mcor_context*)>& call,
+    std::string& message, int place, int count);
+
+  vtkSPHAlgorithm* const Filter;
+};
+VTK_ABI_NAMESPACE_END
+
+#endif

@@ -4,13 +4,9 @@
 // The command line program: particles from a file, surface to a file. See --help.
 #include "ArrayList.h"
 #include "ColorScale.h"
-#include "ComponentRun.h"
 #include "DataSetFile.h"
 #include "Ending.h"
 #include "Extra.h"
-#include "Film.h"
-#include "FluxRun.h"
-#include "GaugeRun.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -18,9 +14,9 @@
 #include "ParticleFile.h"
 #include "Picture.h"
 #include "PieceFile.h"
-#include "ProbeRun.h"
-#include "ProjectionRun.h"
 #include "RunStatistics.h"
+#include "RunTables.h"
+#include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
 #include "SurfaceFile.h"
@@ -181,6 +177,10 @@ void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
 /// Makes the outputs. Returns false if a step failed; its error was printed.
 bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
 {
+  if (job.IsFilm())
+  {
+    return MakeFilm(job, messages, sharing);
+  }
   if (job.Has("--project"))
   {
     ProjectParticles(job, messages, sharing);
@@ -193,10 +193,6 @@ bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
   if (job.IsFlux())
   {
     return MakeFluxTable(job, messages, sharing);
-  }
-  if (job.IsFilm())
-  {
-    return MakeFilm(job, messages, sharing);
   }
   job.IsProbe() ? ProbePoints(job, messages, sharing) : MakeSurface(job, messages, sharing);
   return true;

@@ -85,18 +85,40 @@ class Project(CommandLineTest):
                           display=True)
             self.assertGreater((self.directory / "image.png").stat().st_size, 3000)
 
+    def test_film(self):
+        """An image for each step, in a list or by number, each as it is alone; a failing step does not end the others."""
+        options = ["--project", "z", "--resolution", "9", "--box=-1,1,-1,1,-1,1"]
+        self.project(*options)
+        expected = self.image.read_bytes()
+        files.write_vtp(self.directory / "half.vtp", self.points[:500],
+                        {name: array[:500] for name, array in self.arrays.items()})
+        files.write_vtp(self.directory / "bare.vtp", self.points, {"Mass": self.arrays["Mass"]})
+        done = self.run_program(self.input, "bare.vtp", "half.vtp", "film.pvd", *options)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("film_0001.vti (time 1): The particles have no smoothing length", done.stderr)
+        listed = xml.etree.ElementTree.parse(self.directory / "film.pvd").getroot().iter("DataSet")
+        self.assertEqual([(one.get("file"), one.get("timestep")) for one in listed],
+                         [("film_0000.vti", "0"), ("film_0002.vti", "2")])
+        text = (self.directory / "film_0000.vti").read_bytes()
+        self.assertEqual(text.replace(b"\n<!-- a step of a film by marching-correctors -->", b""), expected)
+        self.run_good(self.input, "half.vtp", "column_%04d.vti", *options)
+        self.assertEqual((self.directory / "column_0000.vti").read_bytes(), expected)
+        self.project(*options, source="half.vtp")
+        self.assertEqual((self.directory / "column_0001.vti").read_bytes(), self.image.read_bytes())
+
     def test_wrong_usage(self):
         self.output = self.image
         self.refuse_all(2, [(["w"], "--project needs|direction|three numbers"), (["0,0,0"], "0,0,0"), (["1,2"], "1,2"),
                             (["z", "--iso", "1"], "leave out --iso"), (["z", "--slice", "z=0"], "leave out --slice"),
                             (["z", "--gauge", "a=0,0,0:0,0,1"], "leave out --gauge"),
-                            (["z", "--resolution", "1"], "--resolution"), (["z", "--times", "1"], "one INPUT of one time")], "--project")
+                            (["z", "--resolution", "1"], "--resolution"), (["z", "--times", "1"], "the output is not a film")], "--project")
         self.refuse_all(1, [(["--scalar", "Nope"], "no point array 'Nope' for the projection"),
                             (["--scalar", "Velocity", "--component", "3"], "no component 3"),
                             (["--weighted-by", "Velocity"], "3 components"), (["--weighted-by", "Nope"], "'Nope' for the weight"),
                             (["--smoothing-length", "Nope"], "Nope"), (["--box", "0,0,0,1,0,1"], "The box along x")],
                         "--project", "z")
-        self.refuse(self.run_program(self.input, "surface.vtp", "--project", "z"), 2, r"\.vti or \.vtk file, not 'surface.vtp'")
+        self.refuse(self.run_program(self.input, "surface.vtp", "--project", "z"), 2, r"\.vti or \.vtk file, or .pvd for a film, not 'surface.vtp'")
+        self.refuse(self.run_program(self.input, self.input, "surface.vti", "--project", "z"), 2, "%04d in its name, unlike 'surface.vti'")
         self.refuse(self.run_program(self.input, "surface.vtp", "--weighted-by", "Mass", "--free-surface"), 2, "is for --project")
 
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Extra.h"
 
-#include "FileFormat.h"
+#include "FileName.h"
 #include "Picture.h"
 #ifdef MCOR_HAS_VTKHDF
 #include "HdfLinks.h"

@@ -3,12 +3,10 @@
 #include "Job.h"
 
 #include "CollectionFile.h"
-#include "FileFormat.h"
-#include "OptionTable.h"
+#include "FileName.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
 #include "Sharing.h"
-#include "StepName.h"
 #include "SurfaceFile.h"
 
 #include <algorithm>
@@ -125,28 +123,31 @@ const std::vector<Rule> OfProbes = {
     "the output of {mode} is a .vtp or .vtk file, not '{output}'" },
 };
 
-const std::vector<Rule> OfProjections = {
-  { IF(j.Inputs.size() > 1 || IsCollectionFile(j.Inputs.front()) || !j.Times.empty() ||
-      j.TimeStep != 1.0),
-    "{mode} takes one INPUT of one time" },
-  { IsAny, "{mode} makes no surface",
-    { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
-      "--slice", "--line", "--gauge", "--gauges", "--gauge-grid", "--flux", "--fluxes" } },
-  { IF(!IsTo(j, ".vti") && !IsTo(j, ".vtk")),
-    "the output of {mode} is a .vti or .vtk file, not '{output}'" },
-};
-
-const std::vector<Rule> OfSurfaces = {
+/// Rules of surfaces and projections, of which there may be films.
+const std::vector<Rule> OfFilms = {
   { IF(!j.IsFilm()), "the output is not a film, which is a .pvd file or has %04d in its name",
     { "--times", "--time-step" } },
-  { IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
-      !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),
-    "the output of several steps is a .pvd file, or a {endings} file with %04d in its name, not "
-    "'{output}'" },
   { IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsCollectionFile)),
     "a .pvd file must be the only INPUT, because it lists the steps" },
   { IF(IsCollectionFile(j.Inputs.front()) && j.TimeStep != 1.0),
     "--time-step is for a list of particle files; a .pvd file has times of its own" },
+};
+
+const std::vector<Rule> OfProjections = {
+  { IsAny, "{mode} makes no surface",
+    { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
+      "--slice", "--line", "--gauge", "--gauges", "--gauge-grid", "--flux", "--fluxes" } },
+  { IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+    "the output of {mode} is a .vti or .vtk file, or .pvd for a film, not '{output}'" },
+  { IF(j.IsFilm() && !IsCollectionFile(j.Output) && !HasStepNumber(j.Output)),
+    "the output of several steps is a .pvd file, or has %04d in its name, unlike '{output}'" },
+};
+
+const std::vector<Rule> OfSurfaces = {
+  { IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
+      !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),
+    "the output of several steps is a .pvd file, or a {endings} file with %04d in its name, not "
+    "'{output}'" },
   { IF(j.IsFilm() && j.Repeat > 1), "--repeat is for one surface, not for a film" },
   { IF(!j.IsFilm() && !IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
     "the output is a {endings} file, or .pvd for a film, not '{output}'" },
@@ -242,7 +243,13 @@ void Check(const Job& job)
     }
   }
   Enforce(OfOthers, job);
-  Enforce(job.Has("--project") ? OfProjections : job.IsProbe() ? OfProbes : OfSurfaces, job);
+  if (job.IsProbe() && !job.Has("--project"))
+  {
+    Enforce(OfProbes, job);
+    return;
+  }
+  Enforce(OfFilms, job);
+  Enforce(job.Has("--project") ? OfProjections : OfSurfaces, job);
 }
 
 const Option& FindOption(const std::string& name)
@@ -347,7 +354,7 @@ std::vector<std::string> Job::InputFiles() const
   std::vector<std::string> files = this->Inputs;
   files.insert(files.end(), this->Walls.begin(), this->Walls.end());
   files.insert(files.end(), { this->ProbeFile, this->GaugeFile, this->FluxFile });
-  for (const FluxSection& section : this->Fluxes)
+  for (const Place& section : this->Fluxes)
   {
     files.push_back(section.File);
   }
@@ -369,7 +376,7 @@ const char* Job::Mode() const
 
 bool Job::IsFilm() const
 {
-  return !this->IsProbe() && !this->IsTable() && !this->Has("--project") &&
+  return !this->IsProbe() && (!this->IsTable() || this->Has("--project")) &&
     (this->Inputs.size() > 1 || IsCollectionFile(this->Output) || HasStepNumber(this->Output) ||
       (!this->Inputs.empty() && IsCollectionFile(this->Inputs.front())));
 }

@@ -3,8 +3,7 @@
 #ifndef Job_h
 #define Job_h
 
-#include "FluxSection.h"
-#include "GaugeLine.h"
+#include "Place.h"
 
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
@@ -15,6 +14,7 @@
 #include "vtkSPHProjection.h"
 
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,7 +35,7 @@ struct SliceOptions
   int Axis = -1;            ///< that a slice is normal to; below 0: there is none
   double Place = 0.0;       ///< on that axis
   std::vector<double> Line; ///< from, to: six numbers; empty: there is none
-  int Resolution = 0;       ///< points along the longest side; 0: 512
+  int Resolution = 512;     ///< points along the longest side
 };
 
 /// A command line's request: the filters, set up as far as that can be done without the input,
@@ -87,10 +87,10 @@ struct Job
   std::string IdArray;       ///< that particles are matched by between steps; empty: found
   std::string ProbeFile;
   SliceOptions Slice;
-  std::vector<GaugeLine> Gauges;
+  std::vector<Place> Gauges;
   std::string GaugeFile; ///< more of them
   GaugeGrid Grid;        ///< no others then
-  std::vector<FluxSection> Fluxes;
+  std::vector<Place> Fluxes;
   std::string FluxFile;  ///< more of them
   std::string Derive;    ///< array whose gradient, and what is made of it, the particles get
 
@@ -119,6 +119,18 @@ struct Job
   bool Quiet = false;
   bool ListArrays = false; ///< of the only input
 };
+
+struct Option
+{
+  const char* Name;
+  const char* Argument; ///< what stands for it in the help; empty: the option has none
+  std::string Help;
+  std::function<void(Job&, const std::string& option, const std::string& value)> Set;
+  bool Repeats = false; ///< whether it may be given more than once
+};
+
+/// Lists every option, in the order of the help. An option without a name starts a group.
+const std::vector<Option>& AllOptions();
 
 /// Throws UsageError, see OptionValue.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // A setting of the filters is a line here.
-#include "OptionTable.h"
-
 #include "Job.h"
+
 #include "OptionValue.h"
 #include "SafeText.h"
 #include "mcor.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SafeText.h"
 
-#include "Advice.h"
 
 #include <cstddef>
 #include <cstdio>

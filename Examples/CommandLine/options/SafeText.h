@@ -15,6 +15,14 @@ std::string Printable(const std::string& text);
 /// The text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
 
+/// A sentence of the filters, whose advice is the same for all interfaces, in the words of this one: with its
+/// options.
+std::string WithOptions(const std::string& sentence);
+
+/// The sentence with some words replaced, if it has them.
+std::string Reworded(
+  const std::string& sentence, const std::string& words, const std::string& instead);
+
 /// Errors and warnings: one line on standard error after the program's name, whatever names and
 /// files have put into the sentence.
 void Say(const std::string& sentence);

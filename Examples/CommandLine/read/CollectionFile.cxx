@@ -3,7 +3,7 @@
 #include "CollectionFile.h"
 
 #include "Ending.h"
-#include "FileFormat.h"
+#include "FileName.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "SafeText.h"

@@ -6,7 +6,7 @@
 #include "DeclaredSizes.h"
 #include "Ending.h"
 #include "Extra.h"
-#include "FileFormat.h"
+#include "FileName.h"
 #include "GadgetFile.h"
 #include "MessageCapture.h"
 #include "ParticleParts.h"

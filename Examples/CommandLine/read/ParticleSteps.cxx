@@ -6,7 +6,7 @@
 #include "FileTime.h"
 #include "Job.h"
 #include "ParticleFile.h"
-#include "StepName.h"
+#include "FileName.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"

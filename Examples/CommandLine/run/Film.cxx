@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Film.h"
-
 #include "CollectionFile.h"
 #include "ColorScale.h"
-#include "ComponentRun.h"
+#include "DataSetFile.h"
 #include "Ending.h"
 #include "Extra.h"
-#include "FilmNumbers.h"
+#include "FileName.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -16,15 +14,19 @@
 #include "ParticleTimes.h"
 #include "Picture.h"
 #include "RunStatistics.h"
+#include "RunTables.h"
+#include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "StepName.h"
 #include "SurfaceFile.h"
 #include "SurfaceRun.h"
+
+#include "vtkImageData.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -37,14 +39,15 @@ namespace
 namespace fs = std::filesystem;
 
 /// "film.pvd" -> "film_0000.vtp", ...; "film_%04d.ply" -> "film_0000.ply", ...
-std::vector<std::string> ListSurfaces(const std::string& output, std::size_t count)
+std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
 {
+  const std::string& output = job.Output;
   std::string stem, name = output;
   if (IsCollectionFile(output))
   {
     const std::size_t width = std::max<std::size_t>(4, std::to_string(count - 1).size());
     stem = output.substr(0, output.size() - std::string(".pvd").size());
-    name = "_%0" + std::to_string(width) + "d.vtp";
+    name = "_%0" + std::to_string(width) + "d" + (job.Has("--project") ? ".vti" : ".vtp");
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < count; ++i)
@@ -77,7 +80,7 @@ void CheckFiles(const Job& job, const std::vector<std::string>& stored,
   {
     std::error_code error;
     if (IsCollectionFile(job.Output) && fs::exists(fs::symlink_status(surface, error)) &&
-      !IsFilmSurface(surface))
+      !IsFilmStep(surface))
     {
       throw UsageError(surface +
         " already exists and is not a step of a film; choose another name "
@@ -94,7 +97,7 @@ public:
     , Messages(messages)
     , Shared(sharing)
     , Times(job, messages)
-    , Surfaces(ListSurfaces(job.Output, this->Times.Get().size()))
+    , Surfaces(ListSurfaces(job, this->Times.Get().size()))
     , Colors(job.Picture)
     , FrameColors(job.Picture)
     , Pieces(job)
@@ -184,11 +187,50 @@ private:
 
   void MakeStep(std::size_t i)
   {
-    const std::string progress = "step " + std::to_string(i + 1) + " of " +
-      std::to_string(this->Times.Get().size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
-    std::vector<std::string> warnings;
     const double time = this->Times.Get()[i];
+    const std::string progress = "step " + std::to_string(i + 1) + " of " +
+      std::to_string(this->Times.Get().size()) + ", time " + TimeText(time) + ": ";
+    std::vector<std::string> warnings;
     const vtkSmartPointer<vtkPointSet> particles = this->Shared.Read(this->Times, time, warnings);
+    this->Options.Has("--project") ? this->MakeImage(i, particles, progress, warnings)
+                                   : this->MakeSurface(i, particles, progress, warnings);
+    for (const std::string& warning : warnings)
+    {
+      this->Tell("warning: ", i, warning);
+    }
+  }
+
+  void MakeImage(std::size_t i, vtkPointSet* particles, const std::string& progress,
+    std::vector<std::string>& warnings)
+  {
+    const double seconds =
+      Project(this->Options, particles, this->Messages, this->Shared, progress);
+    const std::vector<std::string> more = this->Messages->GetWarnings();
+    warnings.insert(warnings.end(), more.begin(), more.end());
+    this->Shared.OnFirst(
+      [&]
+      {
+        vtkImageData* image = SeenImage(this->Options);
+        const int* size = image->GetDimensions();
+        this->Write(i, DataSetBytes(this->Surfaces[i], image, this->Messages),
+          [&](const std::string& frame)
+          {
+            return DrawProjection(
+              this->Options, frame, *this->Drawn, this->FrameColors, this->Messages);
+          });
+        this->Setting = " "; // there is a step
+        this->Add(this->Describe(i), "");
+        this->List(false);
+        std::ostringstream what;
+        what << size[0] << " x " << size[1] << " x " << size[2] << " pixels, ";
+        this->TellStep(i, what.str(), seconds);
+      });
+  }
+
+  void MakeSurface(std::size_t i, vtkPointSet* particles, const std::string& progress,
+    std::vector<std::string>& warnings)
+  {
+    const double time = this->Times.Get()[i];
     Run run;
     this->Shared.OnAll(
       [&]
@@ -207,10 +249,6 @@ private:
     }
     this->Shared.OnAll([&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
     this->Shared.OnFirst([&] { this->Keep(i, run, particles, warnings); });
-    for (const std::string& warning : warnings)
-    {
-      this->Tell("warning: ", i, warning);
-    }
   }
 
   /// Writes what was made of a step.
@@ -221,48 +259,53 @@ private:
     {
       AddHintOfPeriod(this->Options, particles, warnings);
     }
-    this->Write(i, run.Surface, particles, warnings);
+    vtkPolyData* surface = run.Surface;
+    const std::string& file = this->Surfaces[i];
+    this->Colors.Include(surface);
+    this->Write(i, SurfaceBytes(file, surface, this->Colors, this->Messages),
+      [&](const std::string& frame)
+      {
+        this->FrameColors.Suggest(surface, this->Options.Surface->GetIsoValueArrayName());
+        this->FrameColors.Include(surface);
+        return this->Drawn->Draw(frame, surface, particles, this->FrameColors, this->Messages);
+      });
+    const std::string lost =
+      LostArrays(file, surface, this->Colors, ArraysWithoutPlace(this->Options, particles));
+    warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
     this->Setting = SettingAsJson(this->Options, run.Statistics);
     const FilmStep step = this->Describe(i);
     this->Add(step, StepAsJson(step, run.Statistics, run.WallSeconds));
     this->List(false);
+    const vtkIdType triangles = surface->GetNumberOfPolys(),
+                    lines = triangles > 0 ? 0 : surface->GetNumberOfLines();
+    std::ostringstream what;
+    what << surface->GetNumberOfPoints() << " points, " << (lines > 0 ? lines : triangles)
+         << (lines > 0 ? " lines, " : " triangles, ");
+    this->TellStep(i, what.str(), run.WallSeconds);
+  }
+
+  void TellStep(std::size_t i, const std::string& what, double seconds) const
+  {
     if (!this->Options.Quiet)
     {
-      const vtkIdType triangles = run.Surface->GetNumberOfPolys(),
-                      lines = triangles > 0 ? 0 : run.Surface->GetNumberOfLines();
-      std::cout << Printable(this->Label(i)) << ": " << run.Surface->GetNumberOfPoints()
-                << " points, " << (lines > 0 ? lines : triangles)
-                << (lines > 0 ? " lines, " : " triangles, ") << std::setprecision(3)
-                << run.WallSeconds << " s" << std::endl;
+      std::cout << Printable(this->Label(i)) << ": " << what << std::setprecision(3) << seconds
+                << " s" << std::endl;
     }
   }
 
-  /// The step's surface and picture, both or none.
-  void Write(
-    std::size_t i, vtkPolyData* surface, vtkPointSet* particles, std::vector<std::string>& warnings)
+  /// The step's file and picture, both or none.
+  void Write(std::size_t i, const std::string& bytes,
+    const std::function<std::string(const std::string& frame)>& draw)
   {
-    const std::string& file = this->Surfaces[i];
-    this->Colors.Include(surface);
     OutputFiles files;
-    files.Write(file,
-      IsCollectionFile(this->Options.Output)
-        ? FilmSurfaceBytes(file, surface, this->Messages)
-        : SurfaceBytes(file, surface, this->Colors, this->Messages));
+    files.Write(
+      this->Surfaces[i], IsCollectionFile(this->Options.Output) ? MarkedStep(bytes) : bytes);
     if (this->Drawn)
     {
       const std::string frame = NameOfStep(this->Options.Picture.File, i);
-      this->FrameColors.Suggest(surface, this->Options.Surface->GetIsoValueArrayName());
-      this->FrameColors.Include(surface);
-      files.Write(
-        frame, this->Drawn->Draw(frame, surface, particles, this->FrameColors, this->Messages));
+      files.Write(frame, draw(frame));
     }
     files.Commit();
-    const std::string lost =
-      LostArrays(file, surface, this->Colors, ArraysWithoutPlace(this->Options, particles));
-    if (!lost.empty())
-    {
-      warnings.push_back(lost);
-    }
   }
 
   std::string ListText() const

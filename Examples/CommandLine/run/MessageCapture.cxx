@@ -42,9 +42,12 @@ std::string Sentence(const char* text)
 MessageCapture::MessageCapture() = default;
 MessageCapture::~MessageCapture() = default;
 
+// Warnings come here, too. The legacy readers only warn ("Error reading ascii data") where a file
+// ends in mid-array.
 void MessageCapture::DisplayText(const char* text)
 {
-  this->AddWarning(Sentence(text));
+  const std::string sentence = Sentence(text);
+  (sentence.compare(0, 5, "Error") == 0 ? this->Errors : this->Warnings).push_back(sentence);
 }
 
 void MessageCapture::DisplayErrorText(const char* text)
@@ -55,22 +58,6 @@ void MessageCapture::DisplayErrorText(const char* text)
   {
     this->Errors.push_back(sentence);
   }
-}
-
-void MessageCapture::DisplayWarningText(const char* text)
-{
-  this->AddWarning(Sentence(text));
-}
-
-void MessageCapture::DisplayGenericWarningText(const char* text)
-{
-  this->AddWarning(Sentence(text));
-}
-
-// The legacy readers only warn ("Error reading ascii data") where a file ends in mid-array.
-void MessageCapture::AddWarning(const std::string& sentence)
-{
-  (sentence.compare(0, 5, "Error") == 0 ? this->Errors : this->Warnings).push_back(sentence);
 }
 
 void MessageCapture::DisplayDebugText(const char*) {}

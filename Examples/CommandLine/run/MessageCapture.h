@@ -18,8 +18,6 @@ public:
 
   void DisplayText(const char* text) override;
   void DisplayErrorText(const char* text) override;
-  void DisplayWarningText(const char* text) override;
-  void DisplayGenericWarningText(const char* text) override;
   void DisplayDebugText(const char* text) override;
 
   /// Errors that have been reported since the last Clear(), without file, line and address.
@@ -34,8 +32,6 @@ protected:
 private:
   MessageCapture(const MessageCapture&) = delete;
   void operator=(const MessageCapture&) = delete;
-
-  void AddWarning(const std::string& sentence);
 
   std::vector<std::string> Errors;
   std::vector<std::string> Warnings;

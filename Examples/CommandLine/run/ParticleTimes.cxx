@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleTimes.h"
 
-#include "Advice.h"
 #include "CollectionFile.h"
 #include "Job.h"
 #include "MessageCapture.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceRun.h"
 
-#include "Advice.h"
 #include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"

@@ -3,7 +3,7 @@
 #include "DataSetFile.h"
 
 #include "Ending.h"
-#include "FileFormat.h"
+#include "FileName.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "SafeText.h"
@@ -159,7 +159,7 @@ void CheckDataSetFile(const std::string& file, vtkDataSet* data)
     std::string(data->GetClassName()) + ", for a " + endings + " file, not '" + file + "'");
 }
 
-void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages)
+std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCapture* messages)
 {
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
@@ -169,5 +169,10 @@ void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* mes
     throw std::runtime_error(file + " could not be written" +
       (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
   }
-  WriteOutput(file, bytes);
+  return bytes;
+}
+
+void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages)
+{
+  WriteOutput(file, DataSetBytes(file, data, messages));
 }

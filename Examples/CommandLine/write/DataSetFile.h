@@ -17,6 +17,9 @@ bool WriteXmlInline(vtkXMLWriter* writer, vtkDataSet* data, std::string& bytes);
 /// holds data sets of this class.
 void CheckDataSetFile(const std::string& file, vtkDataSet* data);
 
+/// The bytes of a data set in the format of the file's ending. Throws std::runtime_error.
+std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCapture* messages);
+
 /// Writes a data set, completely or not at all. Throws std::runtime_error with one sentence.
 void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages);
 

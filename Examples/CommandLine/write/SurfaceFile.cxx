@@ -5,7 +5,7 @@
 #include "ColorScale.h"
 #include "DataSetFile.h"
 #include "Ending.h"
-#include "FileFormat.h"
+#include "FileName.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "SafeText.h"
@@ -309,15 +309,13 @@ std::string SurfaceBytes(
   return bytes;
 }
 
-std::string FilmSurfaceBytes(
-  const std::string& file, vtkPolyData* surface, MessageCapture* messages)
+std::string MarkedStep(std::string bytes)
 {
-  std::string bytes = SurfaceBytes(file, surface, ColorScale(PictureOptions()), messages);
   bytes.insert(bytes.find("?>") + 2, std::string("\n") + FilmMark);
   return bytes;
 }
 
-bool IsFilmSurface(const std::string& file)
+bool IsFilmStep(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
   std::string head(256, '\0');

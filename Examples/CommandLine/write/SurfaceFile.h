@@ -22,12 +22,11 @@ std::string SurfaceFileEndings();
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
   MessageCapture* messages);
 
-/// Returns SurfaceBytes() for a step of a film as .vtp, with a mark.
-std::string FilmSurfaceBytes(
-  const std::string& file, vtkPolyData* surface, MessageCapture* messages);
+/// The bytes of an XML file with a mark: a step of a film, which another film may replace.
+std::string MarkedStep(std::string bytes);
 
-/// Whether it has this mark, so that another film may replace it.
-bool IsFilmSurface(const std::string& file);
+/// Whether the file has this mark.
+bool IsFilmStep(const std::string& file);
 
 /// Whether files in this format hold arrays of any name.
 bool HoldsArrays(const std::string& file);

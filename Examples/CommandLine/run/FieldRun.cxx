@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ProbeRun.h"
 
+// The field in place of a surface: at points, and along lines of sight.
 #include "ColorScale.h"
 #include "DataSetFile.h"
 #include "Extra.h"
@@ -10,6 +10,7 @@
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Picture.h"
+#include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
 #include "SurfaceRun.h"
@@ -41,11 +42,6 @@ vtkIdType CountValid(vtkDataSet* data)
   return std::count(begin, begin + mask->GetNumberOfValues(), 1);
 }
 
-int ResolutionOf(const SliceOptions& slice)
-{
-  return slice.Resolution > 0 ? slice.Resolution : 512;
-}
-
 vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bounds[6])
 {
   double longest = 0.0;
@@ -59,7 +55,7 @@ vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bo
       "= has no plane to show: all particles lie on one line along this axis");
   }
   auto image = vtkSmartPointer<vtkImageData>::New();
-  const double spacing = longest / (ResolutionOf(slice) - 1);
+  const double spacing = longest / (slice.Resolution - 1);
   double origin[3];
   int counts[3];
   for (int a = 0; a < 3; ++a)
@@ -79,7 +75,7 @@ vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bo
 vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
 {
   const std::vector<double>& ends = slice.Line;
-  const int count = ResolutionOf(slice);
+  const int count = slice.Resolution;
   const double length = std::hypot(ends[3] - ends[0], ends[4] - ends[1], ends[5] - ends[2]);
   vtkNew<vtkPoints> points;
   vtkNew<vtkDoubleArray> way;
@@ -149,16 +145,12 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
   return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
 }
 
-/// A .png file of the result.
-void WritePicture(const Job& job, vtkDataSet* result, MessageCapture* messages)
+void TellWarnings(MessageCapture* messages)
 {
-  const vtkSmartPointer<vtkDataSet> shown = ValidPart(result);
-  ColorScale colors(job.Picture);
-  colors.SetName(job.Picture.ColorBy.empty() ? ArrayToShow(shown) : job.Picture.ColorBy);
-  colors.Include(shown);
-  const auto picture = LoadExtra().NewPicture(job.Picture);
-  WriteOutput(job.Picture.File,
-    picture->Draw(job.Picture.File, shown, result, colors, messages, job.Slice.Axis));
+  for (const std::string& warning : messages->GetWarnings())
+  {
+    Say("warning: " + warning);
+  }
 }
 
 }
@@ -194,10 +186,7 @@ void ProbePoints(const Job& job, MessageCapture* messages, Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
-      for (const std::string& warning : messages->GetWarnings())
-      {
-        Say("warning: " + warning);
-      }
+      TellWarnings(messages);
       auto* result = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
       if (!job.Quiet)
       {
@@ -207,7 +196,79 @@ void ProbePoints(const Job& job, MessageCapture* messages, Sharing& sharing)
       WriteDataSet(job.Output, result, messages);
       if (!job.Picture.File.empty())
       {
-        WritePicture(job, result, messages);
+        const vtkSmartPointer<vtkDataSet> shown = ValidPart(result);
+        ColorScale colors(job.Picture);
+        colors.SetName(job.Picture.ColorBy.empty() ? ArrayToShow(shown) : job.Picture.ColorBy);
+        colors.Include(shown);
+        const auto picture = LoadExtra().NewPicture(job.Picture);
+        WriteOutput(job.Picture.File,
+          picture->Draw(job.Picture.File, shown, result, colors, messages, job.Slice.Axis));
+      }
+    });
+}
+
+double Project(const Job& job, vtkPointSet* particles, MessageCapture* messages, Sharing& sharing,
+  const std::string& before)
+{
+  double seconds = 0.0;
+  sharing.OnAll(
+    [&] { job.Projection->SetInputData(SetUpParticles(job.Projection, job, particles)); });
+  sharing.OnAll([&] { seconds = Update(job.Projection, job, messages, before); });
+  return seconds;
+}
+
+vtkImageData* SeenImage(const Job& job)
+{
+  vtkImageData* image = job.Projection->GetImage();
+  if (!image->GetPointData()->GetScalars())
+  {
+    throw std::runtime_error("no particle is seen, so no image was written");
+  }
+  return image;
+}
+
+std::string DrawProjection(const Job& job, const std::string& file, Picture& picture,
+  ColorScale& colors, MessageCapture* messages)
+{
+  vtkImageData* image = job.Projection->GetImage();
+  colors.SetName(job.Picture.ColorBy.empty() ? image->GetPointData()->GetScalars()->GetName()
+                                             : job.Picture.ColorBy);
+  colors.Include(image);
+  const double* sight = job.Projection->GetDirection();
+  const int axis = sight[0] != 0.0 ? 0 : sight[1] != 0.0 ? 1 : 2;
+  return picture.Draw(
+    file, image, image, colors, messages, image->GetDimensions()[axis] == 1 ? axis : -1);
+}
+
+void ProjectParticles(const Job& job, MessageCapture* messages, Sharing& sharing)
+{
+  sharing.OnFirst(
+    [&] {
+      CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
+    });
+  const double seconds = Project(
+    job, sharing.Read(job.Inputs.front(), job.Walls, messages), messages, sharing, "");
+  sharing.OnFirst(
+    [&]
+    {
+      TellWarnings(messages);
+      vtkImageData* image = SeenImage(job);
+      vtkDataArray* values = image->GetPointData()->GetScalars();
+      const int* size = image->GetDimensions();
+      if (!job.Quiet)
+      {
+        std::cout << "image       " << size[0] << " x " << size[1] << " x " << size[2]
+                  << " pixels, " << Printable(values->GetName()) << " from "
+                  << values->GetFiniteRange()[0] << " to " << values->GetFiniteRange()[1]
+                  << "\nseconds     " << seconds << "\n";
+      }
+      WriteDataSet(job.Output, image, messages);
+      if (!job.Picture.File.empty())
+      {
+        ColorScale colors(job.Picture);
+        const auto picture = LoadExtra().NewPicture(job.Picture);
+        WriteOutput(
+          job.Picture.File, DrawProjection(job, job.Picture.File, *picture, colors, messages));
       }
     });
 }

@@ -1,23 +1,36 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ComponentRun.h"
+#include "RunTables.h"
 
 #include "Job.h"
 #include "MessageCapture.h"
+#include "Runs.h"
 #include "SurfaceRun.h"
 #include "TableText.h"
 
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
 #include "vtkSPHComponents.h"
 #include "vtkTable.h"
+#include "vtkVariant.h"
 
+#include <limits>
 #include <stdexcept>
 
 namespace
 {
+
+/// Adds an array of one number, to statistics or a table's row.
+void AddNumber(vtkFieldData* data, const std::string& name, double value)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name.c_str());
+  array->InsertNextValue(value);
+  data->AddArray(array);
+}
 
 double SumOf(vtkTable* table, const char* column)
 {
@@ -30,23 +43,15 @@ double SumOf(vtkTable* table, const char* column)
   return sum;
 }
 
-void SetNumber(vtkFieldData* statistics, const char* name, double value)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->InsertNextValue(value);
-  statistics->AddArray(array);
-}
-
 /// Adds the number of pieces. If some are left out, area and volume are those of the others.
 void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
 {
-  SetNumber(statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
+  AddNumber(statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
   for (const char* name : { "Area", "Volume" })
   {
     if (!isWhole && statistics->HasArray(name))
     {
-      SetNumber(statistics, name, SumOf(pieces, name[0] == 'A' ? "area" : "volume"));
+      AddNumber(statistics, name, SumOf(pieces, name[0] == 'A' ? "area" : "volume"));
     }
   }
 }
@@ -100,6 +105,56 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   for (vtkIdType c = 0; c < pieces->GetNumberOfColumns(); ++c)
   {
     table->AddColumn(pieces->GetColumn(c));
+  }
+  this->Lines += (this->Lines.empty() ? TableHeader(table) : "") + TableRows(table);
+}
+
+FilmNumbers::FilmNumbers(const Job& job)
+  : Options(job)
+{
+  if (!job.NumbersFile.empty())
+  {
+    AddGauges(job);
+  }
+}
+
+void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* messages, double time,
+  std::vector<std::string>& warnings)
+{
+  if (this->Options.NumbersFile.empty())
+  {
+    return;
+  }
+  const auto numberOf = [&run](const char* name)
+  {
+    vtkDataArray* array = run.Statistics->GetArray(name);
+    return array ? array->GetComponent(0, 0) : std::numeric_limits<double>::quiet_NaN();
+  };
+  vtkNew<vtkTable> table;
+  vtkFieldData* row = table->GetRowData();
+  AddNumber(row, "time", time);
+  AddNumber(row, "triangles", static_cast<double>(run.Surface->GetNumberOfPolys()));
+  const bool hasRun = run.Statistics->HasArray("Triangles"); // else there is no fluid
+  AddNumber(row, "area", hasRun ? numberOf("Area") : 0.0);
+  AddNumber(row, "volume", hasRun ? numberOf("Volume") : 0.0);
+  if (!this->Options.ComponentFile.empty())
+  {
+    AddNumber(row, "pieces", numberOf("Pieces"));
+  }
+  if (this->Options.Gauge->GetNumberOfGauges() > 0)
+  {
+    vtkTable* gauges =
+      MeasureWith(this->Options.Gauge, this->Options, particles, time, messages, "");
+    const std::vector<std::string> more = messages->GetWarnings();
+    warnings.insert(warnings.end(), more.begin(), more.end());
+    for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)
+    {
+      const std::string name = gauges->GetValueByName(i, "gauge").ToString();
+      for (const char* what : { "last", "depth", "crossings" })
+      {
+        AddNumber(row, name + "." + what, gauges->GetValueByName(i, what).ToDouble());
+      }
+    }
   }
   this->Lines += (this->Lines.empty() ? TableHeader(table) : "") + TableRows(table);
 }

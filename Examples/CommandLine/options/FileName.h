@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef FileFormat_h
-#define FileFormat_h
+#ifndef FileName_h
+#define FileName_h
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -45,5 +46,14 @@ std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
   }
   return list;
 }
+
+/// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent sign.
+bool HasStepNumber(const std::string& name);
+
+/// The last number in a file's name, without its folder: 120 of WaterBody_120.vtp. False if there is none.
+bool FindStepNumber(const std::string& file, std::size_t& number);
+
+/// frame_0007.png of frame_%04d.png
+std::string NameOfStep(const std::string& name, std::size_t step);
 
 #endif

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Place.h"
+
+#include "FileName.h"
+#include "Job.h"
+#include "OptionValue.h"
+#include "SafeText.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+
+using Text = const std::string&;
+
+const char* const GaugeForm = "NAME=X,Y,Z:X,Y,Z";
+const char* const FluxForm = "NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:X,Y,Z:NX,NY,NZ:R, "
+                             "NAME=box:X0,X1,Y0,Y1,Z0,Z1 or NAME=FILE";
+
+/// Appends the numbers. False if the text has not exactly so many.
+bool ParseNumbers(Text option, Text text, std::size_t count, std::vector<double>& numbers)
+{
+  try
+  {
+    const std::vector<double> found = ToNumbers(option, text);
+    numbers.insert(numbers.end(), found.begin(), found.end());
+    return found.size() == count;
+  }
+  catch (const UsageError&)
+  {
+    return false; // the whole text is to be named, not a part of it
+  }
+}
+
+/// The name of a table's row. noun: what has it.
+std::string ToRowName(Text option, Text noun, Text text)
+{
+  const std::string name = Printable(text);
+  if (std::string("=+-@").find(name[0]) != std::string::npos)
+  {
+    throw UsageError(option + ": the name of " + noun + " '" + name + "' begins with '" + name[0] +
+      "', so that spreadsheets would take it for a formula; begin it with a letter");
+  }
+  return name;
+}
+
+/// Adds the places of a file, one in each line that is not empty and does not begin with #.
+void AddOfFile(Text option, Text file, Text nouns, Text form, Place (*parse)(Text option, Text text),
+  std::vector<Place>& places)
+{
+  const std::size_t most = std::size_t(64) << 20; // a device has no end
+  std::ifstream source(file, std::ios::binary);
+  std::string text;
+  for (char part[1 << 16]; source && text.size() <= most;)
+  {
+    source.read(part, sizeof(part));
+    text.append(part, static_cast<std::size_t>(source.gcount()));
+  }
+  if (!source.eof()) // a folder opens, but does not read
+  {
+    throw std::runtime_error("the " + nouns + "' file " + file +
+      (text.size() > most ? " is larger than 64 MiB; give one of fewer " + nouns
+                          : " cannot be read"));
+  }
+  std::istringstream stream(text);
+  const std::size_t before = places.size();
+  for (std::string line; std::getline(stream, line);)
+  {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first != std::string::npos && line[first] != '#')
+    {
+      const std::size_t last = line.find_last_not_of(" \t\r");
+      places.push_back(parse(option + " " + file, line.substr(first, last + 1 - first)));
+    }
+  }
+  if (places.size() == before)
+  {
+    throw UsageError(option + " " + file + " has no " + nouns + "; it needs lines " + form);
+  }
+}
+
+void CheckNames(const std::vector<Place>& places, Text nouns)
+{
+  std::set<std::string> known;
+  for (const Place& place : places)
+  {
+    if (!known.insert(place.Name).second)
+    {
+      throw UsageError(
+        "two " + nouns + " have the name '" + place.Name + "'; give each a name of its own");
+    }
+  }
+}
+
+}
+
+Place ToGauge(Text option, Text text)
+{
+  const std::size_t equals = text.rfind('='), colon = text.rfind(':');
+  Place gauge;
+  std::vector<double>& ends = gauge.Numbers;
+  Need(equals != std::string::npos && equals > 0 && colon != std::string::npos && colon > equals &&
+      ParseNumbers(option, text.substr(equals + 1, colon - equals - 1), 3, ends) &&
+      ParseNumbers(option, text.substr(colon + 1), 3, ends),
+    option, std::string("a name and two places, ") + GaugeForm, text);
+  gauge.Shape = Place::Line;
+  gauge.Name = ToRowName(option, "gauge", text.substr(0, equals));
+  if (std::equal(ends.begin(), ends.begin() + 3, ends.begin() + 3))
+  {
+    throw UsageError(option + ": gauge '" + gauge.Name +
+      "' has no length, because both its ends are the same; give it two");
+  }
+  return gauge;
+}
+
+GaugeGrid ToGaugeGrid(Text option, Text text)
+{
+  const std::size_t colon = text.find(':');
+  GaugeGrid grid;
+  std::vector<double> counts, b;
+  Need(colon != std::string::npos && ParseNumbers(option, text.substr(0, colon), 2, counts) &&
+      ParseNumbers(option, text.substr(colon + 1), 6, b) && b[0] <= b[1] && b[2] <= b[3] &&
+      b[4] < b[5],
+    option, "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
+  std::copy(b.begin(), b.end(), grid.Bounds.begin());
+  for (std::size_t a = 0; a < 2; ++a)
+  {
+    grid.Counts[a] = static_cast<int>(std::clamp(counts[a], 0.0, 1e6));
+    Need(counts[a] >= 1.0 && counts[a] == grid.Counts[a], option,
+      "whole numbers of gauges, 1 or more", text);
+  }
+  if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e6)
+  {
+    throw UsageError(option +
+      " has more than a million gauges, which take minutes and gigabytes; take fewer, or a part of "
+      "the bounds at a time");
+  }
+  return grid;
+}
+
+Place ToFlux(Text option, Text text)
+{
+  const std::size_t equals = text.find('=');
+  const bool isNamed = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
+  Need(isNamed, option, std::string("a section with a name, ") + FluxForm, text);
+  std::vector<std::string> parts;
+  std::istringstream stream(text.substr(equals + 1));
+  for (std::string part; std::getline(stream, part, ':');)
+  {
+    parts.push_back(part);
+  }
+  Place section;
+  section.Name = ToRowName(option, "section", text.substr(0, equals));
+  for (const char* ending : { ".vtp", ".vtu", ".vtk", ".stl", ".ply", ".obj" })
+  {
+    if (EndsWith(text, ending))
+    {
+      section.File = text.substr(equals + 1);
+      return section;
+    }
+  }
+  const bool isDisc = parts[0] == "disc", isBox = parts[0] == "box";
+  section.Shape = isDisc ? Place::Disc
+    : isBox              ? Place::Box
+    : parts.size() == 2  ? Place::Line
+                         : Place::Rectangle;
+  const std::vector<std::size_t> counts = isDisc ? std::vector<std::size_t>{ 3, 3, 1 }
+    : isBox                                      ? std::vector<std::size_t>{ 6 }
+                                                 : std::vector<std::size_t>(parts.size(), 3);
+  parts.erase(parts.begin(), parts.begin() + (isDisc || isBox ? 1 : 0));
+  bool isGood =
+    parts.size() == counts.size() && (isDisc || isBox || parts.size() == 2 || parts.size() == 3);
+  for (std::size_t i = 0; i < counts.size() && isGood; ++i)
+  {
+    isGood = ParseNumbers(option, parts[i], counts[i], section.Numbers);
+  }
+  Need(isGood, option, std::string("a section with a name, ") + FluxForm, text);
+  return section;
+}
+
+std::vector<Place> ListGauges(const Job& job)
+{
+  std::vector<Place> gauges = job.Gauges;
+  if (!job.GaugeFile.empty())
+  {
+    AddOfFile("--gauges", job.GaugeFile, "gauges", GaugeForm, ToGauge, gauges);
+  }
+  const std::array<double, 6>& b = job.Grid.Bounds;
+  const auto at = [&job, &b](std::size_t axis, int i)
+  {
+    const int last = job.Grid.Counts[axis] - 1;
+    const double t = last > 0 ? static_cast<double>(i) / last : 0.0;
+    return (1.0 - t) * b[2 * axis] + t * b[2 * axis + 1];
+  };
+  for (int j = 0; j < job.Grid.Counts[1]; ++j)
+  {
+    for (int i = 0; i < job.Grid.Counts[0]; ++i)
+    {
+      const double x = at(0, i), y = at(1, j);
+      gauges.push_back({ std::to_string(i) + " " + std::to_string(j), Place::Line,
+        { x, y, b[4], x, y, b[5] }, "" });
+    }
+  }
+  CheckNames(gauges, "gauges");
+  return gauges;
+}
+
+std::vector<Place> ListSections(const Job& job)
+{
+  std::vector<Place> sections = job.Fluxes;
+  if (!job.FluxFile.empty())
+  {
+    AddOfFile("--fluxes", job.FluxFile, "sections", FluxForm, ToFlux, sections);
+  }
+  CheckNames(sections, "sections");
+  return sections;
+}

@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <numeric>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-constexpr int Bins = 64; // of a histogram, in each round of the search for a plane
+/** Samples for each rank's share of the work: shares come out even within some percent. */
+constexpr std::int64_t SamplesPerRank = 1024;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
@@ -22,174 +23,96 @@ std::size_t Index(int i)
 }
 }
 
+// A sample stands for `step` of the work; where there is little, all of it is sampled.
 vtkSPHRanksPartition::vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
-  std::vector<vtkSPHRanksPlace> places, double brick)
-  : Places(std::move(places))
+  const std::vector<vtkSPHRanksPlace>& places, double brick)
 {
-  Node root;
-  root.FirstRank = 0;
-  root.Ranks = ranks.GetCount();
-  root.First = 0;
-  root.Last = this->Places.size();
-  root.Box = whole;
-  this->Nodes.push_back(root);
-  this->Divide(ranks, brick);
+  std::int64_t all = 0, before = 0;
+  for (const vtkSPHRanksPlace& place : places)
+  {
+    all += place.Work;
+  }
+  ranks.Reduce(vtkSPHRanks::SUM, &all, 1);
+  const std::int64_t step = std::max<std::int64_t>(1, all / (SamplesPerRank * ranks.GetCount()));
+  std::vector<vtkSPHRanksPlace> own, sampled;
+  for (const vtkSPHRanksPlace& place : places)
+  {
+    const std::int64_t count = (before + place.Work) / step - before / step;
+    before += place.Work;
+    if (count > 0)
+    {
+      own.push_back(place);
+      own.back().Work = count;
+    }
+  }
+  for (const std::vector<vtkSPHRanksPlace>& theirs : ranks.Gather(own))
+  {
+    sampled.insert(sampled.end(), theirs.begin(), theirs.end());
+  }
   this->Boxes.resize(Index(ranks.GetCount()));
-  for (const Node& node : this->Nodes)
-  {
-    if (node.Ranks == 1)
-    {
-      this->Boxes[Index(node.FirstRank)] = node.Box;
-    }
-  }
-  this->Places = std::vector<vtkSPHRanksPlace>();
+  this->Divide(sampled.begin(), sampled.end(), { 0, ranks.GetCount(), whole }, brick);
 }
 
-// Divides all nodes of a depth at once, with one message for them.
-void vtkSPHRanksPartition::Divide(vtkSPHRanks& ranks, double brick)
+// Cuts across the longest side of the samples' bounds, at the side of a brick that leaves the work
+// below nearest to the goal. Returns the node's number.
+int vtkSPHRanksPartition::Divide(Samples begin, Samples end, const Node& node, double brick)
 {
-  for (std::size_t begin = 0, end = 1; begin < end; begin = end, end = this->Nodes.size())
+  const auto number = this->Nodes.size();
+  this->Nodes.push_back(node);
+  if (node.Ranks == 1)
   {
-    std::vector<int> nodes;
-    for (std::size_t n = begin; n < end; ++n)
-    {
-      if (this->Nodes[n].Ranks > 1)
-      {
-        nodes.push_back(static_cast<int>(n));
-      }
-    }
-    if (!nodes.empty())
-    {
-      std::vector<Cut> cuts = this->BeginCuts(ranks, nodes, brick);
-      while (this->Refine(ranks, cuts, brick))
-      {
-      }
-      this->Apply(cuts, brick);
-    }
+    this->Boxes[Index(node.FirstRank)] = node.Box;
+    return static_cast<int>(number);
   }
-}
-
-// Cuts across the longest side of the particles' bounds.
-std::vector<vtkSPHRanksPartition::Cut> vtkSPHRanksPartition::BeginCuts(
-  vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick)
-{
-  std::vector<double> bounds; // low and high sides of x, y, z
-  std::vector<std::int64_t> work;
-  for (const int n : nodes)
+  int axis = 0;
+  double longest = -Infinity;
+  for (int a = 0; a < 3 && begin != end; ++a)
   {
-    const Node& node = this->Nodes[Index(n)];
-    double ends[6] = { Infinity, -Infinity, Infinity, -Infinity, Infinity, -Infinity };
-    work.push_back(0);
-    for (std::size_t p = node.First; p < node.Last; ++p)
-    {
-      work.back() += this->Places[p].Work;
-      for (int a = 0; a < 3; ++a)
-      {
-        ends[2 * a] = std::min(ends[2 * a], this->Places[p].At[a]);
-        ends[2 * a + 1] = std::max(ends[2 * a + 1], this->Places[p].At[a]);
-      }
-    }
-    bounds.insert(bounds.end(), ends, ends + 6);
+    const auto ends = std::minmax_element(begin, end,
+      [a](const vtkSPHRanksPlace& p, const vtkSPHRanksPlace& q) { return p.At[a] < q.At[a]; });
+    const double length = ends.second->At[a] - ends.first->At[a];
+    axis = length > longest ? a : axis;
+    longest = std::max(longest, length);
   }
-  ranks.ReduceRanges(bounds.data(), static_cast<int>(3 * nodes.size()));
-  ranks.Reduce(vtkSPHRanks::SUM, work.data(), static_cast<int>(work.size()));
-  std::vector<Cut> cuts;
-  for (std::size_t i = 0; i < nodes.size(); ++i)
+  std::sort(begin, end,
+    [axis](const vtkSPHRanksPlace& p, const vtkSPHRanksPlace& q)
+    { return p.At[axis] < q.At[axis]; });
+  const auto workOf = [](Samples from, Samples to)
   {
-    Node& node = this->Nodes[Index(nodes[i])];
-    const double* side = &bounds[6 * i];
-    for (int a = 1; a < 3; ++a)
-    {
-      const double length = side[2 * a + 1] - side[2 * a];
-      node.Axis = length > side[2 * node.Axis + 1] - side[2 * node.Axis] ? a : node.Axis;
-    }
-    const bool isEmpty = work[i] == 0;
-    const double low = isEmpty ? 0.0 : std::floor(side[2 * node.Axis] / brick);
-    const double high = isEmpty ? 0.0 : std::floor(side[2 * node.Axis + 1] / brick) + 1.0;
-    cuts.push_back({ nodes[i], low, 0.0, high - low,
-      work[i] / node.Ranks * (node.Ranks / 2) +
-        work[i] % node.Ranks * (node.Ranks / 2) / node.Ranks,
-      0 });
-  }
-  return cuts;
-}
-
-// Narrows each cut by a histogram; returns false once each has a single plane left.
-bool vtkSPHRanksPartition::Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick)
-{
-  const auto isSought = [](const Cut& cut) { return cut.Most - cut.Least > 0.5; };
-  if (std::none_of(cuts.begin(), cuts.end(), isSought))
+    return std::accumulate(from, to, std::int64_t(0),
+      [](std::int64_t sum, const vtkSPHRanksPlace& place) { return sum + place.Work; });
+  };
+  const std::int64_t goal = workOf(begin, end) * (node.Ranks / 2) / node.Ranks;
+  std::int64_t below = 0;
+  Samples middle = begin;
+  while (middle != end && below + middle->Work <= goal)
   {
-    return false;
+    below += (middle++)->Work;
   }
-  const auto step = [&](const Cut& cut)
-  { return std::max(1.0, std::ceil((cut.Most - cut.Least) / Bins)); };
-  std::vector<std::int64_t> work(cuts.size() * Bins, 0);
-  for (std::size_t i = 0; i < cuts.size(); ++i)
-  {
-    const Cut& cut = cuts[i];
-    const Node& node = this->Nodes[Index(cut.Node)];
-    for (std::size_t p = node.First; p < node.Last && isSought(cut); ++p)
-    {
-      const double at = std::floor(this->Places[p].At[node.Axis] / brick);
-      const double bin = std::floor((at - cut.First - cut.Least) / step(cut));
-      if (bin >= 0.0 && bin < Bins)
-      {
-        work[i * Bins + Index(static_cast<int>(bin))] += this->Places[p].Work;
-      }
-    }
-  }
-  ranks.Reduce(vtkSPHRanks::SUM, work.data(), static_cast<int>(work.size()));
-  for (std::size_t i = 0; i < cuts.size(); ++i)
-  {
-    Cut& cut = cuts[i];
-    if (!isSought(cut))
-    {
-      continue;
-    }
-    // Among single bricks, takes the plane whose work below is nearest to the goal.
-    const double width = step(cut), least = cut.Least, most = cut.Most;
-    int bin = 0;
-    std::int64_t below = cut.Before;
-    while (bin < Bins - 1 && below + work[i * Bins + Index(bin)] < cut.Goal)
-    {
-      below += work[i * Bins + Index(bin++)];
-    }
-    const std::int64_t after = below + work[i * Bins + Index(bin)];
-    const bool isNext = width == 1.0 && after - cut.Goal < cut.Goal - below;
-    cut.Before = below;
-    cut.Least = std::min(least + width * (bin + (isNext ? 1 : 0)), most);
-    cut.Most = width == 1.0 ? cut.Least : std::min(cut.Least + width, most);
-  }
-  return true;
-}
-
-void vtkSPHRanksPartition::Apply(const std::vector<Cut>& cuts, double brick)
-{
-  for (const Cut& cut : cuts)
-  {
-    Node low = this->Nodes[Index(cut.Node)], high = low;
-    const int axis = low.Axis, lowSide = 2 * axis, highSide = lowSide + 1;
-    const double plane = std::min(
-      std::max((cut.First + cut.Least) * brick, low.Box[Index(lowSide)]), low.Box[Index(highSide)]);
-    low.Box[Index(highSide)] = plane;
-    high.Box[Index(lowSide)] = plane;
-    low.Ranks = low.Ranks / 2;
-    high.FirstRank += low.Ranks;
-    high.Ranks -= low.Ranks;
-    low.Axis = high.Axis = 0;
-    Node& node = this->Nodes[Index(cut.Node)];
-    const auto places = this->Places.begin();
-    const auto middle = std::partition(places + static_cast<std::ptrdiff_t>(node.First),
-      places + static_cast<std::ptrdiff_t>(node.Last),
-      [axis, plane](const vtkSPHRanksPlace& place) { return place.At[axis] < plane; });
-    low.Last = high.First = static_cast<std::size_t>(middle - places);
-    node.Plane = plane;
-    node.Low = static_cast<int>(this->Nodes.size());
-    node.High = node.Low + 1;
-    this->Nodes.push_back(low);
-    this->Nodes.push_back(high);
-  }
+  const auto isBelow = [axis](const vtkSPHRanksPlace& place, double plane)
+  { return place.At[axis] < plane; };
+  const double first = middle == end ? 0.0 : std::floor(middle->At[axis] / brick); // or the next
+  const std::int64_t less =
+    goal - workOf(begin, std::lower_bound(begin, end, first * brick, isBelow));
+  const std::int64_t more =
+    workOf(begin, std::lower_bound(begin, end, (first + 1.0) * brick, isBelow)) - goal;
+  const double plane =
+    std::min(std::max((first + (more < less ? 1.0 : 0.0)) * brick, node.Box[Index(2 * axis)]),
+      node.Box[Index(2 * axis + 1)]);
+  middle = std::lower_bound(begin, end, plane, isBelow);
+  Node lower = node, upper = node;
+  lower.Ranks = node.Ranks / 2;
+  lower.Box[Index(2 * axis + 1)] = plane;
+  upper.FirstRank += lower.Ranks;
+  upper.Ranks -= lower.Ranks;
+  upper.Box[Index(2 * axis)] = plane;
+  const int children[2] = { this->Divide(begin, middle, lower, brick),
+    this->Divide(middle, end, upper, brick) };
+  this->Nodes[number].Axis = axis;
+  this->Nodes[number].Plane = plane;
+  this->Nodes[number].Low = children[0];
+  this->Nodes[number].High = children[1];
+  return static_cast<int>(number);
 }
 
 int vtkSPHRanksPartition::FindOwner(const double point[3]) const

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the module: divides space among ranks by a k-d tree over the particles, with cuts
- * between the lattice's bricks. All ranks build the same tree, though none has all particles.
+ * Private to the module: divides space among ranks by a k-d tree over samples of the particles,
+ * with cuts between the lattice's bricks. All ranks have the same samples, and so the same tree.
  */
 #ifndef vtkSPHRanksPartition_h
 #define vtkSPHRanksPartition_h
@@ -34,7 +34,7 @@ public:
    * Work. places: this rank's particles. Cuts lie on multiples of `brick`. Collective.
    */
   vtkSPHRanksPartition(vtkSPHRanks& ranks, const vtkSPHRanksBox& whole,
-    std::vector<vtkSPHRanksPlace> places, double brick);
+    const std::vector<vtkSPHRanksPlace>& places, double brick);
 
   const vtkSPHRanksBox& GetBox(int rank) const
   {
@@ -50,30 +50,17 @@ public:
 private:
   struct Node
   {
-    int FirstRank, Ranks;    ///< the ranks that share it
-    std::size_t First, Last; ///< its places, [First, Last)
+    int FirstRank, Ranks; ///< the ranks that share it
+    vtkSPHRanksBox Box;
     int Axis = 0;
     double Plane = 0.0;
     int Low = -1, High = -1; ///< children
-    vtkSPHRanksBox Box;
   };
-  struct Cut
-  {
-    int Node;
-    double First;        ///< plane number 0, in bricks
-    double Least, Most;  ///< the planes among which it is sought
-    std::int64_t Goal;   ///< the work wanted below it
-    std::int64_t Before; ///< the work below Least
-  };
-
-  void Divide(vtkSPHRanks& ranks, double brick);
-  std::vector<Cut> BeginCuts(vtkSPHRanks& ranks, const std::vector<int>& nodes, double brick);
-  bool Refine(vtkSPHRanks& ranks, std::vector<Cut>& cuts, double brick);
-  void Apply(const std::vector<Cut>& cuts, double brick);
+  using Samples = std::vector<vtkSPHRanksPlace>::iterator;
+  int Divide(Samples begin, Samples end, const Node& node, double brick);
 
   std::vector<Node> Nodes;
   std::vector<vtkSPHRanksBox> Boxes;
-  std::vector<vtkSPHRanksPlace> Places; // while space is divided
 };
 VTK_ABI_NAMESPACE_END
 

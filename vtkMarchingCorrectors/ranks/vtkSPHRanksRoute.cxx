@@ -145,7 +145,7 @@ private:
         }
       });
     this->Route.Partition = std::make_shared<vtkSPHRanksPartition>(
-      ranks, this->Route.Whole, std::move(places), BrickCubes * this->Globals.measured.cube);
+      ranks, this->Route.Whole, places, BrickCubes * this->Globals.measured.cube);
   }
 
   /**

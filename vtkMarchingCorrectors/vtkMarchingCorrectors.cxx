@@ -135,20 +135,10 @@ void vtkMarchingCorrectors::FillOptions(mcor_options& options)
   options.preview = this->Preview;
   options.tolerance = this->Tolerance;
   options.iteration_limit = this->IterationLimit;
-  const std::pair<bool, mcor_output> outputs[] = { { this->ComputeNormals, MCOR_OUT_NORMALS },
-    { this->ComputeGradients, MCOR_OUT_GRADIENTS }, { this->ComputeWeightSum, MCOR_OUT_WEIGHT_SUM },
-    { this->ComputeBoundaryEigenvalue, MCOR_OUT_BOUNDARY_EIGENVALUE },
-    { this->ComputeCurvature, MCOR_OUT_MEAN_CURVATURE },
-    { this->ComputeCurvature, MCOR_OUT_GAUSS_CURVATURE },
-    { this->ComputeCorrectionLength, MCOR_OUT_CORRECTION_LENGTH },
-    { this->ComputeResidual, MCOR_OUT_RESIDUAL },
-    { this->ComputeBoundaryFlag, MCOR_OUT_BOUNDARY_FLAG },
-    { this->ComputeScalars, MCOR_OUT_ISO_VALUE } };
-  options.outputs = 0;
-  for (const auto& output : outputs)
-  {
-    options.outputs |= output.first ? output.second : 0;
-  }
+  options.outputs = this->ComputeScalars ? MCOR_OUT_ISO_VALUE : 0;
+#define WANT(bit, member, components, name, flag) options.outputs |= this->flag ? bit : 0;
+  vtkMarchingCorrectorsArrays(WANT)
+#undef WANT
 }
 
 void vtkMarchingCorrectors::FillChoice(
@@ -163,8 +153,8 @@ void vtkMarchingCorrectors::FillChoice(
   this->FindFluid(choice, particles, merge);
 }
 
-void vtkMarchingCorrectors::FillRequests(vtkMarchingCorrectorsChoice& choice,
-  vtkPointSet* particles, const vtkSPHMergeRanges& merge)
+void vtkMarchingCorrectors::FillRequests(
+  vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles, const vtkSPHMergeRanges& merge)
 {
   if (!this->FreeSurface) // which contours no array: all of their values need not be seen
   {

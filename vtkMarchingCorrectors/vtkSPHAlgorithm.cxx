@@ -11,7 +11,6 @@
 #include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHRun.h"
@@ -339,9 +338,8 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles, bool isUsab
   { return std::string(array && array->GetName() ? array->GetName() : ""); };
   this->UsedSmoothingLengthArrayName = nameOf(particles ? particles->SmoothingLength : nullptr);
   this->UsedVolumeArrayName = nameOf(particles ? particles->Volume : nullptr);
-  this->UsedVolume = particles && isUsable
-    ? vtkSPHTakeText(mcor_describe_volume(&particles->Core))
-    : std::string();
+  this->UsedVolume =
+    particles && isUsable ? vtkSPHTakeText(mcor_describe_volume(&particles->Core)) : std::string();
   this->UsedMassArrayName = nameOf(particles ? particles->Mass : nullptr);
   this->UsedDensityArrayName = nameOf(particles ? particles->Density : nullptr);
   this->UsedFluid = particles ? particles->DescribeFluid() : "";

@@ -15,7 +15,6 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSPHAlgorithmInternals.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
@@ -170,9 +169,8 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::JoinParticles(vtkDataObject* data)
 
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakePresent(vtkPointSet* particles) const
 {
-  const std::vector<bool> present = vtkSPHLeavesOut(*this) && particles
-    ? vtkSPHFindPresent(*this, particles)
-    : std::vector<bool>();
+  const std::vector<bool> present =
+    vtkSPHLeavesOut(*this) && particles ? vtkSPHFindPresent(*this, particles) : std::vector<bool>();
   if (std::count(present.begin(), present.end(), false) == 0)
   {
     return particles;

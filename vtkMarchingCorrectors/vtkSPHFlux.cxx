@@ -12,7 +12,7 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPoints.h"
-#include "vtkSPHMeterColumn.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkVariant.h"
 

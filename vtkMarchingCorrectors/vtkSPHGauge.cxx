@@ -10,7 +10,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkObjectFactory.h"
-#include "vtkSPHMeterColumn.h"
+#include "vtkSPHArrays.h"
 #include "vtkStringArray.h"
 #include "vtkVariant.h"
 

@@ -8,7 +8,6 @@
 #include "vtkInformationVector.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHMeterColumn.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"

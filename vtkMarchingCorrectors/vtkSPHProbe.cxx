@@ -3,8 +3,11 @@
 #include "vtkSPHProbe.h"
 
 #include "mcor.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -17,11 +20,13 @@
 #include "vtkSPHArrays.h"
 #include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
-#include "vtkSPHSamples.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -133,12 +138,167 @@ struct ChunkProgress
  * points go to the device.
  */
 constexpr std::uint64_t VersionOfOneRun = UINT64_MAX;
+
+/** Tuples that one thread copies at a time. */
+constexpr vtkIdType CopyGrain = 1 << 14;
+
+/** Copies values, replaced by `null` where `valid` is 0. */
+template <typename ValueT>
+void Copy(const double* from, const std::uint8_t* valid, double null, vtkIdType tuples,
+  int components, ValueT* to)
+{
+  vtkSMPTools::For(0, tuples, CopyGrain,
+    [=](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin * components; i < end * components; ++i)
+      {
+        to[i] = static_cast<ValueT>(valid && !valid[i / components] ? null : from[i]);
+      }
+    });
 }
 
-vtkStandardNewMacro(vtkSPHProbe);
+/** The arrays that a run makes, filled for a chunk of points at a time. */
+class Samples
+{
+public:
+  /**
+   * Begins with `null` at `count` points for the particles' interpolated arrays, and zeros for
+   * their weight.
+   */
+  Samples(const vtkSPHParticles& particles, const mcor_options& options,
+    const std::string& maskName, vtkIdType count, double null);
 
-int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
-  mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics)
+  /** Calls the core for some points at a time. Returns a mcor_status. */
+  int Evaluate(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
+    mcor_options options, vtkFieldData* statistics);
+
+  /** Adds the arrays to the output, without those that the core has left out. */
+  void AddTo(vtkFieldData* data) const;
+
+  std::vector<std::int64_t> NotFinite; // of the interpolated arrays, as in mcor_samples
+  mcor_statistics Statistics = {};     // of the last points
+
+private:
+  /** An array of the output, and that of its gradient, if wanted. */
+  struct Pair
+  {
+    vtkSmartPointer<vtkDataArray> Values, Gradient;
+  };
+
+  /** Takes over what the core has found at the points from `first` on. */
+  void Put(vtkIdType first, const mcor_samples& samples);
+  Pair Make(const std::string& name, int components, bool asFloat, bool gradient) const;
+
+  const vtkIdType Count;
+  const double Null;        // the value at points that are not valid
+  std::vector<Pair> Arrays; // in the order of the core's attributes
+  Pair Weight;
+  vtkNew<vtkCharArray> Mask; // as in vtkProbeFilter
+};
+
+Samples::Samples(const vtkSPHParticles& particles, const mcor_options& options,
+  const std::string& maskName, vtkIdType count, double null)
+  : NotFinite(particles.Interpolated.size(), -1)
+  , Count(count)
+  , Null(null)
+{
+  const bool gradients = (options.outputs & MCOR_OUT_GRADIENTS) != 0;
+  for (const vtkSPHAttribute& from : particles.Interpolated)
+  {
+    this->Arrays.push_back(
+      this->Make(from.Name, from.Components, from.Array->GetDataType() == VTK_FLOAT, gradients));
+    Pair& made = this->Arrays.back();
+    for (vtkDataArray* array : { made.Values.GetPointer(), made.Gradient.GetPointer() })
+    {
+      if (array && null != 0.0)
+      {
+        array->Fill(null);
+      }
+    }
+    made.Values->CopyComponentNames(from.Array);
+  }
+  this->Weight = this->Make("WeightSum", 1, options.precision == MCOR_FLOAT32, gradients);
+  this->Mask->SetName(maskName.c_str());
+  this->Mask->SetNumberOfTuples(count);
+  this->Mask->FillValue(0);
+}
+
+Samples::Pair Samples::Make(
+  const std::string& name, int components, bool asFloat, bool gradient) const
+{
+  const auto make = [&](const std::string& itsName, int itsComponents)
+  {
+    auto array = vtkSmartPointer<vtkDataArray>::Take(
+      vtkDataArray::CreateDataArray(asFloat ? VTK_FLOAT : VTK_DOUBLE));
+    array->SetName(itsName.c_str());
+    array->SetNumberOfComponents(itsComponents);
+    array->SetNumberOfTuples(this->Count);
+    array->Fill(0.0);
+    return array;
+  };
+  Pair pair;
+  pair.Values = make(name, components);
+  if (gradient)
+  {
+    pair.Gradient = make(name + "_Gradient", 3 * components);
+  }
+  return pair;
+}
+
+void Samples::Put(vtkIdType first, const mcor_samples& samples)
+{
+  const auto copy =
+    [&](const double* from, const std::uint8_t* valid, const vtkSmartPointer<vtkDataArray>& to)
+  {
+    const int components = to ? to->GetNumberOfComponents() : 0;
+    void* out = to ? to->GetVoidPointer(first * components) : nullptr;
+    if (to && to->GetDataType() == VTK_FLOAT)
+    {
+      Copy(from, valid, this->Null, samples.count, components, static_cast<float*>(out));
+    }
+    else if (to)
+    {
+      Copy(from, valid, this->Null, samples.count, components, static_cast<double*>(out));
+    }
+  };
+  for (size_t a = 0; a < this->Arrays.size(); ++a)
+  {
+    this->NotFinite[a] = samples.attribute_not_finite[a];
+    if (samples.values[a])
+    {
+      copy(samples.values[a], samples.valid, this->Arrays[a].Values);
+      copy(samples.gradients ? samples.gradients[a] : nullptr, samples.valid,
+        this->Arrays[a].Gradient);
+    }
+  }
+  copy(samples.weight_sum, nullptr, this->Weight.Values);
+  copy(samples.weight_gradient, nullptr, this->Weight.Gradient);
+  std::copy(samples.valid, samples.valid + samples.count, this->Mask->GetPointer(first));
+}
+
+void Samples::AddTo(vtkFieldData* data) const
+{
+  const auto add = [data](const Pair& pair)
+  {
+    data->AddArray(pair.Values);
+    if (pair.Gradient)
+    {
+      data->AddArray(pair.Gradient);
+    }
+  };
+  for (size_t a = 0; a < this->Arrays.size(); ++a)
+  {
+    if (this->NotFinite[a] < 0)
+    {
+      add(this->Arrays[a]);
+    }
+  }
+  add(this->Weight);
+  data->AddArray(this->Mask);
+}
+
+int Samples::Evaluate(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
+  mcor_options options, vtkFieldData* statistics)
 {
   const vtkIdType total = points->GetNumberOfPoints();
   mcor_input input = particles;
@@ -162,13 +322,16 @@ int vtkSPHProbe::EvaluateAt(vtkDataSet* points, mcor_context* context, const mco
     {
       return status;
     }
-    results.Put(first, samples);
-    results.Statistics = samples.statistics;
+    this->Put(first, samples);
+    this->Statistics = samples.statistics;
     vtkSPHAddRunStatistics(statistics, samples.statistics);
     mcor_free_samples(&samples);
   }
   return MCOR_OK;
 }
+}
+
+vtkStandardNewMacro(vtkSPHProbe);
 
 vtkSPHProbe::vtkSPHProbe()
 {
@@ -282,7 +445,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
     }
   }
   // Reads here what an observer of the progress may change during the run.
-  vtkSPHSamples samples(*input, run->Options, this->ValidPointMaskArrayName,
+  Samples samples(*input, run->Options, this->ValidPointMaskArrayName,
     run->Points ? run->Points->GetNumberOfPoints() : 0,
     this->NaNOutside ? std::numeric_limits<double>::quiet_NaN() : this->NullValue);
   vtkNew<vtkPointData> found;
@@ -292,7 +455,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
     run->FindNotFinite(*input, samples.NotFinite);
     if (!run->Call(*input,
           [&](mcor_context* context) {
-            return EvaluateAt(run->Points, context, input->Core, run->Options, samples, statistics);
+            return samples.Evaluate(run->Points, context, input->Core, run->Options, statistics);
           }))
     {
       return;

@@ -47,12 +47,7 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-struct mcor_context;
-struct mcor_input;
-
 VTK_ABI_NAMESPACE_BEGIN
-class vtkSPHSamples;
-
 class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHProbe : public vtkSPHAlgorithm
 {
 public:
@@ -142,10 +137,6 @@ protected:
 private:
   vtkSPHProbe(const vtkSPHProbe&) = delete;
   void operator=(const vtkSPHProbe&) = delete;
-
-  /** A mcor_status: of the core, some points at a time. */
-  static int EvaluateAt(vtkDataSet* points, mcor_context* context, const mcor_input& particles,
-    mcor_options options, vtkSPHSamples& results, vtkFieldData* statistics);
 
   void FinishOutput(vtkDataSet* output) const;
 };

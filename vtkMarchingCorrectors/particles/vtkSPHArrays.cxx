@@ -68,6 +68,44 @@ void AddSeconds(vtkFieldData* run)
 }
 }
 
+std::string vtkSPHNameOf(vtkAbstractArray* array)
+{
+  return array && array->GetName() ? array->GetName() : "";
+}
+
+std::string vtkSPHRealName(const std::string& name)
+{
+  return name == "(automatic)" || name == "(none)" ? std::string() : name;
+}
+
+std::string vtkSPHListNames(vtkPointSet* points)
+{
+  vtkPointData* pointData = points->GetPointData();
+  std::string list;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    list += (i ? ", " : "") + vtkSPHNameOf(pointData->GetAbstractArray(i));
+  }
+  return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
+}
+
+void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object)
+{
+  signature.push_back(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(object)));
+  signature.push_back(object ? object->GetMTime() : 0);
+}
+
+vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count)
+{
+  auto made =
+    vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->SetNumberOfTuples(count);
+  return made;
+}
+
 std::string vtkSPHTakeText(char* text)
 {
   const std::string taken = text ? text : "";

@@ -9,8 +9,10 @@
 #include "mcor.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkNew.h"
 #include "vtkSPHAlgorithm.h"
 #include "vtkSmartPointer.h"
+#include "vtkTable.h"
 #include "vtkTypeTraits.h"
 
 #include <cstdint>
@@ -21,6 +23,21 @@
 
 VTK_ABI_NAMESPACE_BEGIN
 class vtkPointSet;
+
+/** Returns the array's name, empty for none. */
+std::string vtkSPHNameOf(vtkAbstractArray* array);
+
+/** The array's name; empty for entries that lists of arrays, as in ParaView's panel, show in place of one. */
+std::string vtkSPHRealName(const std::string& name);
+
+/** "Point arrays: A, B." */
+std::string vtkSPHListNames(vtkPointSet* points);
+
+/** VTK's modification times are unique in a process: object and time identify a state. */
+void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
+
+/** Makes an array of this name, type and components for so many tuples. */
+vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);
 
 /** Takes over a text of the core, which it frees; empty for null. */
 std::string vtkSPHTakeText(char* text);
@@ -78,6 +95,17 @@ void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&v)[N])
   vtkSPHAddReal(data, name, { v[0], v[1], v[2] });
 }
 ///@}
+
+/** Adds a column, without values, to a table. */
+template <typename ArrayT>
+ArrayT* vtkSPHAddColumn(vtkTable* table, const char* name, vtkIdType rows)
+{
+  vtkNew<ArrayT> column;
+  column->SetName(name);
+  column->SetNumberOfTuples(rows);
+  table->AddColumn(column);
+  return column;
+}
 
 /** The ways in which a statistic of several parts or runs becomes one, see mcor_statistics.def. */
 enum vtkSPHHow

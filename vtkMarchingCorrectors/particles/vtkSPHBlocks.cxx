@@ -13,6 +13,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -41,11 +42,7 @@ bool HasArray(vtkPointSet* block, vtkAbstractArray* like)
 vtkSmartPointer<vtkAbstractArray> JoinArrays(
   const Blocks& blocks, const std::vector<bool>& walls, vtkAbstractArray* first, vtkIdType total)
 {
-  auto joined = vtkSmartPointer<vtkAbstractArray>::Take(first->NewInstance());
-  joined->SetName(first->GetName());
-  joined->SetNumberOfComponents(first->GetNumberOfComponents());
-  joined->CopyComponentNames(first);
-  joined->SetNumberOfTuples(total);
+  vtkSmartPointer<vtkAbstractArray> joined = vtkSPHMakeLike(first, total);
   const bool isType = mcor_name_priority(MCOR_PARTICLE_TYPE, first->GetName()) >= 0;
   vtkIdType at = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b)
@@ -314,11 +311,7 @@ void vtkSPHSplitBlocks(
       vtkAbstractArray* from = made->GetAbstractArray(i);
       if (from->GetName() && before->GetPointData()->GetAbstractArray(from->GetName()) != from)
       {
-        auto part = vtkSmartPointer<vtkAbstractArray>::Take(from->NewInstance());
-        part->SetName(from->GetName());
-        part->SetNumberOfComponents(from->GetNumberOfComponents());
-        part->CopyComponentNames(from);
-        part->SetNumberOfTuples(count);
+        const vtkSmartPointer<vtkAbstractArray> part = vtkSPHMakeLike(from, count);
         part->InsertTuples(0, count, at, from);
         copy->GetPointData()->AddArray(part);
       }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the project: what is found among particles' arrays where the user has chosen
- * nothing.
+ * Private to the project: what is found among particles' arrays, and in their field data, where the
+ * user has chosen nothing.
  */
 #ifndef vtkSPHFound_h
 #define vtkSPHFound_h
@@ -10,8 +10,11 @@
 #include "vtkMarchingCorrectorsModule.h"
 
 #include <string>
+#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkFieldData;
+class vtkMultiProcessController;
 class vtkPointSet;
 
 /** Names of arrays; empty: not found. */
@@ -24,6 +27,35 @@ struct vtkSPHFound
 };
 
 VTKMARCHINGCORRECTORS_EXPORT vtkSPHFound vtkSPHFindArrays(vtkPointSet* particles);
+
+/** The period that field data tell. */
+struct vtkSPHPeriod
+{
+  std::vector<double> Period; ///< three lengths or six bounds; empty: no period is told
+  std::string Array;          ///< the array that tells it
+};
+
+/** Finds it, see mcor_find_period. */
+VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriod(vtkFieldData* data);
+
+/** Whether an array of this name may tell a period. */
+VTKMARCHINGCORRECTORS_EXPORT bool vtkSPHTellsOfPeriod(const char* name);
+
+/** Returns six bounds. Lengths alone are placed around the particles, which have this extent. */
+VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriod(
+  const std::vector<double>& period, const double extent[6]);
+
+/**
+ * Finds the period if many processes hold the particles: that of the first one whose field data
+ * tell a period. `problem` becomes a sentence if another one tells a different period.
+ * Collective.
+ */
+VTKMARCHINGCORRECTORS_EXPORT vtkSPHPeriod vtkSPHFindPeriodDistributed(
+  vtkMultiProcessController* controller, vtkFieldData* data, std::string& problem);
+
+/** Returns the bounds of all processes' particles; a process may have none. Collective. */
+VTKMARCHINGCORRECTORS_EXPORT std::vector<double> vtkSPHBoundsOfPeriodDistributed(
+  vtkMultiProcessController* controller, const std::vector<double>& period, vtkPointSet* particles);
 VTK_ABI_NAMESPACE_END
 
 #endif

@@ -10,7 +10,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHPeriod.h"
+#include "vtkSPHFound.h"
 #include "vtkSPHReals.h"
 
 #include <algorithm>
@@ -37,25 +37,9 @@ std::uint64_t BitsOf(double value)
 }
 }
 
-void vtkSPHParticles::SignObject(std::vector<std::uint64_t>& signature, vtkObject* object)
-{
-  signature.push_back(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(object)));
-  signature.push_back(object ? object->GetMTime() : 0);
-}
-
 std::string vtkSPHParticles::Quote(const std::string& name)
 {
   return "'" + name + "'";
-}
-
-std::string vtkSPHParticles::RealName(const std::string& name)
-{
-  return name == "(automatic)" || name == "(none)" ? std::string() : name;
-}
-
-std::string vtkSPHParticles::NameOf(vtkAbstractArray* array)
-{
-  return array->GetName() ? array->GetName() : "";
 }
 
 bool vtkSPHParticles::Contains(const std::vector<std::string>& names, const std::string& name)
@@ -131,8 +115,7 @@ bool vtkSPHParticles::CollectSmoothingLength()
       (this->FindLayout() == "DualSPHysics"
           ? std::string("DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ")
           : std::string()) +
-      this->DescribeSpacing() +
-      this->ListPointArrays();
+      this->DescribeSpacing() + vtkSPHListNames(this->Points);
   }
   return this->Error.empty();
 }
@@ -149,8 +132,8 @@ std::string vtkSPHParticles::DescribeSpacing() const
   std::ostringstream text;
   if (range[0] == range[1] && range[0] > 0.0)
   {
-    text << "By " << Quote(NameOf(spacing)) << ", particles are " << range[0] << " apart: "
-         << 1.3 * range[0] << " is usual. ";
+    text << "By " << Quote(vtkSPHNameOf(spacing)) << ", particles are " << range[0]
+         << " apart: " << 1.3 * range[0] << " is usual. ";
   }
   return text.str();
 }
@@ -287,8 +270,8 @@ vtkDataArray* vtkSPHParticles::SumDensities()
 bool vtkSPHParticles::CollectVolume()
 {
   const vtkSPHParticlesChoice& f = this->Description;
-  const bool massOrDensitySet = !RealName(f.MassArrayName).empty() ||
-    !RealName(f.DensityArrayName).empty() || f.Mass != 0.0 || f.Density != 0.0;
+  const bool massOrDensitySet = !vtkSPHRealName(f.MassArrayName).empty() ||
+    !vtkSPHRealName(f.DensityArrayName).empty() || f.Mass != 0.0 || f.Density != 0.0;
   if (!this->CollectQuantity("volume", f.VolumeArrayName, 0.0,
         massOrDensitySet ? MCOR_QUANTITY_COUNT : MCOR_VOLUME, this->Volume, this->Core.volume))
   {
@@ -331,7 +314,7 @@ bool vtkSPHParticles::CollectVolume()
 bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string& setName,
   double constant, mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core)
 {
-  const std::string name = RealName(setName);
+  const std::string name = vtkSPHRealName(setName);
   if (constant != 0.0)
   {
     core.constant = constant;
@@ -360,7 +343,7 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
 bool vtkSPHParticles::IsCarried(
   vtkAbstractArray* array, const std::vector<std::string>& taken) const
 {
-  const std::string name = NameOf(array);
+  const std::string name = vtkSPHNameOf(array);
   return !name.empty() && !Contains(taken, name) &&
     name != vtkDataSetAttributes::GhostArrayName() && name != MCOR_WALL_BLOCK &&
     !IsMade(name.c_str()) && !Contains(this->Description.ExcludedArrays, name) &&
@@ -385,7 +368,7 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
     }
     else
     {
-      this->FromNearest.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
+      this->FromNearest.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
     }
   }
   const vtkSmartPointer<vtkDataArray> velocity = this->JoinVelocity();
@@ -395,13 +378,13 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
   }
   for (const vtkSPHAttribute& attribute : this->Interpolated)
   {
-    SignObject(this->AttributesSignature, attribute.Array);
+    vtkSPHSign(this->AttributesSignature, attribute.Array);
   }
 }
 
 void vtkSPHParticles::Interpolate(vtkDataArray* array)
 {
-  this->Interpolated.push_back({ array, NameOf(array), array->GetNumberOfComponents() });
+  this->Interpolated.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
   this->Attributes.push_back(this->View(array));
   this->Core.attributes = this->Attributes.data();
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());
@@ -409,21 +392,20 @@ void vtkSPHParticles::Interpolate(vtkDataArray* array)
 
 bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request, const std::string& role)
 {
-  if (RealName(request.Name).empty() && !request.Array)
+  if (vtkSPHRealName(request.Name).empty() && !request.Array)
   {
-    this->Error = "No array was chosen: choose a point array. " + this->ListPointArrays();
+    this->Error = "No array was chosen: choose a point array. " + vtkSPHListNames(this->Points);
     return false;
   }
   if (!request.OnPoints)
   {
     this->Error = "The array " + Quote(request.Name) +
-      " is not a point array; SPH particles are points. " + this->ListPointArrays();
+      " is not a point array; SPH particles are points. " + vtkSPHListNames(this->Points);
     return false;
   }
   const vtkSmartPointer<vtkDataArray> velocity =
     request.Name == "Velocity" && !request.Array ? this->JoinVelocity() : nullptr;
-  vtkDataArray* array =
-    velocity ? velocity.Get() : this->Check(role, request.Name, request.Array);
+  vtkDataArray* array = velocity ? velocity.Get() : this->Check(role, request.Name, request.Array);
   if (array)
   {
     this->Interpolate(array);
@@ -433,7 +415,7 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request, const std::stri
 
 bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
 {
-  const std::string name = RealName(velocityName);
+  const std::string name = vtkSPHRealName(velocityName);
   vtkSmartPointer<vtkDataArray> velocity;
   if (name.empty())
   {
@@ -456,7 +438,7 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
       ? this->Error
       : "The particles have no velocity: no point array has one of its usual names (Velocity, vel, "
         "v, ...). Choose Velocity Array. " +
-        this->ListPointArrays();
+        vtkSPHListNames(this->Points);
     return false;
   }
   this->Interpolate(velocity);
@@ -501,7 +483,7 @@ bool vtkSPHParticles::CollectProjection(
   const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView)
 {
   const vtkSPHParticlesChoice& f = this->Description;
-  const bool hasScalar = !RealName(scalar.Name).empty() || scalar.Array;
+  const bool hasScalar = !vtkSPHRealName(scalar.Name).empty() || scalar.Array;
   vtkDataArray* summed = scalar.Name == "Density" && !scalar.Array ? this->SumDensities() : nullptr;
   if (hasScalar && !summed && (!this->Error.empty() || !this->CollectArray(scalar, "projection")))
   {
@@ -516,8 +498,8 @@ bool vtkSPHParticles::CollectProjection(
       !this->CollectQuantity(
         "mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass, this->Core.mass)) ||
     (!mcor_is_given(&this->Core.mass) &&
-      !this->CollectQuantity("density", f.DensityArrayName, f.Density, MCOR_DENSITY,
-        this->Density, this->Core.density)))
+      !this->CollectQuantity(
+        "density", f.DensityArrayName, f.Density, MCOR_DENSITY, this->Density, this->Core.density)))
   {
     return false;
   }
@@ -527,15 +509,15 @@ bool vtkSPHParticles::CollectProjection(
     const int components = this->Core.scalar.components;
     if (components > 1 && component >= components)
     {
-      this->Error = "The scalar " + Quote(this->Interpolated.front().Name) +
-        " has no component " + std::to_string(component) + "; choose 0 to " +
-        std::to_string(components - 1) + ", or -1 for the magnitude.";
+      this->Error = "The scalar " + Quote(this->Interpolated.front().Name) + " has no component " +
+        std::to_string(component) + "; choose 0 to " + std::to_string(components - 1) +
+        ", or -1 for the magnitude.";
       return false;
     }
     this->Core.scalar_component = components > 1 ? std::max(component, MCOR_MAGNITUDE) : 0;
   }
   weightView = {};
-  if (!RealName(weight).empty())
+  if (!vtkSPHRealName(weight).empty())
   {
     vtkDataArray* array = this->Find("weight", weight);
     if (!array)
@@ -553,13 +535,13 @@ bool vtkSPHParticles::CollectProjection(
 std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 {
   std::vector<std::uint64_t> particles;
-  SignObject(particles, this->Points);
-  SignObject(particles, this->Points->GetPoints()->GetData());
-  SignObject(particles, this->SmoothingLength);
-  SignObject(particles, this->Volume);
-  SignObject(particles, this->Mass);
-  SignObject(particles, this->Density);
-  SignObject(particles, this->Fluid);
+  vtkSPHSign(particles, this->Points);
+  vtkSPHSign(particles, this->Points->GetPoints()->GetData());
+  vtkSPHSign(particles, this->SmoothingLength);
+  vtkSPHSign(particles, this->Volume);
+  vtkSPHSign(particles, this->Mass);
+  vtkSPHSign(particles, this->Density);
+  vtkSPHSign(particles, this->Fluid);
   particles.push_back(BitsOf(this->Description.FluidValue));
   for (const double side : this->Description.Within)
   {
@@ -567,7 +549,7 @@ std::vector<std::uint64_t> vtkSPHParticles::Sign() const
   }
   for (const vtkSPHOnly& only : this->Description.Only)
   {
-    SignObject(particles, this->Points->GetPointData()->GetAbstractArray(only.Name.c_str()));
+    vtkSPHSign(particles, this->Points->GetPointData()->GetAbstractArray(only.Name.c_str()));
     particles.push_back(BitsOf(only.Low));
     particles.push_back(BitsOf(only.High));
   }
@@ -586,7 +568,7 @@ std::vector<std::uint64_t> vtkSPHParticles::Sign() const
 mcor_array vtkSPHParticles::View(vtkDataArray* array)
 {
   mcor_array view = {};
-  this->Names.push_back(NameOf(array));
+  this->Names.push_back(vtkSPHNameOf(array));
   view.name = array->GetName() ? this->Names.back().c_str() : nullptr;
   view.components = array->GetNumberOfComponents();
   const vtkSmartPointer<vtkDataArray> real = vtkSPHAsReal(array);
@@ -620,18 +602,19 @@ vtkDataArray* vtkSPHParticles::Check(
       (isPlane ? "There is no Lambda2 in two dimensions, because it is the middle one of three "
                  "eigenvalues; use Q-criterion. "
                : "") +
-      this->ListPointArrays();
+      vtkSPHListNames(this->Points);
     return nullptr;
   }
   vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(array);
   if (!numbers)
   {
-    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " does not hold numbers.";
+    this->Error =
+      "The " + role + " array " + Quote(vtkSPHNameOf(array)) + " does not hold numbers.";
     return nullptr;
   }
   if (numbers->GetNumberOfTuples() != this->Core.count || numbers->GetNumberOfComponents() < 1)
   {
-    this->Error = "The " + role + " array " + Quote(NameOf(array)) + " has " +
+    this->Error = "The " + role + " array " + Quote(vtkSPHNameOf(array)) + " has " +
       std::to_string(numbers->GetNumberOfTuples()) + " values for " +
       std::to_string(this->Core.count) + " points.";
     return nullptr;
@@ -645,7 +628,7 @@ std::string vtkSPHParticles::FindLayout() const
   vtkPointData* pointData = this->Points->GetPointData();
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
-    names += NameOf(pointData->GetAbstractArray(i)) + "\n";
+    names += vtkSPHNameOf(pointData->GetAbstractArray(i)) + "\n";
   }
   return mcor_find_layout(names.c_str());
 }
@@ -680,17 +663,6 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::JoinVelocity() const
     joined->CopyComponent(component, parts[component], 0);
   }
   return joined;
-}
-
-std::string vtkSPHParticles::ListPointArrays() const
-{
-  vtkPointData* pointData = this->Points->GetPointData();
-  std::string list;
-  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
-  {
-    list += (i ? ", " : "") + NameOf(pointData->GetAbstractArray(i));
-  }
-  return list.empty() ? "The input has no point arrays." : "Point arrays: " + list + ".";
 }
 
 std::vector<std::string> vtkSPHParticles::ListLeftOut(

@@ -159,16 +159,10 @@ public:
 
 protected:
   static std::string Quote(const std::string& name);
-  /** The array's name; empty for entries that lists of arrays, as in ParaView's panel, show in place of one. */
-  static std::string RealName(const std::string& name);
-  static std::string NameOf(vtkAbstractArray* array);
   static bool Contains(const std::vector<std::string>& names, const std::string& name);
-  /** VTK's modification times are unique in a process: object and time identify a state. */
-  static void SignObject(std::vector<std::uint64_t>& signature, vtkObject* object);
 
   mcor_array View(vtkDataArray* array);
   vtkDataArray* Check(const std::string& role, const std::string& name, vtkAbstractArray* array);
-  std::string ListPointArrays() const;
 
   bool CollectSolids();
   bool CollectVolume();

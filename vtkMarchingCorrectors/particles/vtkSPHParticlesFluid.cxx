@@ -19,7 +19,7 @@ bool vtkSPHParticles::CollectSolids()
 {
   this->FluidCount = static_cast<vtkIdType>(this->Core.count);
   this->Core.ignore_solids = this->Description.IgnoreSolids ? 1 : 0;
-  const std::string name = RealName(this->Description.FluidArrayName);
+  const std::string name = vtkSPHRealName(this->Description.FluidArrayName);
   if (name.empty())
   {
     return this->CollectAbsent();
@@ -81,8 +81,8 @@ std::vector<bool> vtkSPHFindPresent(const vtkSPHParticlesChoice& choice, vtkPoin
   {
     double x[3];
     points->GetPoint(i, x);
-    present[static_cast<size_t>(i)] = x[0] >= b[0] && x[0] <= b[1] && x[1] >= b[2] &&
-      x[1] <= b[3] && x[2] >= b[4] && x[2] <= b[5];
+    present[static_cast<size_t>(i)] =
+      x[0] >= b[0] && x[0] <= b[1] && x[1] >= b[2] && x[1] <= b[3] && x[2] >= b[4] && x[2] <= b[5];
   }
   std::map<std::string, std::vector<std::pair<double, double>>> ranges;
   for (const vtkSPHOnly& only : choice.Only)
@@ -137,8 +137,8 @@ std::vector<std::string> vtkSPHParticles::ListTypes(
 {
   std::multimap<int, std::string> names;
   vtkPointData* pointData = points->GetPointData();
-  for (int i = 0; RealName(choice.FluidArrayName).empty() && i < pointData->GetNumberOfArrays();
-       ++i)
+  for (int i = 0;
+       vtkSPHRealName(choice.FluidArrayName).empty() && i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
     const int rank = array ? mcor_name_priority(MCOR_PARTICLE_TYPE, array->GetName()) : -1;
@@ -200,7 +200,7 @@ std::string vtkSPHParticles::DescribeFluid() const
   std::ostringstream text;
   if (this->Fluid)
   {
-    text << NameOf(this->Fluid) << " = " << this->Description.FluidValue;
+    text << vtkSPHNameOf(this->Fluid) << " = " << this->Description.FluidValue;
   }
   return text.str();
 }

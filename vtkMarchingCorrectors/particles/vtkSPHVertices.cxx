@@ -13,6 +13,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
@@ -92,11 +93,7 @@ void AddValues(vtkDataSetAttributes* from, vtkIdType count, vtkIdList* ids, vtkP
     {
       continue;
     }
-    auto values = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
-    values->SetName(array->GetName());
-    values->SetNumberOfComponents(array->GetNumberOfComponents());
-    values->CopyComponentNames(array);
-    values->SetNumberOfTuples(ids->GetNumberOfIds());
+    const vtkSmartPointer<vtkAbstractArray> values = vtkSPHMakeLike(array, ids->GetNumberOfIds());
     array->GetTuples(ids, values);
     const int at = to->AddArray(values), attribute = from->IsArrayAnAttribute(i);
     if (attribute >= 0 && !to->GetAbstractAttribute(attribute))

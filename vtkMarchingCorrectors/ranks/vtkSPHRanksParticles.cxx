@@ -11,6 +11,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHReals.h"
 #include "vtkUnsignedCharArray.h"
@@ -26,17 +27,6 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-vtkSmartPointer<vtkAbstractArray> MakeLike(vtkAbstractArray* array, vtkIdType count)
-{
-  auto made =
-    vtkSmartPointer<vtkAbstractArray>::Take(vtkAbstractArray::CreateArray(array->GetDataType()));
-  made->SetName(array->GetName());
-  made->SetNumberOfComponents(array->GetNumberOfComponents());
-  made->CopyComponentNames(array);
-  made->SetNumberOfTuples(count);
-  return made;
-}
-
 std::size_t TupleSize(vtkAbstractArray* array)
 {
   return static_cast<std::size_t>(array->GetDataTypeSize()) *
@@ -147,7 +137,7 @@ vtkSmartPointer<vtkAbstractArray> AsPlain(vtkAbstractArray* array)
   {
     return array;
   }
-  vtkSmartPointer<vtkAbstractArray> copy = MakeLike(array, 0);
+  vtkSmartPointer<vtkAbstractArray> copy = vtkSPHMakeLike(array, 0);
   copy->DeepCopy(array);
   return copy;
 }
@@ -211,7 +201,7 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
   vtkSPHRanksArrays came;
   for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
   {
-    came.push_back(MakeLike(array, total));
+    came.push_back(vtkSPHMakeLike(array, total));
     vtkIdType first = 0;
     for (std::size_t rank = 0; rank < received.size(); first += counts[rank++])
     {
@@ -242,7 +232,7 @@ vtkSPHRanksArrays vtkSPHReturnTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays
   vtkSPHRanksArrays returned;
   for (const vtkSmartPointer<vtkAbstractArray>& came : vtkSPHSendTuples(ranks, arrays, back))
   {
-    returned.push_back(MakeLike(came, homeCount));
+    returned.push_back(vtkSPHMakeLike(came, homeCount));
     if (auto* numbers = vtkArrayDownCast<vtkDataArray>(returned.back().Get()))
     {
       numbers->Fill(0.0);

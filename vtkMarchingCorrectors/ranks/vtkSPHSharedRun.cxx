@@ -7,7 +7,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
-#include "vtkSPHPeriod.h"
+#include "vtkSPHFound.h"
 #include "vtkSPHRanksParticles.h"
 #include "vtkSPHRanksStatistics.h"
 

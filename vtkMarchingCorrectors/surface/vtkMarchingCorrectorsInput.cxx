@@ -3,6 +3,7 @@
 #include "vtkMarchingCorrectorsInput.h"
 
 #include "vtkPointData.h"
+#include "vtkSPHArrays.h"
 
 VTK_ABI_NAMESPACE_BEGIN
 vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
@@ -52,13 +53,13 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
   {
     this->Error = "No scalar to contour was chosen: choose a point array, or turn the free surface "
                   "on. " +
-      this->ListPointArrays();
+      vtkSPHListNames(this->Points);
     return false;
   }
   if (!scalar.OnPoints || !dot.OnPoints)
   {
     this->Error = "The scalar " + Quote(scalar.OnPoints ? dot.Name : scalar.Name) +
-      " is not a point array; SPH particles are points. " + this->ListPointArrays();
+      " is not a point array; SPH particles are points. " + vtkSPHListNames(this->Points);
     return false;
   }
   this->Scalar = scalar.Name == "Velocity" && !scalar.Array ? this->JoinVelocity() : nullptr;
@@ -76,14 +77,14 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
   }
   const int components = this->Scalar->GetNumberOfComponents();
   const int component = this->Choice.ScalarComponent;
-  if (!RealName(dot.Name).empty())
+  if (!vtkSPHRealName(dot.Name).empty())
   {
     this->ScalarDot = this->Check("second vector of the dot product", dot.Name, dot.Array);
     if (this->ScalarDot && this->ScalarDot->GetNumberOfComponents() != components)
     {
       this->Error = "The dot product needs two arrays with the same number of components; " +
-        Quote(NameOf(this->Scalar)) + " has " + std::to_string(components) + ", " +
-        Quote(NameOf(this->ScalarDot)) + " has " +
+        Quote(vtkSPHNameOf(this->Scalar)) + " has " + std::to_string(components) + ", " +
+        Quote(vtkSPHNameOf(this->ScalarDot)) + " has " +
         std::to_string(this->ScalarDot->GetNumberOfComponents()) + ".";
       return false;
     }
@@ -96,7 +97,7 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
   else if (components > 1 && component != MCOR_MAGNITUDE &&
     (component < 0 || component >= components))
   {
-    this->Error = "The scalar " + Quote(NameOf(this->Scalar)) + " has no component " +
+    this->Error = "The scalar " + Quote(vtkSPHNameOf(this->Scalar)) + " has no component " +
       std::to_string(component) + "; choose 0 to " + std::to_string(components - 1) +
       ", or -1 for the magnitude.";
     return false;
@@ -116,10 +117,10 @@ void vtkMarchingCorrectorsInput::NameScalar()
     return;
   }
   const int component = this->Core.scalar_component;
-  this->ScalarName = NameOf(this->Scalar);
+  this->ScalarName = vtkSPHNameOf(this->Scalar);
   if (this->ScalarDot)
   {
-    this->ScalarName += "_Dot_" + NameOf(this->ScalarDot);
+    this->ScalarName += "_Dot_" + vtkSPHNameOf(this->ScalarDot);
   }
   else if (this->Scalar->GetNumberOfComponents() > 1)
   {
@@ -138,8 +139,8 @@ void vtkMarchingCorrectorsInput::NameScalar()
 
 void vtkMarchingCorrectorsInput::SignScalar()
 {
-  SignObject(this->ScalarSignature, this->Scalar);
-  SignObject(this->ScalarSignature, this->ScalarDot);
+  vtkSPHSign(this->ScalarSignature, this->Scalar);
+  vtkSPHSign(this->ScalarSignature, this->ScalarDot);
   this->ScalarSignature.push_back(static_cast<std::uint64_t>(this->Core.scalar_component));
 }
 VTK_ABI_NAMESPACE_END

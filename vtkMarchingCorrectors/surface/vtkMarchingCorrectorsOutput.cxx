@@ -26,7 +26,6 @@
 #include <sstream>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -61,21 +60,15 @@ vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
 
 std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_options& options)
 {
-  const std::pair<mcor_output, const char*> arrays[] = { { MCOR_OUT_NORMALS, "Normals" },
-    { MCOR_OUT_GRADIENTS, "Gradients" }, { MCOR_OUT_WEIGHT_SUM, "WeightSum" },
-    { MCOR_OUT_BOUNDARY_EIGENVALUE, "BoundaryEigenvalue" },
-    { MCOR_OUT_MEAN_CURVATURE, "MeanCurvature" }, { MCOR_OUT_GAUSS_CURVATURE, "GaussCurvature" },
-    { MCOR_OUT_CORRECTION_LENGTH, "CorrectionLength" }, { MCOR_OUT_RESIDUAL, "Residual" },
-    { MCOR_OUT_BOUNDARY_FLAG, "BoundaryFlag" } };
   std::vector<std::string> names;
-  for (const auto& array : arrays)
-  {
-    if (options.outputs & array.first)
-    {
-      names.emplace_back(array.second);
-    }
+#define NAME(bit, member, components, name, flag)                                                  \
+  if (options.outputs & bit)                                                                       \
+  {                                                                                                \
+    names.emplace_back(name);                                                                      \
   }
-  return names;
+  vtkMarchingCorrectorsArrays(NAME)
+#undef NAME
+    return names;
 }
 
 bool vtkMarchingCorrectorsOutput::StoresFloats(int precision) const
@@ -229,20 +222,14 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   };
   // VTK would draw lines dark by them.
   const bool areActive = s.normals && (s.statistics.dimension != 2 || this->Options.filled);
-  add("Normals", s.normals, 3);
+#define ADD(bit, member, components, name, flag) add(name, s.member, components);
+  vtkMarchingCorrectorsArrays(ADD)
+#undef ADD
+    add("Widening", s.widening, 1);
   if (areActive)
   {
     pointData->SetActiveNormals("Normals");
   }
-  add("Gradients", s.gradients, 3);
-  add("WeightSum", s.weight_sum, 1);
-  add("BoundaryEigenvalue", s.boundary_eigenvalue, 1);
-  add("MeanCurvature", s.mean_curvature, 1);
-  add("GaussCurvature", s.gauss_curvature, 1);
-  add("CorrectionLength", s.correction_length, 1);
-  add("Residual", s.residual, 1);
-  add("BoundaryFlag", s.boundary_flag, 1);
-  add("Widening", s.widening, 1);
 }
 
 void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
@@ -326,7 +313,8 @@ void vtkMarchingCorrectorsOutput::AddStatistics(vtkFieldData* fieldData) const
 {
   const mcor_statistics& s = this->Surface.statistics;
   const bool always = true, is_run = false, is_plane = s.dimension == 2;
-  const bool has_scalar = this->Options.field != MCOR_WEIGHT_SUM, has_caps = this->Options.capping != 0;
+  const bool has_scalar = this->Options.field != MCOR_WEIGHT_SUM,
+             has_caps = this->Options.capping != 0;
   const bool is_widened = s.widening_max > 0.0;
   const bool has_levels = this->Options.level_limit > 0, has_volume = !is_plane && s.is_closed;
   const bool has_area = !is_plane || s.is_closed || this->Options.filled;

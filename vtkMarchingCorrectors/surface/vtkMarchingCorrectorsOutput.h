@@ -17,6 +17,23 @@ class vtkFieldData;
 class vtkMarchingCorrectorsInput;
 class vtkPolyData;
 
+/**
+ * Lists the arrays that the core computes at points, in the output's order: bit of mcor_output,
+ * member of mcor_surface, components, name, and the filter's flag for it.
+ */
+#define vtkMarchingCorrectorsArrays(ARRAY)                                                         \
+  ARRAY(MCOR_OUT_NORMALS, normals, 3, "Normals", ComputeNormals)                                   \
+  ARRAY(MCOR_OUT_GRADIENTS, gradients, 3, "Gradients", ComputeGradients)                           \
+  ARRAY(MCOR_OUT_WEIGHT_SUM, weight_sum, 1, "WeightSum", ComputeWeightSum)                         \
+  ARRAY(MCOR_OUT_BOUNDARY_EIGENVALUE, boundary_eigenvalue, 1, "BoundaryEigenvalue",                \
+    ComputeBoundaryEigenvalue)                                                                     \
+  ARRAY(MCOR_OUT_MEAN_CURVATURE, mean_curvature, 1, "MeanCurvature", ComputeCurvature)             \
+  ARRAY(MCOR_OUT_GAUSS_CURVATURE, gauss_curvature, 1, "GaussCurvature", ComputeCurvature)          \
+  ARRAY(                                                                                           \
+    MCOR_OUT_CORRECTION_LENGTH, correction_length, 1, "CorrectionLength", ComputeCorrectionLength) \
+  ARRAY(MCOR_OUT_RESIDUAL, residual, 1, "Residual", ComputeResidual)                               \
+  ARRAY(MCOR_OUT_BOUNDARY_FLAG, boundary_flag, 1, "BoundaryFlag", ComputeBoundaryFlag)
+
 class vtkMarchingCorrectorsOutput
 {
 public:

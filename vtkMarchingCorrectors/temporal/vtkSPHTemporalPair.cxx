@@ -4,7 +4,9 @@
 
 #include "mcor.h"
 #include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -18,6 +20,7 @@
 #include <cmath>
 #include <functional>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -26,17 +29,6 @@ namespace
 const vtkIdType Grain = 8192;       // particles that are worth a thread
 const vtkIdType FewParticles = 100; // particles that tell nothing about the unit of velocities
 
-std::string NameOf(vtkAbstractArray* array)
-{
-  return array && array->GetName() ? array->GetName() : "";
-}
-
-/** Empty if the array is to be found by its usual names. */
-std::string RealName(const std::string& name)
-{
-  return name == "(automatic)" || name == "(none)" ? "" : name;
-}
-
 std::string Text(double value)
 {
   std::ostringstream stream;
@@ -44,20 +36,44 @@ std::string Text(double value)
   return stream.str();
 }
 
-std::string ListArrays(vtkPointSet* particles)
+/** Makes an array of the wider type of two, with value(tuple, component), in parallel. */
+template <typename ValueT>
+vtkSmartPointer<vtkDataArray> MakeArray(
+  vtkDataArray* a, vtkDataArray* b, vtkIdType count, const ValueT& value)
 {
-  std::string list;
-  for (int i = 0; i < particles->GetPointData()->GetNumberOfArrays(); ++i)
+  const bool isFloat = a->GetDataType() == VTK_FLOAT && b->GetDataType() == VTK_FLOAT;
+  auto array = vtkSmartPointer<vtkDataArray>::Take(
+    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
+  const int components = a->GetNumberOfComponents();
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(count);
+  array->SetName(a->GetName());
+  array->CopyComponentNames(a);
+  const auto fill = [&](auto* typed)
   {
-    list += (i ? ", " : "") + NameOf(particles->GetPointData()->GetAbstractArray(i));
+    auto* const to = typed->GetPointer(0);
+    using T = std::decay_t<decltype(*to)>;
+    vtkSMPTools::For(0, count, Grain,
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType i = begin; i < end; ++i)
+        {
+          for (int c = 0; c < components; ++c)
+          {
+            to[i * components + c] = static_cast<T>(value(i, c));
+          }
+        }
+      });
+  };
+  if (isFloat)
+  {
+    fill(static_cast<vtkFloatArray*>(array.Get()));
   }
-  return list.empty() ? "There are no point arrays." : "Point arrays: " + list + ".";
-}
-
-void Sign(std::vector<std::uint64_t>& signature, vtkObject* object)
-{
-  signature.push_back(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(object)));
-  signature.push_back(object ? object->GetMTime() : 0);
+  else
+  {
+    fill(static_cast<vtkDoubleArray*>(array.Get()));
+  }
+  return array;
 }
 
 }
@@ -111,9 +127,9 @@ bool vtkSPHTemporalPair::Match(
   }
   for (const Step& step : this->Steps)
   {
-    Sign(signature, step.Particles->GetPoints()->GetData());
-    Sign(signature, step.Ids);
-    Sign(signature, step.Velocities);
+    vtkSPHSign(signature, step.Particles->GetPoints()->GetData());
+    vtkSPHSign(signature, step.Ids);
+    vtkSPHSign(signature, step.Velocities);
   }
   for (const double number : { choice.Times[0], choice.Times[1], choice.TimeScale })
   {
@@ -157,13 +173,13 @@ std::string vtkSPHTemporalPair::NameOfStep(int step) const
 
 bool vtkSPHTemporalPair::FindIds(const std::string& name)
 {
-  this->IdName = RealName(name);
+  this->IdName = vtkSPHRealName(name);
   if (this->IdName.empty())
   {
     vtkPointSet* first = this->Steps[0].Particles;
     vtkDataArray* found = vtkSPHDetect(first, MCOR_PARTICLE_ID, 1);
     found = found ? found : first->GetPointData()->GetGlobalIds();
-    this->IdName = NameOf(found);
+    this->IdName = vtkSPHNameOf(found);
   }
   if (this->IdName.empty())
   {
@@ -171,7 +187,7 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
       "Particles are matched between two steps by their ids, but no point array "
       "has one of the usual names (Idp, ParticleId, id, GlobalIds, ...). Name the array "
       "of ids, or request only stored times. " +
-      ListArrays(this->Steps[0].Particles);
+      vtkSPHListNames(this->Steps[0].Particles);
     return false;
   }
   for (int k = 0; k < 2; ++k)
@@ -183,7 +199,7 @@ bool vtkSPHTemporalPair::FindIds(const std::string& name)
 
 bool vtkSPHTemporalPair::FindVelocities(const vtkSPHTemporalChoice& choice)
 {
-  this->VelocityName = choice.UseVelocities ? RealName(choice.VelocityArrayName) : "";
+  this->VelocityName = choice.UseVelocities ? vtkSPHRealName(choice.VelocityArrayName) : "";
   for (Step& step : this->Steps)
   {
     step.Velocities = nullptr;
@@ -194,7 +210,7 @@ bool vtkSPHTemporalPair::FindVelocities(const vtkSPHTemporalChoice& choice)
   }
   if (this->VelocityName.empty())
   {
-    this->VelocityName = NameOf(vtkSPHDetect(this->Steps[0].Particles, MCOR_VELOCITY, 3));
+    this->VelocityName = vtkSPHNameOf(vtkSPHDetect(this->Steps[0].Particles, MCOR_VELOCITY, 3));
     vtkDataArray* other =
       this->Steps[1].Particles->GetPointData()->GetArray(this->VelocityName.c_str());
     if (this->VelocityName.empty() || !other || other->GetNumberOfComponents() != 3)
@@ -218,7 +234,7 @@ vtkDataArray* vtkSPHTemporalPair::Find(
   if (!array)
   {
     this->Error = "There is no point array '" + name + "' for the " + role + " in " +
-      this->NameOfStep(step) + ". " + ListArrays(particles);
+      this->NameOfStep(step) + ". " + vtkSPHListNames(particles);
   }
   else if (array->GetNumberOfComponents() != components ||
     array->GetNumberOfTuples() != particles->GetNumberOfPoints())
@@ -318,7 +334,7 @@ void vtkSPHTemporalPair::WarnOfLostArrays()
       vtkAbstractArray* array = data->GetAbstractArray(i);
       if (!this->IsInBoth(array))
       {
-        lost += (lost.empty() ? "" : ", ") + NameOf(array);
+        lost += (lost.empty() ? "" : ", ") + vtkSPHNameOf(array);
       }
     }
   }
@@ -331,7 +347,7 @@ void vtkSPHTemporalPair::WarnOfLostArrays()
 
 bool vtkSPHTemporalPair::IsInBoth(vtkAbstractArray* array) const
 {
-  if (NameOf(array).empty())
+  if (vtkSPHNameOf(array).empty())
   {
     return false;
   }
@@ -346,5 +362,84 @@ bool vtkSPHTemporalPair::IsInBoth(vtkAbstractArray* array) const
     }
   }
   return true;
+}
+
+void vtkSPHTemporalPair::Interpolate(double time, vtkPolyData* output) const
+{
+  const double s = (time - this->Steps[0].Time) / (this->Steps[1].Time - this->Steps[0].Time);
+  const bool early = s < 0.5;
+  const Step &near = this->Steps[early ? 0 : 1], &far = this->Steps[early ? 1 : 0];
+  const double share = early ? s : 1.0 - s; // share of the way to the other step
+  vtkSPHTemporalCopy(near.Particles, output);
+  output->GetFieldData()->RemoveArray("TimeValue"); // the step's own time
+  if (!near.Ids)
+  {
+    return; // one step has no particles, and the other nothing to interpolate with
+  }
+  this->InterpolatePositions(near, far, share, time, output);
+  this->InterpolateArrays(near, far, share, output);
+}
+
+// Positions are made in double, from the nearer step, so that a particle at rest stays where it is.
+void vtkSPHTemporalPair::InterpolatePositions(
+  const Step& near, const Step& far, double share, double time, vtkPolyData* output) const
+{
+  const double toFar = this->TimeScale * (far.Time - near.Time); // below 0 in the later half
+  const double toTime = this->TimeScale * (time - near.Time);
+  const auto x0 = vtkSPHAsReal(near.Particles->GetPoints()->GetData()),
+             x1 = vtkSPHAsReal(far.Particles->GetPoints()->GetData());
+  const bool curved = this->FollowsVelocities;
+  const auto v0 = curved ? vtkSPHAsReal(near.Velocities) : x0,
+             v1 = curved ? vtkSPHAsReal(far.Velocities) : x1;
+  const vtkSPHReals from(x0), to(x1), begun(v0), ended(v1);
+  // Hermite's cubic polynomials, for the far position and for both tangents.
+  const double ofFar = share * share * (3.0 - 2.0 * share),
+               ofBegun = share * (1.0 - share) * (1.0 - share),
+               ofEnded = share * share * (share - 1.0);
+  const auto position = [&](vtkIdType i, int c)
+  {
+    const vtkIdType j = near.Partners[static_cast<size_t>(i)];
+    const double x = from(i, c);
+    if (j < 0)
+    {
+      return curved ? x + toTime * begun(i, c) : x;
+    }
+    const double way = to(j, c) - x;
+    return curved ? x + ofFar * way + toFar * (ofBegun * begun(i, c) + ofEnded * ended(j, c))
+                  : x + share * way;
+  };
+  vtkNew<vtkPoints> points;
+  points->SetData(MakeArray(x0, x1, near.Particles->GetNumberOfPoints(), position));
+  output->SetPoints(points);
+}
+
+// The output already has the nearer step's data.
+void vtkSPHTemporalPair::InterpolateArrays(
+  const Step& near, const Step& far, double share, vtkPolyData* output) const
+{
+  vtkPointData* own = near.Particles->GetPointData();
+  for (int k = 0; k < own->GetNumberOfArrays(); ++k)
+  {
+    vtkAbstractArray* array = own->GetAbstractArray(k);
+    if (!this->IsInBoth(array))
+    {
+      output->GetPointData()->RemoveArray(array->GetName());
+      continue;
+    }
+    vtkDataArray* other = far.Particles->GetPointData()->GetArray(array->GetName());
+    if (!vtkSPHIsReal(array) || array == near.Ids)
+    {
+      continue;
+    }
+    const auto a = vtkSPHAsReal(vtkDataArray::SafeDownCast(array)), b = vtkSPHAsReal(other);
+    const vtkSPHReals from(a), to(b);
+    output->GetPointData()->AddArray(MakeArray(a, b, near.Particles->GetNumberOfPoints(),
+      [&](vtkIdType i, int c)
+      {
+        const vtkIdType j = near.Partners[static_cast<size_t>(i)];
+        const double value = from(i, c);
+        return j < 0 ? value : value + share * (to(j, c) - value);
+      }));
+  }
 }
 VTK_ABI_NAMESPACE_END

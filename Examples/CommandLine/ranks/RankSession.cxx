@@ -12,7 +12,7 @@
 #include "vtkMPIController.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
-#include "vtkSPHPeriod.h"
+#include "vtkSPHFound.h"
 #include "vtkSPHRanksWait.h"
 
 #include <stdexcept>

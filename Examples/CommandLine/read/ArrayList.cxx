@@ -10,7 +10,6 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHFound.h"
-#include "vtkSPHPeriod.h"
 
 #include <algorithm>
 #include <cmath>

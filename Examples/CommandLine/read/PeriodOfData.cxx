@@ -7,7 +7,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
-#include "vtkSPHPeriod.h"
+#include "vtkSPHFound.h"
 
 #include <sstream>
 #include <stdexcept>

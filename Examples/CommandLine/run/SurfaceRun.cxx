@@ -17,7 +17,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkSPHPeriod.h"
+#include "vtkSPHFound.h"
 
 #include <algorithm>
 #include <chrono>

@@ -13,7 +13,6 @@
 #include "OutputFile.h"
 #include "ParticleFile.h"
 #include "Picture.h"
-#include "PieceFile.h"
 #include "RunStatistics.h"
 #include "RunTables.h"
 #include "Runs.h"
@@ -44,23 +43,6 @@
 namespace
 {
 
-const char* const ProgramName = "marching-correctors";
-
-void ListDevices()
-{
-  const std::string devices = vtkMarchingCorrectors::ListDevices();
-  if (devices.empty())
-  {
-    throw std::runtime_error("there is no OpenCL device; a CPU becomes one with PoCL (Debian: "
-                             "pocl-opencl-icd)");
-  }
-  std::istringstream lines(devices);
-  for (std::string line; std::getline(lines, line);)
-  {
-    std::cout << Printable(line) << "\n";
-  }
-}
-
 /// Lists the outputs of a process; to the first one, those of all.
 std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
 {
@@ -74,9 +56,8 @@ std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
   }
   if (sharing.IsFirst())
   {
-    outputs.insert(
-      outputs.end(), { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File,
-                       job.WideningFile });
+    outputs.insert(outputs.end(),
+      { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File, job.WideningFile });
   }
   return outputs;
 }
@@ -227,9 +208,29 @@ bool MakeOnRanks(Job& job, MessageCapture* messages)
 }
 #endif
 
-/// Does the job. Returns false if something failed; its error was printed.
-bool Execute(Job& job)
+/// Does what the command line asks for. Returns false if something failed; its error was printed.
+bool Execute(int argc, char* argv[])
 {
+  Job job;
+  ParseCommandLine(argc, argv, job);
+  const bool isQuestion = job.Has("--help") || job.Has("--version") || job.Has("--list-devices") ||
+    job.ListArrays;
+  if (isQuestion && LaunchedRank() > 0)
+  {
+    return true;
+  }
+  if (job.Has("--help"))
+  {
+    std::cout << CommandLineHelp();
+    return true;
+  }
+  if (job.Has("--version"))
+  {
+    std::cout << "marching-correctors " MCOR_PROGRAM_VERSION " (VTK "
+              << vtkVersion::GetVTKVersion() << ")\n";
+    return true;
+  }
+  const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
   vtkNew<MessageCapture> messages;
   vtkOutputWindow::SetInstance(messages);
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
@@ -240,7 +241,17 @@ bool Execute(Job& job)
   }
   if (job.Has("--list-devices"))
   {
-    ListDevices();
+    const std::string devices = vtkMarchingCorrectors::ListDevices();
+    if (devices.empty())
+    {
+      throw std::runtime_error("there is no OpenCL device; a CPU becomes one with PoCL (Debian: "
+                               "pocl-opencl-icd)");
+    }
+    std::istringstream lines(devices);
+    for (std::string line; std::getline(lines, line);)
+    {
+      std::cout << Printable(line) << "\n";
+    }
     return true;
   }
 #if MCOR_HAS_RANKS
@@ -252,30 +263,6 @@ bool Execute(Job& job)
   LoadDriversAhead(job.Surface->GetDevice());
   Sharing alone;
   return Make(job, messages, alone);
-}
-
-bool ParseAndExecute(int argc, char* argv[])
-{
-  Job job;
-  ParseCommandLine(argc, argv, job);
-  if (LaunchedRank() > 0 &&
-    (job.Has("--help") || job.Has("--version") || job.Has("--list-devices") || job.ListArrays))
-  {
-    return true;
-  }
-  if (job.Has("--help"))
-  {
-    std::cout << CommandLineHelp();
-    return true;
-  }
-  if (job.Has("--version"))
-  {
-    std::cout << ProgramName << " " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
-              << ")\n";
-    return true;
-  }
-  const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
-  return Execute(job);
 }
 
 /// Exit status and sentence of what `run` throws, or of standard output that cannot be written.
@@ -329,7 +316,7 @@ int main(int argc, char* argv[])
 {
   OpenStandardStreams();
   PrepareForEnding();
-  const int status = Status([&] { return ParseAndExecute(argc, argv); });
+  const int status = Status([&] { return Execute(argc, argv); });
   AwaitDrivers();
   return Finish(status);
 }

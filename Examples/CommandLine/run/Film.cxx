@@ -213,12 +213,11 @@ private:
         vtkImageData* image = SeenImage(this->Options);
         const int* size = image->GetDimensions();
         this->Write(i, DataSetBytes(this->Surfaces[i], image, this->Messages),
-          [&](const std::string& frame)
-          {
+          [&](const std::string& frame) {
             return DrawProjection(
               this->Options, frame, *this->Drawn, this->FrameColors, this->Messages);
           });
-        this->Setting = " "; // there is a step
+        this->Last = vtkSmartPointer<vtkFieldData>::New(); // there is a step
         this->Add(this->Describe(i), "");
         this->List(false);
         std::ostringstream what;
@@ -272,7 +271,7 @@ private:
     const std::string lost =
       LostArrays(file, surface, this->Colors, ArraysWithoutPlace(this->Options, particles));
     warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
-    this->Setting = SettingAsJson(this->Options, run.Statistics);
+    this->Last = run.Statistics;
     const FilmStep step = this->Describe(i);
     this->Add(step, StepAsJson(step, run.Statistics, run.WallSeconds));
     this->List(false);
@@ -324,7 +323,7 @@ private:
   /// The lists and tables of all surfaces so far.
   void List(bool isLast)
   {
-    if (this->Setting.empty()) // no step went well
+    if (!this->Last) // no step went well
     {
       return;
     }
@@ -347,8 +346,7 @@ private:
     if (!this->Options.StatisticsFile.empty())
     {
       std::cout.flush(); // the file may be /dev/stdout
-      WriteOutput(
-        this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Setting));
+      WriteOutput(this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Last));
     }
   }
 
@@ -358,7 +356,7 @@ private:
   ParticleTimes Times;
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
-  std::string Setting; ///< of the last one that went well
+  vtkSmartPointer<vtkFieldData> Last; ///< of the last one that went well
   Sentences Said;
   ColorScale Colors, FrameColors;
   ComponentTable Pieces;

@@ -15,114 +15,61 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include <sys/resource.h>
 
 namespace
 {
 
-/// Writes JSON, indented. VTK's own JSON library is private in some builds.
-class JsonText
+/// JSON, as VTK's own library for it is private in some builds. Members are keys, empty in a list, and texts.
+using Members = std::vector<std::pair<std::string, std::string>>;
+
+/// Reads back as the same number; JSON has neither NaN nor infinity.
+std::string Json(double number)
 {
-public:
-  /// At depth 0 a text of its own, else what Raw() puts into another one at that depth.
-  explicit JsonText(std::size_t depth = 0)
-    : Depth(depth)
+  char digits[32];
+  const auto result = std::to_chars(digits, digits + sizeof(digits), number);
+  return std::isfinite(number) ? std::string(digits, result.ptr) : "null";
+}
+
+/// An object, or a list, a member a line.
+std::string Json(const Members& members, const char* brackets = "{}")
+{
+  std::string text;
+  for (const auto& [key, value] : members)
   {
+    text += (text.empty() ? "\n" : ",\n") + (key.empty() ? "" : QuotedForJson(key) + ": ") + value;
   }
-
-  /// An object. The key is empty for the outermost one and for elements of a list.
-  void Begin(const std::string& key) { this->Open(key, "{"); }
-  void End() { this->Close("}"); }
-  void BeginList(const std::string& key) { this->Open(key, "["); }
-  void EndList() { this->Close("]"); }
-
-  void Value(const std::string& key, const std::string& text)
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3)
   {
-    this->Line(key);
-    this->Text += QuotedForJson(text);
+    text.insert(at + 1, "  "); // no value has a line break of its own
   }
+  return brackets[0] + text + (text.empty() ? "" : "\n") + brackets[1];
+}
 
-  void Value(const std::string& key, double number)
+std::string JsonList(const std::vector<std::string>& texts)
+{
+  Members members;
+  for (const std::string& text : texts)
   {
-    this->Line(key);
-    this->Text += Formatted(number);
+    members.emplace_back("", QuotedForJson(text));
   }
-
-  void Value(const std::string& key, const std::vector<double>& numbers)
-  {
-    this->Line(key);
-    this->Text += "[";
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-    {
-      this->Text += (i ? ", " : "") + Formatted(numbers[i]);
-    }
-    this->Text += "]";
-  }
-
-  void Raw(const std::string& values)
-  {
-    this->Text += (this->First ? "" : ",") + values;
-    this->First = false;
-  }
-
-  const std::string& Get() const { return this->Text; }
-
-private:
-  void Open(const std::string& key, const char* bracket)
-  {
-    this->Line(key);
-    this->Text += bracket;
-    ++this->Depth;
-    this->First = true;
-  }
-
-  void Close(const char* bracket)
-  {
-    --this->Depth;
-    if (!this->First)
-    {
-      this->NewLine();
-    }
-    this->First = false;
-    this->Text += bracket;
-  }
-
-  /// Comma, line break and key before a value.
-  void Line(const std::string& key)
-  {
-    if (this->Depth > 0)
-    {
-      this->Text += this->First ? "" : ",";
-      this->NewLine();
-    }
-    this->First = false;
-    this->Text += key.empty() ? "" : QuotedForJson(key) + ": ";
-  }
-
-  void NewLine() { this->Text += "\n" + std::string(2 * this->Depth, ' '); }
-
-  /// Reads back as the same number; JSON has neither NaN nor infinity.
-  static std::string Formatted(double number)
-  {
-    if (!std::isfinite(number))
-    {
-      return "null";
-    }
-    char digits[32];
-    const auto result = std::to_chars(digits, digits + sizeof(digits), number);
-    return std::string(digits, result.ptr);
-  }
-
-  std::string Text;
-  std::size_t Depth;
-  bool First = true;
-};
+  return Json(members, "[]");
+}
 
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
-const char* const ParameterNames[] = { "SmoothingLengthIsSupportRadius", "EstimateSmoothingLength",
-  "ParticleVolume", "Mass", "Density", "IsoValues", "Field", "CubeSizeMode", "Capping",
+const char* const ParameterNames[] = {
+  "SmoothingLengthIsSupportRadius",
+  "EstimateSmoothingLength",
+  "ParticleVolume",
+  "Mass",
+  "Density",
+  "IsoValues",
+  "Field",
+  "CubeSizeMode",
+  "Capping",
 #define BOUNDS(member, scope, property) property,
 #define OPTION(member, usual, legal, words, scope, property) property,
 #include "mcor_options.def"
@@ -131,7 +78,8 @@ const char* const StatisticNames[] = {
 #define STATISTIC(how, when, member, name) name,
 #include "mcor_statistics.def"
   "SmoothingLengthRange", "ScalarRange", "Points", "Triangles", "Lines", "Pieces", "RankParticles",
-  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds" };
+  "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds"
+};
 
 double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
 {
@@ -274,108 +222,85 @@ std::string Key(const std::string& name)
   return key;
 }
 
-void WriteArray(JsonText& json, vtkFieldData* run, const char* name)
+std::string Json(vtkFieldData* run, const char* name)
 {
   vtkDataArray* numbers = run->GetArray(name);
   if (!numbers)
   {
-    json.Value(Key(name), Text(run, name));
+    return QuotedForJson(Text(run, name));
   }
-  else if (numbers->GetNumberOfValues() == 1 && std::string(name) != "IsoValues")
+  std::string values;
+  for (vtkIdType i = 0; i < numbers->GetNumberOfValues(); ++i)
   {
-    json.Value(Key(name), Number(run, name));
+    values += (i ? ", " : "") + Json(Number(run, name, i));
   }
-  else
-  {
-    std::vector<double> values;
-    for (vtkIdType i = 0; i < numbers->GetNumberOfValues(); ++i)
-    {
-      values.push_back(Number(run, name, i));
-    }
-    json.Value(Key(name), values);
-  }
+  const bool isOne = numbers->GetNumberOfValues() == 1 && std::string(name) != "IsoValues";
+  return isOne ? values : "[" + values + "]";
 }
 
 template <std::size_t N>
-void WriteGroup(JsonText& json, vtkFieldData* run, const char* group, const char* const (&names)[N])
+std::string JsonGroup(vtkFieldData* run, const char* const (&names)[N])
 {
-  json.Begin(group);
+  Members members;
   for (const char* name : names)
   {
     if (*name && run->GetAbstractArray(name))
     {
-      WriteArray(json, run, name);
+      members.emplace_back(Key(name), Json(run, name));
     }
   }
-  json.End();
+  return Json(members);
 }
 
-void WriteSeconds(JsonText& json, vtkFieldData* run)
+std::string JsonSeconds(vtkFieldData* run)
 {
   vtkDataArray* seconds = run->GetArray("Seconds");
-  json.Begin("seconds");
+  Members members;
   for (int i = 0; seconds && i < seconds->GetNumberOfComponents(); ++i)
   {
-    json.Value(Key(seconds->GetComponentName(i)), seconds->GetComponent(0, i));
+    members.emplace_back(Key(seconds->GetComponentName(i)), Json(seconds->GetComponent(0, i)));
   }
-  json.End();
+  return Json(members);
 }
 
-void WriteSetting(JsonText& json, const Job& job, vtkFieldData* run)
+/// Device, arrays and parameters of a run.
+Members ListSetting(const Job& job, vtkFieldData* run)
 {
-  json.Value("device", Text(run, "Device"));
-  json.Value("platform", Text(run, "Platform"));
-  WriteGroup(json, run, "arrays", ArrayNames);
-  WriteGroup(json, run, "parameters", ParameterNames);
+  Members setting = { { "device", Json(run, "Device") }, { "platform", Json(run, "Platform") },
+    { "arrays", JsonGroup(run, ArrayNames) }, { "parameters", JsonGroup(run, ParameterNames) } };
   vtkMarchingCorrectors* filter = job.Surface;
-  const std::string fluid = filter->GetFluidArrayName();
-  if (!fluid.empty())
+  if (*filter->GetFluidArrayName())
   {
-    static const char* const names[] = { "weight", "ignore", "wall",
+    static const char* const solids[] = { "weight", "ignore", "wall",
       "auto" }; // by the filter's numbers
-    json.Begin("fluid");
-    json.Value("array", fluid);
-    json.Value("value", filter->GetFluidValue());
-    json.Value("solids", std::string(names[filter->GetSolids()]));
+    Members fluid = { { "array", QuotedForJson(filter->GetFluidArrayName()) },
+      { "value", Json(filter->GetFluidValue()) },
+      { "solids", QuotedForJson(solids[filter->GetSolids()]) } };
     if (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL ||
       (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_AUTO && !filter->GetFreeSurface()))
     {
       vtkDataArray* used = run->GetArray("WallShare");
-      json.Value("wall_share", used ? used->GetComponent(0, 0) : filter->GetWallShare());
+      fluid.emplace_back(
+        "wall_share", Json(used ? used->GetComponent(0, 0) : filter->GetWallShare()));
     }
-    json.End();
+    setting.emplace_back("fluid", Json(fluid));
   }
+  return setting;
 }
 
-void WriteList(JsonText& json, const char* key, const std::vector<std::string>& texts)
+/// The program and its files.
+Members ListFiles(const Job& job)
 {
-  json.BeginList(key);
-  for (const std::string& text : texts)
-  {
-    json.Value("", text);
-  }
-  json.EndList();
-}
-
-/// Writes the program and its input files. Opens the outermost braces.
-void WriteBeginning(JsonText& json, const Job& job)
-{
-  json.Begin("");
-  json.Value("program", std::string("marching-correctors " MCOR_PROGRAM_VERSION));
-  json.Value("vtk", std::string(vtkVersion::GetVTKVersion()));
-  if (job.IsFilm())
-  {
-    WriteList(json, "inputs", job.Inputs);
-  }
-  else
-  {
-    json.Value("input", job.Inputs.front());
-  }
+  Members files = { { "program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION) },
+    { "vtk", QuotedForJson(vtkVersion::GetVTKVersion()) },
+    job.IsFilm() ? std::make_pair("inputs", JsonList(job.Inputs))
+                 : std::make_pair("input", QuotedForJson(job.Inputs.front())) };
   if (!job.Walls.empty())
   {
-    WriteList(json, "walls", job.Walls);
+    files.emplace_back("walls", JsonList(job.Walls));
   }
-  json.Value("output", job.Output);
+  files.emplace_back("output", QuotedForJson(job.Output));
+  return files;
 }
 }
 
@@ -421,75 +346,54 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   double peakResidentBytes)
 {
   vtkFieldData* last = runs.back();
-  JsonText json;
-  WriteBeginning(json, job);
-  WriteSetting(json, job, last);
-  WriteGroup(json, last, "statistics", StatisticNames);
-  WriteSeconds(json, last);
-  json.Value("wall_seconds", wallSeconds.back());
-  json.BeginList("runs");
+  Members members = ListFiles(job), each;
+  const Members setting = ListSetting(job, last);
+  members.insert(members.end(), setting.begin(), setting.end());
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
-    json.Begin("");
-    WriteSeconds(json, runs[i]);
-    WriteGroup(json, runs[i], "statistics", StatisticNames);
-    json.Value("wall_seconds", wallSeconds[i]);
-    json.End();
+    each.emplace_back("",
+      Json(Members{ { "seconds", JsonSeconds(runs[i]) },
+        { "statistics", JsonGroup(runs[i], StatisticNames) },
+        { "wall_seconds", Json(wallSeconds[i]) } }));
   }
-  json.EndList();
-  WriteList(json, "warnings", warnings);
-  json.Value("peak_resident_bytes", peakResidentBytes);
-  json.End();
-  return json.Get() + "\n";
+  for (const auto& [key, value] :
+    Members{ { "statistics", JsonGroup(last, StatisticNames) }, { "seconds", JsonSeconds(last) },
+      { "wall_seconds", Json(wallSeconds.back()) }, { "runs", Json(each, "[]") },
+      { "warnings", JsonList(warnings) }, { "peak_resident_bytes", Json(peakResidentBytes) } })
+  {
+    members.emplace_back(key, value);
+  }
+  return Json(members) + "\n";
 }
 
 std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds)
 {
-  JsonText json(2);
-  json.Begin("");
-  json.Value("time", step.Time);
-  WriteList(json, "inputs", step.Inputs);
-  if (run)
+  Members members = { { "time", Json(step.Time) }, { "inputs", JsonList(step.Inputs) } };
+  if (!run)
   {
-    json.Value("output", step.Output);
-    WriteSeconds(json, run);
-    WriteGroup(json, run, "statistics", StatisticNames);
-    json.Value("wall_seconds", wallSeconds);
-    json.Value("peak_resident_bytes", PeakResidentBytes());
+    members.emplace_back("error", QuotedForJson(step.Error));
+    return Json(members);
   }
-  else
-  {
-    json.Value("error", step.Error);
-  }
-  json.End();
-  return json.Get();
+  members.emplace_back("output", QuotedForJson(step.Output));
+  members.emplace_back("seconds", JsonSeconds(run));
+  members.emplace_back("statistics", JsonGroup(run, StatisticNames));
+  members.emplace_back("wall_seconds", Json(wallSeconds));
+  members.emplace_back("peak_resident_bytes", Json(PeakResidentBytes()));
+  return Json(members);
 }
 
-std::string SettingAsJson(const Job& job, vtkFieldData* run)
+std::string FilmAsJson(const Job& job, const std::vector<FilmStep>& steps, vtkFieldData* run)
 {
-  JsonText json(1);
-  WriteSetting(json, job, run);
-  return json.Get();
-}
-
-std::string FilmAsJson(
-  const Job& job, const std::vector<FilmStep>& steps, const std::string& setting)
-{
-  JsonText json;
-  WriteBeginning(json, job);
-  if (!setting.empty())
-  {
-    json.Raw(setting);
-  }
-  json.BeginList("steps");
+  Members members = ListFiles(job), each;
+  const Members setting = run ? ListSetting(job, run) : Members();
+  members.insert(members.end(), setting.begin(), setting.end());
   for (const FilmStep& step : steps)
   {
-    json.Raw(step.Statistics);
+    each.emplace_back("", step.Statistics);
   }
-  json.EndList();
-  json.Value("peak_resident_bytes", PeakResidentBytes());
-  json.End();
-  return json.Get() + "\n";
+  members.emplace_back("steps", Json(each, "[]"));
+  members.emplace_back("peak_resident_bytes", Json(PeakResidentBytes()));
+  return Json(members) + "\n";
 }
 
 double PeakResidentBytes()

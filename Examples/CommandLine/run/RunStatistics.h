@@ -36,12 +36,8 @@ struct FilmStep
 /// Reports a step whose surface was written (run is not null), or that failed.
 std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds);
 
-/// Device, arrays and parameters of a run.
-std::string SettingAsJson(const Job& job, vtkFieldData* run);
-
-/// `setting` is as SettingAsJson() gives it, or empty.
-std::string FilmAsJson(
-  const Job& job, const std::vector<FilmStep>& steps, const std::string& setting);
+/// `run` is the last one that went well, or null.
+std::string FilmAsJson(const Job& job, const std::vector<FilmStep>& steps, vtkFieldData* run);
 
 /// The most memory that this process has had so far; 0 where the system does not tell.
 double PeakResidentBytes();

@@ -13,6 +13,7 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
@@ -262,6 +263,54 @@ bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   return true;
 }
 
+/// VTK's XML names of types, which tell their size.
+std::string TypeOf(vtkAbstractArray* array)
+{
+  switch (array->GetDataType())
+  {
+    case VTK_FLOAT:
+      return "Float32";
+    case VTK_DOUBLE:
+      return "Float64";
+    case VTK_STRING:
+      return "String";
+    default:
+      break;
+  }
+  const auto* numbers = vtkArrayDownCast<vtkDataArray>(array);
+  const bool isSigned = numbers && array->GetDataType() != VTK_UNSIGNED_CHAR &&
+    array->GetDataType() != VTK_UNSIGNED_SHORT && array->GetDataType() != VTK_UNSIGNED_INT &&
+    array->GetDataType() != VTK_UNSIGNED_LONG && array->GetDataType() != VTK_UNSIGNED_LONG_LONG;
+  return std::string(isSigned ? "Int" : "UInt") + std::to_string(8 * array->GetDataTypeSize());
+}
+
+void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& name)
+{
+  text << "      <PDataArray type=\"" << TypeOf(array) << "\" Name=\"" << EscapedForXml(name)
+       << "\" NumberOfComponents=\"" << array->GetNumberOfComponents() << "\"/>\n";
+}
+
+/// The arrays and which are the normals, and so on, as VTK's writers say it of a single file.
+void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* arrays)
+{
+  text << "    <" << element;
+  for (int role = 0; role < vtkDataSetAttributes::NUM_ATTRIBUTES; ++role)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractAttribute(role);
+    if (array && array->GetName())
+    {
+      text << ' ' << vtkDataSetAttributes::GetAttributeTypeAsString(role) << "=\""
+           << EscapedForXml(array->GetName()) << '"';
+    }
+  }
+  text << ">\n";
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    Describe(text, arrays->GetAbstractArray(i), arrays->GetArrayName(i));
+  }
+  text << "    </" << element << ">\n";
+}
+
 /// Every format that is written, with all that is known of it.
 using Writer = std::function<bool(vtkPolyData*, const ColorScale&, std::string& bytes)>;
 const std::vector<FileFormat<Writer>> Formats = { { ".vtp", WriteXml }, { ".stl", WriteStl },
@@ -342,8 +391,8 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
     const std::string name = array->GetName();
-    const bool isHeld =
-      name == "Normals" || name == "IsoValue" || name == "Widening" || (isPly && array == colors.ArrayOf(surface));
+    const bool isHeld = name == "Normals" || name == "IsoValue" || name == "Widening" ||
+      (isPly && array == colors.ArrayOf(surface));
     names += isHeld ? "" : (names.empty() ? "" : ", ") + name;
   }
   if (HoldsArrays(file) || names.empty() || (isPly && !colors.GetName().empty()))
@@ -355,4 +404,38 @@ std::string LostArrays(const std::string& file, vtkPolyData* surface, const Colo
     (isPly ? "; --color-by NAME makes colours of one"
            : "; .vtp keeps all, .ply has colours by --color-by") +
     ", --no-attributes makes none";
+}
+
+bool IsInPieces(const std::string& file)
+{
+  return fs::path(file).extension() == ".pvtp";
+}
+
+std::string PieceName(const std::string& file, int rank)
+{
+  const fs::path path(file);
+  return (path.parent_path() / (path.stem().string() + "_" + std::to_string(rank) + ".vtp"))
+    .string();
+}
+
+std::string ListPieces(const std::string& file, int count, vtkPolyData* piece)
+{
+  std::ostringstream text;
+  text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\">\n"
+       << "  <PPolyData GhostLevel=\"0\">\n";
+  DescribeAll(text, "PPointData", piece->GetPointData());
+  DescribeAll(text, "PCellData", piece->GetCellData());
+  text << "    <PPoints>\n";
+  if (piece->GetPoints())
+  {
+    Describe(text, piece->GetPoints()->GetData(), "Points");
+  }
+  text << "    </PPoints>\n";
+  for (int rank = 0; rank < count; ++rank)
+  {
+    text << "    <Piece Source=\""
+         << EscapedForXml(fs::path(PieceName(file, rank)).filename().string()) << "\"/>\n";
+  }
+  text << "  </PPolyData>\n</VTKFile>\n";
+  return text.str();
 }

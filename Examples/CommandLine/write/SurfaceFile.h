@@ -36,4 +36,13 @@ bool HoldsArrays(const std::string& file);
 std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
   const std::vector<std::string>& more);
 
+/// Whether this is a .pvtp file, which lists one piece per process.
+bool IsInPieces(const std::string& file);
+
+/// OUT_3.vtp beside OUT.pvtp.
+std::string PieceName(const std::string& file, int rank);
+
+/// The text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
+std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
+
 #endif

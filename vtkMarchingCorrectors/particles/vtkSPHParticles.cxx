@@ -403,9 +403,8 @@ bool vtkSPHParticles::CollectArray(const vtkSPHRequest& request, const std::stri
       " is not a point array; SPH particles are points. " + vtkSPHListNames(this->Points);
     return false;
   }
-  const vtkSmartPointer<vtkDataArray> velocity =
-    request.Name == "Velocity" && !request.Array ? this->JoinVelocity() : nullptr;
-  vtkDataArray* array = velocity ? velocity.Get() : this->Check(role, request.Name, request.Array);
+  const vtkSmartPointer<vtkDataArray> array =
+    this->Take(role, request.Name, request.Array, role == "projection");
   if (array)
   {
     this->Interpolate(array);
@@ -427,10 +426,8 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
   }
   else
   {
-    vtkAbstractArray* named = this->Points->GetPointData()->GetAbstractArray(name.c_str());
-    const vtkSmartPointer<vtkDataArray> joined =
-      name == "Velocity" && !named ? this->JoinVelocity() : nullptr;
-    velocity = joined ? joined.Get() : this->Check("velocity", name, named);
+    velocity = this->Take(
+      "velocity", name, this->Points->GetPointData()->GetAbstractArray(name.c_str()), false);
   }
   if (!velocity)
   {
@@ -484,16 +481,7 @@ bool vtkSPHParticles::CollectProjection(
 {
   const vtkSPHParticlesChoice& f = this->Description;
   const bool hasScalar = !vtkSPHRealName(scalar.Name).empty() || scalar.Array;
-  vtkDataArray* summed = scalar.Name == "Density" && !scalar.Array ? this->SumDensities() : nullptr;
-  if (hasScalar && !summed && (!this->Error.empty() || !this->CollectArray(scalar, "projection")))
-  {
-    return false;
-  }
-  if (summed)
-  {
-    this->Interpolate(summed);
-  }
-  if (!this->CollectParticles() ||
+  if ((hasScalar && !this->CollectArray(scalar, "projection")) || !this->CollectParticles() ||
     (!mcor_is_given(&this->Core.mass) &&
       !this->CollectQuantity(
         "mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass, this->Core.mass)) ||
@@ -590,6 +578,18 @@ vtkDataArray* vtkSPHParticles::Find(const std::string& role, const std::string& 
     return nullptr;
   }
   return array;
+}
+
+vtkSmartPointer<vtkDataArray> vtkSPHParticles::Take(
+  const std::string& role, const std::string& name, vtkAbstractArray* array, bool sums)
+{
+  if (sums && name == "Density" && !array)
+  {
+    return this->SumDensities();
+  }
+  const vtkSmartPointer<vtkDataArray> velocity =
+    name == "Velocity" && !array ? this->JoinVelocity() : nullptr;
+  return velocity ? velocity : vtkSmartPointer<vtkDataArray>(this->Check(role, name, array));
 }
 
 vtkDataArray* vtkSPHParticles::Check(

@@ -162,6 +162,12 @@ protected:
   static bool Contains(const std::vector<std::string>& names, const std::string& name);
 
   mcor_array View(vtkDataArray* array);
+  /**
+   * The array asked for, or one that is made of others in its place: "Velocity" of vx, vy and vz,
+   * and, if sums are wanted, "Density". Null, and Error, if there is none.
+   */
+  vtkSmartPointer<vtkDataArray> Take(
+    const std::string& role, const std::string& name, vtkAbstractArray* array, bool sums);
   vtkDataArray* Check(const std::string& role, const std::string& name, vtkAbstractArray* array);
 
   bool CollectSolids();

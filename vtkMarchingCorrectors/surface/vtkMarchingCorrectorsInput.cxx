@@ -62,15 +62,7 @@ bool vtkMarchingCorrectorsInput::CollectScalar()
       " is not a point array; SPH particles are points. " + vtkSPHListNames(this->Points);
     return false;
   }
-  this->Scalar = scalar.Name == "Velocity" && !scalar.Array ? this->JoinVelocity() : nullptr;
-  if (scalar.Name == "Density" && !scalar.Array)
-  {
-    this->Scalar = this->SumDensities();
-  }
-  else if (!this->Scalar)
-  {
-    this->Scalar = this->Check("scalar", scalar.Name, scalar.Array);
-  }
+  this->Scalar = this->Take("scalar", scalar.Name, scalar.Array, true);
   if (!this->Scalar)
   {
     return false;

@@ -217,7 +217,6 @@ private:
             return DrawProjection(
               this->Options, frame, *this->Drawn, this->FrameColors, this->Messages);
           });
-        this->Last = vtkSmartPointer<vtkFieldData>::New(); // there is a step
         this->Add(this->Describe(i), "");
         this->List(false);
         std::ostringstream what;
@@ -323,7 +322,8 @@ private:
   /// The lists and tables of all surfaces so far.
   void List(bool isLast)
   {
-    if (!this->Last) // no step went well
+    if (std::all_of(this->Made.begin(), this->Made.end(),
+          [](const FilmStep& step) { return !step.Error.empty(); }))
     {
       return;
     }

@@ -35,13 +35,6 @@ typedef struct mcor_bin_job
   double minus[MCOR_SLICES][MCOR_BINS];
 } mcor_bin_job;
 
-/* Halved, because the difference may be too large for a number. */
-static int mcor_bin_of(const mcor_bin_job* job, double width, double value)
-{
-  const double part = (0.5 * value - 0.5 * job->low) / width * 2;
-  return part < MCOR_BINS - 1 ? (int)part : MCOR_BINS - 1;
-}
-
 static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_bin_job* job = data;
@@ -55,15 +48,17 @@ static void mcor_fill_bins(void* data, int slice, int64_t first, int64_t last)
   }
   for (int64_t i = first; i < last; ++i)
   {
-    const int64_t at = (i - first) % MCOR_CHUNK, rest = last - i;
+    const int64_t at = (i - first) % MCOR_CHUNK;
     if (at == 0)
     {
-      mcor_read_scalar(job->input, i, rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK, chunk);
+      mcor_read_scalar(job->input, i, mcor_chunk_of(last - i), chunk);
     }
     const double v = chunk[at];
     if (isfinite(v) && v >= job->low && v <= job->high && !(solid && solid[i]))
     {
-      const int b = mcor_bin_of(job, width, v);
+      /* Halved, because the difference may be too large for a number. */
+      const double part = (0.5 * v - 0.5 * job->low) / width * 2;
+      const int b = part < MCOR_BINS - 1 ? (int)part : MCOR_BINS - 1;
       double *least = &job->least[slice][b], *minus = &job->minus[slice][b];
       ++job->count[slice][b];
       *least = v < *least ? v : *least;
@@ -141,22 +136,10 @@ mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, dou
 
 /* ---- An iso value ---- */
 
-/* Finds the value of this number in ascending order: narrows bins until one holds a single
- * value. */
-static bool mcor_select_iso(
-  mcor_bin_job* job, const mcor_ranks* ranks, const double range[2], int64_t number, double* value)
-{
-  job->low = range[0];
-  job->high = range[1];
-  const mcor_status status = mcor_narrow_bins(NULL, ranks, job, MCOR_ISO_PASSES, number, 1);
-  *value = job->low;
-  return status == MCOR_OK;
-}
-
 static bool mcor_choose_iso(
   mcor_bin_job* job, const mcor_ranks* ranks, double range[2], double* iso_value)
 {
-  double found[2] = { INFINITY, -INFINITY }, ends[2], most[2], median;
+  double found[2] = { INFINITY, -INFINITY }, value[5];
   int64_t count = 0;
   job->low = -INFINITY; /* the last bin holds all */
   job->high = INFINITY;
@@ -170,14 +153,20 @@ static bool mcor_choose_iso(
     found[0] = fmin(found[0], job->least[0][b]);
     found[1] = fmax(found[1], -job->minus[0][b]);
   }
-  if (count == 0 || !mcor_select_iso(job, ranks, found, count / 50, &ends[0]) ||
-    !mcor_select_iso(job, ranks, found, count - 1 - count / 50, &ends[1]) ||
-    !mcor_select_iso(job, ranks, found, count / 20, &most[0]) ||
-    !mcor_select_iso(job, ranks, found, count - 1 - count / 20, &most[1]) ||
-    !mcor_select_iso(job, ranks, found, (count - 1) / 2, &median))
+  /* Narrows bins until one holds a single value: of all but 2 % at each end, 5 %, and the median. */
+  const int64_t numbers[5] = { count / 50, count - 1 - count / 50, count / 20,
+    count - 1 - count / 20, (count - 1) / 2 };
+  for (int i = 0; i < 5; ++i)
   {
-    return false;
+    job->low = found[0];
+    job->high = found[1];
+    if (count == 0 || mcor_narrow_bins(NULL, ranks, job, MCOR_ISO_PASSES, numbers[i], 1) != MCOR_OK)
+    {
+      return false;
+    }
+    value[i] = job->low;
   }
+  const double *ends = value, *most = value + 2, median = value[4];
   /* Avoids a median that shows nothing: where most values are alike (walls at rest, gas before a
    * shock) its surface is noise or empty, and where values span decades it is far below the
    * greatest ones. */

@@ -350,9 +350,6 @@ static mcor_status mcor_make_fill_points(
   MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The filled region would have %lld points; the limit is %d. Use a larger cube size.",
     (long long)count, MCOR_COUNT_LIMIT);
-  MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
-    "The surface would have %lld points; the limit is %d. Use a larger cube size.",
-    (long long)(base + count), INT32_MAX);
   if (count == 0)
   {
     return MCOR_OK;

@@ -12,26 +12,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Merges ranks: a component varies if it does on any rank, or if ranks have different values. */
-static mcor_status mcor_merge_component(mcor_context* context, const mcor_input* input,
-  const mcor_array* array, int component, mcor_global_component* found)
-{
-  const bool some = input->count > 0;
-  const double first = some ? mcor_array_at(array, 0, component) : 0;
-  double least[2] = { some ? first : DBL_MAX, found->low };
-  double most[3] = { some ? first : -DBL_MAX, mcor_largest_of(found->low, found->high),
-    found->high };
-  int64_t varies = found->varies;
-  MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, least, 2));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, 3));
-  found->varies = varies || least[0] != most[0];
-  found->largest = found->varies ? most[1] : 0;
-  found->low = least[1];
-  found->high = most[2];
-  return MCOR_OK;
-}
-
+/* A component varies if it does on any rank, or if ranks have different values. */
 static mcor_status mcor_measure_components(
   mcor_context* context, const mcor_input* input, mcor_globals* globals)
 {
@@ -50,12 +31,23 @@ static mcor_status mcor_measure_components(
     {
       mcor_global_component* found = &globals->components[globals->component_count++];
       found->not_finite = not_finite;
-      if (not_finite < 0)
+      if (not_finite >= 0)
       {
-        mcor_measure_component(context, input, a, c, found);
-        MCOR_TRY(context->run.options->ranks ? mcor_merge_component(context, input, array, c, found)
-                                             : MCOR_OK);
+        continue;
       }
+      mcor_measure_component(context, input, a, c, found);
+      const double first = input->count > 0 ? mcor_array_at(array, 0, c) : DBL_MAX;
+      double least[2] = { first, found->low };
+      double most[3] = { input->count > 0 ? first : -DBL_MAX,
+        mcor_largest_of(found->low, found->high), found->high };
+      int64_t varies = found->varies;
+      MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
+      MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, least, 2));
+      MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, 3));
+      found->varies = varies || least[0] != most[0];
+      found->largest = found->varies ? most[1] : 0;
+      found->low = least[1];
+      found->high = most[2];
     }
   }
   return MCOR_OK;

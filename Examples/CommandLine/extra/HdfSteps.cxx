@@ -59,23 +59,20 @@ Kind KindOf(hid_t data)
   {
     return size <= 4 ? Kind{ VTK_FLOAT, H5T_NATIVE_FLOAT } : Kind{ VTK_DOUBLE, H5T_NATIVE_DOUBLE };
   }
-  const bool isSigned = group == H5T_INTEGER && H5Tget_sign(type) != H5T_SGN_NONE;
-  switch (group == H5T_INTEGER ? size : 0)
+  const Kind whole[2][4] = {
+    { { VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR }, { VTK_UNSIGNED_SHORT, H5T_NATIVE_USHORT },
+      { VTK_UNSIGNED_INT, H5T_NATIVE_UINT }, { VTK_UNSIGNED_LONG_LONG, H5T_NATIVE_ULLONG } },
+    { { VTK_SIGNED_CHAR, H5T_NATIVE_SCHAR }, { VTK_SHORT, H5T_NATIVE_SHORT },
+      { VTK_INT, H5T_NATIVE_INT }, { VTK_LONG_LONG, H5T_NATIVE_LLONG } }
+  };
+  for (std::size_t i = 0; i < 4 && group == H5T_INTEGER; ++i)
   {
-    case 1:
-      return isSigned ? Kind{ VTK_SIGNED_CHAR, H5T_NATIVE_SCHAR }
-                      : Kind{ VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR };
-    case 2:
-      return isSigned ? Kind{ VTK_SHORT, H5T_NATIVE_SHORT }
-                      : Kind{ VTK_UNSIGNED_SHORT, H5T_NATIVE_USHORT };
-    case 4:
-      return isSigned ? Kind{ VTK_INT, H5T_NATIVE_INT } : Kind{ VTK_UNSIGNED_INT, H5T_NATIVE_UINT };
-    case 8:
-      return isSigned ? Kind{ VTK_LONG_LONG, H5T_NATIVE_LLONG }
-                      : Kind{ VTK_UNSIGNED_LONG_LONG, H5T_NATIVE_ULLONG };
-    default:
-      return { VTK_VOID, -1 };
+    if (size == std::size_t{ 1 } << i)
+    {
+      return whole[H5Tget_sign(type) != H5T_SGN_NONE][i];
+    }
   }
+  return { VTK_VOID, -1 };
 }
 
 /// The group VTKHDF of a file.

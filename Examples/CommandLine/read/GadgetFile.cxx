@@ -4,13 +4,10 @@
 
 #include "vtkByteSwap.h"
 #include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkTypeInt64Array.h"
-#include "vtkTypeUInt32Array.h"
 
 #include <algorithm>
 #include <array>
@@ -78,19 +75,19 @@ public:
       this->Fail("its header is damaged");
     }
     this->End(size);
-    std::memcpy(this->Counts, data.data(), 24);
-    std::memcpy(this->Masses, data.data() + 24, 48);
-    std::memcpy(&this->Time, data.data() + 72, 8);
-    std::memcpy(&this->HasCooling, data.data() + 120, 4);
-    std::memcpy(&this->Files, data.data() + 124, 4);
-    if (this->IsSwapped)
+    const auto get = [this, &data](std::size_t at, void* to, std::size_t count, std::size_t width)
     {
-      vtkByteSwap::SwapVoidRange(this->Counts, 6, 4);
-      vtkByteSwap::SwapVoidRange(this->Masses, 6, 8);
-      vtkByteSwap::SwapVoidRange(&this->Time, 1, 8);
-      vtkByteSwap::SwapVoidRange(&this->HasCooling, 1, 4);
-      vtkByteSwap::SwapVoidRange(&this->Files, 1, 4);
-    }
+      std::memcpy(to, data.data() + at, count * width);
+      if (this->IsSwapped)
+      {
+        vtkByteSwap::SwapVoidRange(to, count, width);
+      }
+    };
+    get(0, this->Counts, 6, 4);
+    get(24, this->Masses, 6, 8);
+    get(72, &this->Time, 1, 8);
+    get(120, &this->HasCooling, 1, 4);
+    get(124, &this->Files, 1, 4);
     for (int type = 0; type < 6; ++type)
     {
       if (this->Counts[type] < 0)
@@ -223,17 +220,10 @@ private:
     {
       return;
     }
-    vtkSmartPointer<vtkDataArray> array;
-    if (isId)
-    {
-      array = width == 4 ? vtkSmartPointer<vtkDataArray>(vtkSmartPointer<vtkTypeUInt32Array>::New())
-                         : vtkSmartPointer<vtkDataArray>(vtkSmartPointer<vtkTypeInt64Array>::New());
-    }
-    else
-    {
-      array = width == 4 ? vtkSmartPointer<vtkDataArray>(vtkSmartPointer<vtkFloatArray>::New())
-                         : vtkSmartPointer<vtkDataArray>(vtkSmartPointer<vtkDoubleArray>::New());
-    }
+    const int type = isId ? (width == 4 ? VTK_TYPE_UINT32 : VTK_TYPE_INT64)
+      : width == 4        ? VTK_FLOAT
+                          : VTK_DOUBLE;
+    const auto array = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
     array->SetNumberOfComponents(known.Columns);
     array->SetNumberOfTuples(this->Counts[0]);
     const auto count = static_cast<std::size_t>(array->GetNumberOfValues());

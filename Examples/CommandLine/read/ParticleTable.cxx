@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <set>
@@ -216,18 +217,15 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
 /// Whether a column of whole numbers tells particles, or kinds of them, apart.
 bool IsIdentifier(const std::string& name)
 {
-  std::string letters;
-  for (const char c : Small(name))
-  {
-    letters += std::isalpha(static_cast<unsigned char>(c)) ? std::string(1, c) : "";
-  }
-  const auto ends = [&letters](const std::string& end)
-  {
-    return letters.size() >= end.size() &&
-      letters.compare(letters.size() - end.size(), end.size(), end) == 0;
-  };
-  return ends("id") || ends("ids") || ends("idp") || ends("type") || ends("types") ||
-    ends("index") || ends("mk") || ends("tag") || ends("mol") || ends("iorig");
+  std::string letters = Small(name);
+  letters.erase(std::remove_if(
+                  letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
+    letters.end());
+  const std::initializer_list<View> ends = { "id", "ids", "idp", "type", "types", "index", "mk",
+    "tag", "mol", "iorig" };
+  return std::any_of(ends.begin(), ends.end(),
+    [&letters](View end)
+    { return letters.size() >= end.size() && letters.substr(letters.size() - end.size()) == end; });
 }
 
 /// A name without what makes it a component, and which one it is; below 0: it is none.
@@ -595,24 +593,20 @@ std::vector<double> NumbersOf(View text)
 std::vector<std::string> PropertiesOf(const std::string& file, const std::string& text)
 {
   std::vector<std::string> names;
-  std::size_t begin = 0;
-  std::vector<std::string> parts;
-  while (begin < text.size())
-  {
-    const std::size_t end = std::min(text.find(':', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  std::vector<View> parts;
+  Split(text, ':', parts);
   for (std::size_t p = 0; p + 2 < parts.size(); p += 3)
   {
     const vtkTypeInt64 width = CountOf(parts[p + 2]);
     if (width < 1 || width > 100)
     {
-      Fail(file, "its Properties give " + parts[p] + " " + parts[p + 2] + " columns");
+      Fail(file,
+        "its Properties give " + std::string(parts[p]) + " " + std::string(parts[p + 2]) +
+          " columns");
     }
     for (vtkTypeInt64 c = 0; c < width; ++c)
     {
-      names.push_back(width == 1 ? parts[p] : parts[p] + ":" + std::to_string(c));
+      names.push_back(std::string(parts[p]) + (width == 1 ? "" : ":" + std::to_string(c)));
     }
   }
   return names;

@@ -13,6 +13,7 @@
 #include "mcor_sph_kernel.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,8 +63,8 @@ double mcor_w_of(mcor_sph_kernel kernel, double q)
 
 /* ---- The tree ---- */
 
-/* Compares along the curve: by the axis with the highest bit in which places differ. Particles at one place are
- * interchangeable but for their masses. */
+/* Compares along the curve: by the axis with the highest bit in which places differ. Particles at one place have any
+ * order that does not depend on that of the input. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -82,14 +83,7 @@ static int mcor_compare_neighbours(const void* a, const void* b)
   {
     return p->place[axis] < q->place[axis] ? -1 : 1;
   }
-  for (int i = 0; i < 3; ++i)
-  {
-    if (p->x[i] != q->x[i])
-    {
-      return p->x[i] < q->x[i] ? -1 : 1;
-    }
-  }
-  return (p->mass > q->mass) - (p->mass < q->mass);
+  return memcmp(p, q, offsetof(mcor_neighbour, place));
 }
 
 static void mcor_sort_neighbours(mcor_neighbour_job* job)

@@ -70,8 +70,5 @@ double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* ch
 
 /* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
 void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk* chunk, int64_t to);
-/* Writes numbers to `array` from element `first` on, in the device's precision. */
-void mcor_store_reals(
-  const mcor_context* context, void* array, int64_t first, const double* values, int count);
 
 #endif

@@ -64,6 +64,11 @@ def plane(text):
     return "xyz".index(axis), float(place)
 
 
+def same_words(name):
+    """{word: word} of an option."""
+    return {word: word for word in words_of(name)}
+
+
 for function in (named_line, named_value, named_range, plane):
     function.__name__ = function.__doc__  # which argparse names where a value is wrong
 
@@ -71,17 +76,17 @@ for function in (named_line, named_value, named_range, plane):
 OPTIONS = {
     "--component": ("scalar_component", quantity), "--field": ("field", {"shepard": "shepard", "sum": "sum"}),
     "--support-radius": ("smoothing_length_is_support_radius", None),
-    "--wall-share": ("wall_share", quantity), "--kernel": ("sph_kernel", {word: word for word in words_of("sph_kernel")}),
+    "--wall-share": ("wall_share", quantity), "--kernel": ("sph_kernel", same_words("sph_kernel")),
     "--dimension": ("dimension", {"auto": 0, "2": 2, "3": 3}), "--h-scale": ("h_scale", float),
     "--cube-factor": ("cube_size_factor", float), "--cube-size": ("cube_size", float), "--max-level": ("level_limit", int),
     "--box": ("box", numbers), "--periodic": ("periodic", numbers), "--capping": ("capping", None),
-    "--filled": ("filled", None), "--seeds": ("seeds", {"complete": "complete", "pairs": "pairs"}),
-    "--topology": ("topology", {"table": "table", "field": "field"}), "--preview": ("preview", None),
+    "--filled": ("filled", None), "--seeds": ("seeds", same_words("seeds")),
+    "--topology": ("topology", same_words("topology")), "--preview": ("preview", None),
     "--widen": ("widen", float), "--compact": ("compact", None), "--smooth": ("smooth", None),
     "--node-threshold": ("node_threshold", float),
-    "--boundary": ("boundary_detection", {"weight_sum": "weight_sum", "eigenvalue": "eigenvalue", "weight": "weight_sum"}),
+    "--boundary": ("boundary_detection", {**same_words("boundary_detection"), "weight": "weight_sum"}),
     "--vertex-threshold": ("vertex_threshold", float),
-    "--precision": ("precision", {"single": "single", "double": "double"}),
+    "--precision": ("precision", same_words("precision")),
     "--weight-sum": ("weight_sum", None), "--boundary-eigenvalue": ("boundary_eigenvalue", None),
     "--gradients": ("gradients", None), "--tolerance": ("tolerance", float), "--iteration-limit": ("iteration_limit", int)}
 COMMANDS = {
@@ -166,8 +171,8 @@ def find_words(given, names, particles):
             raise InvalidArgument("--dp and --smoothing-length both give the smoothing length; leave one of them out.")
         dimension = 2 if (np.ptp(particles.positions, axis=0) == 0).sum() == 1 else 3
         words["smoothing_length"] = given.coefh * dimension ** 0.5 * given.dp
-        if "volume" not in words and particles.volume is None and any(name not in words and getattr(particles, name) is None
-                                         for name in ("mass", "density")):
+        mass_and_density = [words.get(name, getattr(particles, name)) for name in ("mass", "density")]
+        if "volume" not in words and particles.volume is None and any(each is None for each in mass_and_density):
             words = {name: value for name, value in words.items() if name not in ("mass", "density")}
             words["volume"] = given.dp ** dimension
     if given.within is not None:

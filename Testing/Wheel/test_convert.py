@@ -40,8 +40,8 @@ class Convert(unittest.TestCase):
     def at(self, name):
         return self.folder / name
 
-    def run_program(self, *names, **more):
-        return subprocess.run([sys.executable, "-m", "marchingcorrectors", "convert", *names], cwd=self.folder,
+    def run_program(self, *names, command="convert", **more):
+        return subprocess.run([sys.executable, "-m", "marchingcorrectors", command, *names], cwd=self.folder,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=300,
                               **more)
 
@@ -144,12 +144,10 @@ class Convert(unittest.TestCase):
         self.at("old.csv").write_text("old")
         self.before = {path.name: path.read_bytes() for path in self.folder.iterdir()}
         words = ["--smoothing-length", "300", "--gauge", "up=0,0,0:0,0,900"]
-        done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "surface", "in.vtp", "link.npz", *words[:2]],
-                              cwd=self.folder, stderr=subprocess.PIPE, universal_newlines=True)
+        done = self.run_program("in.vtp", "link.npz", *words[:2], command="surface")
         self.refuse(done, "link.npz would overwrite the input")
         for name, status in (("nowhere/a.csv", 1), ("old.txt", 1), ("old.csv", 0)):
-            done = subprocess.run([sys.executable, "-m", "marchingcorrectors", "gauge", "in.vtp", name, *words],
-                                  cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+            done = self.run_program("in.vtp", name, *words, command="gauge")
             self.assertEqual(done.returncode, status, done.stderr)
             if status:
                 self.refuse(done, "could not be written" if "nowhere" in name else "is a .csv file, not")

@@ -190,7 +190,6 @@ class Case(unittest.TestCase):
         self.assertIn(words, str(caught.exception))
         self.assertNotIn("\n", str(caught.exception))
 
-
     def fuzz(self, makers, random, tries, damage, least, readings=({},)):
         """Each file cut off, or as `damage` makes it: a FileError of one line, at least so often, or particles."""
         refused = 0

@@ -8,7 +8,6 @@
 
 const Extra& LoadExtra()
 {
-#ifdef MCOR_EXTRA_LIBRARY
   // By its name alone it is looked for where this program's other libraries are.
   static void* const library = dlopen(MCOR_EXTRA_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
   static const void* const extra = library ? dlsym(library, "MarchingCorrectorsExtra") : nullptr;
@@ -20,7 +19,4 @@ const Extra& LoadExtra()
       std::string(why ? why : MCOR_EXTRA_LIBRARY) + "); install it again");
   }
   return *static_cast<const Extra*>(extra);
-#else
-  return MarchingCorrectorsExtra;
-#endif
 }

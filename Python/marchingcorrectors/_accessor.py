@@ -103,10 +103,9 @@ class PointData(FileParticles):
 
     def check_smoothing_length(self, words):
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None and not self.smoothing_length:
-            raise InvalidArgument(
-                "The particles have no smoothing length: no point array has one of its usual names (SmoothingLength, hsml, h, "
-                "...). Give smoothing_length=, a name or a value, or estimate_smoothing_length=True. "
-                f"{describe_missing_length(self.data.GetPointData())}Point arrays: {', '.join(self.arrays) or 'none'}.")
+            remedy = "Give smoothing_length=, a name or a value, or estimate_smoothing_length=True."
+            raise InvalidArgument(describe_missing_length(self.data.GetPointData(), remedy)
+                                  + f"Point arrays: {', '.join(self.arrays) or 'none'}.")
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)

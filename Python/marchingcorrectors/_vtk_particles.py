@@ -88,10 +88,10 @@ def join_velocity(data, count):
     return joined
 
 
-def describe_missing_length(data):
-    """A remedy where no smoothing length is found."""
+def describe_missing_length(data, remedy):
     dual = lib.mcor_find_layout("\n".join(names_of(data)).encode(errors="replace")) == b"DualSPHysics"
-    return "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual
+    return ("The particles have no smoothing length: no point array has one of its usual names (SmoothingLength, hsml, h, "
+            f"...). {remedy} " + "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual)
 
 
 def rank_of(array):
@@ -232,9 +232,8 @@ class Particles:
     def collect_quantities(self):
         choice = self.choice
         if not choice.EstimateSmoothingLength and not self.collect_quantity("smoothing_length"):
-            raise Unusable("The particles have no smoothing length: no point array has one of its usual names "
-                           "(SmoothingLength, hsml, h, ...). Name the array, give a constant, or ask for an "
-                           f"estimate. {describe_missing_length(self.data)}{self.list_point_arrays()}")
+            raise Unusable(describe_missing_length(self.data, "Name the array, give a constant, or ask for an estimate.")
+                           + self.list_point_arrays())
         is_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName) or choice.Mass or choice.Density)
         # A density alone says nothing of volumes.
         if not self.collect_quantity("volume", may_detect=not is_set) and self.collect_quantity("mass"):

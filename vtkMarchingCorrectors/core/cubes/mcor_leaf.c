@@ -103,6 +103,7 @@ mcor_status mcor_complete_leaves(mcor_context* context)
     MCOR_INT(now->count), MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&bricks->leaves),
     MCOR_BUFFER(&bricks->states), MCOR_BUFFER(&now->known), MCOR_BUFFER(&adaptive->proofs),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid)));
+  MCOR_TRY(mcor_fill(context, &bricks->need, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_evaluate_slots(context));
   MCOR_TRY(
     mcor_reserve(context, &adaptive->tables, (size_t)count * MCOR_LEAF_SLOTS * sizeof(cl_int)));
@@ -113,7 +114,7 @@ mcor_status mcor_complete_leaves(mcor_context* context)
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_leaf_need", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_INT(context->space.flat), MCOR_BUFFER(&adaptive->finer), MCOR_BUFFER(&adaptive->tables),
     MCOR_BUFFER(&now->above), MCOR_BUFFER(&now->valid), MCOR_BUFFER(&adaptive->mixed),
-    MCOR_BUFFER(&adaptive->proofs)));
+    MCOR_BUFFER(&bricks->need)));
   MCOR_TRY(mcor_evaluate_slots(context));
   MCOR_TRY(mcor_fill(context, &bricks->cells, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &bricks->plain, 0, n * sizeof(cl_ulong)));

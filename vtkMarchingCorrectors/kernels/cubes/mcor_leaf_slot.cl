@@ -87,20 +87,10 @@ __kernel void mcor_leaf_take(MCOR_BLOCK_PARAMS, const int slot_count, __global c
   }
 }
 
-/* Asks for the node values of a slot that was certain. Values below the node threshold are never
- * needed. */
-void mcor_leaf_ask(__global uchar* proofs, int slot)
-{
-  if (slot >= 0 && (proofs[slot] == MCOR_ABOVE || proofs[slot] == MCOR_BELOW))
-  {
-    proofs[slot] = MCOR_EXAMINE;
-  }
-}
-
-/* Asks for the node values that crossed cells of a leaf need. The leaf has no finer ones around
- * it. Returns whether it has crossed cells. */
-bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
-  __global const ulong* valid, __global uchar* proofs)
+/* Marks the slots whose node values crossed cells of a leaf need. The leaf has no finer ones
+ * around it. Returns whether it has crossed cells. */
+bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above,
+  __global const ulong* valid, __global ulong* need)
 {
   ulong a[8], v[8];
   for (int d = 0; d < 8; ++d)
@@ -115,24 +105,24 @@ bool mcor_leaf_ask_plain(__global const int* slots, __global const ulong* above,
   {
     if (mcor_cells_reach(crossed, d))
     {
-      mcor_leaf_ask(proofs, slots[d]);
+      need[slots[d]] = ~0UL;
     }
   }
   return crossed != 0;
 }
 
 /* One work-item = one leaf. Writes whether its cells have nodes on both sides; if not, there is
- * no surface in it. If so, asks for the values that its cells need, also in slots that were
- * certain. */
+ * no surface in it. If so, marks the slots whose values its cells need, also certain ones. Several
+ * leaves may mark a slot. */
 __kernel void mcor_leaf_need(const int count, const int plane, __global const uint* finer,
   __global const int* tables, __global const ulong* above, __global const ulong* valid,
-  __global uchar* mixed, __global uchar* proofs)
+  __global uchar* mixed, __global ulong* need)
 {
   MCOR_ITEM(i, i < count);
   __global const int* slots = tables + i * (long)MCOR_LEAF_SLOTS;
   if (finer[i] == 0 && !plane)
   {
-    mixed[i] = mcor_leaf_ask_plain(slots, above, valid, proofs);
+    mixed[i] = mcor_leaf_need_plain(slots, above, valid, need);
     return;
   }
   int sides = 0;
@@ -144,6 +134,9 @@ __kernel void mcor_leaf_need(const int count, const int plane, __global const ui
   mixed[i] = sides == MCOR_EXAMINE;
   for (int b = 0; b < MCOR_LEAF_SLOTS && sides == MCOR_EXAMINE; ++b)
   {
-    mcor_leaf_ask(proofs, slots[b]);
+    if (slots[b] >= 0)
+    {
+      need[slots[b]] = ~0UL;
+    }
   }
 }

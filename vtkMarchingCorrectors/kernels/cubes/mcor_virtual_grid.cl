@@ -192,12 +192,15 @@ __kernel void mcor_brick_neighbours(
 #define MCOR_IS_CERTAIN(state) ((state) < MCOR_EXAMINE)
 
 /* One work-item = one brick. Writes whether its nodes are to be evaluated, all or none: they are
- * unless they are known, or, with leaves of several levels, certain. */
+ * unless they are known. With leaves of several levels, those of certain slots are only if they
+ * were needed before (mcor_leaf_need); values below the node threshold never are. */
 __kernel void mcor_brick_need(const int brick_count, __global const ulong* known,
   const int leaf_count, __global const uchar* proofs, __global ulong* need)
 {
   MCOR_ITEM(slot, slot < brick_count);
-  need[slot] = known[slot] || (leaf_count > 0 && MCOR_IS_CERTAIN(proofs[slot])) ? 0 : ~0UL;
+  const int state = leaf_count > 0 ? proofs[slot] : MCOR_EXAMINE;
+  const bool idle = state == MCOR_VOID || (MCOR_IS_CERTAIN(state) && need[slot] == 0);
+  need[slot] = known[slot] || idle ? 0 : ~0UL;
 }
 
 /* One work-item = one brick of the old set. Moves its data to its slot in the new set, if it has

@@ -40,8 +40,8 @@
 #define vtkSPHComponents_h
 
 #include "vtkMarchingCorrectorsModule.h" // For export macro
-#include "vtkPolyDataAlgorithm.h"
-#include "vtkSmartPointer.h" // For particles
+#include "vtkSPHAlgorithm.h"             // For macros
+#include "vtkSmartPointer.h"             // For particles
 
 #include <string> // For members
 #include <vector> // For pieces
@@ -87,10 +87,8 @@ public:
   /**
    * Closed pieces of a smaller volume, or with fewer particles, are left out. 0 by default.
    */
-  vtkSetClampMacro(LeastVolume, double, 0.0, VTK_DOUBLE_MAX);
-  vtkGetMacro(LeastVolume, double);
-  vtkSetClampMacro(LeastParticles, vtkIdType, 0, VTK_ID_MAX);
-  vtkGetMacro(LeastParticles, vtkIdType);
+  vtkSPHClampMacro(LeastVolume, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSPHClampMacro(LeastParticles, vtkIdType, 0, VTK_ID_MAX);
   ///@}
 
   ///@{
@@ -98,12 +96,9 @@ public:
    * Arrays of the particles; found by their usual names where empty, the default. Mass: one for all, where
    * it is above 0.
    */
-  vtkSetStdStringFromCharMacro(MassArrayName);
-  vtkGetCharFromStdStringMacro(MassArrayName);
-  vtkSetMacro(Mass, double);
-  vtkGetMacro(Mass, double);
-  vtkSetStdStringFromCharMacro(VelocityArrayName);
-  vtkGetCharFromStdStringMacro(VelocityArrayName);
+  vtkSPHTextMacro(MassArrayName);
+  vtkSPHValueMacro(Mass, double);
+  vtkSPHTextMacro(VelocityArrayName);
   ///@}
 
   ///@{
@@ -111,10 +106,8 @@ public:
    * Particles whose FluidArrayName has another value than this are solid, and do not count. Empty by
    * default: all count.
    */
-  vtkSetStdStringFromCharMacro(FluidArrayName);
-  vtkGetCharFromStdStringMacro(FluidArrayName);
-  vtkSetMacro(FluidValue, double);
-  vtkGetMacro(FluidValue, double);
+  vtkSPHTextMacro(FluidArrayName);
+  vtkSPHValueMacro(FluidValue, double);
   ///@}
 
   ///@{
@@ -125,14 +118,10 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  ///@{
   /**
    * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by default.
    */
-  vtkSetMacro(DetectFluid, vtkTypeBool);
-  vtkGetMacro(DetectFluid, vtkTypeBool);
-  vtkBooleanMacro(DetectFluid, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(DetectFluid);
 
 protected:
   vtkSPHComponents();

@@ -46,6 +46,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkMarchingCorrectorsModule.h" // For export macro
+#include "vtkSPHAlgorithm.h"             // For macros
 
 #include <memory> // For the pairs of blocks
 #include <string> // For members
@@ -63,49 +64,33 @@ public:
   vtkTypeMacro(vtkSPHTemporalInterpolator, vtkAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * The point array of particle ids: whole numbers of any type, each occurring once. Empty (the default):
    * found by name.
    */
-  vtkSetStdStringFromCharMacro(IdArrayName);
-  vtkGetCharFromStdStringMacro(IdArrayName);
-  ///@}
+  vtkSPHTextMacro(IdArrayName);
 
-  ///@{
   /**
    * The point array of velocities, with three components. Empty (the default): found by name.
    */
-  vtkSetStdStringFromCharMacro(VelocityArrayName);
-  vtkGetCharFromStdStringMacro(VelocityArrayName);
-  ///@}
+  vtkSPHTextMacro(VelocityArrayName);
 
-  ///@{
   /**
    * Positions follow the velocities; off, they are linear in time. On by default.
    */
-  vtkSetMacro(UseVelocities, vtkTypeBool);
-  vtkGetMacro(UseVelocities, vtkTypeBool);
-  vtkBooleanMacro(UseVelocities, vtkTypeBool);
-  ///@}
+  vtkSPHFlagMacro(UseVelocities);
 
-  ///@{
   /**
    * The unit of the steps' times in the time unit of the velocities: 0.01 where steps are numbered
    * 0, 1, 2, ... and stored every 0.01 s. > 0, 1 by default.
    */
-  vtkSetMacro(TimeScale, double);
-  vtkGetMacro(TimeScale, double);
-  ///@}
+  vtkSPHValueMacro(TimeScale, double);
 
-  ///@{
   /**
    * The number of steps that are announced for each interval between two stored ones, as ParaView's
    * animation needs them. 1, the default: only the stored steps. Any other time can be requested, too.
    */
-  vtkSetClampMacro(ResampleFactor, int, 1, 1000000);
-  vtkGetMacro(ResampleFactor, int);
-  ///@}
+  vtkSPHClampMacro(ResampleFactor, int, 1, 1000000);
 
   ///@{
   /**

@@ -518,4 +518,10 @@ void vtkSPHMatchEmpty(vtkSPHRanks& ranks, vtkPolyData* result)
     result->GetPointData()->ShallowCopy(empty->GetPointData());
   }
 }
+
+void vtkSPHMatchEmpty(vtkMultiProcessController* controller, vtkPolyData* particles)
+{
+  vtkSPHRanks ranks(controller);
+  vtkSPHMatchEmpty(ranks, particles);
+}
 VTK_ABI_NAMESPACE_END

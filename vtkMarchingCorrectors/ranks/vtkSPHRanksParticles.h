@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/** Private to the module: tuples of arrays, and particles with all their arrays, that travel between ranks. */
+/**
+ * Private to the module: tuples of arrays, and particles with all their arrays, that travel
+ * between ranks.
+ */
 #ifndef vtkSPHRanksParticles_h
 #define vtkSPHRanksParticles_h
 

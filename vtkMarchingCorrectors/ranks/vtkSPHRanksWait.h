@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Private to the project: waiting for other ranks, and their parts of a surface. MPI's own calls keep a processor busy while
- * they wait, which slows down ranks that compute on it.
+ * Private to the project: waiting for other ranks, and their parts of a surface. MPI's own calls
+ * keep a processor busy while they wait, which slows down ranks that compute on it.
  */
 #ifndef vtkSPHRanksWait_h
 #define vtkSPHRanksWait_h
@@ -24,6 +24,10 @@ class vtkPolyData;
  */
 VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPolyData> vtkSPHMergeSurface(
   vtkMultiProcessController* controller, vtkPolyData* part);
+
+/** Gives particles without points the arrays that those of other processes have. Collective. */
+VTKMARCHINGCORRECTORS_EXPORT void vtkSPHMatchEmpty(
+  vtkMultiProcessController* controller, vtkPolyData* particles);
 
 /** Tests at once, then less and less often. */
 inline void vtkSPHAwait(vtkMPICommunicator::Request& request)

@@ -268,7 +268,7 @@ bool vtkSPHAlgorithm::vtkSharedRun::Owns(vtkIdType near) const
 
 void vtkSPHAlgorithm::vtkSharedRun::Return(vtkPointData* found, vtkDataSet* home)
 {
-  // What came from a rank lies together.
+  // Tuples that came from one rank lie together.
   vtkSPHRanksLists back;
   vtkIdType next = 0;
   for (const vtkIdType count : this->Places ? this->PlacesFrom : this->From)

@@ -47,10 +47,12 @@ std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
   return list;
 }
 
-/// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent sign.
+/// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent
+/// sign.
 bool HasStepNumber(const std::string& name);
 
-/// The last number in a file's name, without its folder: 120 of WaterBody_120.vtp. False if there is none.
+/// The last number in a file's name, without its folder: 120 of WaterBody_120.vtp. False if there
+/// is none.
 bool FindStepNumber(const std::string& file, std::size_t& number);
 
 /// frame_0007.png of frame_%04d.png

@@ -42,8 +42,8 @@ GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
 /// NAME=SECTION. Throws UsageError.
 Place ToFlux(const std::string& option, const std::string& text);
 
-/// Places of the options, in their order, those of the files among them. Throws UsageError where two
-/// have one name, or std::runtime_error where a file cannot be read.
+/// Places of the options, in their order, those of the files among them. Throws UsageError where
+/// two have one name, or std::runtime_error where a file cannot be read.
 std::vector<Place> ListGauges(const Job& job);
 std::vector<Place> ListSections(const Job& job);
 

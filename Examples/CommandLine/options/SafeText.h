@@ -8,15 +8,15 @@
 #include <string>
 
 /// Text from a file or the command line, made fit for a terminal and for XML: one line of UTF-8.
-/// Whatever could steer a terminal (control characters, marks that turn the direction of writing) or is
-/// not UTF-8 becomes its code, "\x1b" or "\u202e". Text that is fit already stays as it is.
+/// Whatever could steer a terminal (control characters, marks that turn the direction of writing)
+/// or is not UTF-8 becomes its code, "\x1b" or "\u202e". Text that is fit already stays as it is.
 std::string Printable(const std::string& text);
 
 /// The text in double quotes, as a JSON string: bytes that are not UTF-8 become U+FFFD.
 std::string QuotedForJson(const std::string& text);
 
-/// A sentence of the filters, whose advice is the same for all interfaces, in the words of this one: with its
-/// options.
+/// A sentence of the filters, whose advice is the same for all interfaces, in the words of this
+/// one: with its options.
 std::string WithOptions(const std::string& sentence);
 
 /// The sentence with some words replaced, if it has them.

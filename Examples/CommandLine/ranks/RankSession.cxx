@@ -11,7 +11,6 @@
 
 #include "vtkMPIController.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkSPHFound.h"
 #include "vtkSPHRanksWait.h"
 
@@ -130,38 +129,21 @@ vtkSmartPointer<vtkPointSet> RankSession::Share(
 
 vtkSmartPointer<vtkPointSet> RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty)
 {
-  const bool hasSome = particles->GetNumberOfPoints() > 0;
-  const int own = hasSome ? this->GetRank() : this->GetCount();
-  int from = own;
-  this->Controller->AllReduce(&own, &from, 1, vtkCommunicator::MIN_OP);
-  if (from == this->GetCount() && !mayBeEmpty)
+  const vtkIdType own = particles->GetNumberOfPoints();
+  vtkIdType all = own;
+  this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::SUM_OP);
+  if (all == 0 && !mayBeEmpty)
   {
     throw std::runtime_error("the input holds no points");
   }
-  Particles complete = particles;
-  if (from < this->GetCount())
+  vtkNew<vtkPolyData> form;
+  if (own > 0)
   {
-    vtkNew<vtkPolyData> form;
-    if (from == this->GetRank())
-    {
-      // One particle is needed: VTK does not send the arrays of none.
-      vtkNew<vtkPoints> points;
-      vtkPointData* arrays = form->GetPointData();
-      points->InsertNextPoint(particles->GetPoint(0));
-      form->SetPoints(points);
-      arrays->CopyAllOn();
-      arrays->CopyAllocate(particles->GetPointData(), 1);
-      arrays->CopyData(particles->GetPointData(), vtkIdType(0), vtkIdType(0));
-    }
-    this->Controller->Broadcast(form, from);
-    if (!hasSome)
-    {
-      vtkNew<vtkPoints> none;
-      form->SetPoints(none);
-      form->GetPointData()->SetNumberOfTuples(0);
-      complete = form.Get();
-    }
+    form->SetPoints(particles->GetPoints());
+    form->GetPointData()->ShallowCopy(particles->GetPointData());
   }
+  vtkSPHMatchEmpty(this->Controller, form);
+  const Particles complete = own > 0 || all == 0 ? particles : form.Get();
   this->ResolvePeriod(complete);
   return complete;
 }

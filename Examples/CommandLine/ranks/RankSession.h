@@ -39,7 +39,7 @@ private:
   Particles Part(const std::string& file, bool mayBeEmpty);
   Particles Share(const std::function<Particles()>& make, bool mayBeEmpty);
 
-  /// Processes without particles get the arrays, without values, that the first one with some has: what a
+  /// Processes without particles get the arrays, without values, that those of the others have: what a
   /// name in the options is must not depend on who asks. The period is that of all.
   Particles Complete(vtkPointSet* particles, bool mayBeEmpty);
   void ResolvePeriod(vtkPointSet* particles);

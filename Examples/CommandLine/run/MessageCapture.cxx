@@ -39,9 +39,6 @@ std::string Sentence(const char* text)
 
 }
 
-MessageCapture::MessageCapture() = default;
-MessageCapture::~MessageCapture() = default;
-
 // Warnings come here, too. The legacy readers only warn ("Error reading ascii data") where a file
 // ends in mid-array.
 void MessageCapture::DisplayText(const char* text)

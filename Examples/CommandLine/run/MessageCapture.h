@@ -25,14 +25,7 @@ public:
   const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
   void Clear();
 
-protected:
-  MessageCapture();
-  ~MessageCapture() override;
-
 private:
-  MessageCapture(const MessageCapture&) = delete;
-  void operator=(const MessageCapture&) = delete;
-
   std::vector<std::string> Errors;
   std::vector<std::string> Warnings;
 };

@@ -16,16 +16,16 @@ class vtkSPHMeter;
 class vtkTable;
 struct Job;
 
-/// What the program does, apart from a single surface. All throw UsageError or std::runtime_error with one
-/// sentence.
+/// Lists the runs of the program beside that of a single surface. All throw UsageError or
+/// std::runtime_error with one sentence.
 
-/// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them. Names a step
-/// that fails, does the others, and returns false then.
+/// Makes one surface, or projection, for each time of a film, and the .pvd file that lists them.
+/// Names a step that fails, does the others, and returns false then.
 bool MakeFilm(const Job& job, MessageCapture* messages, Sharing& sharing);
 
-/// Measures the free surface along lines, or what flows through sections and what has flowed since the first
-/// time, at each time of the input, and writes the table, or, of a grid of gauges, an image. False if a step
-/// failed, of which all was said; the table has the others.
+/// Measures the free surface along lines, or what flows through sections and what has flowed since
+/// the first time, at each time of the input, and writes the table, or, of a grid of gauges, an
+/// image. False if a step failed, of which all was said; the table has the others.
 ///@{
 bool MakeGaugeTable(const Job& job, MessageCapture* messages, Sharing& sharing);
 bool MakeFluxTable(const Job& job, MessageCapture* messages, Sharing& sharing);
@@ -38,8 +38,8 @@ std::size_t AddGauges(const Job& job);
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Job& job, vtkPointSet* particles, double time,
   MessageCapture* messages, const std::string& progress);
 
-/// Evaluates the field at the points of a file, of a slice or of a line, and writes their data set with the
-/// arrays.
+/// Evaluates the field at the points of a file, of a slice or of a line, and writes their data set
+/// with the arrays.
 void ProbePoints(const Job& job, MessageCapture* messages, Sharing& sharing);
 
 /// Projects particles once. Returns the seconds.

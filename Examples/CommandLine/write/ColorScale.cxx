@@ -9,9 +9,10 @@
 #include "vtkDataSet.h"
 #include "vtkFieldData.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace
@@ -104,23 +105,8 @@ void ColorScale::Suggest(vtkDataSet* surface, const std::string& isoValueArray)
 
 std::vector<unsigned char> ColorScale::Map(vtkDataArray* array) const
 {
-  const auto count = static_cast<std::size_t>(array->GetNumberOfTuples());
-  std::vector<unsigned char> colors;
-  colors.reserve(3 * count);
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    double value = array->GetComponent(i, 0);
-    if (array->GetNumberOfComponents() > 1)
-    {
-      double squares = 0.0;
-      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-      {
-        squares += array->GetComponent(i, c) * array->GetComponent(i, c);
-      }
-      value = std::sqrt(squares);
-    }
-    const unsigned char* color = this->Table->MapValue(value);
-    colors.insert(colors.end(), color, color + 3);
-  }
-  return colors;
+  const auto colors =
+    vtk::TakeSmartPointer(this->Table->MapScalars(array, VTK_COLOR_MODE_MAP_SCALARS, -1, VTK_RGB));
+  const unsigned char* first = colors->GetPointer(0);
+  return std::vector<unsigned char>(first, first + colors->GetNumberOfValues());
 }

@@ -7,11 +7,6 @@
 
 class MessageCapture;
 class vtkDataSet;
-class vtkXMLWriter;
-
-/// Writes to memory, because the writer of VTK 9.1 crashes on a full disk. Does not append data,
-/// VTK's default, which ParaView 5.11 of Debian 12 cannot read. Returns false if VTK gave up.
-bool WriteXmlInline(vtkXMLWriter* writer, vtkDataSet* data, std::string& bytes);
 
 /// Throws std::runtime_error with one sentence if the ending of the name is not that of a format which
 /// holds data sets of this class.

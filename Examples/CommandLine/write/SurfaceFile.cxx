@@ -7,7 +7,6 @@
 #include "Ending.h"
 #include "FileName.h"
 #include "Job.h"
-#include "MessageCapture.h"
 #include "SafeText.h"
 #include "TableText.h"
 
@@ -21,7 +20,6 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTriangle.h"
-#include "vtkXMLPolyDataWriter.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -39,12 +37,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-bool WriteXml(vtkPolyData* surface, const ColorScale&, std::string& bytes)
-{
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  return WriteXmlInline(writer, surface, bytes);
-}
 
 /// Bytes of a length that is known before, the least significant byte of a value first, on every machine.
 class ByteWriter
@@ -97,7 +89,7 @@ void ForTriangles(vtkPolyData* surface, const F& use)
 
 /// Binary, little endian: triangles with normals of their own. Not by VTK's writer, nor is .obj: they write
 /// to files alone.
-bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
+void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   bytes = "binary STL by marching-correctors";
   bytes.resize(80, ' ');
@@ -120,7 +112,6 @@ bool WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
       }
       writer.Put(std::uint16_t(0));
     });
-  return true;
 }
 
 /// Nine digits give every float back.
@@ -131,7 +122,7 @@ void AppendLine(std::string& text, const char* word, const double (&vector)[3])
   text += line;
 }
 
-bool WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
+void WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
   bytes = "# by marching-correctors\n";
@@ -157,11 +148,10 @@ bool WriteObj(vtkPolyData* surface, const ColorScale&, std::string& bytes)
       }
       bytes += "\n";
     });
-  return true;
 }
 
 /// Writes .ply without VTK's writer, which leaves the normals out.
-bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
+void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
 {
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
   vtkDataArray* colored = scale.ArrayOf(surface);
@@ -204,12 +194,11 @@ bool WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
         writer.Put(static_cast<std::int32_t>(corners[k]));
       }
     });
-  return true;
 }
 
 /// Writes lines: a row for each point of each line, a column for each component. An array whose column would
 /// have the name of one before it gets another one: readers go by names.
-bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
+void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   struct Column
   {
@@ -260,7 +249,6 @@ bool WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
       bytes += "\n";
     }
   }
-  return true;
 }
 
 /// VTK's XML names of types, which tell their size.
@@ -311,9 +299,9 @@ void DescribeAll(std::ostream& text, const char* element, vtkDataSetAttributes* 
   text << "    </" << element << ">\n";
 }
 
-/// Every format that is written, with all that is known of it.
-using Writer = std::function<bool(vtkPolyData*, const ColorScale&, std::string& bytes)>;
-const std::vector<FileFormat<Writer>> Formats = { { ".vtp", WriteXml }, { ".stl", WriteStl },
+/// Every format that is written, with all that is known of it; of .vtp, DataSetBytes() knows it.
+using Writer = std::function<void(vtkPolyData*, const ColorScale&, std::string& bytes)>;
+const std::vector<FileFormat<Writer>> Formats = { { ".vtp", nullptr }, { ".stl", WriteStl },
   { ".ply", WritePly }, { ".obj", WriteObj }, { ".csv", WriteCsv } };
 
 const char* const FilmMark = "<!-- a step of a film by marching-correctors -->";
@@ -333,12 +321,14 @@ std::string SurfaceFileEndings()
 std::string SurfaceBytes(
   const std::string& file, vtkPolyData* surface, const ColorScale& colors, MessageCapture* messages)
 {
+  if (EndsWith(file, ".vtp"))
+  {
+    return DataSetBytes(file, surface, messages);
+  }
   const Activity writing(file + " could not be written", "memory may have run out");
-  messages->Clear();
-  std::string bytes;
   const bool isTable = EndsWith(file, ".csv");
   const vtkIdType lines = surface->GetNumberOfLines(), triangles = surface->GetNumberOfPolys();
-  if (lines > 0 && triangles == 0 && !isTable && !EndsWith(file, ".vtp"))
+  if (lines > 0 && triangles == 0 && !isTable)
   {
     throw std::runtime_error(file +
       " could not be written: this format cannot hold lines, which particles in a plane give; "
@@ -350,11 +340,8 @@ std::string SurfaceBytes(
       " could not be written: this format holds the points of lines, which particles in a plane "
       "give, but this is a surface; write a .vtp file");
   }
-  if (!FindFormat(Formats, file)->Process(surface, colors, bytes) || !messages->GetErrors().empty())
-  {
-    throw std::runtime_error(file + " could not be written" +
-      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
-  }
+  std::string bytes;
+  FindFormat(Formats, file)->Process(surface, colors, bytes);
   return bytes;
 }
 

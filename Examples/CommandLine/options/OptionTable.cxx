@@ -171,7 +171,7 @@ const std::vector<Option> Table = {
   { "--component", "N|magnitude",
     "component of a vector, counted from 0, or its magnitude (default)",
     DO(const int component = // -1 is the filters' number for it
-         v == "magnitude" || v == "-1" ? Filter::MAGNITUDE : ToCount(n, v, 0);
+       v == "magnitude" || v == "-1" ? Filter::MAGNITUDE : ToCount(n, v, 0);
        j.Surface->SetScalarComponent(component); j.Projection->SetScalarComponent(component)) },
   { "--iso", "V[,V...]",
     "iso values of the scalar (default: chosen, about the median, and told), or of the weight sum "
@@ -202,7 +202,8 @@ const std::vector<Option> Table = {
        j.Projection->SetResolution(j.Slice.Resolution)) },
 
   { "", "",
-    "Projection: integrals along lines of sight, in place of a surface; OUTPUT is an image (.vti)",
+    "Projection: integrals along lines of sight, in place of a surface; OUTPUT is an image (.vti), "
+    "or .pvd for a film",
     {} },
   { "--project", "AXIS|X,Y,Z",
     "along x, y, z or any direction: the column density, or the integral of --scalar; --box is "
@@ -256,7 +257,8 @@ const std::vector<Option> Table = {
   { "--density", "NAME|VALUE", "array of densities, or one value",
     DO(j.Density = ToQuantity(n, v)) },
   { "--fluid", "NAME=VALUE",
-    "particles with this value of this array are fluid, all others are solids (walls, bodies)", SetFluid },
+    "particles with this value of this array are fluid, all others are solids (walls, bodies)",
+    SetFluid },
   { "--within", "X0,X1,Y0,Y1,Z0,Z1",
     "leave out particles that are not in these bounds, whose sides may be inf or -inf", SetWithin },
   { "--only", "NAME=VALUE[:VALUE]",
@@ -331,7 +333,8 @@ const std::vector<Option> Table = {
     "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
     DO(j.Surface->SetWidening(ToPositive(n, v))) },
   { "--widening", "FILE.vtp",
-    "with --widen, write the particles with the factors of their smoothing lengths, and the products",
+    "with --widen, write the particles with the factors of their smoothing lengths, and the "
+    "products",
     DO(j.WideningFile = v) },
   { "--compact", "",
     "a quarter fewer triangles and hardly any slivers: merge the vertices of each grid node, then "

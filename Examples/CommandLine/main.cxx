@@ -316,7 +316,5 @@ int main(int argc, char* argv[])
 {
   OpenStandardStreams();
   PrepareForEnding();
-  const int status = Status([&] { return Execute(argc, argv); });
-  AwaitDrivers();
-  return Finish(status);
+  Finish(Status([&] { return Execute(argc, argv); }));
 }

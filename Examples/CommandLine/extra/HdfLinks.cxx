@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HdfLinks.h"
 
-#include "Ending.h"
-
 #include "vtk_hdf5.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 
@@ -57,9 +54,6 @@ herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* fou
 void RefuseHdfLinks(const std::string& file)
 {
   H5open();
-  // HDF5 ends after this: of a damaged file, it writes what it thinks even then.
-  static const int isRegistered = std::atexit([] { new Silence; });
-  (void)isRegistered;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (opened < 0)

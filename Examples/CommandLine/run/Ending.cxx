@@ -59,8 +59,6 @@ char Hint[PATH_MAX + 256] = "the OpenCL driver may be at fault, or memory ran ou
 char StackOfHandler[1 << 16]; // that of a recursion without end is full
 char HintOfDrivers[PATH_MAX + 256] = "";
 thread_local bool IsLoadingDrivers = false; ///< meanwhile another thread reads files
-volatile std::sig_atomic_t IsFinished = 0;
-volatile std::sig_atomic_t FinalStatus = 0;
 volatile std::sig_atomic_t ClearsLine = 0;
 volatile std::sig_atomic_t StandardError = STDERR_FILENO; ///< also where Silence has taken that
 
@@ -108,10 +106,6 @@ void SayInHandler(const char* text)
 /// the place of another one.
 void EndByCrash(int number)
 {
-  if (IsFinished)
-  {
-    _exit(FinalStatus);
-  }
   RemoveFiles();
   SayInHandler(ClearsLine ? "\r\033[K" : "");
   for (const char* part : std::initializer_list<const char*>{
@@ -196,11 +190,10 @@ void KeepWatchOfCrashes()
   SetHandlersOfCrashes();
 }
 
-int Finish(int status)
+void Finish(int status)
 {
-  FinalStatus = status;
-  IsFinished = 1;
-  return status;
+  std::fflush(nullptr);
+  _exit(status);
 }
 
 std::string FaultsOfDrivers(const std::string& device)

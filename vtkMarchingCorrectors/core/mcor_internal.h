@@ -39,7 +39,10 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 double mcor_seconds(void);
 /* Returns the norm of an SPH kernel W = norm / h^3 w(q). */
 double mcor_kernel_norm(mcor_sph_kernel kernel);
+/* Returns its norm in two dimensions over that in three. */
+double mcor_plane_factor(mcor_sph_kernel kernel);
 double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane);
+const char* mcor_usual_neighbours(mcor_sph_kernel kernel, bool is_plane);
 bool mcor_is_tensor(mcor_sph_kernel kernel); /* a product of three, along the axes */
 
 /* mcor_memory.c. Fails where memory of the host could not be allocated. */

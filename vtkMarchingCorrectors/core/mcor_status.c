@@ -27,15 +27,17 @@ const char* mcor_phase_name(mcor_phase phase)
   return (unsigned)phase < MCOR_PHASE_COUNT ? names[phase] : "unknown phase";
 }
 
-#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane)                               \
-  { #name, support, norm, { variance, plane }, tensor },
+#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane, c, usual, usual_in_plane)     \
+  { #name, { usual, usual_in_plane }, support, norm, { variance, plane }, c, tensor },
 static const struct
 {
-  const char* name;
-  double support, norm, variance[2];
+  const char *name, *neighbours[2];
+  double support, norm, variance[2], plane_factor;
   bool is_tensor;
 } mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
+_Static_assert(sizeof mcor_kernel_table / sizeof mcor_kernel_table[0] == MCOR_SPH_KERNEL_COUNT,
+  "a row for each kernel");
 
 int mcor_find_sph_kernel(const char* name)
 {
@@ -67,6 +69,16 @@ double mcor_kernel_norm(mcor_sph_kernel kernel)
 double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane)
 {
   return mcor_kernel_table[kernel].variance[is_plane];
+}
+
+double mcor_plane_factor(mcor_sph_kernel kernel)
+{
+  return mcor_kernel_table[kernel].plane_factor;
+}
+
+const char* mcor_usual_neighbours(mcor_sph_kernel kernel, bool is_plane)
+{
+  return mcor_kernel_table[kernel].neighbours[is_plane];
 }
 
 bool mcor_is_tensor(mcor_sph_kernel kernel)

@@ -98,7 +98,7 @@ static void free_particles(particles* p)
 
 static double norm_of(mcor_sph_kernel kernel)
 {
-#define NORM(id, name, support, norm, tensor, variance, plane) norm,
+#define NORM(id, name, support, norm, ...) norm,
   static const double norms[] = { MCOR_SPH_KERNEL_TABLE(NORM) };
 #undef NORM
   return norms[kernel];

@@ -43,7 +43,7 @@ void mcor_name_build(const mcor_build* build, char* text, size_t size)
 
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size)
 {
-#define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane)                               \
+#define MCOR_ENTRY(id, name, support, norm, tensor, ...)                                           \
   { #name, #norm, #support, tensor },
   static const struct
   {

@@ -12,20 +12,33 @@
  * rounding of themselves at most (mcor_bound.cl). Only operations that each device rounds alike: no sine, no
  * power, no exponential. */
 
-/* ENTRY(enumerator, name, support / h, norm, is a tensor product, variance, variance in the plane), in the order of
- * mcor_sph_kernel. Variances are those along an axis, in h^2: the integral of x^2 W.
- * In two dimensions W = c h norm / h^3 * w(q) has the integral 1, with c = 10/7, 8/5, 1 (of two factors),
- * 420/239, 4/3, 1920/1199, 64/55, 256/245 and 1.0635845764083532547 (0.8407099917485126203 / norm). */
-#define MCOR_SPH_KERNEL_TABLE(ENTRY)                                                               \
-  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2.0, 0.31830988618379067154, 0, 3.0 / 10, 31.0 / 98) /* 1 / pi */\
-  ENTRY(MCOR_QUADRATIC, quadratic, 2.0, 0.07460387957432593864, 0, 8.0 / 21, 2.0 / 5) /* 15 / (64 pi) */\
-  ENTRY(MCOR_M_PRIME_4, mprime4, 2.0, 1.0, 1, 0.0, 0.0)                                            \
-  ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3.0, 0.00265258238486492226, 0, 7.0 / 15, 2771.0 / 5736) /* 1 / (120 pi) */\
-  ENTRY(MCOR_WENDLAND_C2, wendland, 2.0, 0.41778172561622525639, 0, 4.0 / 15, 5.0 / 18) /* 21 / (16 pi) */\
-  ENTRY(MCOR_QUARTIC_SPLINE, quartic, 2.5, 0.01591549430918953358, 0, 23.0 / 60, 9759.0 / 24416) /* 1 / (20 pi) */\
-  ENTRY(MCOR_WENDLAND_C4, wendland_c4, 2.0, 0.61548200648818899379, 0, 8.0 / 39, 7.0 / 33) /* 495 / (256 pi) */\
-  ENTRY(MCOR_WENDLAND_C6, wendland_c6, 2.0, 0.84861913015795755205, 0, 1.0 / 6, 6.0 / 35) /* 1365 / (512 pi) */\
-  ENTRY(MCOR_SINC_6, sinc6, 2.0, 0.79044958943230289736, 0, 0.17139287862743, 0.17709595937597)
+/* A row has what the core knows of a kernel, in the order of mcor_sph_kernel:
+ *
+ *   enumerator, name, support / h, norm, whether it is a tensor product,
+ *   variance, variance in the plane: along an axis, in h^2, the integral of x^2 W
+ *   c: in two dimensions, W = c h norm / h^3 * w(q) has the integral 1 (of a tensor product: two factors)
+ *   numbers of neighbours that are usual, in space and in the plane: words for a warning */
+// clang-format off
+#define MCOR_SPH_KERNEL_TABLE(ENTRY) \
+  ENTRY(MCOR_CUBIC_SPLINE, cubic, 2.0, 0.31830988618379067154, 0, /* 1 / pi */ \
+    3.0 / 10, 31.0 / 98, 10.0 / 7, "30 to 100", "12 to 40") \
+  ENTRY(MCOR_QUADRATIC, quadratic, 2.0, 0.07460387957432593864, 0, /* 15 / (64 pi) */ \
+    8.0 / 21, 2.0 / 5, 8.0 / 5, "30 to 100", "12 to 40") \
+  ENTRY(MCOR_M_PRIME_4, mprime4, 2.0, 1.0, 1, \
+    0.0, 0.0, 1.0, "30 to 60", "12 to 25") \
+  ENTRY(MCOR_QUINTIC_SPLINE, quintic, 3.0, 0.00265258238486492226, 0, /* 1 / (120 pi) */ \
+    7.0 / 15, 2771.0 / 5736, 420.0 / 239, "100 to 250", "30 to 80") \
+  ENTRY(MCOR_WENDLAND_C2, wendland, 2.0, 0.41778172561622525639, 0, /* 21 / (16 pi) */ \
+    4.0 / 15, 5.0 / 18, 4.0 / 3, "50 to 250", "15 to 60") \
+  ENTRY(MCOR_QUARTIC_SPLINE, quartic, 2.5, 0.01591549430918953358, 0, /* 1 / (20 pi) */ \
+    23.0 / 60, 9759.0 / 24416, 1920.0 / 1199, "60 to 200", "20 to 60") \
+  ENTRY(MCOR_WENDLAND_C4, wendland_c4, 2.0, 0.61548200648818899379, 0, /* 495 / (256 pi) */ \
+    8.0 / 39, 7.0 / 33, 64.0 / 55, "100 to 300", "25 to 80") \
+  ENTRY(MCOR_WENDLAND_C6, wendland_c6, 2.0, 0.84861913015795755205, 0, /* 1365 / (512 pi) */ \
+    1.0 / 6, 6.0 / 35, 256.0 / 245, "150 to 400", "35 to 100") \
+  ENTRY(MCOR_SINC_6, sinc6, 2.0, 0.79044958943230289736, 0, \
+    0.17139287862743, 0.17709595937597, 1.0635845764083532547, "60 to 200", "20 to 60")
+// clang-format on
 
 #ifdef MCOR_W_ON_HOST
 #include <math.h>

@@ -49,7 +49,7 @@ typedef struct mcor_neighbour_job
 
 double mcor_w_of(mcor_sph_kernel kernel, double q)
 {
-#define MCOR_ENTRY(enumerator, name, support, norm, is_tensor, variance, plane)                    \
+#define MCOR_ENTRY(enumerator, name, ...)                                                          \
   case enumerator:                                                                                 \
     return mcor_w_##name(q);
   switch (kernel)

@@ -56,12 +56,6 @@ static const char* mcor_likely_kernel(mcor_sph_kernel kernel, double ratio, bool
 
 static char* mcor_warn_neighbours(const mcor_suspicion* s)
 {
-  static const char* const usual[][2] = { { "30 to 100", "12 to 40" }, { "30 to 100", "12 to 40" },
-    { "30 to 60", "12 to 25" }, { "100 to 250", "30 to 80" }, { "50 to 250", "15 to 60" },
-    { "60 to 200", "20 to 60" }, { "100 to 300", "25 to 80" }, { "150 to 400", "35 to 100" },
-    { "60 to 200", "20 to 60" } }; /* in space, in a plane */
-  _Static_assert(
-    sizeof usual / sizeof usual[0] == MCOR_SPH_KERNEL_COUNT, "neighbours of each kernel");
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_sph_kernel kernel = s->options->sph_kernel;
   const bool plane = n->dimension == 2;
@@ -112,7 +106,8 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
     "Check the smoothing length: a fluid particle has %.0f neighbours within its support radius; "
     "its smoothing length is %.4g, "
     "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
-    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel), usual[kernel][plane],
+    n->neighbours_median, h, times, mcor_sph_kernel_name(kernel),
+    mcor_usual_neighbours(kernel, plane),
     wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 

@@ -16,15 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* n_2 / n_3, see mcor_sph_kernel.h; tested numerically. */
-double mcor_plane_factor(mcor_sph_kernel kernel)
-{
-  static const double factor[] = { 10.0 / 7, 8.0 / 5, 1, 420.0 / 239, 4.0 / 3, 1920.0 / 1199,
-    64.0 / 55, 256.0 / 245, 1.0635845764083532547 };
-  _Static_assert(sizeof factor / sizeof factor[0] == MCOR_SPH_KERNEL_COUNT, "one for each kernel");
-  return factor[kernel];
-}
-
 /* ---- The plane ---- */
 
 /* The extent of the particles along x, y, z: first the fluid, then the solids that play a part.

@@ -59,9 +59,6 @@ void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width);
 void mcor_unflatten_doubles(
   const mcor_plane* plane, double* numbers, int64_t count, double constant);
 
-/* Returns the SPH kernel's normalisation in two dimensions over that in three. */
-double mcor_plane_factor(mcor_sph_kernel kernel);
-
 /* Keeps of all cells those that are squares of the plane. */
 mcor_status mcor_keep_squares(mcor_context* context, mcor_buffer* cells);
 

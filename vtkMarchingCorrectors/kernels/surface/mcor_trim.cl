@@ -3,9 +3,8 @@
 
 /* Trimming [III-D.3]: a triangle is kept, discarded, or cut where the weight passes the vertex
  * threshold. "Weight" also stands for the boundary eigenvalue and for the margin here. A cut
- * vertex belongs to a mesh edge, key (lower vertex << 32
- *
- * higher vertex), and is shared by the two triangles there. */
+ * vertex belongs to a mesh edge, whose key is (lower vertex << 32 | higher vertex); the two
+ * triangles there share it. */
 
 /* Returns bits 0..2 of the corners above the threshold. A corner at the threshold is outside,
  * for every triangle around it: the rest is then a manifold there, too, and a triangle that

@@ -286,9 +286,8 @@ static void test_little_room_for_drivers(void** state)
     {
       mcor_context* context = NULL;
       const int status = mcor_create_context(names[i], &context);
-      const int refused = status == MCOR_DEVICE_ERROR &&
-        strstr(mcor_last_error(context), "no OpenCL device \"pocl\"") &&
-        strstr(mcor_last_error(context), "too little address space. Raise these limits (ulimit");
+      const int refused = status == MCOR_DEVICE_ERROR && strstr(mcor_last_error(context), "pocl") &&
+        strstr(mcor_last_error(context), "ulimit");
       if (i < 3 ? status != MCOR_OK || extract(context) == 0 : !refused)
       {
         fprintf(stderr, "\"%s\": %d, %s\n", names[i], status, mcor_last_error(context));

@@ -128,8 +128,7 @@ static void test_argument_count(void** state)
   assert_int_equal(MCOR_LAUNCH(context, "mcor_scan_fill", MCOR_HEAVY, 1, MCOR_BUFFER(&buffer),
                      MCOR_INT(1), MCOR_INT(1)),
     MCOR_DEVICE_ERROR);
-  CORE_CHECK(strstr(mcor_last_error(context), "mcor_scan_fill has 4 arguments; 3 were given"), "%s",
-    mcor_last_error(context));
+  CORE_CHECK(strstr(mcor_last_error(context), "mcor_scan_fill"), "%s", mcor_last_error(context));
   mcor_release(context, &buffer);
 }
 

@@ -145,8 +145,8 @@ static void test_few(void** state)
     assert_true(surface.statistics.far_place[1] == -3e9);
     char* text = mcor_describe_warning(MCOR_WARN_FAR, &input, &options, &surface);
     assert_non_null(text);
-    assert_non_null(strstr(text, "8 particles are so far away"));
-    assert_non_null(strstr(text, "particle 1000 is at (0.5, -3e+09, 0)"));
+    assert_non_null(strstr(text, "8 particles"));
+    assert_non_null(strstr(text, "particle 1000"));
     free(text);
     mcor_free_surface(&surface);
   }
@@ -155,7 +155,7 @@ static void test_few(void** state)
   input = core_input(&set);
   mcor_surface surface;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
-  assert_non_null(strstr(mcor_last_error(*state), "far away from the rest"));
+  assert_non_null(strstr(mcor_last_error(*state), "far away"));
   core_free_set(&set);
   core_free_set(&block);
 }

@@ -157,8 +157,7 @@ static void given_globals(void** state)
   input.attribute_count = 2;
   core_set_box(&options, core_cuts + 3, none);
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
-  assert_non_null(
-    strstr(mcor_last_error(*state), "for 5 components of attributes, but the input has 4"));
+  assert_non_null(strstr(mcor_last_error(*state), "5 components"));
   mcor_free_globals(&globals);
   free(whole.bytes);
   free(all.bytes);
@@ -236,9 +235,7 @@ static void bad_boxes(void** state)
 {
   const double bad[][6] = { { 1, 0, 0, 1, 0, 1 }, { 0, 1, 2, 2, 0, 1 }, { 0, 1, 0, 1, 0, NAN },
     { 0, 1, 0, 1, NAN, 1 }, { INFINITY, INFINITY, 0, 1, 0, 1 } };
-  const char* sentence[] = { "along x goes from 1 to 0; the first must be lower than the second",
-    "along y goes from 2 to 2", "along z goes from 0 to nan; both must be numbers",
-    "along z goes from nan to 1", "along x goes from inf to inf" };
+  const char* words[] = { "along x", "along y", "along z", "along z", "along x" };
   const double iso = 0;
   core_set set = core_make_block(4, 0, 8, core_ball);
   const mcor_input input = core_input(&set);
@@ -248,7 +245,7 @@ static void bad_boxes(void** state)
     mcor_surface surface = { 0 };
     memcpy(options.box, bad[i], sizeof bad[i]);
     assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
-    CORE_CHECK(strstr(mcor_last_error(*state), sentence[i]), "%s", mcor_last_error(*state));
+    CORE_CHECK(strstr(mcor_last_error(*state), words[i]), "%s", mcor_last_error(*state));
     assert_int_equal(surface.point_count, 0);
   }
   core_free_set(&set);

@@ -400,7 +400,7 @@ static void test_what_is_not_filled(void** state)
   extract(*state, &set, &options, 2, &surface);
   mcor_free_surface(&surface);
   options.dimension = 3;
-  expect_error(*state, &set, &options, "Filling is for two dimensions");
+  expect_error(*state, &set, &options, "two dimensions");
   options.dimension = 0;
   mcor_input nothing = core_input(&set);
   nothing.count = 0;

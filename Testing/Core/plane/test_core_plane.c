@@ -115,10 +115,10 @@ static void test_what_is_no_plane(void** state)
   assert_true(surface.line_count == 0 && surface.line_offsets == NULL);
   mcor_free_surface(&surface);
   options.dimension = 4;
-  expect_error(*state, &input, &options, "The dimension is 4");
+  expect_error(*state, &input, &options, "dimension is 4");
   options.dimension = 2;
   set.position[5] += 1e-9;
-  expect_error(*state, &input, &options, "do not share one coordinate exactly");
+  expect_error(*state, &input, &options, "coordinate");
   options.dimension = 0; /* thin, but uneven */
   surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 3);
@@ -127,13 +127,13 @@ static void test_what_is_no_plane(void** state)
   set.solid[1] = 1;
   set.has_solids = 1;
   input = core_input(&set);
-  expect_error(*state, &input, &options, "solid ones have 1.000000001");
+  expect_error(*state, &input, &options, "1.000000001");
   set.position[5] = NAN; /* of a solid that plays no part */
   surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 2);
   mcor_free_surface(&surface);
   set.solid[1] = 0;
-  expect_error(*state, &input, &options, "position of particle 1 is not a number");
+  expect_error(*state, &input, &options, "particle 1");
   core_free_set(&set);
 }
 
@@ -145,15 +145,15 @@ static void test_sentences_of_sides(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(&iso);
   options.periodic[0] = 1;
-  expect_error(*state, &input, &options, "The period along x goes from 1 to 0");
+  expect_error(*state, &input, &options, "period along x");
   options.periodic[0] = 0;
   options.periodic[5] = 1;
-  expect_error(*state, &input, &options, "The period along z is 1, too short");
+  expect_error(*state, &input, &options, "period along z");
   options.periodic[5] = 0;
   mcor_surface whole = core_extract(*state, &input, &options);
   const double box[6] = { -9, 9, 1, 1, 9, -9 };
   memcpy(options.box, box, sizeof box);
-  expect_error(*state, &input, &options, "The box along z goes from 9 to -9");
+  expect_error(*state, &input, &options, "box along z");
   options.box[4] = -9;
   options.box[5] = 9;
   mcor_surface flat = core_extract(*state, &input, &options);
@@ -185,8 +185,7 @@ static void test_walls_in_another_plane(void** state)
   for (int dimension = 0; dimension <= 2; dimension += 2)
   {
     options.dimension = dimension;
-    expect_error(
-      *state, &input, &options, "fluid particles have y = -2, but the solid ones have 0.5");
+    expect_error(*state, &input, &options, "y = -2");
     assert_int_equal(mcor_find_dimension(&input, NULL, dimension), dimension == 2 ? 2 : 3);
     input.ignore_solids = 1;
     mcor_surface surface = core_extract(*state, &input, &options);
@@ -196,7 +195,7 @@ static void test_walls_in_another_plane(void** state)
     input.ignore_solids = 0;
   }
   set.position[4] = 0.6;
-  expect_error(*state, &input, &options, "but solid particle 0 has 0.5");
+  expect_error(*state, &input, &options, "solid particle 0");
   options.dimension = 0;
   mcor_surface surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 3);

@@ -80,7 +80,7 @@ mcor_sdk_packages() { # vtk | paraview
   fi
 }
 
-# What apt says of the sizes.
+# Prints the sizes that apt tells.
 mcor_sizes() { # PACKAGE...
   LC_ALL=C apt-get install --assume-no --no-install-recommends "$@" 2>/dev/null |
     sed -n -E 's/^ *(Need to get.*|After this operation.*)$/  \1/p'

@@ -53,14 +53,15 @@ namespace
 // As of the filter's own warning, which comes when the run has begun.
 constexpr double HUGE_CELLS = 1e9;
 
-// What the next update's range and number of cells depend on.
+// Properties on which the next update's range and number of cells depend.
 const char* const CHOICES[] = { "FreeSurface", "SelectInputScalars", "ScalarComponent",
   "DotProductWith", "SmoothingLengthArray", "SmoothingLength", "EstimateSmoothingLength",
   "SmoothingLengthIsSupportRadius", "FluidArray", "FluidValue", "DetectFluid", "Blocks", "Kernel",
   "Dimension", "CubeSizeMode", "CubeLevelLimit", "CubeSizeFactor", "CubeSize", "UseBox",
   "BoxPosition", "BoxLength" };
 
-// What the next update would find, and the panel shows elsewhere, or begins with.
+// Properties that tell what the next update would find. The panel shows them elsewhere, or begins
+// with them.
 const char* const NEXT[] = { "NextScalarRange", "NextIsoValue", "NextArray", "NextComponents",
   "NextDimension", "NextFluid", "NextCells" };
 const char* const HIDDEN[] = { "NextIsoValue", "NextArray", "NextComponents", "NextDimension" };

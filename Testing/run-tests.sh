@@ -44,7 +44,7 @@ mapfile -t rest < <(without "${left_out[@]}")
 
 test_names() { ctest --test-dir "$build" -N "$@" | sed -n 's/^ *Test *#[0-9]*: //p' | sort; }
 
-# What this run does not try: tests that the arguments leave out, and those that lack a program here.
+# Lists what this run does not try: tests that the arguments leave out, and those that lack a program here.
 say_what_is_left_out() {
   local names
   mapfile -t names < <(comm -23 <(test_names) <(test_names "$@"))

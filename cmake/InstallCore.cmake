@@ -1,5 +1,5 @@
 # Installs the core: the library, its headers and mcor.pc. Included by the top level, after the core.
-# What is installed is shared where the build is; the tests and filters here call the static one.
+# The installed library is shared where the build is; the tests and filters here call the static one.
 find_package(Threads REQUIRED)
 set(mcor_installed mcor)
 if (BUILD_SHARED_LIBS AND NOT MCOR_BUILD_PYTHON_WHEEL)

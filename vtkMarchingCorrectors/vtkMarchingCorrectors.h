@@ -475,12 +475,14 @@ public:
 
   ///@{
   /**
-   * What the last update used, for a panel; of composite data, for the last block. Empty, or 0, if nothing
-   * was drawn. The range is that of the contoured component, magnitude or dot product at the fluid
-   * particles, 0 to 0 for the free surface. SurfaceMeasures: the area of the surface and, if it is closed,
-   * its volume, in words; of lines, their length and area. IsoValueArrayName: the point array that says which iso
-   * value each point has, if ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid (squares,
-   * of lines) the fluid fills, known before an update begins, which warns from a billion on; 0: not known.
+   * Values that the last update used, for a panel; of composite data, for the last block. Empty,
+   * or 0, if nothing was drawn. The range is that of the contoured component, magnitude or dot
+   * product at the fluid particles, 0 to 0 for the free surface. SurfaceMeasures: the area of
+   * the surface and, if it is closed, its volume, in words; of lines, their length and area.
+   * IsoValueArrayName: the point array that says which iso value each point has, if
+   * ComputeScalars is on. EstimatedCells: about how many cubes of the virtual grid (squares, of
+   * lines) the fluid fills, known before an update begins, which warns from a billion on; 0: not
+   * known.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
   vtkGetCharFromStdStringMacro(UsedIsoValues);
@@ -493,11 +495,12 @@ public:
 
   ///@{
   /**
-   * What an update with the present properties and input would find: FluidScalarRange, the default iso value
-   * (NaN: not known), the number of components of the chosen array (1 for a dot product), the dimension, EstimatedCells
-   * (of all blocks), UsedFluid, and the array that is contoured if none is chosen. The input is not updated. 0 to
-   * 0, 0, or empty: not known, without particles or a scalar. If processes share a run, these are those of
-   * the last update, because one process cannot ask the others without waiting for them.
+   * Values that an update with the present properties and input would find: FluidScalarRange,
+   * the default iso value (NaN: not known), the number of components of the chosen array (1 for
+   * a dot product), the dimension, EstimatedCells (of all blocks), UsedFluid, and the array that
+   * is contoured if none is chosen. The input is not updated. 0 to 0, 0, or empty: not known,
+   * without particles or a scalar. If processes share a run, these are the values of the last
+   * update, because one process cannot ask the others without waiting for them.
    */
   double* GetNextScalarRange() VTK_SIZEHINT(2) { return this->LookAhead().ScalarRange; }
   double GetNextIsoValue() { return this->LookAhead().IsoValue; }

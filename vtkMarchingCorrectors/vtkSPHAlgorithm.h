@@ -188,9 +188,10 @@ public:
 
   ///@{
   /**
-   * What EstimateSmoothingLength estimates: ESTIMATE_SPACING (the default); or for each particle the h with
-   * h^d sum W(x - x_j, h) = NeighborRatio^d over all particles x_j, d being the dimension, as Phantom, GADGET and
-   * SWIFT define it. NeighborRatio: 1.3 by default, about 57 neighbours with the cubic spline.
+   * How EstimateSmoothingLength estimates: ESTIMATE_SPACING (the default): one length;
+   * ESTIMATE_NEIGHBORS: for each particle the h with h^d sum W(x - x_j, h) = NeighborRatio^d
+   * over all particles x_j, d being the dimension, as Phantom, GADGET and SWIFT define it.
+   * NeighborRatio: 1.3 by default, about 57 neighbours with the cubic spline.
    */
   vtkSPHClampMacro(SmoothingLengthEstimate, int, ESTIMATE_SPACING, ESTIMATE_NEIGHBORS);
   vtkSPHValueMacro(NeighborRatio, double);

@@ -62,9 +62,10 @@ public:
 
   ///@{
   /**
-   * What is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along x, y or z, particles count whose
-   * positions are in the box along the line of sight, and those beside it that reach into it; else those in the box.
-   * Each counts with all of its kernel. Off by default.
+   * The part that is seen: x0, x1, y0, y1, z0, z1, unit L; sides may be infinite. Looking along
+   * x, y or z, particles count whose positions are in the box along the line of sight, and those
+   * beside it that reach into it; else those in the box. Each counts with all of its kernel. Off
+   * by default.
    */
   vtkSPHFlagMacro(UseBox);
   vtkSetVector6Macro(Box, double);

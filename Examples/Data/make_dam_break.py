@@ -23,8 +23,8 @@ RATIO = 1.28  # smoothing length / V^(1/3)
 WAVE_NUMBER = 2 * np.pi / 1.1
 SPEED = 2.3
 GRADING = (0.5, 0.5, 0.5)  # along an axis, spacing falls from 1 + grading to 1
-# Of the spacing, either way. The sum of V W at particles deep inside then varies by 1.4 %, in
-# dam_break_45k.vtp, which was simulated, by 1.5 % (standard deviations).
+# A share of the spacing, either way. The sum of V W at particles deep inside then varies by 1.4 %;
+# in dam_break_45k.vtp, which was simulated, it varies by 1.5 % (standard deviations).
 JITTER = 0.06
 
 

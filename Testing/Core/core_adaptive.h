@@ -3,7 +3,7 @@
 #ifndef core_adaptive_h
 #define core_adaptive_h
 
-/* What a cell with finer cells around it must look like, derived anew from positions in space. */
+/* Derives anew, from positions in space, how a cell with finer cells around it must look. */
 
 #include "core_fixture.h"
 #include "mcor_adaptive_cell.h"

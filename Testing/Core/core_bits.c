@@ -165,7 +165,7 @@ static int is_usual(const bits_case* at)
   return at->precision == MCOR_FLOAT32 && at->kernel == MCOR_CUBIC_SPLINE;
 }
 
-/* Those of one build: a driver may take half a minute for each program. */
+/* Chooses the cases of one build: a driver may take half a minute for each program. */
 static int in_sample(const bits_case* at)
 {
   return is_usual(at) && at->field == MCOR_SHEPARD;

@@ -18,7 +18,7 @@
   type __wrap_##name parameters;                                                                   \
   type __wrap_##name parameters
 
-/* That of the context made last. */
+/* The device of the context that was made last. */
 static cl_device_id device_now;
 
 WRAP(cl_context, mcor_clCreateContext,

@@ -11,7 +11,8 @@
 /* The call that fails, counted from 0; -1: none. */
 static int fail_at = -1, call_count;
 
-/* What may fail: an argument of a launch, another call of OpenCL, an allocation of the host. */
+/* Kinds of calls that may fail: an argument of a launch, another call of OpenCL, an allocation
+ * of the host. */
 enum
 {
   ARGUMENT = 1,
@@ -120,7 +121,7 @@ WRAP(cl_int, mcor_clReleaseMemObject, (cl_mem mem))
   return __real_mcor_clReleaseMemObject(mem);
 }
 
-/* Of calls that return what they make. */
+/* For calls that return the object that they make. */
 static int fails_to_make(const char* name, cl_int* error)
 {
   const int failed = fails(name, COMMAND);

@@ -10,15 +10,15 @@
 
 /* The n-th call from now on, counted from 0, fails with this error; none: -1. */
 void core_fail_call(int n, cl_int error);
-/* The same, but of the arguments of launches, which are most of the calls, none fails. */
+/* Likewise, but arguments of launches, which are most of the calls, never fail. */
 void core_fail_command(int n, cl_int error);
-/* The same of malloc, calloc and realloc. */
+/* Likewise for malloc, calloc and realloc. */
 void core_fail_allocation(int n);
 void core_fail_nothing(void);
 /* The call that has failed, "" if none has. */
 const char* core_failed_call(void);
 
-/* Of a build that failed. Like real ones, it is not handed over in part. */
+/* The log of a build that failed. Like real ones, it is not handed over in part. */
 void core_set_build_log(const char* log);
 
 /* Fails unless the context holds nothing of a run: these are what it keeps. */

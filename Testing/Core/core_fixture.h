@@ -3,9 +3,9 @@
 #ifndef core_fixture_h
 #define core_fixture_h
 
-/* What the unit tests of the core share. The oracle library lends its double-precision field and
- * its mesh checker. Every array handed to the core is a heap block of exactly its size, so that a
- * sanitizer sees a read beyond it. */
+/* Helpers that the core's unit tests share. The oracle library lends its double-precision field
+ * and its mesh checker. Every array handed to the core is a heap block of exactly its size, so
+ * that a sanitizer sees a read beyond it. */
 
 #include "mcor_internal.h"
 #include "mcor_program.h"
@@ -78,7 +78,7 @@ double core_slope(const double x[3]); /* linear */
 /* The set as input; borrowed. */
 mcor_array core_array(const double* data, int components);
 mcor_input core_input(const core_set* set);
-/* The same; what is on the device stays there after the extraction. */
+/* As core_input, but the particles stay on the device after the extraction. */
 mcor_input core_input_to_keep(const core_set* set);
 mcor_options core_options(const double* iso);
 
@@ -98,11 +98,12 @@ mcor_surface core_extract(
 
 /* Fails unless the surface is an oriented manifold without degenerate triangles. */
 mesh_report core_check_mesh(const mcor_surface* surface);
-/* The same; but the two vertices of an edge at which only two opposite cells are valid coincide. */
+/* As core_check_mesh, but the two vertices of an edge at which only two opposite cells are valid
+ * may coincide. */
 mesh_report core_check_pinched_mesh(const mcor_surface* surface);
-/* The same; and points of the mesh's boundary, and no others, must be flagged. */
+/* As core_check_mesh; points of the mesh's boundary, and no others, must be flagged, too. */
 void core_check_flags(const mcor_surface* surface);
-/* Of nothing, for a start; and with more bytes, if data is not NULL. */
+/* The hash of nothing, for a start; and with more bytes, if data is not NULL. */
 #define CORE_HASH_OF_NOTHING 0xCBF29CE484222325u
 uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes);
 /* Point count, points, triangles and every optional array. */

@@ -43,7 +43,7 @@ static void modules_print(
   fflush(stdout);
 }
 
-/* Of a result that is no surface. */
+/* The hash of a result that is no surface. */
 typedef struct modules_hash
 {
   const char* name;
@@ -310,7 +310,7 @@ static core_set tank_set(bool flat)
   return set;
 }
 
-/* What a run in the tank has. */
+/* Properties of a run in the tank. */
 enum
 {
   TANK_LEVELS = 1,

@@ -39,7 +39,7 @@ void core_set_box(mcor_options* options, const core_cut* cut, const int at[3]);
 void core_check_cuts(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options);
 
-/* The same with other cuts. */
+/* As core_check_cuts, with other cuts. */
 void core_check_these_cuts(mcor_context* context, const char* name, const mcor_input* input,
   const mcor_options* options, const core_cut* cuts, int count);
 

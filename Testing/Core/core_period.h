@@ -7,7 +7,7 @@
 
 #include "core_fixture.h"
 
-/* Of spacing 1 in a box at the origin with sides of these lengths; a scalar that repeats. */
+/* Particles of spacing 1 in a box at the origin with sides of these lengths; the scalar repeats. */
 core_set core_make_period(const int length[3], uint64_t seed);
 /* The set and its images in all 27 periods, or those along the axes that have one. */
 core_set core_add_images(const core_set* set, const double period[6]);

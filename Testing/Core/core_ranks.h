@@ -30,7 +30,7 @@ typedef struct core_rank
   mcor_ranks ranks; /* for options.ranks */
 } core_rank;
 
-/* What a rank does in a thread of its own. */
+/* The work of a rank, in a thread of its own. */
 typedef void (*core_rank_body)(core_rank* rank, void* data);
 
 /* Runs `count` ranks to their ends. A rank whose body has called core_leave takes no part in what

@@ -31,7 +31,7 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
   return hash;
 }
 
-/* The same as a context that never saw anything else. */
+/* Returns the hash of a context that never saw anything else. */
 static uint64_t fresh_hash(const mcor_input* input, const mcor_options* options)
 {
   mcor_context* context = NULL;

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a context keeps between calls never shows: every parameter is changed by itself, from a call
- * that has just been made and back to it, and each result is that of a context which never saw
- * another call. */
+/* Data that a context keeps between calls never show: every parameter is changed by itself, from
+ * a call that has just been made and back to it, and each result is that of a context which
+ * never saw another call. */
 
 #include "core_fixture.h"
 
@@ -23,7 +23,7 @@ typedef struct reuse_call
   mcor_options options;
 } reuse_call;
 
-/* What the particles' sizes come from. */
+/* Sources of the particles' sizes. */
 typedef enum reuse_base
 {
   REUSE_ARRAYS, /* smoothing lengths and volumes as arrays */
@@ -231,7 +231,7 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
   AT(ARRAYS, correction_length), AT(ARRAYS, residual), AT(ARRAYS, boundary_flag),
   AT(ARRAYS, iso_value_array), AT(ARRAYS, curvature), AT(ARRAYS, nearest_particle), AT(ARRAYS, triangle_normals) };
 
-/* Of the surface and the counts of cells that go with it. */
+/* Hashes the surface and the counts of cells that go with it. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)
 {
   mcor_surface surface = core_extract(context, &call->input, &call->options);
@@ -244,7 +244,7 @@ static uint64_t hash_of(mcor_context* context, const reuse_call* call, const cha
   return hash;
 }
 
-/* Of a context that never saw anything else. */
+/* Returns the hash of a context that never saw anything else. */
 static uint64_t fresh_hash(const reuse_call* call, const char* step)
 {
   mcor_context* context = NULL;
@@ -318,8 +318,8 @@ static void fail_call(mcor_context* context, const reuse_call* call, int kind)
   CORE_CHECK(!surface.points && surface.point_count == 0, "a surface after a failure");
 }
 
-/* What a failed call announced by its versions is not there for the next one; nor does it spoil
- * what the call before it left. */
+/* Data that a failed call announced by its versions are not there for the next one; nor does it
+ * spoil what the call before it left. */
 static void test_failed_calls(void** state)
 {
   mcor_context* context = *state;

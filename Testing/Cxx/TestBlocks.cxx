@@ -212,7 +212,7 @@ void TestNoPointSets()
   CHECK(!*filter->GetErrorMessage());
 }
 
-/// Those of the particles for which `isIn` is true, with all arrays.
+/// Takes the particles for which `isIn` is true, with all arrays.
 vtkSmartPointer<vtkPolyData> Take(vtkPolyData* from, const std::function<bool(vtkIdType)>& isIn)
 {
   auto taken = vtkSmartPointer<vtkPolyData>::New();

@@ -169,7 +169,7 @@ void CheckFluid()
   split->Update();
   CHECK(At(split->GetTable(), 0, "particles") == 1 && At(split->GetTable(), 1, "particles") == 0);
 
-  // The same in blocks, whose names tell of walls.
+  // Likewise in blocks, whose names tell of walls.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, Particles({ { { 0.0, 1.7, 0.0 } } }));
   blocks->SetBlock(1, Particles({ { { 5.0, 0.0, 0.0 } } }));

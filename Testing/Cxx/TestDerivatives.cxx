@@ -97,7 +97,7 @@ void CheckLinear(bool varying, const Matrix& j, bool isDouble)
     strain[a] = 0.5 * (j[a] + j[transposed]);
     trace2 += j[a] * j[transposed];
   }
-  // Of the rotation -|w|^2; a shear's S S + O O is 0.
+  // The rotation has -|w|^2; a shear's S S + O O is 0.
   const double lambda2 = j == Rotation ? -0.38 : 0.0;
   CHECK(ArrayOf(filter, "Gradients")->GetDataType() == (isDouble ? VTK_DOUBLE : VTK_FLOAT));
   CHECK(ErrorOf(filter, "Gradients", { j.begin(), j.end() }) < tolerance);
@@ -152,7 +152,7 @@ void CheckSolids()
   CHECK(vtkPolyData::SafeDownCast(filter->GetOutput())->GetNumberOfPoints() == 9261);
 }
 
-/// What cannot be used gives a sentence and an empty output.
+/// Input that cannot be used gives a sentence and an empty output.
 void CheckErrors()
 {
   auto particles = MakeParticles(false);

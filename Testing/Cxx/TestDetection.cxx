@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is found in data where nobody has said it: the fluid, in every filter; the array to be looked at.
+// Finding what nobody has said: the fluid, in every filter, and the array to be looked at.
 #include "TestParticles.h"
 
 #include "vtkCommand.h"
@@ -26,7 +26,7 @@ vtkSmartPointer<vtkPolyData> MakeTyped(const char* name, double fluid, double wa
   return cube;
 }
 
-/// What filters find in these particles, and whether they warn where they are not to look.
+/// Says what filters find in these particles, and whether they warn where they are not to look.
 std::string Find(vtkPolyData* particles, int& warnings)
 {
   vtkNew<vtkMarchingCorrectors> contour;

@@ -112,7 +112,7 @@ void CheckLevels()
   }
 }
 
-/// Of the second input, with and without names; and two points alone.
+/// Lines of the second input, with and without names; and two points alone.
 void CheckLines()
 {
   auto cube = test::MakeCube();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What an observer of the progress does while an update runs does not change this update; and
-// filters in several threads do not disturb each other.
+// Observers of the progress do not change the update that runs, whatever they do; and filters in
+// several threads do not disturb each other.
 #include "TestParticles.h"
 
 #include "vtkCommand.h"

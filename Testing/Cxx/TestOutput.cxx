@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What the output carries: arrays, their names and types, precision of the points, field data; and
+// Contents of the output: arrays, their names and types, precision of the points, field data; and
 // the filter's own state.
 #include "TestParticles.h"
 
@@ -394,7 +394,7 @@ void TestMeasures()
     Number(run, "Area") < 0.7 * area);
 }
 
-// What one run costs, and another one for the same surface may not, is no part of the surface.
+// Costs of a run, which another run for the same surface may not have, are no part of the surface.
 void TestCompact()
 {
   auto filter = test::MakeSphereFilter(MakeParticles());

@@ -85,7 +85,8 @@ void CheckValues(bool sum)
   CHECK(valid > 200 && far > 16);
 }
 
-/// Of a linear array inside of the cube: the particles' gradient to some digits, and of the weight 0.
+/// Gradients of a linear array inside of the cube: the particles' gradient to some digits; of the
+/// weight, 0.
 void CheckGradients()
 {
   auto cube = test::MakeCube();

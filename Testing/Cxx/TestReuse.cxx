@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-// What is kept on the device between runs never changes a result and can be given back; a run that
-// is aborted, or short of device memory, leaves an empty output and a filter that works.
+// Data kept on the device between runs never change a result and can be given back; a run that is
+// aborted, or short of device memory, leaves an empty output and a filter that works.
 #include "TestParticles.h"
 
 #include "vtkCallbackCommand.h"

@@ -329,7 +329,7 @@ static void fuzz_fail_first(const fuzz_call* call)
   mcor_surface surface;
   failing.options.iteration_limit = 0;
   const mcor_status status = fuzz_extract(fuzz_context(call, 0), &failing, &surface);
-  /* That the particles are in no plane, or their walls in another, is noticed before. */
+  /* Particles in no plane, or with their walls in another, are noticed before. */
   FUZZ_CHECK(status == MCOR_INVALID_ARGUMENT ||
     (status == MCOR_INVALID_DATA && failing.options.dimension != 3));
   mcor_free_surface(&surface);

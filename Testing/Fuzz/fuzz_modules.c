@@ -135,7 +135,8 @@ static int fuzz_gather(void* user, const void* records, int64_t count, size_t wi
   return fuzz_exchange(user);
 }
 
-/* What a rank alone measures and extracts is what no rank does; without particles it can measure nothing. */
+/* A rank alone measures and extracts what no rank does; without particles it can measure
+ * nothing. */
 static void fuzz_ranks(unsigned failing, const fuzz_call* call)
 {
   mcor_context* context = fuzz_context(call, 1);

@@ -31,7 +31,7 @@ struct Part
   std::function<int(const Particle&, int count)> RankOf;
 };
 
-/// The same everywhere, and like a random number.
+/// Returns the same number everywhere, one like a random number.
 std::uint32_t Shuffle(vtkIdType index)
 {
   auto bits = static_cast<std::uint32_t>(index) * 2654435761u;

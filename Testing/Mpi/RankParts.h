@@ -16,7 +16,7 @@ constexpr int PartCount = 6;
 
 const char* PartName(int part);
 
-/// What a .vtp file holds.
+/// The particles that a .vtp file holds.
 vtkSmartPointer<vtkPolyData> ReadParticles(const std::string& file);
 
 /// A rank's share of the particles.

@@ -34,7 +34,7 @@ const char* const IndexName = "TestIndex";
 
 using Data = vtkSmartPointer<vtkPolyData>;
 
-/// Of particles and points.
+/// Runs a filter on particles and points.
 using Run = std::function<Data(vtkPolyData*, vtkPolyData*, vtkMultiProcessController*)>;
 
 struct Case
@@ -201,7 +201,7 @@ Data MakePoints(vtkPolyData* particles, const Case& tried)
   return data;
 }
 
-/// The same points in the order of `given`, with the arrays that `whole` has at them.
+/// Compares with the points in the order of `given`, and with the arrays that `whole` has at them.
 std::string ComparePart(vtkPolyData* part, vtkPolyData* given, vtkPolyData* whole, vtkIdType& seen)
 {
   if (!part || part->GetNumberOfPoints() != given->GetNumberOfPoints())

@@ -16,7 +16,7 @@ static int adaptive_above(const oracle_adaptive* adaptive, int64_t node)
 
 /* ---- edges ---- */
 
-/* Of the four quarters around an edge, which ones a cell takes: its middle, but a cell whose face the
+/* Which of the four quarters around an edge a cell takes: its middle, but a cell whose face the
  * edge runs across takes two. */
 static int adaptive_quadrants(const adaptive_cell* cell, const int64_t at[3], int axis)
 {
@@ -120,7 +120,8 @@ int oracle_decide_face(const oracle_decider* decider, const double value[4], con
   return sample.value > decider->limits->iso;
 }
 
-/* The same for a face of a cell; as in the case table, 0, where the field does not decide. */
+/* Decides likewise for a face of a cell; as in the case table, 0, where the field does not
+ * decide. */
 static int adaptive_joined(oracle_adaptive* adaptive, const adaptive_cell* cell, int face)
 {
   static const int stride[3] = { 1, 3, 9 };

@@ -21,7 +21,7 @@ static void expect(oracle_suite* suite, int condition, const char* name, const c
   }
 }
 
-/* What solids do, as the program's --solids. */
+/* Parts that solids play, as the program's --solids. */
 typedef enum adaptive_solids
 {
   SOLIDS_NONE,

@@ -14,7 +14,7 @@
 
 static const char* const field_names[3] = { "shepard", "sum", "weight" };
 
-/* What differs from the defaults; zero: as the set and the library have it. */
+/* Differences from the defaults; zero: as the set and the library have it. */
 typedef struct variant
 {
   const char* set;

@@ -77,7 +77,7 @@ static double measure_inside(
   return (double)inside / SAMPLES;
 }
 
-/* What the options without caps give comes first, to the last bit. */
+/* The surface that the options give without caps comes first, to the last bit. */
 static void check_surface(
   oracle_suite* suite, const char* name, const mcor_surface* own, const mcor_surface* capped)
 {
@@ -162,7 +162,7 @@ static void check_alike(
   }
 }
 
-/* What is open must be a border of trimming. */
+/* Open edges must be a border of trimming. */
 static int64_t count_open(const mcor_surface* s, const mesh_report* mesh)
 {
   int64_t open = 0;

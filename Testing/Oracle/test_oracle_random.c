@@ -55,7 +55,7 @@ static void fill_options(oracle_case* at, uint64_t* state, uint64_t kernels, dou
     at->options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
     at->options.vertex_threshold = pick(state, thresholds, 4);
   }
-  /* Of the free surface, computed volumes would differ with and without solids. */
+  /* Computed volumes of the free surface would differ with and without solids. */
   if (!at->input.ignore_solids && (at->options.field != MCOR_WEIGHT_SUM || at->input.volume.data))
   {
     static const double shares[] = { 0.0, 0.5, 0.8 };

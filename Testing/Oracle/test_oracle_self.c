@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What the oracle takes from formulas, by hand, and its mesh checker, whose faults are planted. Its lattice and sums
- * share no code with the library's, so these test each other. */
+/* Checks by hand the formulas that the oracle uses, and its mesh checker with planted faults.
+ * Its lattice and sums share no code with the library's, so these test each other. */
 
 #include "oracle_check.h"
 #include "oracle_compare.h"

@@ -68,10 +68,10 @@ struct vtkSPHRanksBalance
 std::vector<std::int64_t> vtkSPHCountWork(const mcor_input& input, const mcor_options& options);
 
 /**
- * The same, plus a share of the surface's cost where the surface is expected: in cells of a
- * coarse grid that have values on both sides of an iso value around them, or, for a free
- * surface, far fewer particles beside them. The number of cells does not grow with the
- * particles. The same to the last bit however particles are spread over ranks. Collective.
+ * Adds a share of the surface's cost where the surface is expected: in cells of a coarse grid
+ * that have values on both sides of an iso value around them, or, for a free surface, far fewer
+ * particles beside them. The number of cells does not grow with the particles. The result is the
+ * same to the last bit however particles are spread over ranks. Collective.
  */
 std::vector<std::int64_t> vtkSPHExpectWork(vtkSPHRanks& ranks, const mcor_input& input,
   const mcor_options& options, const mcor_globals& globals);

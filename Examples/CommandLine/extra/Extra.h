@@ -13,8 +13,8 @@ class Picture;
 class vtkDataObject;
 struct PictureOptions;
 
-/// What needs many libraries, VTK's rendering and HDF5, which to load takes longer than a small run: it is in a
-/// library of its own.
+/// Names what needs many libraries, VTK's rendering and HDF5. These take longer to load than a
+/// small run takes, so this is a library of its own.
 struct Extra
 {
   std::unique_ptr<Picture> (*NewPicture)(const PictureOptions& options);

@@ -37,8 +37,8 @@ vtkSmartPointer<vtkPointSet> ReadWalls(
 /// These files, and those that they list as pieces: all that is read, as far as lists can be.
 std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages);
 
-/// What files hold at one time. Where any of it has vertices, points of meshes without these are no particles, so cells are
-/// kept until all is read.
+/// Particles that files hold at one time. Where any of the data have vertices, points of meshes
+/// without vertices are no particles, so cells are kept until all is read.
 struct ParticleSets
 {
   std::vector<std::string> Files;

@@ -147,8 +147,8 @@ static mcor_options options_of(const compact_case* at)
   return options;
 }
 
-/* Of triangles: how many have an angle below 20 degrees, and how many face along the mean of their
- * points' normals. */
+/* Counts the triangles that have an angle below 20 degrees, and those that face along the mean
+ * of their points' normals. */
 static void measure(const mcor_surface* s, int64_t* sharp, int64_t* turned)
 {
   *sharp = *turned = 0;
@@ -197,7 +197,7 @@ static int64_t count_drops(const mcor_surface* s)
   return closed;
 }
 
-/* Of points that borders and caps alone have: of the bytes of their places, in any order. */
+/* Hashes the bytes of points that only borders and caps have, in any order. */
 static uint64_t hash_border(const mcor_surface* s)
 {
   uint64_t sum = 0;

@@ -33,9 +33,9 @@ static void one_level_is_uniform(void** state)
   core_free_set(&set);
 }
 
-/* Of a lattice on which values are above in one half and below in the other, nodes are evaluated between
- * both alone, and where the weight is low; those of leaves that are certain next to these where an edge is
- * crossed. */
+/* Half of the lattice has values above, the other half below. Nodes are evaluated only between
+ * the halves and where the weight is low; nodes of leaves that are certain, next to these where
+ * an edge is crossed. */
 static void few_nodes_are_evaluated(void** state)
 {
   static const double iso = 0.1;

@@ -10,7 +10,7 @@
 #define EDGES                                                                                      \
   24 /* axis << 3 | lower corner; 12 of these numbers are edges; a face is axis * 2 + side */
 
-/* What was decided on a cell, and the row of the table for it. */
+/* The decisions on a cell, and the row of the table for them. */
 typedef struct cells_choice
 {
   int cube_case;
@@ -380,9 +380,9 @@ static void note_diagonals(const cells_mesh* mesh, const cells_choice* choice, d
   }
 }
 
-/* Of two cells that share a face, at most one has a diagonal between the same two vertices there, whatever is decided.
- * So no side has more than two triangles, and fans around an edge's vertex meet in their ends alone: with the above,
- * any cells fit together. */
+/* If two cells share a face, at most one has a diagonal between the same two vertices there,
+ * whatever is decided. So no side has more than two triangles, and fans around an edge's vertex
+ * meet in their ends alone: with the above, any cells fit together. */
 static void check_diagonals(diagonal_table used)
 {
   int some = 0;

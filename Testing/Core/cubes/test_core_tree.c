@@ -47,7 +47,7 @@ static size_t at(const plain_levels* plain, int x, int y, int z)
   return ((size_t)z * (size_t)plain->n + (size_t)y) * (size_t)plain->n + (size_t)x;
 }
 
-/* Of the kernel: the support is a cube. */
+/* Whether the kernel's support is a cube. */
 static bool is_cube;
 
 /* Whether all particles that reach the brick have 2^level times the smallest h. */
@@ -206,7 +206,7 @@ static void leaves_are_those_of_the_definition(void** state)
       fill(&plain, level, leaf, -1);
     }
     assert_int_equal(count_of_leaves, tree->leaf_count);
-    /* What is left no particle reaches, or not with this level's cubes. */
+    /* No particle reaches the rest, or not with this level's cubes. */
     for (size_t i = 0; i < count; ++i)
     {
       CORE_CHECK(plain.level[i] < 0 || plain.level[i] > top, "seed %d: no leaf of level %d",

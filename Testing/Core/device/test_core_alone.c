@@ -31,7 +31,7 @@ static mcor_status extract(mcor_context* context, uint64_t* hash)
   return extract_with(context, MCOR_CUBIC_SPLINE, MCOR_FLOAT32, hash);
 }
 
-/* What was not compiled with the library is named, with the way out. */
+/* A message names kernels that were not compiled with the library, and the way out. */
 static void test_names_what_is_missing(void** state)
 {
   (void)state;

@@ -41,7 +41,7 @@ static void test_turns_and_shares(void** state)
   core_free_set(&set);
 }
 
-/* Who asks for a device gets it. */
+/* A device that is asked for by name is taken. */
 static void test_named_device(void** state)
 {
   mcor_context* context = *state;

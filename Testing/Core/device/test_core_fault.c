@@ -121,7 +121,7 @@ static mcor_status flux(
   return status;
 }
 
-/* Of one rank alone. */
+/* Callbacks of a single rank. */
 static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
@@ -156,7 +156,8 @@ static const mcor_ranks alone = { .reduce_doubles = reduce_doubles,
   .reduce_counts = reduce_counts,
   .gather = gather };
 
-/* What a rank does: measures with all others, then extracts its box, and cells grow from box to box. */
+/* The work of a rank: it measures with all others, then extracts its box, and cells grow from
+ * box to box. */
 static mcor_status extract_as_rank(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {
@@ -270,7 +271,7 @@ static int sweep_allocations(mcor_context* context, const sweep* s)
   return n;
 }
 
-/* What is right, and what a context holds when it holds nothing of it. */
+/* Keeps the right result, and what a context holds when it holds nothing of a run. */
 static void begin_sweep(mcor_context* context, sweep* s)
 {
   s->input.particles_version = s->input.scalar_version = 1000000;

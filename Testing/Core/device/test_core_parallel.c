@@ -255,7 +255,7 @@ static void test_solids_left_out(void** state)
   core_free_set(&set);
 }
 
-/* Of several bad particles the first is named, whichever thread finds one first. */
+/* The first of several bad particles is named, whichever thread finds one first. */
 static void test_first_bad_particle(void** state)
 {
   core_set set = make_large_set();
@@ -282,7 +282,8 @@ static void test_first_bad_particle(void** state)
   core_free_set(&set);
 }
 
-/* Of fluid alone, and of none where all are solids; slices may have no fluid. */
+/* Ranges are those of the fluid alone, or of nothing where all are solids; slices may have no
+ * fluid. */
 static void test_ranges(void** state)
 {
   (void)state;

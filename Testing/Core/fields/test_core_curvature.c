@@ -170,8 +170,8 @@ static void reference(
   curvature[1] = gauss / g2 / g2;
 }
 
-/* Of each field, with solids among the fluid, and of the kernel that is a product. Where W'' jumps, differences are of
- * no use. */
+/* Curvatures of each field, with solids among the fluid, and with the kernel that is a product.
+ * Where W'' jumps, differences are of no use. */
 static void test_any_field(void** state)
 {
   core_set set = core_make_block(9, 0.5, 3, core_slope);

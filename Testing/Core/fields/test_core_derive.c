@@ -165,7 +165,7 @@ static void test_too_few_neighbours(void** state)
   core_free_set(&set);
 }
 
-/* Of matrices of which the answer is known. */
+/* Decomposes matrices whose parts are known. */
 static void test_decomposition(void** state)
 {
   const double gradients[5][9] = { { 0, -1, 0, 1, 0, 0, 0, 0, 0 }, /* rotation about z */

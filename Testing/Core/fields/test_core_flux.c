@@ -225,7 +225,7 @@ static void test_uniform_in_a_plane(void** state)
       {
         turned.points[p / 3 * 3 + to[p % 3]] = cases[i].section.points[p];
       }
-      /* Of a rectangle the cross product turns with odd orders of axes. */
+      /* The cross product of a rectangle's edges turns with odd orders of axes. */
       const double sign = turned.kind == MCOR_SECTION_RECTANGLE && axis == 1 ? -1 : 1;
       mcor_flux_reading r = flux_of(*state, &input, &options, &turned);
       check_reading(

@@ -63,8 +63,9 @@ static double length_of(const mcor_gauge_line* line)
     pow(line->to[2] - line->from[2], 2));
 }
 
-/* What a line reads, against its crossings as dense samples find them. Two crossings between which the
- * weight sum leaves the level by less than its error may be missing, or too many. */
+/* Checks the reading of a line against its crossings as dense samples find them. Two crossings
+ * between which the weight sum leaves the level by less than its error may be missing, or too
+ * many. */
 static void check_line(const oracle_field* field, const mcor_gauge_line* line,
   const mcor_gauges* gauges, int64_t number, double step, gauge_counts* counts)
 {
@@ -272,7 +273,7 @@ static void test_period(void** state)
   core_free_set(&set);
 }
 
-/* The same numbers, alone or among others, from particles that stay on the device or do not. */
+/* Readings are the same alone or among others, from particles that stay on the device or do not. */
 static void test_same_bits(void** state)
 {
   core_set set = make_pool(1);

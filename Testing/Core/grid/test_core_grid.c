@@ -194,7 +194,8 @@ static void test_query(void** state)
   }
 }
 
-/* Of cubes exactly, else to two units of rounding, and with the bits that IEEE's operations give. */
+/* Roots of cubes are exact, others within two units of rounding, and all have the bits that
+ * IEEE's operations give. */
 static void test_cube_root(void** state)
 {
   (void)state;
@@ -238,7 +239,7 @@ static void test_estimate(void** state)
   }
 }
 
-/* What of the grid must not depend on the order of the input: a row for each array. */
+/* Arrays of the grid that must not depend on the order of the input, a row for each. */
 typedef struct sorted_set
 {
   int count;

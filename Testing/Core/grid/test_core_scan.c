@@ -99,7 +99,7 @@ static void test_scan(void** state)
 static void test_scan_overflow(void** state)
 {
   mcor_context* context = *state;
-  /* What is rounded up must be an int as well. */
+  /* A count that is rounded up must be an int as well. */
   const int most[] = { INT_MAX, INT_MAX - 1024, INT_MAX - 5000 };
   for (int k = 0; k < 3; ++k)
   {

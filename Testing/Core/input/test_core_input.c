@@ -367,7 +367,7 @@ static void test_bad_attributes(void** state)
   expect_good(*state);
 }
 
-/* What solids have of the scalar, and of an attribute, plays no part. */
+/* Values of the scalar and of attributes at solids play no part. */
 static void test_values_of_solids(void** state)
 {
   const double values[] = { 0.5, NAN, INFINITY, -1e300 };
@@ -465,7 +465,7 @@ static void test_bad_products(void** state)
   expect_good(*state);
 }
 
-/* What is too little for a computed volume is not blamed on the kernel. */
+/* Values that are too small for a computed volume are not blamed on the kernel. */
 static void test_computed_volumes(void** state)
 {
   DATA("particle 5|mass|times the largest|volumes", call.input.volume = (mcor_array){ 0 };

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What arrays are, by their names; and what their values suggest: a period, who is fluid, an iso value. */
+/* Quantities of arrays by their names; and what values suggest: a period, the fluid, an iso
+ * value. */
 
 #include "core_fixture.h"
 
@@ -49,7 +50,7 @@ static void test_names(void** state)
   assert_int_equal(mcor_name_priority(MCOR_QUANTITY_COUNT, "m"), -1);
 }
 
-/* What lies where: of several the first in the order of the core, and none that is no period. */
+/* The first array in the order of the core gives the period, and none that is no period does. */
 static void test_period_of_field_data(void** state)
 {
   (void)state;
@@ -135,8 +136,8 @@ static int compare_values(const void* a, const void* b)
   return (x > y) - (x < y);
 }
 
-/* Of many values the one in the middle of their order, whatever their distribution; solids and values that are
- * not finite left out. */
+/* The iso value is the one in the middle of the values' order, whatever their distribution;
+ * solids and values that are not finite are left out. */
 static void test_iso_values(void** state)
 {
   (void)state;

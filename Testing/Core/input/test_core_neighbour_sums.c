@@ -116,7 +116,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   {
     assert_true(again[i] == lengths[order[i]]);
   }
-  /* Those of a part, whose neighbours are all; as if particles that play no part were not there. */
+  /* Sums at some particles, with all as neighbours; particles that play no part might as well
+   * not be there. */
   input = core_input(&set);
   uint8_t* marks = calloc((size_t)count, 1);
   double* some = calloc((size_t)count, sizeof *some);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a run may take, worked out by hand, and what it used, in words. */
+/* How long a run may take, worked out by hand, and what it used, in words. */
 
 #include "core_fixture.h"
 

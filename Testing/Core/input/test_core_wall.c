@@ -122,7 +122,7 @@ static int compare_doubles(const void* a, const void* b)
   return (s > t) - (s < t);
 }
 
-/* The same block with 200 solids: so few that all of them are looked at. */
+/* The block with 200 solids: so few that all of them are sampled. */
 static core_set make_small_tank(void)
 {
   core_set set = make_tank();
@@ -194,7 +194,8 @@ static void test_measured(void** state)
   core_free_set(&set);
 }
 
-/* What is measured for a scalar, nothing for the free surface: with global values, too. That is the default. */
+/* By default the wall share is measured for a scalar, and 0 for the free surface; with global
+ * values, too. */
 static void test_auto(void** state)
 {
   core_set set = make_tank();

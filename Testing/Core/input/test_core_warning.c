@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What is wrong with the input is said in one sentence with figures; what is right, not at all. */
+/* Each fault of the input gives one sentence with figures; a sound input gives none. */
 
 #include "core_fixture.h"
 

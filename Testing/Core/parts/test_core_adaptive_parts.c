@@ -118,7 +118,7 @@ static void given_levels(void** state)
   core_expect_same("eight boxes", &all, &whole);
   free(whole.bytes);
   free(all.bytes);
-  /* Of uniform cubes, they lack the levels. */
+  /* Globals of uniform cubes lack the levels. */
   mcor_free_globals(&globals);
   input = core_input(&set);
   options.globals = NULL;

@@ -113,7 +113,7 @@ static mcor_input input_of(const core_set* set, mcor_array attributes[3])
   return input;
 }
 
-/* What is global is measured once; the boxes get it, and nearby particles alone. */
+/* Global values are measured once; the boxes get them, and nearby particles alone. */
 static void given_globals(void** state)
 {
   const double iso = 1;
@@ -199,7 +199,7 @@ static void small_boxes(void** state)
   core_free_set(&set);
 }
 
-/* What is kept from one box does not show in the next call. */
+/* Data kept from one box do not show in the next call. */
 static void kept_particles(void** state)
 {
   const double iso[2] = { 2, 4 };

@@ -71,7 +71,8 @@ static mcor_input gauge_input(
   return input;
 }
 
-/* Those that the box between two sides needs: nearer than `reach` to it, or to its image a period away. */
+/* Takes the particles that the box between two sides needs: nearer than `reach` to it, or to its
+ * image a period away. */
 static core_set take_near(const gauge_job* job, double low, double high, double reach)
 {
   core_set part = core_make_set(job->set->count);

@@ -102,7 +102,8 @@ static void points_see_images(void** state)
   }
 }
 
-/* Of halves of the period: a particle on its lower side is on the upper side of the upper half, too. */
+/* Derivatives of halves of the period: a particle on the period's lower side is on the upper
+ * side of the upper half, too. */
 static void check_halves(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const mcor_derivatives* whole)
 {

@@ -67,7 +67,7 @@ static core_set take_part(const core_set* set, split_function split, int ranks, 
 
 /* ---- Global values ---- */
 
-/* What an input is made of besides a set. */
+/* Parts of an input besides its set. */
 typedef struct measure_case
 {
   const char* name;

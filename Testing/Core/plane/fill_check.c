@@ -72,7 +72,7 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
   }
   if (line && !sides[0] && !sides[1])
   {
-    /* Of equal iso values one has bands beside it. */
+    /* Only one of equal iso values has bands beside it. */
     int times = 0;
     for (int i = 0; i < f->options->iso_count; ++i)
     {

@@ -3,7 +3,7 @@
 #ifndef fill_check_h
 #define fill_check_h
 
-/* What holds of any filled region. */
+/* Facts that hold for any filled region. */
 
 #include "plane_reference.h"
 

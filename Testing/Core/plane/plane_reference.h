@@ -27,7 +27,7 @@ typedef struct plane_sample
 
 /* Coordinate u or v of a particle. */
 double plane_u(const plane_field* field, int64_t i, int a);
-/* Of the field's values. */
+/* The range of the field's values. */
 double plane_range(const plane_field* field);
 /* W of two dimensions over W of three, per smoothing length; from numbers of its own. */
 double plane_norm(mcor_sph_kernel kernel);
@@ -37,11 +37,12 @@ plane_sample plane_evaluate(const plane_field* field, double u, double v);
  * join them, and all vertices with the field; the test fails where some are missing or there are others. Returns
  * how many sides are crossed. */
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
-/* The same, and the lines' directions, ends and normals; closed: they must be. */
+/* As plane_compare; checks the lines' directions, ends and normals, too. closed: they must be
+ * closed. */
 void plane_check_lines(
   const plane_field* field, double iso, const mcor_surface* surface, int closed);
 
-/* Of one iso value; lines are not trimmed. */
+/* Options for one iso value; lines are not trimmed. */
 mcor_options plane_options(const double* iso);
 
 /* n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane, smoothing length

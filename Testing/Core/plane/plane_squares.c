@@ -236,7 +236,7 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
       s->edges[edge[i]].close |= close;
     }
   }
-  /* What is above is cut off: a line begins where it ends, and leads to where it begins. */
+  /* The part above is cut off: a line begins where it ends, and leads to where it begins. */
   for (int i = 0; i < count && valid; ++i)
   {
     if (edge[i] >= 0 && node[i].above)

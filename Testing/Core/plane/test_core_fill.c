@@ -32,7 +32,7 @@ static void check_close(double a, double b, double tolerance, const char* what)
   CORE_CHECK(fabs(a - b) <= tolerance * fabs(b), "%s: %g, not %g", what, a, b);
 }
 
-/* What the lines enclose is filled, and its border is these lines alone. */
+/* The region that the lines enclose is filled, and its border is these lines alone. */
 static void test_free_surface(void** state)
 {
   const double iso = 0.5;

@@ -261,7 +261,8 @@ static void test_derivatives_and_gauges(void** state)
   }
 }
 
-/* Of a smooth scalar, pairs find what complete seeds do; and what is kept serves another iso value. */
+/* With a smooth scalar, pairs find what complete seeds do; and what is kept serves another iso
+ * value. */
 static void test_pairs_and_reuse(void** state)
 {
   core_set set = plane_make(20, 0.2, 1, 2, -1, 4);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a call: where caps are, on the plane's two axes; infinite where there are none. */
+/* A call, and where its caps are on the plane's two axes; infinite where there are none. */
 typedef struct caps_case
 {
   const core_set* set;
@@ -45,7 +45,7 @@ static double caps_length(const caps_case* c, const mcor_surface* s, int i, int3
   return (i % 2 == along) == 1 ? forward : -forward;
 }
 
-/* What is filled along each side, from triangles. */
+/* Measures how much is filled along each side, from triangles. */
 static void caps_filled(const caps_case* c, const mcor_surface* s, double length[4])
 {
   for (int64_t t = 0; t < 3 * s->triangle_count; ++t)
@@ -159,7 +159,7 @@ static void set_sides(double sides[6], int axis, double u0, double u1, double v0
   }
 }
 
-/* Of periods along both axes or one, boxes, and boxes in a period. */
+/* Caps of periods along both axes or one, of boxes, and of boxes in a period. */
 static void test_sides(void** state)
 {
   double all = 0;

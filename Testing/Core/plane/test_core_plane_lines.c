@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of particles that the field's set stands for. */
+/* Compares lines of particles that the field's set stands for. */
 static int64_t compare(
   mcor_context* context, const mcor_input* input, const plane_field* field, int closed)
 {

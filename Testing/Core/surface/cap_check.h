@@ -3,7 +3,7 @@
 #ifndef cap_check_h
 #define cap_check_h
 
-/* What holds of a surface with caps, whatever they close. */
+/* Facts that hold for any surface with caps, whatever they close. */
 
 #include "core_fixture.h"
 

@@ -49,7 +49,7 @@ static void check_triangle_normals(const mcor_surface* surface)
   free(sums);
 }
 
-/* The same; and they look outwards. */
+/* Checks normals likewise; they look outwards, too. */
 static void test_triangle_normals(void** state)
 {
   core_set set = core_make_block(10, 0.1, 3, core_ball);

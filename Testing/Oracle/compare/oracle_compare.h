@@ -29,8 +29,8 @@ extern "C"
     oracle_adaptive adaptive;
     int by_field; /* topology is */
     oracle_limits limits;
-    /* Of the scalar over fluid particles; its largest magnitude if all are equal. Of the
-     * weight: its largest value, at least 1. */
+    /* Range of the scalar over fluid particles, or its largest magnitude if all are equal; for
+     * the weight, its largest value, at least 1. */
     double range;
     double greatest_weight; /* of the nodes, at least 1 */
     double unit;            /* roundoff of the working precision */
@@ -74,7 +74,8 @@ extern "C"
     int64_t trim_vertices, trim_linear;
     int64_t
       trim_avoidable; /* linear cuts with an exact one (f = iso, w = threshold) within a cube */
-    /* Of exact trim vertices; here and below, weight is the eigenvalue where that is trimmed by. */
+    /* Errors of exact trim vertices; here and below, weight is the eigenvalue where that is
+     * trimmed by. */
     double trim_weight_error, trim_residual;
     int64_t below_threshold; /* vertices kept although their weight is too low */
     int64_t unsettled;       /* nodes and cells at the surface whose state depends on rounding */

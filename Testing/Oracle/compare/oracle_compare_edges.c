@@ -241,7 +241,8 @@ void compare_missing(compare_state* state, int64_t* present, int64_t* absent)
   for (int64_t e = 0; e < reference->surface.edge_count; ++e)
   {
     const int64_t edge = reference->surface.edge[e];
-    /* Of no use for components: a pinched edge may be there for the sake of another component. */
+    /* Such an edge says nothing of components: a pinched edge may be there for the sake of
+     * another component. */
     const int64_t component = compare_pinched(&reference->lattice, edge)
       ? reference->surface.component_count
       : reference->surface.edge_component[e];

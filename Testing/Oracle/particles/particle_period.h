@@ -8,7 +8,7 @@
 #include "mcor.h"
 #include "oracle.h"
 
-/* Of the box, which begins at 0. Whole numbers, of particles too. */
+/* Lengths of the box, which begins at 0. Whole numbers, of particles too. */
 extern const double particle_period_lengths[3];
 
 /* Jittered; the scalar is the density, the smoothing length goes with it. Positions are multiples of

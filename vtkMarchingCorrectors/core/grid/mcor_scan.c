@@ -38,7 +38,7 @@ static mcor_status mcor_launch_scan(
     MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums));
 }
 
-/* The same, and reads the total. */
+/* Scans likewise, and reads the total. */
 mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int* total)
 {
   const int segments = mcor_segments(context, count);

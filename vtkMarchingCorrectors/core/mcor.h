@@ -86,7 +86,7 @@ extern "C"
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
     /* The paper's: cells between pairs of particles that are at most an (unscaled) smoothing length apart and
-     * straddle the iso value; for comparisons, with cubes of one size, without a box, caps and ranks.
+     * straddle the iso value. For comparisons; needs cubes of one size, and no box, caps or ranks.
      * MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
     MCOR_PAIRS = 1
   } mcor_seed_mode;
@@ -166,8 +166,8 @@ extern "C"
      * given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else
      * 1 / (F_j sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the sum is
      * low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j = the kernel's
-     * standard deviation along an axis, d = the dimension. Solids fill that side: of their share of g that
-     * part counts, from none to all, which leaves |g| least; F_j = 1 for solids themselves.
+     * standard deviation along an axis, d = the dimension. Solids fill that side: of their share
+     * of g, as much counts, from none to all of it, as makes |g| least; F_j = 1 for solids themselves.
      * These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids unless the free surface
      * ends at them. Computed volumes next to walls therefore differ between the fields. */
     mcor_array volume, mass, density;
@@ -281,7 +281,7 @@ extern "C"
     /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices of one node of the
      * virtual grid that edges of triangles join are merged, and then moved along the gradient onto the surface, not
      * along lattice edges. That is undone where it would change the pieces or turn a triangle over. Points on the
-     * sides of periods, at caps and on borders stay, and come out as without. Cannot be combined with `filled`. */
+     * sides of periods, at caps and on borders stay, and are those without this option. Cannot be combined with `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; as `compact`, and `widen` of 2 if that is 1 */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
@@ -360,8 +360,8 @@ extern "C"
     double seconds[MCOR_PHASE_COUNT];
     double build_seconds; /* compiling or loading kernels, in any phase; not part of `seconds` */
     int64_t fluid_particles, solid_particles;
-    /* Particles too far away from all others for the virtual grid, which are left out: at most 0.1 %, or 8; number
-     * and position of the first of them. */
+    /* Particles that are left out because they are too far away from all others for the virtual
+     * grid: at most 0.1 %, or 8; number and position of the first of them. */
     int64_t far_particles, far_first;
     double far_place[3];
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
@@ -394,7 +394,8 @@ extern "C"
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
     int64_t triangles_before_trimming;
-    int64_t triangles_below_threshold; /* where there are none of the former: those without a node threshold */
+    /* Triangles without a node threshold; counted only if there are none with it. */
+    int64_t triangles_below_threshold;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
     /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume that a
      * closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In two
@@ -418,22 +419,21 @@ extern "C"
     int64_t vertices_corrected, newton_evaluations, vertices_above_tolerance;
     double iterations_mean;
     int iterations_max;
-    /* Max of |f - iso|, in the scalar's unit: as evaluated on the device, and what its rounding of positions and sums
-     * may add. Without caps and the trim_vertices_linear. */
+    /* Greatest |f - iso|, in the scalar's unit: as evaluated on the device, plus the most that its
+     * rounding of positions and sums may add. Leaves out caps and trim_vertices_linear. */
     double residual_max;
     double position_error; /* largest rounding of positions on the device, unit L */
     int64_t trim_vertices,
-      /* linear: left at the linear cut, off the iso value; and cuts of caps at walls that are off the share */
+      /* linear: left at the linear cut, off the iso value; or cuts of caps at walls, off the share */
       trim_vertices_linear;
     int64_t device_bytes_peak;
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* The key of a point: the number of the iso value and the kind of the point, then its lattice edge (of a
-   * merged one: the node, and which of the pieces there; of a cut: both of the points between which it lies; of a
-   * cap: the square). The points of a surface
-   * have different keys, in ascending lexicographic order. In the surface of a box, points have the same keys
-   * as in the whole surface. */
+  /* The key of a point: the number of the iso value and the kind of the point, then its place:
+   * its lattice edge; of a merged point the node, and which of the pieces there; of a cut the two
+   * points between which it lies; of a point of a cap the square. The points of a surface have different keys, in ascending lexicographic order. In the surface of a box,
+   * points have the same keys as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
   /* The key of a triangle: the number of the iso value, then its cell or the square of a cap. Triangles are in
@@ -576,43 +576,49 @@ extern "C"
     const mcor_options* options, mcor_surface* surface);
   void mcor_free_surface(mcor_surface* surface);
 
-  /* The range of the finite values of the scalar at fluid particles, and a suggested iso value: their median
-   * (one of the values); the middle of the values' 5 and 95 % if the median is at the end of these, and of the
-   * range if these are one value; or the logarithmic middle of the range if all values are positive and span three
-   * decades (without the lowest and highest 2 %), but no more than six with the median at their end. Reads only the
-   * scalar and the solids of the input; over all ranks unless `ranks` is NULL. Returns 0 and changes nothing if there
-   * is no such value, if mcor_extract would refuse the form of the scalar, or if another rank failed. */
+  /* Finds the range of the finite values of the scalar at fluid particles, and suggests an iso
+   * value: the median (one of the values). If the median is at an end of the middle 90 % of the
+   * values, the suggestion is the middle of these 90 %, or of the range if these are one value.
+   * If all values are positive, and all but the lowest and highest 2 % span three decades (no
+   * more than six if the median is at an end), it is the logarithmic middle of these. Reads only
+   * the scalar and the solids of the input; over all ranks unless `ranks` is NULL. Returns 0 and
+   * changes nothing if there is no such value, if mcor_extract would refuse the form of the
+   * scalar, or if another rank failed. */
   int mcor_find_iso_value(
     const mcor_input* input, const mcor_ranks* ranks, double range[2], double* iso_value);
 
-  /* 2 or 3: the dimension of a call with this input, over all ranks unless `ranks` is NULL, and this
-   * mcor_options.dimension. Reads only the positions and the solids. */
+  /* Returns 2 or 3, the dimension of a call with this input, over all ranks unless `ranks` is
+   * NULL, and this mcor_options.dimension. Reads only the positions and the solids. */
   int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension);
 
   /* A usual number of neighbours, as `eta` below. */
 #define MCOR_USUAL_ETA 1.3
 
-  /* Smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the h_i, unit L, that solve
-   * h_i^d sum_j W(x_i - x_j, h_i) = eta^d over all particles that play a part, fluid and solid, j = i included, to
-   * 1e-6 of h_i; d is the dimension. `count`: of so many particles, the first ones; others are neighbours only, as
-   * those of other ranks are. 0 for particles that play no part. None is longer than the extent of all. Reads the
-   * positions and solids of the input, and of the options sph_kernel, dimension and periodic. Not with M'4, whose sum
-   * does not grow with h. *why: NULL, or why it failed, in a sentence; free it with free(). */
+  /* Finds smoothing lengths [count] by neighbours, as Phantom, GADGET and SWIFT have them: the
+   * h_i, unit L, that solve h_i^d sum_j W(x_i - x_j, h_i) = eta^d, to 1e-6 of h_i; d is the
+   * dimension. The sum goes over all particles that play a part, fluid and solid, j = i
+   * included. `count`: the particles that get a length are the first ones; the others, such as
+   * those of other ranks, are neighbours only. 0 for particles that play no part. None is longer
+   * than the extent of all. Reads the positions and solids of the input, and of the options
+   * sph_kernel, dimension and periodic. Not with M'4, whose sum does not grow with h. *why:
+   * NULL, or why it failed, in a sentence; free it with free(). */
   mcor_status mcor_find_smoothing_lengths(const mcor_input* input, const mcor_options* options,
     double eta, int64_t count, double* lengths, char** why);
 
-  /* Densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over the same particles, unit of mass / L^d. Reads
-   * positions, masses, solids, and smoothing lengths [count] of the input, and the same options. */
+  /* Sums densities [count] from masses: sum_j m_j W(x_i - x_j, h_i) over the same particles,
+   * unit of mass / L^d. Reads positions, masses, solids, and smoothing lengths [count] of the
+   * input, and the same options. */
   mcor_status mcor_sum_densities(const mcor_input* input, const mcor_options* options,
     int64_t count, double* densities, char** why);
 
-  /* The least smoothing length of the fluid, as the input has it; 1 with estimate_smoothing_length, infinite
-   * without fluid. */
+  /* Returns the least smoothing length of the fluid, as the input has it; 1 with
+   * estimate_smoothing_length, infinite without fluid. */
   double mcor_least_smoothing_length(const mcor_input* input);
 
-  /* About how many cubes (in a plane squares) of the virtual grid the fluid, in the box if there is one, fills: a
-   * particle takes (h / 1.3)^3. 0 with estimate_smoothing_length if the cube size does not follow from that.
-   * least: mcor_least_smoothing_length, of all ranks that share the particles, whose numbers add up. */
+  /* Returns about how many cubes (squares in a plane) of the virtual grid the fluid fills, in
+   * the box if there is one: a particle takes (h / 1.3)^3. 0 if the cube size follows from a
+   * smoothing length that is to be estimated. least: mcor_least_smoothing_length, over all ranks
+   * that share the particles; the results of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
   /* Words for panels, with six digits: a warning of how long a run of so many cells may take; the smoothing length
@@ -645,14 +651,16 @@ extern "C"
   char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
-  /* A warning that an array of particle types (MCOR_PARTICLE_TYPE), in which values[i] occurs counts[i]
-   * times, is not used, so that all particles count as fluid; free it with free(). NULL if the array has only
-   * one value or more than MCOR_PARTICLE_TYPES, or if memory ran out. */
+  /* Warns that an array of particle types (MCOR_PARTICLE_TYPE), in which values[i] occurs
+   * counts[i] times, is not used, so that all particles count as fluid; free the sentence with
+   * free(). NULL if the array has only one value or more than MCOR_PARTICLE_TYPES, or if memory
+   * ran out. */
   char* mcor_describe_unused_type(
     const char* name, const double* values, const int64_t* counts, int count);
 
-  /* A warning that single precision is too coarse for the points of a surface whose largest coordinate, in magnitude,
-   * is that; free it with free(). NULL if it is fine, or if memory ran out. */
+  /* Warns that single precision is too coarse for the points of a surface whose largest
+   * coordinate, in magnitude, is `largest`; free the sentence with free(). NULL if it is fine,
+   * or if memory ran out. */
   char* mcor_describe_single_points(double largest, double cube_size);
 #define MCOR_PARTICLE_TYPES 8
 /* The array that marks, in blocks joined to one set, the particles of blocks with names of walls. */
@@ -797,9 +805,9 @@ extern "C"
      * axis of a plane, else z. */
     double direction[3];
     /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, and all that particles reach where there is none. Sides may
-     * be infinite. The image is the box as it is seen. Along x, y or z, particles count whose positions are in the box
-     * along the line of sight, and those beside the box that reach into it; else those in the box. Each counts with all
-     * of its kernel. */
+     * be infinite. The image is the box as it is seen. If the line of sight is x, y or z, a particle counts if its position
+     * along it is in the box and its kernel reaches the image; otherwise, if its position is in the box. Each counts with
+     * all of its kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
     /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what the pixel sees of the
@@ -843,14 +851,17 @@ extern "C"
     mcor_statistics statistics;
   } mcor_widening;
 
-  /* Finds the factor s of each fluid particle: the greatest in [1, options.widen] with which the weight sum
-   * sum V_k W(x_j - x_k, s h_j) is at least the free surface's iso value (0.5 for scalars), and 0.1 more unless all
-   * neighbours of many are on one side, on steps of 0.2 with linear interpolation; reduced to 1 where neighbours are few (drops, threads), and to the Shepard mean around
-   * the particle. A surface with options.widen is, to the last bit, that of an input with these factors and volumes; or
-   * with uniform cubes of the same size, with the products of smoothing lengths and factors. Reads the options of
-   * mcor_extract; a box only with globals, which are those of mcor_measure_globals with level_limit 0: results are then
-   * valid for particles in the box, which needs all particles within supports of (1 + widen) (1 + 1 / h_scale) around, or
-   * 1 + widen where volumes are known. *widening is overwritten. */
+  /* Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps of
+   * 0.2 with linear interpolation, with which the weight sum V_k W(x_j - x_k, s h_j) is at least
+   * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1; without the
+   * 0.1 for particles with many neighbours, all on one side. The factor is then reduced to 1
+   * where neighbours are few (drops, threads), and to at most the Shepard mean of the factors
+   * around the particle. A surface with options.widen is, to the last bit, that of an input with
+   * these factors and volumes; or with uniform cubes of the same size, with the products of
+   * smoothing lengths and factors. Reads the options of mcor_extract; a box only with globals,
+   * which are those of mcor_measure_globals with level_limit 0: results are then valid for
+   * particles in the box, which needs all particles within supports of (1 + widen) (1 + 1 /
+   * h_scale) around, or 1 + widen where volumes are known. *widening is overwritten. */
   mcor_status mcor_widen(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_widening* widening);
   void mcor_free_widening(mcor_widening* widening);

@@ -96,7 +96,7 @@ void SetSolids(Job& job, Text option, Text text)
   job.Surface->SetSolids(solids);
 }
 
-/// Either is used in its mode alone.
+/// Sets the iso values of both modes; each is used in its mode alone.
 void SetIsoValues(Job& job, Text option, Text text)
 {
   const std::vector<double> values = ToNumbers(option, text);

@@ -172,7 +172,7 @@ void CheckXml(const std::string& file, View text)
   }
 }
 
-/// Whether it may be a line of words, and not values, as text or not.
+/// Whether a line may consist of words, and not of values, as text or not.
 bool MayDeclare(View line)
 {
   const auto isPrinted = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\r'; };

@@ -58,7 +58,7 @@ void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
 
 }
 
-// Particles count as the surface was told of them.
+// Describes the particles to the filter of pieces as to that of the surface.
 void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time)
 {
   if (this->Options->ComponentFile.empty())

@@ -54,8 +54,8 @@ std::string FolderOf(const std::string& path)
   return folder.empty() ? "." : folder;
 }
 
-/// The number of an open descriptor that has a name in the file system; -1 if this is none. To open
-/// such a name is not the same: it would give a file position of its own.
+/// The number of an open descriptor that has a name in the file system; -1 if this is none. Such a
+/// name must not be opened: that would give a file position of its own.
 int DescriptorOf(const std::string& path)
 {
   const std::string number = fs::path(path).filename().string();
@@ -91,8 +91,8 @@ void FollowLinks(Target& target)
   FailWithError(target.Name);
 }
 
-/// The rules of the system for whom links serve, and for files that may not be written, hold for
-/// what is replaced, too: it is asked, by the name as given.
+/// Asks the system whether the file may be replaced, by the name as given: its rules for symbolic
+/// links, and for files that may not be written, hold for replacing, too.
 void CheckAccess(const Target& target)
 {
   if (!target.IsReplaced())

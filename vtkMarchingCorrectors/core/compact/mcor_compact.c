@@ -122,7 +122,7 @@ static int mcor_order_vertices(mcor_bunches* bunches)
     const bool is_last = v == bunches->march_count;
     if (!is_last && mcor_is_merged(bunches, bunches->first[v]) && !bunches->held[v])
     {
-      continue; /* its bunch is listed at the bunch's node */
+      continue; /* listed at its bunch's node */
     }
     const uint64_t key =
       is_last ? UINT64_MAX : mcor_order_key(bunches, mcor_marched_node(bunches, v));
@@ -615,7 +615,7 @@ typedef struct mcor_filing
   bool follows;
   cl_int* triangles;
   cl_ulong* cells;
-  int64_t first[MCOR_SLICES + 1]; /* of each slice's; before, how many it has */
+  int64_t first[MCOR_SLICES + 1]; /* first of each slice; before, how many the slice has */
   int64_t gone[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 1]; /* owned ones that are not left, by level */
 } mcor_filing;
 
@@ -671,7 +671,7 @@ static void mcor_fill_slice(void* data, int slice, int64_t first, int64_t last)
   }
 }
 
-/* Where trimming comes later, triangles that are gone were none before it. */
+/* If trimming comes later, triangles that vanish do not count as made before it. */
 static void mcor_count_gone(const mcor_bunches* bunches, const mcor_filing* filing, int slices)
 {
   mcor_statistics* s = bunches->context->run.statistics;

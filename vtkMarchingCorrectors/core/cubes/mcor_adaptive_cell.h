@@ -19,7 +19,7 @@
  * such that no diagonal has both ends in one sub-face, in one whole face or on one edge of the cell:
  * there another cell could use the same side. That such a way always exists, but for loops that lie
  * in one whole face altogether, whose diagonals no other cell can have, is shown by trying all cases
- * (Testing/Core/test_core_adaptive_cell.c). Of the ways that there are, that with the shortest
+ * (Testing/Core/cubes/test_core_adaptive_cell.c). Of the ways that there are, that with the shortest
  * diagonals is taken, vertices being in the middle of their edges; what lies flat in a face counts
  * as long.
  *

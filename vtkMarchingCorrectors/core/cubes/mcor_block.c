@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Most cubes that may cover the lattice at first. The first size is the smallest that keeps to
- * this. */
+/* Most cubes that may cover the lattice at first. The first size of cubes is the smallest that
+ * needs no more. */
 #define MCOR_FIRST_CUBES 32768
 
 /* Numbers the cubes of all levels up to the first size. Larger cubes are the blocks of higher
@@ -33,8 +33,8 @@ static int mcor_make_rungs(mcor_lattice* lattice)
   return level;
 }
 
-/* Makes kept blocks void that lie in cubes that are inactive now, as if they did not exist.
- * children: number of keys, the first ones, of blocks that were made by dividing. */
+/* Makes kept blocks void if they lie in cubes that are inactive now, as if they did not exist.
+ * children: the first so many keys are those of blocks that were made by dividing. */
 static mcor_status mcor_void_kept(mcor_context* context, int children)
 {
   const mcor_bricks* bricks = &context->bricks;
@@ -85,7 +85,8 @@ static mcor_status mcor_test_cubes(mcor_context* context, int level, int childre
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
 
-/* Most blocks: surface in a fourth of them has as many triangles as there can be. */
+/* Most blocks that can be used: surface in a fourth of them has as many triangles as there can
+ * be. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
 /* Returns the least number of blocks that these cubes will become. A surface is nearly flat in

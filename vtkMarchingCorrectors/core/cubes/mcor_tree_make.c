@@ -51,8 +51,8 @@ static mcor_status mcor_add_block(
 }
 
 /* Adds the blocks of one level that have parts of split bricks of the next level, or of their
- * images, and all blocks around these. Leaves find there the finer leaves beside them, and the
- * bricks whose nodes they need. */
+ * images, and all blocks around these. In them, leaves find the finer leaves beside them, and
+ * the bricks whose nodes they need. */
 static mcor_status mcor_add_parts(
   mcor_context* context, const mcor_tree* tree, int level, mcor_table* blocks)
 {

@@ -47,8 +47,8 @@ void mcor_drop_kept(mcor_context* context, int64_t most)
   }
 }
 
-/* Returns the bytes that may be held with kept buffers: an eighth more than this call, or the
- * last one, has needed. */
+/* Returns how many bytes may be held, kept buffers included: an eighth more than this call, or
+ * the last one, has needed. */
 static int64_t mcor_most_held(const mcor_cl* cl)
 {
   const int64_t used = cl->used_peak > cl->used_before ? cl->used_peak : cl->used_before;

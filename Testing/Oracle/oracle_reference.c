@@ -155,7 +155,7 @@ static int reference_particles(
   return enough;
 }
 
-int oracle_set_iso(oracle_reference* reference, double iso)
+static int oracle_set_iso(oracle_reference* reference, double iso)
 {
   /* In single precision rounding may change the side of a node whose value is this close. */
   const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;

@@ -232,7 +232,8 @@ static void test_shared_cuts(void** state)
   }
 }
 
-/* Thresholds of 0 trim nothing, high ones everything; in between the surface shrinks. */
+/* Thresholds of 0 trim nothing, high ones everything; in between the surface shrinks. Where it ends, points are
+ * flagged. */
 static void test_thresholds(void** state)
 {
   core_set set = core_make_block(8, 0.2, 3, core_slope);
@@ -240,12 +241,14 @@ static void test_thresholds(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   static const double thresholds[] = { 0, 0.3, 0.6, 0.9, 2 };
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   double last = INFINITY;
   for (int i = 0; i < 5; ++i)
   {
     options.vertex_threshold = thresholds[i];
     mcor_surface surface = core_extract(*state, &input, &options);
     mesh_report report = core_check_mesh(&surface);
+    core_check_flags(&surface);
     CORE_CHECK(
       report.area < last, "threshold %g: area %g after %g", thresholds[i], report.area, last);
     CORE_CHECK(i > 0 || surface.triangle_count == surface.statistics.triangles_before_trimming,

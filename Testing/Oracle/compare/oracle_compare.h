@@ -40,8 +40,6 @@ extern "C"
    * reason in message if that is impossible. */
   int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
     const mcor_options* options, int64_t node_limit, char message[256]);
-  /* Makes the reference that of another iso value. */
-  int oracle_set_iso(oracle_reference* reference, double iso);
   void oracle_free_reference(oracle_reference* reference);
 
   typedef struct oracle_comparison

@@ -164,7 +164,7 @@ static void test_iso_value(void** state)
          call.options.iso_count = 2);
   WARNED(MCOR_WARN_ISO_VALUE, "100 is outside", call.iso[0] = 100; call.options.field = MCOR_SUM);
   WARNED(
-    MCOR_WARN_TRIMMED, "nowhere that the weight sum is above the node threshold", call.iso[0] = 8.4;
+    MCOR_WARN_TRIMMED, "does not reach the iso value where the weight sum", call.iso[0] = 8.4;
     call.options.field = MCOR_SUM);
 }
 

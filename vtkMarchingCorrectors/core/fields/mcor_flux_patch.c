@@ -196,7 +196,7 @@ static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
   const mcor_plane* plane = &job->edges.context->plane;
   const int w = mcor_plane_axis(plane, 2), first = w == 0 ? 1 : 0, second = w == 2 ? 1 : 2;
   MCOR_RETURN_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
-    "Section %s is a line, through which only particles in a plane flow. Give it an area, by a "
+    "Section %s is a line, which is a section only of particles in a plane. Give it an area, by a "
     "corner and two ends.",
     mcor_label_section(job, number).text);
   for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 6)

@@ -292,8 +292,8 @@ static mcor_status mcor_run_project(
   MCOR_RETURN_IF(!job->places_only && mcor_projects_density(input) &&
       !mcor_is_given(&input->mass) && !mcor_is_given(&input->density),
     context, MCOR_INVALID_ARGUMENT,
-    "There is neither mass nor density, which the column density is the integral of. Name one of "
-    "them, or choose a scalar.");
+    "There is neither mass nor density, so there is no column density. Name one of them, or choose "
+    "a scalar.");
   const mcor_status status = mcor_project_particles(job);
   mcor_release_spread(job);
   free(job->volumes);

@@ -229,8 +229,8 @@ static mcor_status mcor_count_splats(mcor_project_job* job, int64_t blocks)
   for (int i = 0; i < slices; ++i)
   {
     MCOR_RETURN_IF(job->wrong[i] >= 0, context, MCOR_INVALID_DATA,
-      "What particle %lld adds to the projection is no finite number. Look at its values, or leave "
-      "it out.",
+      "Particle %lld would add a number that is not finite to the projection. Correct its values, "
+      "or leave it out.",
       (long long)job->wrong[i]);
     for (int c = 0; c < job->channels; ++c)
     {

@@ -239,8 +239,8 @@ static mcor_status mcor_check_particles(mcor_context* context, const mcor_input*
     MCOR_RETURN_IF(range[0] < 1, context, MCOR_INVALID_DATA,
       "The least factor of the smoothing lengths is %g; it must be at least 1.", range[0]);
     MCOR_RETURN_IF(mcor_needs_density(input), context, MCOR_INVALID_ARGUMENT,
-      "With factors of the smoothing lengths volumes cannot be computed. Provide those of the "
-      "lengths themselves, which mcor_widen returns.");
+      "Volumes cannot be computed from smoothing lengths with factors. Provide the volumes that "
+      "mcor_widen returns.");
   }
   return MCOR_OK;
 }

@@ -350,7 +350,7 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
   mcor_sort_neighbours(job);
   mcor_make_boxes(job);
   MCOR_RETURN_IF(job->count > 0 && job->eta > 0 && !(job->extent > 0), context, MCOR_INVALID_DATA,
-    "All particles are at one place, so that neighbours tell no smoothing length. Give one value.");
+    "All particles are at one place, so neighbours give no smoothing length. Give one value.");
   return MCOR_OK;
 }
 
@@ -392,7 +392,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
     const double own = job->norm * mcor_w_of(kernel, 0);
     MCOR_RETURN_IF(!(isfinite(job->eta) && eta > 0 && job->eta > own), context,
       MCOR_INVALID_ARGUMENT,
-      "ETA is %g; it must be above %.3g, which a particle without neighbours has. Usual is %g.",
+      "ETA is %g; it must be above %.3g, the value of a particle without neighbours. %g is usual.",
       eta, pow(own, job->plane ? 0.5 : 1.0 / 3), MCOR_USUAL_ETA);
   }
   return MCOR_OK;

@@ -300,7 +300,7 @@ static char* mcor_warn_discarded(const mcor_suspicion* s)
            !mcor_has_box(o) && o->node_threshold > 0)
     ? NULL
     : mcor_text(
-        "The field reaches the iso value nowhere that the weight sum is above the node threshold "
+        "The field does not reach the iso value where the weight sum is above the node threshold "
         "%g. "
         "If the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as "
         "the node threshold and the vertex threshold.",

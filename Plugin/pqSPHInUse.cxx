@@ -220,7 +220,8 @@ void pqSPHInUse::beginNew()
   }
   SCOPED_UNDO_EXCLUDE();
   this->WasEmpty = false; // as it has not been updated
-  // The pipeline has the filter's name without the words in brackets, which are for ParaView's search.
+  // The pipeline has the filter's name without the words in brackets, which are for ParaView's
+  // search.
   auto* item = pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(filter);
   const QRegularExpression others("[^A-Za-z0-9]");
   QString name = item->getSMName(), label = filter->GetXMLLabel();
@@ -248,8 +249,8 @@ void pqSPHInUse::beginNew()
   }
 }
 
-// A slice through the middle, or the particles' own plane; a line along the longest side, or upright. All reach
-// somewhat beyond the particles, where the fluid ends.
+// A slice through the middle, or the particles' own plane; a line along the longest side, or
+// upright. All reach somewhat beyond the particles, where the fluid ends.
 void pqSPHInUse::beginPlace()
 {
   vtkSMProxy* filter = this->proxy();
@@ -362,8 +363,9 @@ void pqSPHInUse::showValues()
   this->showRows();
 }
 
-// ParaView chooses colours when something is shown first, even if there is nothing to see: after an error, or with an iso
-// value beside the range. It is the same choice, as soon as there is something.
+// ParaView chooses colours when something is shown first, even if there is nothing to see: after an
+// error, or with an iso value beside the range. It is the same choice, as soon as there is
+// something.
 void pqSPHInUse::colourLate()
 {
   auto* source =
@@ -424,8 +426,8 @@ void pqSPHInUse::lookAhead()
   this->showRows();
 }
 
-// A new filter's panel begins with an array and an iso value, which then follows the array until the user has
-// another one. What is loaded, or made by a script, stays as it is.
+// A new filter's panel begins with an array and an iso value, which then follows the array until
+// the user has another one. What is loaded, or made by a script, stays as it is.
 void pqSPHInUse::begin()
 {
   vtkSMProxy* filter = this->proxy();

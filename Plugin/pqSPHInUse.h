@@ -1,17 +1,18 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The group "In Use" of a filter's panel, folded at first: shows the information properties of the group,
- * which ParaView itself leaves out, as they were after the last update. A group must have another
- * property, too: ParaView asks for its widget when it comes to that one.
+ * The group "In Use" of a filter's panel, folded at first: shows the information properties of the
+ * group, which ParaView itself leaves out, as they were after the last update. A group must have
+ * another property, too: ParaView asks for its widget when it comes to that one.
  *
- * What the next update would find (the properties that begin with Next, where the filter has them) is told as
- * soon as something is changed on the panel, before Apply. The list of iso values begins with the one that
- * would be taken, and follows it until the user has others.
+ * What the next update would find (the properties that begin with Next, where the filter has them)
+ * is told as soon as something is changed on the panel, before Apply. The list of iso values begins
+ * with the one that would be taken, and follows it until the user has others.
  *
- * The panel of a new filter begins with what suits its particles: the free surface where walls are found, an estimate
- * where there are no smoothing lengths, and a plane, line or box that spans the fluid. Lists of arrays offer, too, what
- * the filter takes for arrays: blocks as fluid, vx, vy and vz as velocity.
+ * The panel of a new filter begins with what suits its particles: the free surface where walls are
+ * found, an estimate where there are no smoothing lengths, and a plane, line or box that spans the
+ * fluid. Lists of arrays offer, too, what the filter takes for arrays: blocks as fluid, vx, vy and
+ * vz as velocity.
  */
 #ifndef pqSPHInUse_h
 #define pqSPHInUse_h

@@ -6,8 +6,8 @@
  *
  * vtkMarchingCorrectors takes the particles of a smoothed particle hydrodynamics (SPH) simulation
  * and generates a triangle mesh that is an isosurface of the continuous SPH field itself: every
- * vertex is moved along its lattice edge until the field has the iso value there. Nothing is resampled
- * to an image, and the lattice is never stored, so memory grows with the surface.
+ * vertex is moved along its lattice edge until the field has the iso value there. Nothing is
+ * resampled to an image, and the lattice is never stored, so memory grows with the surface.
  *
  * With particle positions x_j, smoothing lengths h_j, volumes V_j, a scalar A_j and a kernel W, the
  * field is one of
@@ -16,53 +16,55 @@
  *     sum                 sum_j V_j A_j W(x - x_j, s h_j)       (ShepardNormalizationOff)
  *     weight sum          sum_j V_j     W(x - x_j, s h_j)       (FreeSurfaceOn)
  *
- * where s is HScaleFactor. Cells through which the surface may pass are found (see SeedMode), Marching Cubes makes
- * triangles there, Newton's method along each lattice edge moves the vertices until the field is within
- * Tolerance of the iso value, and what is beyond the fluid is trimmed (see NodeThreshold, VertexThreshold and
- * BoundaryDetection). All other point arrays are evaluated at the vertices.
+ * where s is HScaleFactor. Cells through which the surface may pass are found (see SeedMode),
+ * Marching Cubes makes triangles there, Newton's method along each lattice edge moves the vertices
+ * until the field is within Tolerance of the iso value, and what is beyond the fluid is trimmed
+ * (see NodeThreshold, VertexThreshold and BoundaryDetection). All other point arrays are evaluated
+ * at the vertices.
  *
  * See the paper "Marching Correctors - Fast and Precise Polygonal Isosurfaces of SPH Data" by
  * Schindler, Fuchs, Waser, Peikert. 6th International SPHERIC Workshop, Hamburg, 2011.
  *
- * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name). By default
- * it is the active scalars, unless they do not vary or hold particle ids or types; then velocities, the
- * first vector, or the first scalar that varies. A vector is contoured by its magnitude or by one
- * component (see ScalarComponent). If a second vector is chosen with SetInputArrayToProcess(1, ...), the
- * dot product of the two is contoured. In free-surface mode no scalar is needed. vtkSPHAlgorithm
- * describes how the particles' other quantities are found. All lengths are in the unit of the point
- * coordinates (L below).
+ * The scalar is chosen with SetInputArrayToProcess(0, 0, 0, FIELD_ASSOCIATION_POINTS, name). By
+ * default it is the active scalars, unless they do not vary or hold particle ids or types; then
+ * velocities, the first vector, or the first scalar that varies. A vector is contoured by its
+ * magnitude or by one component (see ScalarComponent). If a second vector is chosen with
+ * SetInputArrayToProcess(1, ...), the dot product of the two is contoured. In free-surface mode no
+ * scalar is needed. vtkSPHAlgorithm describes how the particles' other quantities are found. All
+ * lengths are in the unit of the point coordinates (L below).
  *
  * The output point data holds "Normals", the requested arrays (Compute...), the iso value (see
  * ComputeScalars) and all other point arrays (see InterpolateAttributes). Its active scalars are
  * velocities, the first vector, or the first scalar of the particles that varies; with several iso
  * values, the iso value. The output field data holds "IsoValues" and the arrays of the input's.
  *
- * GetRunStatistics() holds an array for each statistic of the run that mcor_statistics in mcor.h describes
- * ("SeedCells", "Triangles", "Area", "CorrectionMax", ...), "Device" and "Platform", and for each parameter the
- * value in use. The output and these statistics depend only on the input and the properties, except for the
- * costs of the run, and for the seed cells, which include cells that KeepDeviceData has kept.
+ * GetRunStatistics() holds an array for each statistic of the run that mcor_statistics in mcor.h
+ * describes ("SeedCells", "Triangles", "Area", "CorrectionMax", ...), "Device" and "Platform", and
+ * for each parameter the value in use. The output and these statistics depend only on the input and
+ * the properties, except for the costs of the run, and for the seed cells, which include cells that
+ * KeepDeviceData has kept.
  *
- * With MPI, if the Controller has more than one process, the processes share the surface. All of them
- * update, each with some of the particles (without those that vtkGhostType marks as duplicates) or none.
- * Each process gets the part of the surface in its share of space, to the last bit as one process would
- * make it. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
- * GetRunStatistics() describes the whole surface, and has "RankParticles", "RankCopies",
- * "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles" and "RankSeconds" with one
- * component per process. If one process fails, all do. If blocks are taken apart, all processes must have
- * the same number of them.
- *
- * @warning
- * Every piece is contoured by itself, unless processes share the surface. Particles of a neighbouring
- * piece, including ghosts, are particles like all others: without them the surface is trimmed at the cut,
- * and with them both pieces have the surface there.
+ * With MPI, if the Controller has more than one process, the processes share the surface. All of
+ * them update, each with some of the particles (without those that vtkGhostType marks as
+ * duplicates) or none. Each process gets the part of the surface in its share of space, to the last
+ * bit as one process would make it. "GlobalPointIds" and "GlobalCellIds" number points and
+ * triangles in the whole surface. GetRunStatistics() describes the whole surface, and has
+ * "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles"
+ * and "RankSeconds" with one component per process. If one process fails, all do. If blocks are
+ * taken apart, all processes must have the same number of them.
  *
  * @warning
- * The `sum` field falls to zero at a free surface. It therefore has a second sheet along the free surface
- * wherever the iso value is lower than the scalar there. The Shepard field does not.
+ * Every piece is contoured by itself, unless processes share the surface. Particles of a
+ * neighbouring piece, including ghosts, are particles like all others: without them the surface is
+ * trimmed at the cut, and with them both pieces have the surface there.
  *
  * @warning
- * Pairs as seeds miss parts of the surface without a pair of close particles on both sides. This is the
- * paper's selection, meant for previews and comparison.
+ * The `sum` field falls to zero at a free surface. It therefore has a second sheet along the free
+ * surface wherever the iso value is lower than the scalar there. The Shepard field does not.
+ *
+ * @warning
+ * Pairs as seeds miss parts of the surface without a pair of close particles on both sides. This is
+ * the paper's selection, meant for previews and comparison.
  *
  * @warning
  * The surface ends where trimming cuts it: it is a manifold with boundary, closed only where the
@@ -73,9 +75,9 @@
  * a vertex matches the iso value.
  *
  * @warning
- * As everywhere in VTK, in-place changes of input arrays are noticed only if Modified() is called. An
- * observer of the progress may change the filter while an update runs, but not the values in the input's
- * arrays; the change takes effect if Modified() is called after the update.
+ * As everywhere in VTK, in-place changes of input arrays are noticed only if Modified() is called.
+ * An observer of the progress may change the filter while an update runs, but not the values in the
+ * input's arrays; the change takes effect if Modified() is called after the update.
  *
  * @sa
  * vtkSPHAlgorithm vtkSPHInterpolator vtkContourFilter vtkFlyingEdges3D vtkContourValues
@@ -158,10 +160,11 @@ public:
 
   ///@{
   /**
-   * Contour values, in the unit of the scalar. Several values give several surfaces in one output. By
-   * default there is none (NaN counts as none), and one surface is drawn at the median of the scalar in the
-   * fluid; if most values are alike, at the middle of the others; or, if all are positive and span three decades, at
-   * the logarithmic middle of their range; see "IsoValues" in the output field data.
+   * Contour values, in the unit of the scalar. Several values give several surfaces in one output.
+   * By default there is none (NaN counts as none), and one surface is drawn at the median of the
+   * scalar in the fluid; if most values are alike, at the middle of the others; or, if all are
+   * positive and span three decades, at the logarithmic middle of their range; see "IsoValues" in
+   * the output field data.
    */
   void SetValue(int i, double value) { this->ContourValues->SetValue(i, value); }
   double GetValue(int i)
@@ -233,10 +236,11 @@ public:
 
   ///@{
   /**
-   * CubeSizeFactor: size of the virtual grid's cubes / smallest smoothing length (unscaled). No unit, > 0,
-   * 0.5 by default; 0.5 to 1 is sensible. The smallest smoothing length, and with it the lattice, may
-   * differ between time steps or pieces of a data set. CubeSize sets the size itself, unit L; 0 (the
-   * default): use CubeSizeFactor. Nodes lie at multiples of the size, from the origin of the coordinates.
+   * CubeSizeFactor: size of the virtual grid's cubes / smallest smoothing length (unscaled). No
+   * unit, > 0, 0.5 by default; 0.5 to 1 is sensible. The smallest smoothing length, and with it the
+   * lattice, may differ between time steps or pieces of a data set. CubeSize sets the size itself,
+   * unit L; 0 (the default): use CubeSizeFactor. Nodes lie at multiples of the size, from the
+   * origin of the coordinates.
    */
   vtkSPHValueMacro(CubeSizeFactor, double);
   vtkSPHValueMacro(CubeSize, double);
@@ -244,13 +248,13 @@ public:
 
   ///@{
   /**
-   * UNIFORM: cubes of one size. ADAPTIVE (the default): where all particles that reach a brick of 4^3
-   * cubes have at least 2, 4, ... times the smallest smoothing length, its cubes are 2, 4, ... times as
-   * large; bricks that touch differ by a factor of 2 at most. The surface is closed across sizes. With
-   * one smoothing length for all particles, both are the same. TOPOLOGY_FIELD only decides between cubes
-   * that no finer one touches. CubeLevelLimit: the highest power of 2, 0 to 24 (the default). The
-   * statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and "HighestLevel", which periods
-   * may lower.
+   * UNIFORM: cubes of one size. ADAPTIVE (the default): where all particles that reach a brick of
+   * 4^3 cubes have at least 2, 4, ... times the smallest smoothing length, its cubes are 2, 4, ...
+   * times as large; bricks that touch differ by a factor of 2 at most. The surface is closed across
+   * sizes. With one smoothing length for all particles, both are the same. TOPOLOGY_FIELD only
+   * decides between cubes that no finer one touches. CubeLevelLimit: the highest power of 2, 0 to
+   * 24 (the default). The statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and
+   * "HighestLevel", which periods may lower.
    */
   vtkSPHClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
   void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
@@ -260,9 +264,9 @@ public:
 
   ///@{
   /**
-   * How space is divided among processes that share a surface, see SetController(): into equal expected
-   * work (BY_WORK, the default), which is higher at the surface than inside the fluid, or into equal
-   * numbers of particles (BY_PARTICLES). The surface is the same, to the last bit.
+   * How space is divided among processes that share a surface, see SetController(): into equal
+   * expected work (BY_WORK, the default), which is higher at the surface than inside the fluid, or
+   * into equal numbers of particles (BY_PARTICLES). The surface is the same, to the last bit.
    */
   enum PartitionType
   {
@@ -276,10 +280,10 @@ public:
 
   ///@{
   /**
-   * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1, unit L;
-   * sides may be infinite. The result is exactly that part of the whole surface, so boxes side by side
-   * make up the whole. Only the particles that reach the box are evaluated. The lattice is
-   * that of all particles.
+   * Draw only the cells with their centres in a box; off by default. Box: x0, x1, y0, y1, z0, z1,
+   * unit L; sides may be infinite. The result is exactly that part of the whole surface, so boxes
+   * side by side make up the whole. Only the particles that reach the box are evaluated. The
+   * lattice is that of all particles.
    */
   vtkSPHFlagMacro(UseBox);
   vtkSetVector6Macro(Box, double);
@@ -287,18 +291,18 @@ public:
   ///@}
 
   /**
-   * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines: by lines) where
-   * values are above the iso value; they share the points of its border. With SOLIDS_WALL a free surface is
-   * closed at walls, too; lines that end at walls stay open. Trimming may leave it open. Off by default. An error
-   * with PAIRS or Filled.
+   * Close the surface at the sides of the period and of the box's cells, by flat triangles (lines:
+   * by lines) where values are above the iso value; they share the points of its border. With
+   * SOLIDS_WALL a free surface is closed at walls, too; lines that end at walls stay open. Trimming
+   * may leave it open. Off by default. An error with PAIRS or Filled.
    */
   vtkSPHFlagMacro(Capping);
 
   /**
-   * For particles in a plane: also fill the region above the lowest iso value, within the trimmed fluid, with
-   * triangles that share the points of the lines. The other values divide it into bands. The cell array "BandValue"
-   * has the iso value at which a triangle's band begins, and that of a line. Off by default. An error in three
-   * dimensions.
+   * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
+   * fluid, with triangles that share the points of the lines. The other values divide it into
+   * bands. The cell array "BandValue" has the iso value at which a triangle's band begins, and that
+   * of a line. Off by default. An error in three dimensions.
    */
   vtkSPHFlagMacro(Filled);
 
@@ -314,8 +318,8 @@ public:
   /**
    * How the march is seeded, see SeedModeType; COMPLETE by default, which misses nothing that
    * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
-   * pair of particles lies on both sides of the fluid's surface. PAIRS is for comparisons with the paper: an error
-   * with cubes of several sizes, a box, caps or several processes.
+   * pair of particles lies on both sides of the fluid's surface. PAIRS is for comparisons with the
+   * paper: an error with cubes of several sizes, a box, caps or several processes.
    */
   vtkSPHClampMacro(SeedMode, int, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }
@@ -326,8 +330,8 @@ public:
   /**
    * How the corners of a cell are connected where their values are ambiguous. TOPOLOGY_TABLE (the
    * default) keeps the higher values apart on ambiguous faces, and makes no tunnels through cells.
-   * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are those of
-   * the field. The surface is a manifold with both.
+   * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are
+   * those of the field. The surface is a manifold with both.
    */
   vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
@@ -341,9 +345,9 @@ public:
   vtkSPHFlagMacro(Preview);
 
   /**
-   * A compact contour: vertices of one node of the virtual grid become one, which is corrected along the gradient. A
-   * quarter fewer triangles, hardly any slivers, the same pieces. Vertices at borders, caps and periodic sides stay.
-   * Off by default. An error with Filled.
+   * A compact contour: vertices of one node of the virtual grid become one, which is corrected
+   * along the gradient. A quarter fewer triangles, hardly any slivers, the same pieces. Vertices at
+   * borders, caps and periodic sides stay. Off by default. An error with Filled.
    */
   vtkSPHFlagMacro(Compact);
 
@@ -353,23 +357,25 @@ public:
   vtkSPHFlagMacro(Smooth);
 
   /**
-   * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the particle stays inside of
-   * the free surface: flat water becomes flat, drops, threads and sheets stay. Cubes and volumes are those of the
-   * original lengths; the array Widening is the factor. From 1 (off, the default) to 4; 2 is usual.
+   * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the
+   * particle stays inside of the free surface: flat water becomes flat, drops, threads and sheets
+   * stay. Cubes and volumes are those of the original lengths; the array Widening is the factor.
+   * From 1 (off, the default) to 4; 2 is usual.
    */
   vtkSPHValueMacro(Widening, double);
 
   /**
-   * The particles as a run with this filter's settings would take them, with the arrays Widening, the factors;
-   * WidenedSmoothingLength, the products; and, where volumes are computed, WideningVolume. Uniform cubes of the same
-   * size, these lengths and these volumes give the surface of Widening without it. False, and an error, where that fails.
+   * The particles as a run with this filter's settings would take them, with the arrays Widening,
+   * the factors; WidenedSmoothingLength, the products; and, where volumes are computed,
+   * WideningVolume. Uniform cubes of the same size, these lengths and these volumes give the
+   * surface of Widening without it. False, and an error, where that fails.
    */
   bool Widen(vtkPointSet* particles, vtkPolyData* output);
 
   /**
-   * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by default.
-   * Off keeps the triangles beyond, except for those that NodeThreshold discards. The free surface is not
-   * trimmed.
+   * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by
+   * default. Off keeps the triangles beyond, except for those that NodeThreshold discards. The free
+   * surface is not trimmed.
    */
   vtkSPHFlagMacro(Trim);
 
@@ -384,8 +390,8 @@ public:
    * eigenvalue of the symmetric part of the inverse renormalization matrix (Marrone et al., "Fast
    * free-surface detection and level-set function definition in SPH solvers", J. Comput. Phys. 229,
    * 2010). Both are about 1 inside and fall to 0 outside, but the eigenvalue needs another
-   * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid, 0.9
-   * smoothing lengths from a flat surface. Near 0.5 the border is ragged.
+   * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid,
+   * 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged.
    */
   vtkSPHClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
   void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
@@ -400,22 +406,23 @@ public:
 
   ///@{
   /**
-   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_AUTO, the default:
-   * as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface. SOLIDS_WEIGHT: it continues
-   * behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it ends in front of the wall,
-   * where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL: it ends where the solids' share of
-   * the weight sum exceeds WallShare; a free surface is then open along walls.
+   * How solid particles (see SetFluidArrayName) affect where the surface ends. SOLIDS_AUTO, the
+   * default: as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface. SOLIDS_WEIGHT: it
+   * continues behind the wall, where the weight sum includes the solids. SOLIDS_IGNORE: it ends in
+   * front of the wall, where the weight of the fluid alone is VertexThreshold. SOLIDS_WALL: it ends
+   * where the solids' share of the weight sum exceeds WallShare; a free surface is then open along
+   * walls.
    */
   void SetSolids(int solids);
   vtkGetMacro(Solids, int);
   ///@}
 
   /**
-   * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does not
-   * end at them. -1, the default: measured, as the median share at the solids that face the fluid, so that
-   * the surface of a scalar ends there; for the free surface 0.5. At 0.5, solids weigh as much as the
-   * fluid, about half way between the particles of both; greater shares are farther into the wall.
-   * GetRunStatistics() reports the share in use.
+   * The solids' share of the weight sum where they end the surface, above 0 and below 1; 0: it does
+   * not end at them. -1, the default: measured, as the median share at the solids that face the
+   * fluid, so that the surface of a scalar ends there; for the free surface 0.5. At 0.5, solids
+   * weigh as much as the fluid, about half way between the particles of both; greater shares are
+   * farther into the wall. GetRunStatistics() reports the share in use.
    */
   vtkSPHValueMacro(WallShare, double);
 
@@ -450,10 +457,10 @@ public:
   ///@}
 
   /**
-   * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method with the
-   * kernel; integers, identifiers and strings from the nearest particle. An array that is NaN or infinite
-   * at a fluid particle is left out, with a warning, and so is one with the name of a computed array or of
-   * the iso value. On by default.
+   * Interpolate all other point arrays to the surface: float and double arrays by Shepard's method
+   * with the kernel; integers, identifiers and strings from the nearest particle. An array that is
+   * NaN or infinite at a fluid particle is left out, with a warning, and so is one with the name of
+   * a computed array or of the iso value. On by default.
    */
   vtkSPHFlagMacro(InterpolateAttributes);
 
@@ -465,9 +472,9 @@ public:
 
   ///@{
   /**
-   * The correction of a vertex stops where |field - iso value| is at most Tolerance times the range of the
-   * scalar (no unit, > 0, 1e-6 by default) and the vertex is within 2e-5 cubes of the surface, or after
-   * IterationLimit iterations (1 to 255, 30 by default).
+   * The correction of a vertex stops where |field - iso value| is at most Tolerance times the range
+   * of the scalar (no unit, > 0, 1e-6 by default) and the vertex is within 2e-5 cubes of the
+   * surface, or after IterationLimit iterations (1 to 255, 30 by default).
    */
   vtkSPHValueMacro(Tolerance, double);
   vtkSPHClampMacro(IterationLimit, int, 1, 255);
@@ -602,7 +609,8 @@ private:
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  /** Lists the iso values that were given, or a usual one, over all ranks unless that is null: empty if there is none. */
+  /** Lists the iso values that were given, or a usual one, over all ranks unless that is null: empty
+   * if there is none. */
   void ListIsoValues(
     const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list);
 

@@ -4,23 +4,25 @@
  * @class   vtkSPHAlgorithm
  * @brief   superclass of the filters that evaluate the field of SPH particles
  *
- * These filters share how the particles are described (smoothing length, volume or mass and density,
- * kernel, which of them are fluid), the OpenCL device that does the work, and what is reported of a run.
+ * These filters share how the particles are described (smoothing length, volume or mass and
+ * density, kernel, which of them are fluid), the OpenCL device that does the work, and what is
+ * reported of a run.
  *
- * Smoothing lengths, volumes, masses and densities are point arrays. Unless they are named or given as a
- * constant, or DetectArrays is off, they are found by their usual names (case, blanks, "_" and "-" do not
- * matter), the most usual first: SmoothingLength, hsml, h; Volume, vol; Mass, m; Density, rho, Rhop; and
- * others that mcor_name_priority in mcor.h knows.
+ * Smoothing lengths, volumes, masses and densities are point arrays. Unless they are named or given
+ * as a constant, or DetectArrays is off, they are found by their usual names (case, blanks, "_" and
+ * "-" do not matter), the most usual first: SmoothingLength, hsml, h; Volume, vol; Mass, m;
+ * Density, rho, Rhop; and others that mcor_name_priority in mcor.h knows.
  *
- * The volume of a particle is taken from the volume array; else it is mass / density; else, with masses
- * alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j sum_k W(x_j - x_k, h_j)), where F_j makes up
- * for a side without neighbours (see mcor_input in mcor.h). As an array name, "(automatic)" and "(none)" mean the same as an empty one.
+ * The volume of a particle is taken from the volume array; else it is mass / density; else, with
+ * masses alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j sum_k W(x_j - x_k, h_j)),
+ * where F_j makes up for a side without neighbours (see mcor_input in mcor.h). As an array name,
+ * "(automatic)" and "(none)" mean the same as an empty one.
  *
  * All lengths are in the unit of the point coordinates (L below).
  *
- * The blocks of composite data form one set of particles, with the arrays that all of them have; or each
- * is processed by itself, see SetBlocks(). If a block by itself fails, its place in the output stays empty,
- * and the error names it.
+ * The blocks of composite data form one set of particles, with the arrays that all of them have; or
+ * each is processed by itself, see SetBlocks(). If a block by itself fails, its place in the output
+ * stays empty, and the error names it.
  *
  * @sa
  * vtkMarchingCorrectors
@@ -168,15 +170,15 @@ public:
   vtkSPHTextMacro(SmoothingLengthArrayName);
 
   /**
-   * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no array,
-   * set this, or EstimateSmoothingLength.
+   * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no
+   * array, set this, or EstimateSmoothingLength.
    */
   vtkSPHValueMacro(SmoothingLength, double);
 
   /**
    * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
-   * without further data. It takes precedence over array and constant. Off by default. The statistics
-   * report it as "SmoothingLengthRange".
+   * without further data. It takes precedence over array and constant. Off by default. The
+   * statistics report it as "SmoothingLengthRange".
    */
   vtkSPHFlagMacro(EstimateSmoothingLength);
 
@@ -206,9 +208,9 @@ public:
   ///@{
   /**
    * The point arrays of particle volumes (unit L^3, > 0), masses (> 0) and densities (> 0). Empty
-   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses and
-   * densities may have any units that give volumes in L^3; densities are used only with masses. Mass and
-   * Density: one value for all particles; 0 (the default): use the array.
+   * (the default): found by name. Volumes are not searched for if a mass or density is set. Masses
+   * and densities may have any units that give volumes in L^3; densities are used only with masses.
+   * Mass and Density: one value for all particles; 0 (the default): use the array.
    */
   vtkSPHTextMacro(VolumeArrayName);
   vtkSPHTextMacro(MassArrayName);
@@ -218,28 +220,29 @@ public:
   ///@}
 
   /**
-   * One volume for all particles where nothing else tells volumes: neither their array, nor mass and density.
-   * Unit L^3, in two dimensions L^2. 0 (the default): volumes are computed then.
+   * One volume for all particles where nothing else tells volumes: neither their array, nor mass
+   * and density. Unit L^3, in two dimensions L^2. 0 (the default): volumes are computed then.
    */
   vtkSPHValueMacro(ParticleVolume, double);
 
   ///@{
   /**
-   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, the particles repeat
-   * along x with the period x1 - x0. A surface is that of one period, open at its sides, where it meets
-   * itself to the last bit. Periods are whole numbers of cubes; the cube size is reduced to fit, see
-   * "CubeSize" in the statistics. The points of a probe may lie anywhere.
+   * Periodic sides: x0, x1, y0, y1, z0, z1, unit L; all 0 by default. Where x0 < x1, the particles
+   * repeat along x with the period x1 - x0. A surface is that of one period, open at its sides,
+   * where it meets itself to the last bit. Periods are whole numbers of cubes; the cube size is
+   * reduced to fit, see "CubeSize" in the statistics. The points of a probe may lie anywhere.
    */
   vtkSetVector6Macro(PeriodicBounds, double);
   vtkGetVector6Macro(PeriodicBounds, double);
   ///@}
 
   /**
-   * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds" of six
-   * bounds; from "BoxSize" of one or three lengths (GADGET, SWIFT), which begin at 0, at minus half the
-   * length, or at the lowest particle, whichever contains all particles first; or from "box" of six bounds
-   * with "boundaryType", 1 where periodic (SPH-EXA). With several processes, any of them may have the array.
-   * An error if there is none, or if processes have different ones. Off by default.
+   * Take the period from the particles' field data instead of PeriodicBounds: from "PeriodicBounds"
+   * of six bounds; from "BoxSize" of one or three lengths (GADGET, SWIFT), which begin at 0, at
+   * minus half the length, or at the lowest particle, whichever contains all particles first; or
+   * from "box" of six bounds with "boundaryType", 1 where periodic (SPH-EXA). With several
+   * processes, any of them may have the array. An error if there is none, or if processes have
+   * different ones. Off by default.
    */
   vtkSPHFlagMacro(DetectPeriod);
 
@@ -282,8 +285,9 @@ public:
 
   ///@{
   /**
-   * The kernel by its short name: "cubic", "wendland", ...; GetKernelName(0), (1), ... lists all names, null
-   * ends them. SetKernelByName() returns false, and changes nothing, if there is no such kernel.
+   * The kernel by its short name: "cubic", "wendland", ...; GetKernelName(0), (1), ... lists all
+   * names, null ends them. SetKernelByName() returns false, and changes nothing, if there is no
+   * such kernel.
    */
   bool SetKernelByName(const char* name);
   const char* GetKernelName() const { return vtkSPHAlgorithm::GetKernelName(this->Kernel); }
@@ -298,9 +302,9 @@ public:
 
   ///@{
   /**
-   * 2: the particles lie in a plane of constant x, y or z, which all share exactly. Sums are those of two
-   * dimensions, volumes are areas, and vtkMarchingCorrectors makes lines. 0 (DIMENSION_AUTO, the default): 2
-   * if exactly one coordinate is the same for all particles, else 3.
+   * 2: the particles lie in a plane of constant x, y or z, which all share exactly. Sums are those
+   * of two dimensions, volumes are areas, and vtkMarchingCorrectors makes lines. 0 (DIMENSION_AUTO,
+   * the default): 2 if exactly one coordinate is the same for all particles, else 3.
    */
   enum DimensionType
   {
@@ -312,7 +316,8 @@ public:
   ///@}
 
   /**
-   * 2 or 3: the dimension in which an update takes these particles. Collective where processes share it.
+   * 2 or 3: the dimension in which an update takes these particles. Collective where processes
+   * share it.
    */
   int FindDimension(vtkPointSet* particles);
 
@@ -327,10 +332,11 @@ public:
   ///@}
 
   /**
-   * If no fluid array is named, look for something that clearly tells fluid from walls: an array with a
-   * usual name (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics; or blocks, taken
-   * together, with names such as "walls" or "boundary", whose particles are then solid. Off by default: a
-   * warning then names such arrays and blocks. GetUsedFluid() returns what was found.
+   * If no fluid array is named, look for something that clearly tells fluid from walls: an array
+   * with a usual name (ParticleType, Type, ...) that holds 0 and 1, or the codes of DualSPHysics;
+   * or blocks, taken together, with names such as "walls" or "boundary", whose particles are then
+   * solid. Off by default: a warning then names such arrays and blocks. GetUsedFluid() returns what
+   * was found.
    */
   vtkSPHFlagMacro(DetectFluid);
 
@@ -342,8 +348,8 @@ public:
 
   ///@{
   /**
-   * Leave out particles that are not within x0, x1, y0, y1, z0, z1 (unit L; sides may be infinite), as if they were
-   * not there, whatever their values are. All 0 (the default): none are left out.
+   * Leave out particles that are not within x0, x1, y0, y1, z0, z1 (unit L; sides may be infinite),
+   * as if they were not there, whatever their values are. All 0 (the default): none are left out.
    */
   vtkSetVector6Macro(Within, double);
   vtkGetVector6Macro(Within, double);
@@ -351,8 +357,8 @@ public:
 
   ///@{
   /**
-   * Leave out particles whose value in this point array is not from `low` to `high`, likewise. Of several arrays, all
-   * must agree; of several ranges of one array, any may hold. None by default.
+   * Leave out particles whose value in this point array is not from `low` to `high`, likewise. Of
+   * several arrays, all must agree; of several ranges of one array, any may hold. None by default.
    */
   void AddOnly(const char* name, double low, double high);
   void ClearOnly();
@@ -372,8 +378,8 @@ public:
 
   ///@{
   /**
-   * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each is
-   * processed by itself (APART), as the blocks of a probe's points always are.
+   * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each
+   * is processed by itself (APART), as the blocks of a probe's points always are.
    */
   vtkSPHClampMacro(Blocks, int, TOGETHER, APART);
   void SetBlocksToTogether() { this->SetBlocks(TOGETHER); }
@@ -404,27 +410,29 @@ public:
 
   ///@{
   /**
-   * The processes that share a run; VTK's global controller by default. With MPI and more than one process,
-   * all update together, each with some of the particles or none, see vtkMarchingCorrectors. Probes and
-   * derivatives return their results to the process that has the points or particles.
+   * The processes that share a run; VTK's global controller by default. With MPI and more than one
+   * process, all update together, each with some of the particles or none, see
+   * vtkMarchingCorrectors. Probes and derivatives return their results to the process that has the
+   * points or particles.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
   /**
-   * Why the last run failed, in one sentence, which is also reported as a VTK error; empty if it did not
-   * fail. For composite data, one line for each block that failed.
+   * Why the last run failed, in one sentence, which is also reported as a VTK error; empty if it
+   * did not fail. For composite data, one line for each block that failed.
    */
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
   /**
-   * One array for each number of the last update: "Seconds" (one named component for each phase, for
-   * building the OpenCL program, and in total), "DeviceBytesPeak", "ParticlesInReach" (of the box), "Bricks",
-   * "NodesEvaluated" (including those kept from earlier updates), "MarchRounds", "MedianNeighbors" and
-   * "MedianSpacing" (distance of the nearest particle), both of fluid particles; for a surface also those of
-   * vtkMarchingCorrectors. If blocks are taken apart, costs are sums, and the rest is that of the last block.
-   * Empty if nothing ran. The next update makes a new object and leaves this one as it is.
+   * One array for each number of the last update: "Seconds" (one named component for each phase,
+   * for building the OpenCL program, and in total), "DeviceBytesPeak", "ParticlesInReach" (of the
+   * box), "Bricks", "NodesEvaluated" (including those kept from earlier updates), "MarchRounds",
+   * "MedianNeighbors" and "MedianSpacing" (distance of the nearest particle), both of fluid
+   * particles; for a surface also those of vtkMarchingCorrectors. If blocks are taken apart, costs
+   * are sums, and the rest is that of the last block. Empty if nothing ran. The next update makes a
+   * new object and leaves this one as it is.
    */
   vtkFieldData* GetRunStatistics();
 
@@ -454,14 +462,14 @@ public:
   ///@}
 
   /**
-   * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default): no
-   * limit. An update that would need more fails, and the error says how much.
+   * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default):
+   * no limit. An update that would need more fails, and the error says how much.
    */
   vtkSPHClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
 
   /**
-   * Keep the search grid and the node values on the device for the next update. On by default. Off: all
-   * memory is freed as soon as an update no longer needs it.
+   * Keep the search grid and the node values on the device for the next update. On by default. Off:
+   * all memory is freed as soon as an update no longer needs it.
    */
   vtkSPHFlagMacro(KeepDeviceData);
 

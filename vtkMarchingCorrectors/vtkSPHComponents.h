@@ -4,10 +4,10 @@
  * @class   vtkSPHComponents
  * @brief   the pieces of a surface: drops, bubbles, their volumes and particles
  *
- * vtkSPHComponents divides a surface of vtkMarchingCorrectors into connected pieces: triangles that share
- * points are one piece, also across the sides of a period. Its first output is the surface with the point and
- * cell array "ComponentId": 0 is the piece of the largest area, and so on. The second output is a vtkTable
- * with a row for each piece:
+ * vtkSPHComponents divides a surface of vtkMarchingCorrectors into connected pieces: triangles that
+ * share points are one piece, also across the sides of a period. Its first output is the surface
+ * with the point and cell array "ComponentId": 0 is the piece of the largest area, and so on. The
+ * second output is a vtkTable with a row for each piece:
  *
  *     component            its number
  *     parent               of a cavity, the piece around it; else NaN
@@ -20,17 +20,18 @@
  *     mass                 their mass
  *     vx, vy, vz           their mean velocity, weighted by the mass
  *
- * NaN where it does not apply. The last five need the particles, the second input; a row is then filled for
- * each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are left out, with the cavities in
- * them; open pieces, which have neither, stay.
+ * NaN where it does not apply. The last five need the particles, the second input; a row is then
+ * filled for each closed piece with fluid inside. Pieces below LeastVolume or LeastParticles are
+ * left out, with the cavities in them; open pieces, which have neither, stay.
  *
- * The surface may have been cut; only its triangles matter. Do not set PeriodicBounds for a surface with caps,
- * which end pieces at the sides of the period.
+ * The surface may have been cut; only its triangles matter. Do not set PeriodicBounds for a surface
+ * with caps, which end pieces at the sides of the period.
  *
- * If the controller has several processes, they find the pieces of the surface that they share: each gets its
- * part with ComponentId, and the first one gets the table, the same as from one process; the others get one
- * without rows. The first process collects all points and triangles, and the positions, masses and velocities
- * of all particles, which takes as much memory as one process needs without the other arrays.
+ * If the controller has several processes, they find the pieces of the surface that they share:
+ * each gets its part with ComponentId, and the first one gets the table, the same as from one
+ * process; the others get one without rows. The first process collects all points and triangles,
+ * and the positions, masses and velocities of all particles, which takes as much memory as one
+ * process needs without the other arrays.
  *
  * @sa
  * vtkMarchingCorrectors vtkConnectivityFilter vtkMassProperties
@@ -77,7 +78,8 @@ public:
 
   ///@{
   /**
-   * Lower and upper sides of one period along each axis; 0 and 0, the default, where nothing repeats.
+   * Lower and upper sides of one period along each axis; 0 and 0, the default, where nothing
+   * repeats.
    */
   vtkSetVector6Macro(PeriodicBounds, double);
   vtkGetVector6Macro(PeriodicBounds, double);
@@ -93,8 +95,8 @@ public:
 
   ///@{
   /**
-   * Arrays of the particles; found by their usual names where empty, the default. Mass: one for all, where
-   * it is above 0.
+   * Arrays of the particles; found by their usual names where empty, the default. Mass: one for
+   * all, where it is above 0.
    */
   vtkSPHTextMacro(MassArrayName);
   vtkSPHValueMacro(Mass, double);
@@ -103,8 +105,8 @@ public:
 
   ///@{
   /**
-   * Particles whose FluidArrayName has another value than this are solid, and do not count. Empty by
-   * default: all count.
+   * Particles whose FluidArrayName has another value than this are solid, and do not count. Empty
+   * by default: all count.
    */
   vtkSPHTextMacro(FluidArrayName);
   vtkSPHValueMacro(FluidValue, double);
@@ -119,7 +121,8 @@ public:
   ///@}
 
   /**
-   * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by default.
+   * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by
+   * default.
    */
   vtkSPHFlagMacro(DetectFluid);
 

@@ -75,20 +75,21 @@ public:
   vtkSPHFlagMacro(ComputeGradient);
 
   /**
-   * The name of the gradient's array, "Gradients" by default. The array that marks corrected gradients has
-   * this name and "Corrected".
+   * The name of the gradient's array, "Gradients" by default. The array that marks corrected
+   * gradients has this name and "Corrected".
    */
   vtkSPHTextMacro(ResultArrayName);
 
   /**
-   * Replace existing arrays of the same names. Off by default: the new ones are then called NAME_SPH.
+   * Replace existing arrays of the same names. Off by default: the new ones are then called
+   * NAME_SPH.
    */
   vtkSPHFlagMacro(ReplaceArrays);
 
   ///@{
   /**
-   * Add these quantities of the gradient of a vector; no effect for other arrays. On by default, except the
-   * strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
+   * Add these quantities of the gradient of a vector; no effect for other arrays. On by default,
+   * except the strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
    */
   vtkSPHFlagMacro(ComputeDivergence);
   vtkSPHFlagMacro(ComputeVorticity);

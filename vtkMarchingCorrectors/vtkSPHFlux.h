@@ -4,14 +4,15 @@
  * @class   vtkSPHFlux
  * @brief   what flows through sections of SPH particles
  *
- * vtkSPHFlux measures how much fluid flows through sections: it integrates the Shepard means of velocity and density
- * over the part of a section that is in fluid, to 1e-6 of the largest flux that the velocities there allow; see mcor_flux
- * in mcor.h. vtkSPHMeter says what is fluid, and how processes share the work.
+ * vtkSPHFlux measures how much fluid flows through sections: it integrates the Shepard means of
+ * velocity and density over the part of a section that is in fluid, to 1e-6 of the largest flux
+ * that the velocities there allow; see mcor_flux in mcor.h. vtkSPHMeter says what is fluid, and how
+ * processes share the work.
  *
- * Sections are those of the Add...() methods and the cells of the second input: polygons, with normals by the
- * right-hand rule, or outwards if they are a closed surface; lines, if particles lie in a plane. Cells with the same
- * entry in the cell array "Name" are one section; without such an array all cells are. If there are no sections, it is the disc
- * of Origin, Normal and Radius.
+ * Sections are those of the Add...() methods and the cells of the second input: polygons, with
+ * normals by the right-hand rule, or outwards if they are a closed surface; lines, if particles lie
+ * in a plane. Cells with the same entry in the cell array "Name" are one section; without such an
+ * array all cells are. If there are no sections, it is the disc of Origin, Normal and Radius.
  *
  * In two dimensions a section is its line in the plane of the particles, and areas are lengths.
  *
@@ -24,8 +25,8 @@
  *     mass_flux    of rho v . n; NaN without densities
  *     velocity     volume_flux / area; NaN where the area is 0
  *
- * Units are those of positions, velocities and densities. The density is its array, Density, or mass / volume if both
- * are given.
+ * Units are those of positions, velocities and densities. The density is its array, Density, or
+ * mass / volume if both are given.
  *
  * @sa
  * vtkSPHMeter vtkSPHGauge vtkMarchingCorrectors
@@ -58,10 +59,11 @@ public:
 
   ///@{
   /**
-   * Sections by name. Names must differ. A rectangle has a corner and the ends of the two edges that begin there, whose
-   * cross product is the normal. A disc has a centre, a normal of any length, and a radius. A box, x0, x1, y0, y1, z0, z1,
-   * has its sides, with normals outwards. A line is for two dimensions; its normal points to its right, seen with the plane's
-   * first axis to the right and its second one upwards. A surface has the polygons, or lines, of a data set.
+   * Sections by name. Names must differ. A rectangle has a corner and the ends of the two edges
+   * that begin there, whose cross product is the normal. A disc has a centre, a normal of any
+   * length, and a radius. A box, x0, x1, y0, y1, z0, z1, has its sides, with normals outwards. A
+   * line is for two dimensions; its normal points to its right, seen with the plane's first axis to
+   * the right and its second one upwards. A surface has the polygons, or lines, of a data set.
    */
   void AddRectangle(
     const char* name, const double corner[3], const double end1[3], const double end2[3]);
@@ -75,7 +77,8 @@ public:
 
   ///@{
   /**
-   * The disc that is used if there are no other sections: centre, normal, radius. (0, 0, 0), (1, 0, 0) and 1 by default.
+   * The disc that is used if there are no other sections: centre, normal, radius. (0, 0, 0), (1, 0,
+   * 0) and 1 by default.
    */
   vtkSetVector3Macro(Origin, double);
   vtkGetVector3Macro(Origin, double);
@@ -85,7 +88,8 @@ public:
   ///@}
 
   /**
-   * The point array of velocities. Empty (the default): found by name (Velocity, vel, v, ...), also as vx, vy and vz.
+   * The point array of velocities. Empty (the default): found by name (Velocity, vel, v, ...), also
+   * as vx, vy and vz.
    */
   vtkSPHTextMacro(VelocityArrayName);
 

@@ -4,13 +4,13 @@
  * @class   vtkSPHGauge
  * @brief   where lines cross the free surface of SPH particles: water levels
  *
- * vtkSPHGauge measures the free surface of SPH particles along straight lines, as a wave gauge in a tank
- * does. Every crossing of the level at which fluid ends is found and solved for, see mcor_gauge in mcor.h.
- * vtkSPHMeter says what is fluid, and how processes share the work.
+ * vtkSPHGauge measures the free surface of SPH particles along straight lines, as a wave gauge in a
+ * tank does. Every crossing of the level at which fluid ends is found and solved for, see
+ * mcor_gauge in mcor.h. vtkSPHMeter says what is fluid, and how processes share the work.
  *
- * The lines are those of AddGauge() and the line cells of the second input, each from its first point to its
- * last. If there are none, it is the line from Point1 to Point2. Gauges of the second input have the names of
- * its cell array "Name", if there is one.
+ * The lines are those of AddGauge() and the line cells of the second input, each from its first
+ * point to its last. If there are none, it is the line from Point1 to Point2. Gauges of the second
+ * input have the names of its cell array "Name", if there is one.
  *
  * The output is a vtkTable with a row for each gauge:
  *
@@ -23,8 +23,8 @@
  *     crossings   how often the line goes through the surface
  *     x, y, z     the place of `last`
  *
- * For a dry gauge, first, last, x, y and z are NaN, and depth and crossings are 0. Lengths have the unit of the
- * positions.
+ * For a dry gauge, first, last, x, y and z are NaN, and depth and crossings are 0. Lengths have the
+ * unit of the positions.
  *
  * @sa
  * vtkSPHMeter vtkSPHFlux vtkMarchingCorrectors

@@ -4,15 +4,15 @@
  * @class   vtkSPHMeter
  * @brief   superclass of the filters that measure the fluid at places with names
  *
- * The output is a vtkTable with a row for each place, the same whatever part of it is asked for. Fluid is where
- * the sum of the fluid particles' weights is Level or more, as for the free surface of vtkMarchingCorrectors.
- * Solids do not count, and do not end the fluid.
+ * The output is a vtkTable with a row for each place, the same whatever part of it is asked for.
+ * Fluid is where the sum of the fluid particles' weights is Level or more, as for the free surface
+ * of vtkMarchingCorrectors. Solids do not count, and do not end the fluid.
  *
  * Blocks of composite data are one set of particles, always.
  *
- * If the controller has several processes, they share the work: each has some of the particles, and the places
- * of all processes are measured. The first process gets the table, the same to the last bit as from one process;
- * the others get one without rows.
+ * If the controller has several processes, they share the work: each has some of the particles, and
+ * the places of all processes are measured. The first process gets the table, the same to the last
+ * bit as from one process; the others get one without rows.
  *
  * @sa
  * vtkSPHGauge vtkSPHFlux

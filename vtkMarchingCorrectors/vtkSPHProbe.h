@@ -20,22 +20,22 @@
  *     NAME_Gradient         of each of these arrays and of WeightSum, if ComputeGradients is on: 3
  *                           values per component: d/dx, d/dy, d/dz of the first, then the next
  *
- * At invalid points, the arrays other than WeightSum are 0, or as chosen, see SetNullValue(). Existing arrays
- * of these names are replaced. The active scalars become the velocities, else the first vector or scalar
- * of the particles that varies. Arrays of other types, such as identifiers, are left out, as are those
- * named by AddExcludedArray(); one that is NaN or infinite at a fluid particle is left out with a warning.
- * Only fluid particles count.
+ * At invalid points, the arrays other than WeightSum are 0, or as chosen, see SetNullValue().
+ * Existing arrays of these names are replaced. The active scalars become the velocities, else the
+ * first vector or scalar of the particles that varies. Arrays of other types, such as identifiers,
+ * are left out, as are those named by AddExcludedArray(); one that is NaN or infinite at a fluid
+ * particle is left out with a warning. Only fluid particles count.
  *
- * The value at a point depends neither on the other points nor on the order of points or particles. Points
- * are processed in batches, so that little memory is needed beside the output; points that no particle
- * reaches cost next to nothing.
+ * The value at a point depends neither on the other points nor on the order of points or particles.
+ * Points are processed in batches, so that little memory is needed beside the output; points that
+ * no particle reaches cost next to nothing.
  *
- * If the controller has several processes, they share the work: each has some of the points and particles,
- * or none, and gets the values at its points, the same to the last bit as from one process. Particles that
- * vtkGhostType marks as duplicates do not count; such points do.
+ * If the controller has several processes, they share the work: each has some of the points and
+ * particles, or none, and gets the values at its points, the same to the last bit as from one
+ * process. Particles that vtkGhostType marks as duplicates do not count; such points do.
  *
- * Composite data at port 0 give composite data. Particles in several blocks are taken together, with the
- * arrays that all blocks have.
+ * Composite data at port 0 give composite data. Particles in several blocks are taken together,
+ * with the arrays that all blocks have.
  *
  * @sa
  * vtkSPHAlgorithm vtkMarchingCorrectors vtkSPHDerivatives vtkSPHInterpolator vtkProbeFilter
@@ -96,8 +96,8 @@ public:
 
   ///@{
   /**
-   * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by default).
-   * NaNOutside is off by default.
+   * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by
+   * default). NaNOutside is off by default.
    */
   vtkSPHFlagMacro(NaNOutside);
   vtkSPHValueMacro(NullValue, double);

@@ -4,22 +4,28 @@
  * @class   vtkSPHProjection
  * @brief   column densities of SPH particles: an image of integrals along lines of sight
  *
- * vtkSPHProjection integrates the SPH sum of a scalar, sum V A W, along parallel lines of sight, and gives the mean of
- * this over each pixel of an image. Each kernel's integral is exact to 1e-6 of the largest that one particle adds to a
- * pixel, be it much smaller or larger than a pixel, so the image has all of the mass that falls into it.
+ * vtkSPHProjection integrates the SPH sum of a scalar, sum V A W, along parallel lines of sight,
+ * and gives the mean of this over each pixel of an image. Each kernel's integral is exact to 1e-6
+ * of the largest that one particle adds to a pixel, be it much smaller or larger than a pixel, so
+ * the image has all of the mass that falls into it.
  *
- * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the density, so that the array of the output is the column density, "ColumnDensity": the sum of m W over the lines of
- * sight, which needs masses, or densities and volumes. Otherwise the array has the scalar's name. With WeightArrayName
- * it is the mean of the scalar along the line of sight; NaN where there is nothing.
+ * The scalar is a point array, of a vector its magnitude or ScalarComponent. By default it is the
+ * density, so that the array of the output is the column density, "ColumnDensity": the sum of m W
+ * over the lines of sight, which needs masses, or densities and volumes. Otherwise the array has
+ * the scalar's name. With WeightArrayName it is the mean of the scalar along the line of sight; NaN
+ * where there is nothing.
  *
- * One looks along Direction: by default along the constant axis of particles in a plane, else along z. Looking along x,
- * y or z, the image (vtkImageData) lies in the world as the slice at the lower end of what is seen; its points are the
- * centres of pixels. Otherwise it is turned by a direction matrix.
+ * One looks along Direction: by default along the constant axis of particles in a plane, else along
+ * z. Looking along x, y or z, the image (vtkImageData) lies in the world as the slice at the lower
+ * end of what is seen; its points are the centres of pixels. Otherwise it is turned by a direction
+ * matrix.
  *
- * The image shows all that particles reach, or the period of periodic particles, or, with UseBox, the Box.
+ * The image shows all that particles reach, or the period of periodic particles, or, with UseBox,
+ * the Box.
  *
- * Blocks of composite data are one set of particles, always. If the controller has several processes, each has some of
- * the particles, and each gets the part of the image that is asked for, the same to the last bit as from one process.
+ * Blocks of composite data are one set of particles, always. If the controller has several
+ * processes, each has some of the particles, and each gets the part of the image that is asked for,
+ * the same to the last bit as from one process.
  *
  * @sa
  * vtkSPHAlgorithm vtkSPHResample
@@ -48,8 +54,8 @@ public:
 
   ///@{
   /**
-   * The direction of the lines of sight; its length and sign do not matter. 0, 0, 0 (the default): the constant axis of
-   * particles in a plane, else z.
+   * The direction of the lines of sight; its length and sign do not matter. 0, 0, 0 (the default):
+   * the constant axis of particles in a plane, else z.
    */
   vtkSetVector3Macro(Direction, double);
   vtkGetVector3Macro(Direction, double);
@@ -73,14 +79,15 @@ public:
   ///@}
 
   /**
-   * The array whose values are weights of a mean: sum V B A / sum V B of what a pixel sees. By the array of masses,
-   * particles weigh what their masses are. Empty (the default): the integral itself.
+   * The array whose values are weights of a mean: sum V B A / sum V B of what a pixel sees. By the
+   * array of masses, particles weigh what their masses are. Empty (the default): the integral
+   * itself.
    */
   vtkSPHTextMacro(WeightArrayName);
 
   /**
-   * The point array that is integrated. Empty, or "(density)" (the default): the density, or the array of
-   * SetInputArrayToProcess(0, ...).
+   * The point array that is integrated. Empty, or "(density)" (the default): the density, or the
+   * array of SetInputArrayToProcess(0, ...).
    */
   vtkSPHTextMacro(ScalarArrayName);
 

@@ -54,8 +54,8 @@ public:
   ///@}
 
   /**
-   * Fit Origin, Point1 and Point2, or Bounds to the fluid's particles instead of taking what is set. On by
-   * default.
+   * Fit Origin, Point1 and Point2, or Bounds to the fluid's particles instead of taking what is
+   * set. On by default.
    */
   vtkSPHFlagMacro(FitBounds);
 
@@ -94,8 +94,8 @@ public:
 
   ///@{
   /**
-   * How many points a volume has along x, y and z. 0, the default: as many as its shape wants, about a million in
-   * all, one along the axis of particles in a plane.
+   * How many points a volume has along x, y and z. 0, the default: as many as its shape wants,
+   * about a million in all, one along the axis of particles in a plane.
    */
   vtkSetVector3Macro(Dimensions, int);
   vtkGetVector3Macro(Dimensions, int);

@@ -4,17 +4,17 @@
  * @class   vtkSPHTemporalInterpolator
  * @brief   SPH particles at any time between the steps that are stored
  *
- * Readers of simulations provide particles at the stored steps. This filter provides them at any time
- * from the first step to the last, interpolated between two steps. It keeps the two steps around the
- * requested time, so that an animation reads each step once. vtkMarchingCorrectors and the other SPH
- * filters take its output.
+ * Readers of simulations provide particles at the stored steps. This filter provides them at any
+ * time from the first step to the last, interpolated between two steps. It keeps the two steps
+ * around the requested time, so that an animation reads each step once. vtkMarchingCorrectors and
+ * the other SPH filters take its output.
  *
- * Particles are matched between two steps by their ids, in any order. The position follows the cubic
- * Hermite curve through both positions with both velocities as tangents; float and double arrays are
- * linear in time; integers, strings and ids are those of the nearer step. A particle that is in only one
- * of the two steps exists in the half of the interval next to that step, moves with the velocity that it
- * has there, and keeps its values. Particles are in the order of the nearer step (in the middle: of the
- * later one).
+ * Particles are matched between two steps by their ids, in any order. The position follows the
+ * cubic Hermite curve through both positions with both velocities as tangents; float and double
+ * arrays are linear in time; integers, strings and ids are those of the nearer step. A particle
+ * that is in only one of the two steps exists in the half of the interval next to that step, moves
+ * with the velocity that it has there, and keeps its values. Particles are in the order of the
+ * nearer step (in the middle: of the later one).
  *
  * Ids and velocities are point arrays, found by their usual names (case, blanks, "_" and "-" do not
  * matter) unless they are named; ids are also found as the active global ids:
@@ -23,16 +23,16 @@
  *                OriginalId UnsortedParticleId
  *     velocity   Velocity Velocities vel v
  *
- * As a name, "(automatic)" and "(none)" mean the same as an empty one. Without ids, or if two particles
- * share one, it is an error to request a time between two steps. Without velocities (or with
- * UseVelocities off) positions are linear in time, and particles of only one step stay where they are.
- * The same is done, with a warning, if the particles (100 or more) moved less than half or more than twice
- * as far as their mean velocities say: the steps' times are then in another unit than the velocities, see
- * TimeScale, or too far apart.
+ * As a name, "(automatic)" and "(none)" mean the same as an empty one. Without ids, or if two
+ * particles share one, it is an error to request a time between two steps. Without velocities (or
+ * with UseVelocities off) positions are linear in time, and particles of only one step stay where
+ * they are. The same is done, with a warning, if the particles (100 or more) moved less than half
+ * or more than twice as far as their mean velocities say: the steps' times are then in another unit
+ * than the velocities, see TimeScale, or too far apart.
  *
- * The output is a vtkPolyData with the points and point arrays; if the input has cells, each particle is a
- * vertex. Composite data must have the same tree in both steps, and give composite data. Arrays that only
- * one of the two steps has are left out between them, with a warning.
+ * The output is a vtkPolyData with the points and point arrays; if the input has cells, each
+ * particle is a vertex. Composite data must have the same tree in both steps, and give composite
+ * data. Arrays that only one of the two steps has are left out between them, with a warning.
  *
  * @warning
  * Particles that cross a periodic boundary fly through the whole domain between the two steps.
@@ -65,8 +65,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
-   * The point array of particle ids: whole numbers of any type, each occurring once. Empty (the default):
-   * found by name.
+   * The point array of particle ids: whole numbers of any type, each occurring once. Empty (the
+   * default): found by name.
    */
   vtkSPHTextMacro(IdArrayName);
 
@@ -88,7 +88,8 @@ public:
 
   /**
    * The number of steps that are announced for each interval between two stored ones, as ParaView's
-   * animation needs them. 1, the default: only the stored steps. Any other time can be requested, too.
+   * animation needs them. 1, the default: only the stored steps. Any other time can be requested,
+   * too.
    */
   vtkSPHClampMacro(ResampleFactor, int, 1, 1000000);
 

@@ -18,14 +18,14 @@
  *   mcor_free_surface(&surface);
  *   mcor_free_context(context);
  *
- * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs are empty
- * and safe to free. The library never prints, never exits and keeps no global state. A context may be
- * used by one thread at a time; several contexts by several threads at once. A call starts helper threads
- * on the processors that its thread may use: on the built-in device they wait for the context's next call,
- * and end with the context; else they are up to 15, and end before the call returns.
+ * Every function that can fail returns an mcor_status, MCOR_OK being 0; after a failure, outputs
+ * are empty and safe to free. The library never prints, never exits and keeps no global state. A
+ * context may be used by one thread at a time; several contexts by several threads at once. A call
+ * starts helper threads on the processors that its thread may use: on the built-in device they wait
+ * for the context's next call, and end with the context; else they are up to 15, and end before the
+ * call returns.
  *
- * Lengths are in the unit of the particle positions ("length unit L").
- */
+ * Lengths are in the unit of the particle positions ("length unit L"). */
 
 #include <stddef.h>
 #include <stdint.h>
@@ -85,14 +85,14 @@ extern "C"
   typedef enum mcor_seed_mode
   {
     MCOR_COMPLETE = 0, /* examines every cell that a bound cannot exclude; misses nothing */
-    /* The paper's: cells between pairs of particles that are at most an (unscaled) smoothing length apart and
-     * straddle the iso value. For comparisons; needs cubes of one size, and no box, caps or ranks.
-     * MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
+    /* The paper's: cells between pairs of particles that are at most an (unscaled) smoothing length
+     * apart and straddle the iso value. For comparisons; needs cubes of one size, and no box, caps
+     * or ranks. MCOR_WEIGHT_SUM has no values at particles, so seeds are always complete. */
     MCOR_PAIRS = 1
   } mcor_seed_mode;
 
-  /* How nodes are connected on an ambiguous face (two above the iso value and two below, diagonally) and
-   * inside a cell. Both give the same vertices, and a manifold. */
+  /* How nodes are connected on an ambiguous face (two above the iso value and two below,
+   * diagonally) and inside a cell. Both give the same vertices, and a manifold. */
   typedef enum mcor_topology
   {
     MCOR_TOPOLOGY_TABLE = 0, /* nodes above are kept apart on such faces, no cell has a tunnel */
@@ -101,12 +101,12 @@ extern "C"
                               * of the field */
   } mcor_topology;
 
-/* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks of 4^3
- * where all particles that reach the brick have at least 2^L times the smallest smoothing length; bricks
- * that touch differ by one level at most. The surface is closed across levels. With one smoothing length
- * for all particles, all cubes have level 0. With MCOR_TOPOLOGY_FIELD, the field decides only in cubes and on
- * faces that no finer cube touches. A period is a whole number of the largest bricks, which may allow fewer
- * levels: see mcor_statistics.highest_level. */
+/* Levels of cubes, 0 to 24. Cubes of level L have edges of 2^L cube sizes. They are used in bricks
+ * of 4^3 where all particles that reach the brick have at least 2^L times the smallest smoothing
+ * length; bricks that touch differ by one level at most. The surface is closed across levels. With
+ * one smoothing length for all particles, all cubes have level 0. With MCOR_TOPOLOGY_FIELD, the
+ * field decides only in cubes and on faces that no finer cube touches. A period is a whole number
+ * of the largest bricks, which may allow fewer levels: see mcor_statistics.highest_level. */
 #define MCOR_CUBE_LEVELS 25
 
   /* Which sides caps close, see mcor_options.capping. */
@@ -121,10 +121,10 @@ extern "C"
   typedef enum mcor_boundary_detection
   {
     MCOR_BOUNDARY_WEIGHT_SUM = 0, /* the trimming weight sum V W; the default */
-    /* The smallest eigenvalue of the symmetric part of sum V (x_j - x) (outer product) grad W(x - x_j), the
-     * inverse of the renormalisation matrix (Marrone et al. 2010), over the same particles. Set
-     * vertex_threshold, too: 0.3 trims about where a weight of 0.5 does, 0.75 inside the fluid, 0.9 smoothing
-     * lengths from a flat surface. Near 0.5 the border is ragged. */
+    /* The smallest eigenvalue of the symmetric part of sum V (x_j - x) (outer product) grad W(x -
+     * x_j), the inverse of the renormalisation matrix (Marrone et al. 2010), over the same
+     * particles. Set vertex_threshold, too: 0.3 trims about where a weight of 0.5 does, 0.75 inside
+     * the fluid, 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged. */
     MCOR_BOUNDARY_EIGENVALUE = 1
   } mcor_boundary_detection;
 
@@ -151,52 +151,55 @@ extern "C"
     int64_t count;        /* number of particles; 0 gives an empty surface */
     mcor_array positions; /* [count][3], length unit L, data must not be NULL */
 
-    /* Smoothing length, unit L, > 0; or the kernel's support radius, if smoothing_length_is_support_radius
-     * is set. With estimate_smoothing_length the array is not read, and one smoothing length, 1.3 times
-     * the median particle spacing, is used for all particles. */
+    /* Smoothing length, unit L, > 0; or the kernel's support radius, if
+     * smoothing_length_is_support_radius is set. With estimate_smoothing_length the array is not
+     * read, and one smoothing length, 1.3 times the median particle spacing, is used for all
+     * particles. */
     mcor_array smoothing_length;
     int smoothing_length_is_support_radius;
     int estimate_smoothing_length;
 
-    /* Factors of the smoothing lengths, at least 1, as mcor_widen makes them; not given: 1. Kernels are as long as
-     * the products; cubes, their levels and the statistics follow the smoothing lengths. Volumes must be known. */
+    /* Factors of the smoothing lengths, at least 1, as mcor_widen makes them; not given: 1. Kernels
+     * are as long as the products; cubes, their levels and the statistics follow the smoothing
+     * lengths. Volumes must be known. */
     mcor_array widening;
 
-    /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if both are
-     * given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else
-     * 1 / (F_j sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the sum is
-     * low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j = the kernel's
-     * standard deviation along an axis, d = the dimension. Solids fill that side: of their share
-     * of g, as much counts, from none to all of it, as makes |g| least; F_j = 1 for solids themselves.
-     * These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids unless the free surface
-     * ends at them. Computed volumes next to walls therefore differ between the fields. */
+    /* Particle volume, unit L^3, > 0: `volume` if given (mcor_is_given); else mass / density if
+     * both are given; else, with mass alone, m_j / (F_j sum_k m_k W(x_j - x_k, h_j)); else 1 / (F_j
+     * sum_k W(x_j - x_k, h_j)). F_j = 1 + 5/3 D^2 makes up for a side without neighbours, where the
+     * sum is low: D = s h_j |g| / n, n = sum_k h_k^d W(x_j - x_k, h_j), g = its gradient, s h_j =
+     * the kernel's standard deviation along an axis, d = the dimension. Solids fill that side: of
+     * their share of g, as much counts, from none to all of it, as makes |g| least; F_j = 1 for
+     * solids themselves. These sums leave out ignored solids and, for MCOR_WEIGHT_SUM, all solids
+     * unless the free surface ends at them. Computed volumes next to walls therefore differ between
+     * the fields. */
     mcor_array volume, mass, density;
 
-    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. Of 2 or more components, scalar_component
-     * selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not NULL, A is the dot
-     * product of the two vectors. Values above about 1e30 need double precision; above 1e290, another
-     * unit. */
+    /* The scalar A to contour; not read for MCOR_WEIGHT_SUM. Of 2 or more components,
+     * scalar_component selects one, or MCOR_MAGNITUDE the Euclidean norm. If scalar_dot.data is not
+     * NULL, A is the dot product of the two vectors. Values above about 1e30 need double precision;
+     * above 1e290, another unit. */
     mcor_array scalar;
     int scalar_component;
     mcor_array scalar_dot;
 
     /* [count], borrowed; nonzero: a solid (wall) particle. NULL: all particles are fluid. Solid
      * particles never take part in the field. They count in the weight used for trimming unless
-     * ignore_solids is set; the surface may end at them, see mcor_options.wall_share. MCOR_ABSENT: the
-     * particle is left out of everything. Nothing of absent particles, and of solids that play no part, is
-     * looked at, so they may hold NaN. */
+     * ignore_solids is set; the surface may end at them, see mcor_options.wall_share. MCOR_ABSENT:
+     * the particle is left out of everything. Nothing of absent particles, and of solids that play
+     * no part, is looked at, so they may hold NaN. */
     const uint8_t* solid;
     int ignore_solids;
 
-    /* Other arrays to interpolate to the surface (Shepard mean of fluid particles). An array that is not
-     * finite at a fluid particle is left out, see attribute_not_finite. */
+    /* Other arrays to interpolate to the surface (Shepard mean of fluid particles). An array that
+     * is not finite at a fluid particle is left out, see attribute_not_finite. */
     const mcor_array* attributes; /* [attribute_count] */
     int attribute_count;
 
-    /* Reuse: equal nonzero numbers in two successive calls promise that these are the same: positions,
-     * smoothing lengths, their factors, volumes and solids (particles_version), the scalar (scalar_version), or all
-     * attributes (attributes_version; mcor_probe keeps them on the device). Reuse saves time and never
-     * changes the result. 0: never reuse. */
+    /* Reuse: equal nonzero numbers in two successive calls promise that these are the same:
+     * positions, smoothing lengths, their factors, volumes and solids (particles_version), the
+     * scalar (scalar_version), or all attributes (attributes_version; mcor_probe keeps them on the
+     * device). Reuse saves time and never changes the result. 0: never reuse. */
     uint64_t particles_version;
     uint64_t scalar_version;
     uint64_t attributes_version;
@@ -205,18 +208,18 @@ extern "C"
 /* The default wall share: measured for the surface of a scalar, none for the free surface. */
 #define MCOR_WALL_SHARE_AUTO (-2)
 
-/* A measured wall share: the median of the solids' share of the weight at a sample of the solids, each
- * weighted by the fluid's weight there. The surface of a scalar then ends on the layer of solids that faces
- * the fluid, however many layers there are and whatever their distance from the fluid. The free surface
- * stays in front of that layer; its wall share is 0.5. */
+/* A measured wall share: the median of the solids' share of the weight at a sample of the solids,
+ * each weighted by the fluid's weight there. The surface of a scalar then ends on the layer of
+ * solids that faces the fluid, however many layers there are and whatever their distance from the
+ * fluid. The free surface stays in front of that layer; its wall share is 0.5. */
 #define MCOR_WALL_SHARE_MEASURED (-1)
 
   /* A surface in parts, made by several processes or from some of the particles: see mcor_parts.h. */
   typedef struct mcor_globals mcor_globals;
   typedef struct mcor_ranks mcor_ranks;
 
-  /* Arrays that a surface or samples carry besides points and triangles, by their names in mcor_surface and
-   * mcor_samples. */
+  /* Arrays that a surface or samples carry besides points and triangles, by their names in
+   * mcor_surface and mcor_samples. */
   typedef enum mcor_output
   {
     MCOR_OUT_NORMALS = 1,
@@ -236,101 +239,108 @@ extern "C"
 
   typedef struct mcor_options
   {
-    /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are those of two
-     * dimensions (volumes are areas, masses are per unit of depth), and lines are extracted in place of a
-     * surface. 0 (the default): 2 if exactly one coordinate is the same for all particles, else 3; see
-     * mcor_statistics.dimension. In the plane, squares take the place of cubes, and a period along the
-     * constant axis is ignored. */
+    /* 2: the particles lie in a plane of constant x, y or z, which all share exactly; sums are
+     * those of two dimensions (volumes are areas, masses are per unit of depth), and lines are
+     * extracted in place of a surface. 0 (the default): 2 if exactly one coordinate is the same for
+     * all particles, else 3; see mcor_statistics.dimension. In the plane, squares take the place of
+     * cubes, and a period along the constant axis is ignored. */
     int dimension;
     mcor_sph_kernel sph_kernel;
     mcor_field field;
     mcor_seed_mode seeds;
     mcor_topology topology;
-    /* 1 to 4; default 1: off. Above 1, each particle's smoothing length is multiplied by a factor up to this, as
-     * large as leaves the particle inside of the free surface: see mcor_widen. Flat surfaces become flat, and
-     * drops, threads and sheets stay. Cubes and volumes are those of the original lengths. With globals or ranks,
-     * call mcor_widen before, and set mcor_input.widening. */
+    /* 1 to 4; default 1: off. Above 1, each particle's smoothing length is multiplied by a
+     * factor up to this, as large as leaves the particle inside of the free surface: see
+     * mcor_widen. Flat surfaces become flat, and drops, threads and sheets stay. Cubes and
+     * volumes are those of the original lengths. With globals or ranks, call mcor_widen before,
+     * and set mcor_input.widening. */
     double widen;
     double h_scale;          /* the kernel uses h_scale * smoothing length; volumes do not change */
     double cube_size_factor; /* cube size = factor * smallest smoothing length; default 0.5 */
     double cube_size;        /* unit L; > 0 overrides the factor */
-    /* Highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24. mcor_probe and mcor_derive do
-     * not read it. */
+    /* Highest level of cubes, see MCOR_CUBE_LEVELS; 0: uniform cubes; default 24. mcor_probe and
+     * mcor_derive do not read it. */
     int level_limit;
     const double* iso_values; /* [iso_count], finite; none give an empty surface */
     int iso_count;
-    /* Cells with a node of lower weight are discarded; default 0.1. With MCOR_SHEPARD, so are cells with a node
-     * of fluid weight below 0.001. */
+    /* Cells with a node of lower weight are discarded; default 0.1. With MCOR_SHEPARD, so are cells
+     * with a node of fluid weight below 0.001. */
     double node_threshold;
     mcor_boundary_detection boundary_detection;
-    /* Triangles are trimmed where the weight (or the boundary eigenvalue) is lower; default 0.5. With
-     * MCOR_SHEPARD they are always trimmed where the fluid's own weight is below 0.001, or below 0.05 with M'4,
-     * whose negative lobes give the mean poles. */
+    /* Triangles are trimmed where the weight (or the boundary eigenvalue) is lower; default 0.5.
+     * With MCOR_SHEPARD they are always trimmed where the fluid's own weight is below 0.001, or
+     * below 0.05 with M'4, whose negative lobes give the mean poles. */
     double vertex_threshold;
-    /* Above 0: the surface, a free surface too, also ends where the solids' share of the weight exceeds this,
-     * unless solids are ignored; 0.5: where they weigh more than the fluid. 0: it does not end at solids. Or
-     * MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED. */
+    /* Above 0: the surface, a free surface too, also ends where the solids' share of the weight
+     * exceeds this, unless solids are ignored; 0.5: where they weigh more than the fluid. 0: it
+     * does not end at solids. Or MCOR_WALL_SHARE_AUTO (the default), MCOR_WALL_SHARE_MEASURED. */
     double wall_share;
     int preview; /* nonzero: vertices by linear interpolation, no correction */
-    /* In two dimensions, nonzero: triangles fill the region above the lowest iso value within the trimmed fluid;
-     * the lines of the other values divide it into bands, see mcor_surface.band_value. The triangles share the
-     * points of the lines; their other points are nodes of the virtual grid and points where trimming cuts its
-     * edges. The array iso_value is returned even without MCOR_OUT_ISO_VALUE. Seeds are complete, and all squares
-     * have the smallest size. In three dimensions this is an error. */
+    /* In two dimensions, nonzero: triangles fill the region above the lowest iso value within the
+     * trimmed fluid; the lines of the other values divide it into bands, see
+     * mcor_surface.band_value. The triangles share the points of the lines; their other points are
+     * nodes of the virtual grid and points where trimming cuts its edges. The array iso_value is
+     * returned even without MCOR_OUT_ISO_VALUE. Seeds are complete, and all squares have the
+     * smallest size. In three dimensions this is an error. */
     int filled;
-    /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices of one node of the
-     * virtual grid that edges of triangles join are merged, and then moved along the gradient onto the surface, not
-     * along lattice edges. That is undone where it would change the pieces or turn a triangle over. Points on the
-     * sides of periods, at caps and on borders stay, and are those without this option. Cannot be combined with `filled`. */
+    /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices
+     * of one node of the virtual grid that edges of triangles join are merged, and then moved along
+     * the gradient onto the surface, not along lattice edges. That is undone where it would change
+     * the pieces or turn a triangle over. Points on the sides of periods, at caps and on borders
+     * stay, and are those without this option. Cannot be combined with `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; as `compact`, and `widen` of 2 if that is 1 */
     double tolerance;    /* |f - iso| reached by the correction / range of A; default 1e-6 */
     int iteration_limit; /* of the correction, per vertex; 1 to 255, default 30 */
     mcor_type precision; /* of the field evaluation on the device; MCOR_FLOAT32 by default */
-    /* Bytes of device memory in use and kept, >= 0; 0: no limit. Memory kept for reuse is freed before a run
-     * fails for lack of memory. */
+    /* Bytes of device memory in use and kept, >= 0; 0: no limit. Memory kept for reuse is freed
+     * before a run fails for lack of memory. */
     int64_t memory_limit;
 
-    /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the surface is that of the cells whose centres are in the box,
-     * box[2 a] <= x < box[2 a + 1] along axis a, to the last bit; boxes side by side make up the whole surface.
-     * Sides may be infinite. A box may be flat (y0 = y1) only around particles in that plane. Lattice, ranges and
-     * smallest h are measured over all particles; only those that reach the box are evaluated.
-     * mcor_probe and mcor_derive read the box only with globals. */
+    /* x0, x1, y0, y1, z0, z1; unit L. Not all 0: the surface is that of the cells whose centres are
+     * in the box, box[2 a] <= x < box[2 a + 1] along axis a, to the last bit; boxes side by side
+     * make up the whole surface. Sides may be infinite. A box may be flat (y0 = y1) only around
+     * particles in that plane. Lattice, ranges and smallest h are measured over all particles; only
+     * those that reach the box are evaluated. mcor_probe and mcor_derive read the box only with
+     * globals. */
     double box[6];
 
     /* x0, x1, y0, y1, z0, z1; unit L. Where x0 < x1, the particles repeat along x with the period
-     * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is that of
-     * one period and open at the periodic sides, where it meets itself: points a period apart agree in all
-     * bits except for the rounded coordinate along the period. Each period is a whole number of cubes: the
-     * cube size is reduced to fit, by less than half. x0 = x1 (default 0): not periodic. Also for
-     * mcor_probe and mcor_derive, whose points may lie anywhere. */
+     * x1 - x0: each is moved to its place between x0 and x1, and its images count. The surface is
+     * that of one period and open at the periodic sides, where it meets itself: points a period
+     * apart agree in all bits except for the rounded coordinate along the period. Each period is a
+     * whole number of cubes: the cube size is reduced to fit, by less than half. x0 = x1 (default
+     * 0): not periodic. Also for mcor_probe and mcor_derive, whose points may lie anywhere. */
     double periodic[6];
-    /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are above the
-     * iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of whole_box). These caps
-     * share the points of the surface's border; their other points are nodes, with normals pointing out of the
-     * period, boundary flag 8, and a meaningless residual. Trimming also cuts caps, and leaves its own border
-     * open. Where MCOR_WEIGHT_SUM ends at solids (see wall_share), both values also close that border; the points
-     * of these caps lie on lattice edges, and their normals are those of triangles. With caps, all cubes have the
-     * smallest size. With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box
-     * that no particle reaches gets no caps, even where the iso value of a sum is 0. Cannot be combined with
-     * MCOR_PAIRS. In two dimensions, lines along these sides, cut exactly, close the lines; lines that end at
-     * walls stay open. Cannot be combined with `filled` either. */
+    /* MCOR_CAP_PERIOD: flat triangles close the surface at the periodic sides, where values are
+     * above the iso value; MCOR_CAP_BOX: also at the sides of the box's cells (of ranks: of
+     * whole_box). These caps share the points of the surface's border; their other points are
+     * nodes, with normals pointing out of the period, boundary flag 8, and a meaningless residual.
+     * Trimming also cuts caps, and leaves its own border open. Where MCOR_WEIGHT_SUM ends at solids
+     * (see wall_share), both values also close that border; the points of these caps lie on lattice
+     * edges, and their normals are those of triangles. With caps, all cubes have the smallest size.
+     * With a box, MCOR_CAP_PERIOD closes the sides of its cells that lie on a periodic side. A box
+     * that no particle reaches gets no caps, even where the iso value of a sum is 0. Cannot be
+     * combined with MCOR_PAIRS. In two dimensions, lines along these sides, cut exactly, close the
+     * lines; lines that end at walls stay open. Cannot be combined with `filled` either. */
     int capping; /* mcor_capping */
 
-    /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all particles, of
-     * which the input needs to hold only those whose supports miss the box by no more than
-     * mcor_reach_margin; with computed volumes, also all particles within the (unscaled) support of
-     * those. The surface is, to the last bit, that of all particles. Borrowed until return. For mcor_probe and
-     * mcor_derive: the result of mcor_measure_probe_globals. Their results are valid in the box and on its
-     * sides; elsewhere they are meaningless, or 0 for particles two cubes or more away from the box. */
+    /* NULL: measured over the input. Otherwise the result of mcor_measure_globals for all
+     * particles, of which the input needs to hold only those whose supports miss the box by no more
+     * than mcor_reach_margin; with computed volumes, also all particles within the (unscaled)
+     * support of those. The surface is, to the last bit, that of all particles. Borrowed until
+     * return. For mcor_probe and mcor_derive: the result of mcor_measure_probe_globals. Their
+     * results are valid in the box and on its sides; elsewhere they are meaningless, or 0 for
+     * particles two cubes or more away from the box. */
     const mcor_globals* globals;
 
-    /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals measure over
-     * the inputs of all ranks; each particle must be in exactly one of them. (A rank without particles has
-     * count 0, and data that are not NULL where the other ranks have data.) The result is, to the last
-     * bit, that of all particles in one input, except for not_finite, the lowest number that such a
-     * particle has on its rank. mcor_extract needs these globals; each cell must be in the box of exactly
-     * one rank. Other functions do not read ranks. Borrowed until return. */
+    /* NULL: this process alone. Otherwise mcor_measure_globals and mcor_measure_probe_globals
+     * measure over the inputs of all ranks; each particle must be in exactly one of them. (A rank
+     * without particles has count 0, and data that are not NULL where the other ranks have data.)
+     * The result is, to the last bit, that of all particles in one input, except for not_finite,
+     * the lowest number that such a particle has on its rank. mcor_extract needs these globals;
+     * each cell must be in the box of exactly one rank. Other functions do not read ranks. Borrowed
+     * until return. */
     const mcor_ranks* ranks;
 
     /* Arrays that the surface carries besides points and triangles. */
@@ -366,10 +376,10 @@ extern "C"
     double far_place[3];
     int64_t particles_in_reach; /* on the device; with a box, only those that the box needs */
     double smoothing_length_min, smoothing_length_max; /* of fluid particles, unit L, unscaled */
-    /* Medians over a sample of the fluid particles: smoothing length; number of particles within the
-     * unscaled support radius, including the particle itself and solids; distance of the nearest other
-     * particle (0: none); share of the support that these particles fill if all are as large as the
-     * particle itself (0 if volumes are computed). */
+    /* Medians over a sample of the fluid particles: smoothing length; number of particles within
+     * the unscaled support radius, including the particle itself and solids; distance of the
+     * nearest other particle (0: none); share of the support that these particles fill if all are
+     * as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
     double wall_share;      /* in use; 0: the surface does not end at solids */
@@ -380,16 +390,16 @@ extern "C"
     double cube_size;       /* unit L; the shortest of: */
     double cube_edges[3];   /* along x, y, z: unequal where no cube size divides all periods */
     double scalar_min, scalar_max; /* over fluid particles */
-    /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box; of
-     * ranks that share a vertex, one counts it. Counts of bricks, nodes, faces and evaluations include the
-     * work done around the box. */
+    /* With a box, the lattice and all counts of cells, triangles and vertices are those of the box;
+     * of ranks that share a vertex, one counts it. Counts of bricks, nodes, faces and evaluations
+     * include the work done around the box. */
     int64_t lattice_origin[3]; /* lowest node of the virtual grid: world position / edge */
     int64_t lattice_cells[3];
     int64_t virtual_cells; /* product of lattice_cells, below 2^63 */
-    /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not exclude; with
-     * adaptive cubes, the cells of leaves through which the surface passes. Pairs: the cells between them.
-     * And how many of these cells the surface does not use.
-     * These and the following counts are summed over iso values. */
+    /* Complete seeds: with uniform cubes, the cells that bounds over 8 x 8 x 8 nodes do not
+     * exclude; with adaptive cubes, the cells of leaves through which the surface passes. Pairs:
+     * the cells between them. And how many of these cells the surface does not use. These and the
+     * following counts are summed over iso values. */
     int64_t seed_cells, seed_cells_not_intersected;
     int64_t bricks, nodes_evaluated;
     int64_t cells_used; /* intersected cells of the surface, before trimming */
@@ -397,21 +407,22 @@ extern "C"
     /* Triangles without a node threshold; counted only if there are none with it. */
     int64_t triangles_below_threshold;
     int64_t cap_triangles; /* not included in triangles_before_trimming */
-    /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume that a
-     * closed surface encloses, less cavities, unit L^3 (negative where values grow outwards), else 0. In two
-     * dimensions: whether all lines are closed; the area that they then enclose, else 0, or the filled area;
-     * the length of the lines, unit L. */
+    /* The returned surface: whether each edge has triangles on both sides; area, unit L^2; volume
+     * that a closed surface encloses, less cavities, unit L^3 (negative where values grow
+     * outwards), else 0. In two dimensions: whether all lines are closed; the area that they then
+     * enclose, else 0, or the filled area; the length of the lines, unit L. */
     int is_closed;
     double area, volume, length;
     int64_t march_rounds;
     /* Adaptive cubes: used cells and triangles, before trimming, by the level of their cell. */
     int64_t cells_of_level[MCOR_CUBE_LEVELS], triangles_of_level[MCOR_CUBE_LEVELS];
-    /* Loops of triangles that lie in one side of a cell beside finer cells: the cell cuts off a part of the
-     * surface that the finer cells resolve. */
+    /* Loops of triangles that lie in one side of a cell beside finer cells: the cell cuts off a
+     * part of the surface that the finer cells resolve. */
     int64_t flat_loops;
     int highest_level; /* allowed by the smoothing lengths, level_limit and periods */
-    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of them join the nodes above the iso value, which
-     * the table keeps apart; cells with two loops that may form a tunnel, and how many do. */
+    /* MCOR_TOPOLOGY_FIELD: ambiguous faces, and how many of them join the nodes above the iso
+     * value, which the table keeps apart; cells with two loops that may form a tunnel, and how many
+     * do. */
     int64_t ambiguous_faces, joined_faces, ambiguous_cells, tunnels;
     /* Correction, Table V: distance between linear and corrected vertex, unit L. */
     double correction_mean, correction_max, correction_deviation;
@@ -430,20 +441,21 @@ extern "C"
     char device[128], platform[128];
   } mcor_statistics;
 
-  /* The key of a point: the number of the iso value and the kind of the point, then its place:
-   * its lattice edge; of a merged point the node, and which of the pieces there; of a cut the two
-   * points between which it lies; of a point of a cap the square. The points of a surface have different keys, in ascending lexicographic order. In the surface of a box,
-   * points have the same keys as in the whole surface. */
+  /* The key of a point: the number of the iso value and the kind of the point, then its place: its
+   * lattice edge; of a merged point the node, and which of the pieces there; of a cut the two
+   * points between which it lies; of a point of a cap the square. The points of a surface have
+   * different keys, in ascending lexicographic order. In the surface of a box, points have the same
+   * keys as in the whole surface. */
 #define MCOR_POINT_KEY 3
 
-  /* The key of a triangle: the number of the iso value, then its cell or the square of a cap. Triangles are in
-   * the order of their keys; those of one cell have the same key. In the surface of a box, triangles have the
-   * same keys as in the whole surface. Each cell is in one box, so a stable sort by key of the triangles of
-   * all boxes gives those of the whole surface in order. */
+  /* The key of a triangle: the number of the iso value, then its cell or the square of a cap.
+   * Triangles are in the order of their keys; those of one cell have the same key. In the surface
+   * of a box, triangles have the same keys as in the whole surface. Each cell is in one box, so a
+   * stable sort by key of the triangles of all boxes gives those of the whole surface in order. */
 #define MCOR_TRIANGLE_KEY 2
 
-  /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to lower
-   * values of the field, as with vtkContourFilter. Owned; free with mcor_free_surface. */
+  /* A triangle mesh. Triangles share vertices. The normal of a triangle (right-hand rule) points to
+   * lower values of the field, as with vtkContourFilter. Owned; free with mcor_free_surface. */
   typedef struct mcor_surface
   {
     int64_t point_count, triangle_count;
@@ -451,15 +463,17 @@ extern "C"
     int32_t* triangles;      /* [triangle_count][3], point indices */
     uint64_t* triangle_keys; /* [triangle_count][MCOR_TRIANGLE_KEY]; NULL where not asked for */
     /* Two dimensions: polylines, and triangles only of the filled region. Line l has the points
-     * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on its left, seen
-     * against the constant axis. A closed line ends with its first point. Open lines come first. Normals lie in
-     * the plane; with `filled`, all are those of the triangles, along the constant axis. Counts of triangles in the
-     * statistics are those of lines between two points; lines have no triangle_keys. */
+     * line_points[line_offsets[l]] to line_points[line_offsets[l + 1] - 1]; values are greater on
+     * its left, seen against the constant axis. A closed line ends with its first point. Open lines
+     * come first. Normals lie in the plane; with `filled`, all are those of the triangles, along
+     * the constant axis. Counts of triangles in the statistics are those of lines between two
+     * points; lines have no triangle_keys. */
     int64_t line_count, line_point_count;
     int64_t* line_offsets; /* [offset_count], line_count + 1; NULL in three dimensions */
     int32_t* line_points;  /* [line_point_count], point indices */
-    /* [triangle_count]; NULL unless filled: the iso value at which the triangle's band begins; the last band has
-     * no upper end. At interior points, iso_value is this value, and residual is the field minus it. */
+    /* [triangle_count]; NULL unless filled: the iso value at which the triangle's band begins; the
+     * last band has no upper end. At interior points, iso_value is this value, and residual is the
+     * field minus it. */
     double* band_value;
     /* Optional arrays, see mcor_output; NULL where not asked for. */
     float* normals;             /* [point_count][3], unit length, towards lower values */
@@ -468,22 +482,23 @@ extern "C"
     float* boundary_eigenvalue; /* [point_count], see MCOR_BOUNDARY_EIGENVALUE */
     float* correction_length;   /* [point_count], unit L */
     float* residual;            /* [point_count], f - iso, scalar unit */
-    /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or eigenvalue) is the vertex threshold
-     * or the solids' share the wall share; 2: the same, but left at the linear cut; 4: on a lattice edge next to a
-     * cell that the node threshold discarded; 8: belongs to a cap alone, see capping, or is a node that is filled
-     * around. */
+    /* [point_count]; 0: inside; 1: on the trim boundary, where the weight (or eigenvalue) is the
+     * vertex threshold or the solids' share the wall share; 2: the same, but left at the linear
+     * cut; 4: on a lattice edge next to a cell that the node threshold discarded; 8: belongs to a
+     * cap alone, see capping, or is a node that is filled around. */
     uint8_t* boundary_flag;
     double* iso_value;         /* [point_count] */
     double* widening; /* [point_count], the Shepard mean of the factors; NULL unless options.widen is above 1 */
     int64_t* nearest_particle; /* [point_count], index of the nearest fluid particle */
     uint64_t* point_keys;      /* [point_count][MCOR_POINT_KEY] */
-    /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: those of a sphere of
-     * radius R are 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In two dimensions the mean curvature is
-     * that of the line, 1 / R for a circle. Of caps they are meaningless. */
+    /* [point_count], 1 / L and 1 / L^2, from the first and second derivatives of the field: those
+     * of a sphere of radius R are 1 / R (-1 / R where the field is lower inside) and 1 / R^2. In
+     * two dimensions the mean curvature is that of the line, 1 / R for a circle. Of caps they are
+     * meaningless. */
     double *mean_curvature, *gauss_curvature;
     double** attributes;       /* [attribute_count] -> [point_count][components] */
-    /* [attribute_count]: -1; or the first fluid particle at which the attribute is NaN or infinite. Such an
-     * attribute is left out; its entry in `attributes` is NULL. */
+    /* [attribute_count]: -1; or the first fluid particle at which the attribute is NaN or infinite.
+     * Such an attribute is left out; its entry in `attributes` is NULL. */
     int64_t* attribute_not_finite;
     int attribute_count;
     mcor_statistics statistics;
@@ -491,18 +506,19 @@ extern "C"
 
   typedef struct mcor_context mcor_context;
 
-  /* device: NULL or "" for the default (a GPU if there is one, else the built-in device), a number as
-   * listed by mcor_list_devices, or part of the name of a device or platform. On failure *context is
-   * still a context, whose mcor_last_error says why (NULL only if host memory ran out). */
+  /* device: NULL or "" for the default (a GPU if there is one, else the built-in device), a
+   * number as listed by mcor_list_devices, or part of the name of a device or platform. On
+   * failure *context is still a context, whose mcor_last_error says why (NULL only if host
+   * memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);
   void mcor_free_context(mcor_context* context);
 
-  /* One line per device, "number: device (platform)\n". Free *text with free(). It is empty if there is
-   * no OpenCL device. */
+  /* One line per device, "number: device (platform)\n". Free *text with free(). It is empty if
+   * there is no OpenCL device. */
   mcor_status mcor_list_devices(char** text);
 
-  /* Why the last call on this context that failed did so, in one sentence; "" if none failed. Valid until
-   * the next call on the context. */
+  /* Why the last call on this context that failed did so, in one sentence; "" if none failed. Valid
+   * until the next call on the context. */
   const char* mcor_last_error(const mcor_context* context);
   const char* mcor_status_name(mcor_status status);
   const char* mcor_phase_name(mcor_phase phase); /* "search grid", "seeds", ... */
@@ -530,14 +546,15 @@ extern "C"
    * Case, blanks, "_" and "-" do not matter. */
   int mcor_name_priority(mcor_quantity quantity, const char* name);
 
-  /* Whether an array of this name, with whole numbers from low to high over all particles, clearly tells
-   * which particles are fluid: one that holds 0 and 1, or the codes of DualSPHysics. *fluid becomes the
-   * value of fluid particles. */
+  /* Whether an array of this name, with whole numbers from low to high over all particles, clearly
+   * tells which particles are fluid: one that holds 0 and 1, or the codes of DualSPHysics. *fluid
+   * becomes the value of fluid particles. */
   int mcor_find_fluid_value(const char* name, double low, double high, double* fluid);
 
-  /* Which array to show if the user has chosen none: the one with the lowest priority number. Velocities come
-   * first, then other vectors, scalars, particle properties, and the rest. -1: do not show it, because it
-   * holds particle ids or types, or does not vary (`varies`: any component has two different values). */
+  /* Which array to show if the user has chosen none: the one with the lowest priority number.
+   * Velocities come first, then other vectors, scalars, particle properties, and the rest. -1: do
+   * not show it, because it holds particle ids or types, or does not vary (`varies`: any component
+   * has two different values). */
   int mcor_view_priority(const char* name, int components, int is_real, int varies);
 
   /* The solver whose output has arrays of these names (one per line): "DualSPHysics", "PySPH",
@@ -552,14 +569,15 @@ extern "C"
     int64_t count;
   } mcor_field_data;
 
-  /* The period given by field data: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box with a periodic
-   * boundaryType (SPH-EXA); spelled as for mcor_name_priority. Returns how many numbers `period` has: 6
-   * bounds, as in mcor_options.periodic; 3 lengths, see mcor_place_period; 0 if no array gives a period.
-   * which: the index of the array; may be NULL. */
+  /* The period given by field data: an array PeriodicBounds, BoxSize (GADGET, SWIFT), or box with a
+   * periodic boundaryType (SPH-EXA); spelled as for mcor_name_priority. Returns how many numbers
+   * `period` has: 6 bounds, as in mcor_options.periodic; 3 lengths, see mcor_place_period; 0 if no
+   * array gives a period. which: the index of the array; may be NULL. */
   int mcor_find_period(const mcor_field_data* arrays, int count, double period[6], int* which);
 
-  /* The bounds of a period of known lengths. Along each axis they begin at 0, or are centred at 0, if they
-   * then contain all particles, whose extent is (x0, x1, ...); otherwise they begin at the lowest particle. */
+  /* The bounds of a period of known lengths. Along each axis they begin at 0, or are centred at 0,
+   * if they then contain all particles, whose extent is (x0, x1, ...); otherwise they begin at the
+   * lowest particle. */
   void mcor_place_period(const double lengths[3], const double extent[6], double bounds[6]);
 
   /* Whether mcor_find_period reads arrays of this name. */
@@ -621,9 +639,10 @@ extern "C"
    * that share the particles; the results of ranks add up. */
   double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least);
 
-  /* Words for panels, with six digits: a warning of how long a run of so many cells may take; the smoothing length
-   * and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array Density"; area and volume, or length and
-   * area, "" where there is no surface. Free them with free(). NULL if there is no such warning, or if memory ran out. */
+  /* Words for panels, with six digits: a warning of how long a run of so many cells may take; the
+   * smoothing length and the volume in use, "0.02 to 0.045 (array h)", "array Mass / array
+   * Density"; area and volume, or length and area, "" where there is no surface. Free them with
+   * free(). NULL if there is no such warning, or if memory ran out. */
   char* mcor_describe_estimate(double cells);
   char* mcor_describe_smoothing_length(const mcor_input* input, const mcor_statistics* statistics);
   char* mcor_describe_volume(const mcor_input* input);
@@ -645,9 +664,9 @@ extern "C"
     MCOR_WARNING_COUNT
   } mcor_warning;
 
-  /* The warning in words, with numbers; free it with free(). NULL if there is no such warning, or if
-   * memory ran out. Pass the input, options and surface of mcor_extract. The last three kinds hold for any call; they
-   * read nothing of the surface but its statistics. */
+  /* The warning in words, with numbers; free it with free(). NULL if there is no such warning, or
+   * if memory ran out. Pass the input, options and surface of mcor_extract. The last three kinds
+   * hold for any call; they read nothing of the surface but its statistics. */
   char* mcor_describe_warning(mcor_warning warning, const mcor_input* input,
     const mcor_options* options, const mcor_surface* surface);
 
@@ -673,8 +692,8 @@ extern "C"
     double* weight_sum;      /* [count], of fluid particles */
     double* weight_gradient; /* [count][3], unit 1 / L; NULL without MCOR_OUT_GRADIENTS */
     uint8_t* valid; /* [count], 1 where the weight sum is not below options.node_threshold */
-    /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard mean),
-     * and its gradient. 0 where not valid. */
+    /* For each attribute of the input, the field at the points (MCOR_SUM: the sum; else the Shepard
+     * mean), and its gradient. 0 where not valid. */
     double** values;               /* [attribute_count] -> [count][components] */
     double** gradients;            /* [attribute_count] -> [count][components][3], per L; NULL
                                     * without MCOR_OUT_GRADIENTS */
@@ -683,10 +702,11 @@ extern "C"
     mcor_statistics statistics;
   } mcor_samples;
 
-  /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The scalar of
-   * the input is not read. These options apply: sph_kernel, field, h_scale, outputs, node_threshold,
-   * precision, memory_limit, periodic and progress; cube_size and cube_size_factor only set the unit of
-   * length on the device. The bits of a point do not depend on the other points. *samples is overwritten. */
+  /* Evaluates the field at points: [count][3], unit L; a point that is not finite is not valid. The
+   * scalar of the input is not read. These options apply: sph_kernel, field, h_scale, outputs,
+   * node_threshold, precision, memory_limit, periodic and progress; cube_size and cube_size_factor
+   * only set the unit of length on the device. The bits of a point do not depend on the other
+   * points. *samples is overwritten. */
   mcor_status mcor_probe(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_array* points, int64_t count, mcor_samples* samples);
   void mcor_free_samples(mcor_samples* samples);
@@ -729,14 +749,14 @@ extern "C"
     mcor_statistics statistics;
   } mcor_gauges;
 
-  /* Where lines cross the free surface, that is, where the weight sum of fluid particles, as in mcor_extract
-   * with MCOR_WEIGHT_SUM, equals the level, which is the iso value (above 0; 0.5 if there is none). There is
-   * fluid where the sum is at least the level; walls do not end it. Each line is sampled at a quarter of the
-   * smallest (scaled) smoothing length, or more finely where neighbouring samples show that an extremum may
-   * cross the level; then crossings are solved for. lines: [count]. The options of mcor_probe apply, except
-   * field, and iso_values and wall_share do, too. Ranks must have boxes, globals (of mcor_measure_globals
-   * with MCOR_WEIGHT_SUM and level_limit 0) and the same lines; all get all readings. *gauges is
-   * overwritten. */
+  /* Where lines cross the free surface, that is, where the weight sum of fluid particles, as in
+   * mcor_extract with MCOR_WEIGHT_SUM, equals the level, which is the iso value (above 0; 0.5 if
+   * there is none). There is fluid where the sum is at least the level; walls do not end it. Each
+   * line is sampled at a quarter of the smallest (scaled) smoothing length, or more finely where
+   * neighbouring samples show that an extremum may cross the level; then crossings are solved for.
+   * lines: [count]. The options of mcor_probe apply, except field, and iso_values and wall_share
+   * do, too. Ranks must have boxes, globals (of mcor_measure_globals with MCOR_WEIGHT_SUM and
+   * level_limit 0) and the same lines; all get all readings. *gauges is overwritten. */
   mcor_status mcor_gauge(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_gauge_line* lines, int64_t count, mcor_gauges* gauges);
   void mcor_free_gauges(mcor_gauges* gauges);
@@ -745,21 +765,25 @@ extern "C"
   /* Shapes of sections, and the meaning of mcor_section.points. */
   typedef enum mcor_section_shape
   {
-    /* a corner, then the ends of the two edges that begin there; the normal is the cross product of the edges */
+    /* a corner, then the ends of the two edges that begin there; the normal is the cross product of
+     * the edges */
     MCOR_SECTION_RECTANGLE = 0,
     MCOR_SECTION_DISC = 1, /* the centre, and the normal, of any length */
     MCOR_SECTION_BOX =
       2, /* the lowest and the highest corner; the section is its sides, with normals outwards */
-    /* three points each; the normal follows the right-hand rule, but points outwards if they are a closed surface */
+    /* three points each; the normal follows the right-hand rule, but points outwards if they are a
+     * closed surface */
     MCOR_SECTION_TRIANGLES = 3,
-    /* Two points each, in two dimensions only. The normal points to the right of the way from the first to the second
-     * one, seen with the plane's first axis (x; y where x is constant) to the right and its second one upwards. */
+    /* Two points each, in two dimensions only. The normal points to the right of the way from the
+     * first to the second one, seen with the plane's first axis (x; y where x is constant) to the
+     * right and its second one upwards. */
     MCOR_SECTION_LINES = 4,
     MCOR_SECTION_SHAPE_COUNT
   } mcor_section_shape;
 
-  /* Where flow is measured. In two dimensions a section is its line in the plane of the particles, and areas are
-   * lengths: a rectangle needs an edge along the constant axis, a disc a normal in the plane; a box has four sides. */
+  /* Where flow is measured. In two dimensions a section is its line in the plane of the particles,
+   * and areas are lengths: a rectangle needs an edge along the constant axis, a disc a normal in
+   * the plane; a box has four sides. */
   typedef struct mcor_section
   {
     mcor_section_shape shape;
@@ -789,11 +813,12 @@ extern "C"
     mcor_statistics statistics;
   } mcor_fluxes;
 
-  /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3 components; 2 will do
-   * in two dimensions) and, if there are two, the density. Fluid is where the weight sum is at least the level, as for
-   * mcor_gauge. Sections are divided into triangles of 3/4 of the smallest (scaled) smoothing length, which are cut
-   * where the weight sum is the level, and divided further until two divisions agree to 1e-6 of the largest flux that
-   * the section's velocities allow. Options, globals and ranks as for mcor_gauge. *fluxes is overwritten. */
+  /* Measures the flow through sections: [count]. The attributes of the input are the velocity (3
+   * components; 2 will do in two dimensions) and, if there are two, the density. Fluid is where the
+   * weight sum is at least the level, as for mcor_gauge. Sections are divided into triangles of 3/4
+   * of the smallest (scaled) smoothing length, which are cut where the weight sum is the level, and
+   * divided further until two divisions agree to 1e-6 of the largest flux that the section's
+   * velocities allow. Options, globals and ranks as for mcor_gauge. *fluxes is overwritten. */
   mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
     const mcor_section* sections, int64_t count, mcor_fluxes* fluxes);
   void mcor_free_fluxes(mcor_fluxes* fluxes);
@@ -804,14 +829,15 @@ extern "C"
     /* Direction of the line of sight; its length and sign do not matter. All 0: the constant
      * axis of a plane, else z. */
     double direction[3];
-    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, and all that particles reach where there is none. Sides may
-     * be infinite. The image is the box as it is seen. If the line of sight is x, y or z, a particle counts if its position
-     * along it is in the box and its kernel reaches the image; otherwise, if its position is in the box. Each counts with
-     * all of its kernel. */
+    /* x0, x1, y0, y1, z0, z1, unit L; all 0: the period, and all that particles reach where there
+     * is none. Sides may be infinite. The image is the box as it is seen. If the line of sight is
+     * x, y or z, a particle counts if its position along it is in the box and its kernel reaches
+     * the image; otherwise, if its position is in the box. Each counts with all of its kernel. */
     double box[6];
     int resolution; /* pixels along the longer side, 1 to 32768 */
-    /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what the pixel sees of the
-     * kernel; by the array of masses, sum m A F / sum m F. data NULL: column integrals. */
+    /* [count], 1 component: the image is a mean, sum V B A F / sum V B F, B: the weight, F: what
+     * the pixel sees of the kernel; by the array of masses, sum m A F / sum m F. data NULL: column
+     * integrals. */
     mcor_array weight;
     const uint8_t* counted; /* [count], 0: a particle only helps to compute volumes; NULL: all count */
   } mcor_view;
@@ -828,13 +854,14 @@ extern "C"
     mcor_statistics statistics;
   } mcor_projection;
 
-  /* Column integrals of the SPH sum of the scalar, sum V A integral W, exact to 1e-6 of the largest that one particle
-   * adds to a pixel; without a scalar, of the density, which is the mass: the image then has the mass that falls into
-   * it, times 1 / pixel area. In two dimensions, the sum itself. Only fluid counts. The options sph_kernel, dimension, h_scale,
-   * periodic and progress apply, and where volumes are computed those of mcor_probe do. The result has the same bits
-   * for any order of the particles. Ranks get all of the image; they need boxes and globals (of
-   * mcor_measure_probe_globals) only where volumes are computed or h is estimated, and then `counted`, so that each
-   * particle counts once. *projection is overwritten. */
+  /* Column integrals of the SPH sum of the scalar, sum V A integral W, exact to 1e-6 of the largest
+   * that one particle adds to a pixel; without a scalar, of the density, which is the mass: the
+   * image then has the mass that falls into it, times 1 / pixel area. In two dimensions, the sum
+   * itself. Only fluid counts. The options sph_kernel, dimension, h_scale, periodic and progress
+   * apply, and where volumes are computed those of mcor_probe do. The result has the same bits for
+   * any order of the particles. Ranks get all of the image; they need boxes and globals (of
+   * mcor_measure_probe_globals) only where volumes are computed or h is estimated, and then
+   * `counted`, so that each particle counts once. *projection is overwritten. */
   mcor_status mcor_project(mcor_context* context, const mcor_input* input,
     const mcor_options* options, const mcor_view* view, mcor_projection* projection);
   /* Finds the image without its values. */
@@ -885,15 +912,15 @@ extern "C"
     mcor_statistics statistics;
   } mcor_derivatives;
 
-  /* Gradients of the attributes of the input, from sums over fluid particles. The options of mcor_probe apply,
-   * except field, outputs and node_threshold. A gradient too large for a double is infinite. *derivatives
-   * is overwritten. */
+  /* Gradients of the attributes of the input, from sums over fluid particles. The options of
+   * mcor_probe apply, except field, outputs and node_threshold. A gradient too large for a double
+   * is infinite. *derivatives is overwritten. */
   mcor_status mcor_derive(mcor_context* context, const mcor_input* input,
     const mcor_options* options, mcor_gradient form, mcor_derivatives* derivatives);
   void mcor_free_derivatives(mcor_derivatives* derivatives);
 
-  /* Arrays of the caller for quantities of velocity gradients J = S + O (S symmetric, O antisymmetric), in the
-   * unit of J or its square; NULL: not computed. */
+  /* Arrays of the caller for quantities of velocity gradients J = S + O (S symmetric, O
+   * antisymmetric), in the unit of J or its square; NULL: not computed. */
   typedef struct mcor_flow
   {
     double* divergence;  /* [count], tr J */

@@ -91,7 +91,7 @@ typedef struct mcor_bricks
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer leaves, split, beside;     /* the same; of several levels, see mcor_leaf_compare */
+  mcor_buffer leaves, split, beside;     /* likewise; with several levels, see mcor_leaf_compare */
   mcor_buffer seed_bits, seeds; /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
@@ -111,7 +111,7 @@ typedef struct mcor_mesh
   mcor_buffer used, plain_used; /* ulong: cells, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
   int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
-  int vertex_count; /* the same, those of the trim boundary, and from cap_first on those of caps */
+  int vertex_count; /* these, then those of the trim boundary, and from cap_first on those of caps */
   int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
@@ -125,8 +125,8 @@ typedef struct mcor_mesh
   int level_first[2][MCOR_TREE_LEVEL_LIMIT + 2]; /* first of each level; of the boundary's */
 } mcor_mesh;
 
-/* A set of bricks of one level of adaptive cubes. Clusters are 4^3 of them, aligned to multiples of 4: by their
- * numbers, see mcor_cluster_key, masks x + 4 y + 16 z. */
+/* A set of bricks of one level of adaptive cubes. Clusters are 4^3 of them, aligned to multiples of
+ * 4: by their numbers, see mcor_cluster_key, masks x + 4 y + 16 z. */
 typedef struct mcor_brick_set
 {
   mcor_table clusters;

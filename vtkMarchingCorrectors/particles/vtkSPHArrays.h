@@ -27,7 +27,8 @@ class vtkPointSet;
 /** Returns the array's name, empty for none. */
 std::string vtkSPHNameOf(vtkAbstractArray* array);
 
-/** The array's name; empty for entries that lists of arrays, as in ParaView's panel, show in place of one. */
+/** The array's name; empty for entries that lists of arrays, as in ParaView's panel, show in place
+ * of one. */
 std::string vtkSPHRealName(const std::string& name);
 
 /** "Point arrays: A, B." */

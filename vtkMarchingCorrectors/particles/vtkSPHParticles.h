@@ -48,12 +48,13 @@ public:
   vtkSPHParticles(const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
   /**
-   * Fills what describes the particles. False if something is missing or not usable; Error then says
-   * what.
+   * Fills what describes the particles. False if something is missing or not usable; Error then
+   * says what.
    */
   bool CollectParticles();
 
-  /** Whether this is the name under which what was made of neighbours goes to other processes with the particles. */
+  /** Whether this is the name under which what was made of neighbours goes to other processes with
+   * the particles. */
   static bool IsMade(const char* name);
 
   /** The part of it that is about smoothing lengths. */
@@ -77,22 +78,24 @@ public:
   bool CollectArray(const vtkSPHRequest& request, const std::string& role = "derivatives");
 
   /**
-   * CollectParticles(), and what a projection sees: the scalar, or mass or density where none is asked for, and the
-   * weight of a mean, whose name may be empty. False if something is not usable; Error then says what.
+   * CollectParticles(), and what a projection sees: the scalar, or mass or density where none is
+   * asked for, and the weight of a mean, whose name may be empty. False if something is not usable;
+   * Error then says what.
    */
   bool CollectProjection(
     const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView);
 
   /**
-   * Makes velocity and, where it is known, density the core's attributes, after CollectParticles(). The velocity is the
-   * array of this name; empty: found by its usual names. The density is an array, one value, or mass / volume, if both
-   * are given. False if there is no velocity; Error then says so.
+   * Makes velocity and, where it is known, density the core's attributes, after CollectParticles().
+   * The velocity is the array of this name; empty: found by its usual names. The density is an
+   * array, one value, or mass / volume, if both are given. False if there is no velocity; Error
+   * then says so.
    */
   bool CollectFlow(const std::string& velocity);
 
   /**
-   * One sentence for each array that the core left out: notFinite[i] is the particle at which number
-   * i of the interpolated ones is not finite, or negative. `place`: what it was left out of.
+   * One sentence for each array that the core left out: notFinite[i] is the particle at which
+   * number i of the interpolated ones is not finite, or negative. `place`: what it was left out of.
    */
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
@@ -109,15 +112,15 @@ public:
   vtkSmartPointer<vtkDataArray> JoinVelocity() const;
 
   /**
-   * Names of the arrays that may tell fluid from solids, the most usual one first; none where the choice
-   * names the fluid array.
+   * Names of the arrays that may tell fluid from solids, the most usual one first; none where the
+   * choice names the fluid array.
    */
   static std::vector<std::string> ListTypes(
     const vtkSPHParticlesChoice& choice, vtkPointSet* points);
 
   /**
-   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if there are such. Those
-   * of a block that it names, too.
+   * Where the choice names no fluid array: the array and the value that clearly tell of fluid, if
+   * there are such. Those of a block that it names, too.
    */
   static void FindFluid(
     vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge = nullptr);
@@ -133,7 +136,8 @@ public:
   std::string DescribeNoFluid() const;
 
   /**
-   * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else empty.
+   * A sentence where no fluid was chosen and yet an array tells kinds of particles apart; else
+   * empty.
    */
   std::string DescribeUnusedType();
 
@@ -173,7 +177,8 @@ protected:
   bool CollectSolids();
   bool CollectVolume();
 
-  /** "Density", summed from masses, which gives volumes, too, from then on; null, and Error, where it fails. */
+  /** "Density", summed from masses, which gives volumes, too, from then on; null, and Error, where
+   * it fails. */
   vtkDataArray* SumDensities();
   bool CollectAbsent();
 
@@ -182,8 +187,8 @@ protected:
 private:
   /** Options on which sums over neighbours depend. */
   mcor_options OwnOptions() const;
-  /** Fills an array of this name by the core's function, unless there is one of the same particles; null, and Error,
-   * where it fails. */
+  /** Fills an array of this name by the core's function, unless there is one of the same particles;
+   * null, and Error, where it fails. */
   vtkSmartPointer<vtkDataArray> Compute(const char* name,
     const std::function<int(const mcor_input&, const mcor_options&, double*, char**)>& call);
   vtkSmartPointer<vtkDataArray> Summed; // density

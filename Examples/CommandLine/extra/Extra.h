@@ -19,7 +19,8 @@ struct Extra
 {
   std::unique_ptr<Picture> (*NewPicture)(const PictureOptions& options);
 
-  /// Points of a .vtkhdf file at one of its steps, and the times of these. Throws std::runtime_error.
+  /// Points of a .vtkhdf file at one of its steps, and the times of these. Throws
+  /// std::runtime_error.
   vtkSmartPointer<vtkDataObject> (*ReadHdf)(const std::string& file, std::size_t step);
   std::vector<double> (*ListHdfTimes)(const std::string& file);
 

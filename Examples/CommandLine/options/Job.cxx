@@ -269,7 +269,8 @@ const Option& FindOption(const std::string& name)
   return *option;
 }
 
-/// Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, -inf, or axes, -z.
+/// Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, -inf, or axes,
+/// -z.
 bool LooksLikeOption(const std::string& word)
 {
   return word == "-h" ||
@@ -277,7 +278,8 @@ bool LooksLikeOption(const std::string& word)
       std::string("0123456789.").find(word[1]) == std::string::npos);
 }
 
-/// Takes an option and its value; the name, with a value behind "=" if there is one, was `next[-1]`.
+/// Takes an option and its value; the name, with a value behind "=" if there is one, was
+/// `next[-1]`.
 void TakeOption(const char* const*& next, const char* const* end, Job& job)
 {
   std::string name = next[-1], value;

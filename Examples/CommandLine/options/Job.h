@@ -74,7 +74,8 @@ struct Job
   /// Whether there are surfaces of several times.
   bool IsFilm() const;
 
-  /// The options that were given, but for those that say what holds without them, and the text behind each.
+  /// The options that were given, but for those that say what holds without them, and the text
+  /// behind each.
   std::map<std::string, std::string> Given;
   bool Has(const char* option) const { return this->Given.count(option) > 0; }
 

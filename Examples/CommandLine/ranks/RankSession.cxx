@@ -148,7 +148,8 @@ vtkSmartPointer<vtkPointSet> RankSession::Complete(vtkPointSet* particles, bool 
   return complete;
 }
 
-// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a period.
+// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a
+// period.
 void RankSession::ResolvePeriod(vtkPointSet* particles)
 {
   Job& job = this->Options;

@@ -10,9 +10,9 @@
 class vtkMPIController;
 struct Job;
 
-/// MPI, from begin to end, and the processes of mpirun that share a job. One per process. Pieces of a file are read
-/// by all of them, a single one by the first. A surface is written as one piece each for a .pvtp file, else the first
-/// one writes the whole.
+/// MPI, from begin to end, and the processes of mpirun that share a job. One per process. Pieces of
+/// a file are read by all of them, a single one by the first. A surface is written as one piece
+/// each for a .pvtp file, else the first one writes the whole.
 class RankSession : public Sharing
 {
 public:
@@ -34,13 +34,13 @@ public:
 private:
   using Particles = vtkSmartPointer<vtkPointSet>;
 
-  /// The part of particles that each process reads of one file, or that the first one makes; `mayBeEmpty`: all
-  /// together.
+  /// The part of particles that each process reads of one file, or that the first one makes;
+  /// `mayBeEmpty`: all together.
   Particles Part(const std::string& file, bool mayBeEmpty);
   Particles Share(const std::function<Particles()>& make, bool mayBeEmpty);
 
-  /// Processes without particles get the arrays, without values, that those of the others have: what a
-  /// name in the options is must not depend on who asks. The period is that of all.
+  /// Processes without particles get the arrays, without values, that those of the others have:
+  /// what a name in the options is must not depend on who asks. The period is that of all.
   Particles Complete(vtkPointSet* particles, bool mayBeEmpty);
   void ResolvePeriod(vtkPointSet* particles);
 

@@ -7,7 +7,8 @@
 
 class vtkPointSet;
 
-/// The text of --list-arrays: a line for each array of the particles, and for what a run would find.
+/// The text of --list-arrays: a line for each array of the particles, and for what a run would
+/// find.
 std::string DescribeArrays(vtkPointSet& particles);
 
 #endif

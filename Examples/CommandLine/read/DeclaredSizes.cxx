@@ -138,8 +138,8 @@ void CheckExtent(const Checker& checker, View name, View text)
   }
 }
 
-/// Counts are attributes of tags: of pieces, and of their arrays, which have so many numbers for each
-/// point or cell.
+/// Counts are attributes of tags: of pieces, and of their arrays, which have so many numbers for
+/// each point or cell.
 void CheckXml(const std::string& file, View text)
 {
   const bool isPacked = text.substr(0, 1000).find("compressor") != View::npos;
@@ -194,8 +194,8 @@ std::vector<std::string> WordsOf(View line)
   return words;
 }
 
-/// Counts stand behind words at the beginning of a line, and those of attributes in a line before them.
-/// The arrays of a field have lines with a name, two counts and a type.
+/// Counts stand behind words at the beginning of a line, and those of attributes in a line before
+/// them. The arrays of a field have lines with a name, two counts and a type.
 class LegacyChecker
 {
 public:

@@ -26,7 +26,8 @@ constexpr std::streamsize MostHead = 1 << 16;
 
 const char* const Names[] = { "TimeValue", "TIME", "Time", "time" };
 
-/// An empty data set with these field data, as text, in the file's own format: VTK's readers read them alone.
+/// An empty data set with these field data, as text, in the file's own format: VTK's readers read
+/// them alone.
 std::string HeadOfXml(const std::string& head)
 {
   const std::size_t tag = head.find("<VTKFile"), begin = head.find("<FieldData"),
@@ -62,7 +63,8 @@ std::string HeadOfLegacy(const std::string& head)
     "\nPOINTS 0 float\n";
 }
 
-/// The time in an XML file whose field data are at its end: the least and greatest value stand at its beginning.
+/// The time in an XML file whose field data are at its end: the least and greatest value stand at
+/// its beginning.
 bool FindRange(const std::string& head, double& time)
 {
   for (const char* name : Names)

@@ -7,8 +7,8 @@
 
 class MessageCapture;
 
-/// Whether the field data at the beginning of a VTK file tell of its time (TimeValue, TIME, time). Points and their
-/// arrays are not read.
+/// Whether the field data at the beginning of a VTK file tell of its time (TimeValue, TIME, time).
+/// Points and their arrays are not read.
 bool ReadTime(const std::string& file, MessageCapture* messages, double& time);
 
 #endif

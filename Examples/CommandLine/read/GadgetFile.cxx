@@ -22,7 +22,8 @@
 namespace
 {
 
-/// Names of an array in formats, its name here, and its columns. The first ones are of all types, the others of gas.
+/// Names of an array in formats, its name here, and its columns. The first ones are of all types,
+/// the others of gas.
 struct Known
 {
   const char* Label;
@@ -39,8 +40,8 @@ const Known Arrays[] = { { "POS ", "Points", 3, true }, { "VEL ", "Velocities", 
 
 constexpr std::size_t HeaderSize = 256;
 
-/// One file of a snapshot: records of Fortran, each between two copies of its number of bytes. In format 2 one with a
-/// label is before each array; in format 1 their order tells.
+/// One file of a snapshot: records of Fortran, each between two copies of its number of bytes. In
+/// format 2 one with a label is before each array; in format 1 their order tells.
 class File
 {
 public:

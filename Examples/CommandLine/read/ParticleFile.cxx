@@ -278,8 +278,8 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
   }
 }
 
-/// The points' arrays alone, all that is used of the data: no cells (one per particle, for nothing),
-/// and nothing that was not checked.
+/// The points' arrays alone, all that is used of the data: no cells (one per particle, for
+/// nothing), and nothing that was not checked.
 vtkSmartPointer<vtkPointSet> TakeParticles(
   const std::string& file, vtkPointSet* all, bool haveVertices)
 {

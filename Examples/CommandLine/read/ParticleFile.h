@@ -16,18 +16,18 @@ class vtkPointSet;
 std::string ParticleFileEndings();
 
 /// Reads particles and their arrays. Throws std::runtime_error with one sentence if the file cannot
-/// be read, is damaged, or holds no points; where VTK's reader crashes over it, the program ends with a
-/// sentence. Names of arrays are made fit to print.
+/// be read, is damaged, or holds no points; where VTK's reader crashes over it, the program ends
+/// with a sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages);
 
-/// As ReadParticles() above, for files that each hold a part of the particles. Arrays that are not in all of them are
-/// left out, and so are particles that a part marks as another one's (vtkGhostType). A step of a film may have no
-/// points.
+/// As ReadParticles() above, for files that each hold a part of the particles. Arrays that are not
+/// in all of them are left out, and so are particles that a part marks as another one's
+/// (vtkGhostType). A step of a film may have no points.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty = false);
 
-/// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ...; none where it is a format of one
-/// step. Throws std::runtime_error.
+/// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ...; none where it
+/// is a format of one step. Throws std::runtime_error.
 std::vector<double> ListTimes(const std::string& file);
 
 /// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.

@@ -144,7 +144,8 @@ Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::stri
   return steps;
 }
 
-/// The walls that a .pvd file lists: those of each step's time, or, where steps are in a list without times, in its order.
+/// The walls that a .pvd file lists: those of each step's time, or, where steps are in a list
+/// without times, in its order.
 void AddListedWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages,
   std::vector<std::string>& warnings)
 {

@@ -11,7 +11,8 @@
 class MessageCapture;
 struct Job;
 
-/// The stored steps of a film, for VTK's pipeline: reads the particles of the time that is asked for.
+/// The stored steps of a film, for VTK's pipeline: reads the particles of the time that is asked
+/// for.
 class ParticleSteps : public vtkPolyDataAlgorithm
 {
 public:
@@ -54,7 +55,8 @@ private:
 std::vector<ParticleSteps::Step>::const_iterator FindStep(
   const std::vector<ParticleSteps::Step>& steps, double time);
 
-/// The steps that the options name. Throws std::runtime_error with one sentence; `warnings` gets others.
+/// The steps that the options name. Throws std::runtime_error with one sentence; `warnings` gets
+/// others.
 std::vector<ParticleSteps::Step> ListSteps(
   const Job& job, MessageCapture* messages, std::vector<std::string>& warnings);
 

@@ -82,7 +82,8 @@ bool ToInteger(View text, vtkTypeInt64& value)
   return end.ec == std::errc() && end.ptr == text.data() + text.size();
 }
 
-/// The cells of a line: between separators, of which blanks count as one, unless they are in quotes.
+/// The cells of a line: between separators, of which blanks count as one, unless they are in
+/// quotes.
 void Split(View line, char separator, std::vector<View>& cells)
 {
   cells.clear();
@@ -729,7 +730,8 @@ bool FindDumpStep(Lines& lines, Step& step)
   return false;
 }
 
-/// The columns of positions of a step: as they are, unwrapped, or in units of the box, which are taken away.
+/// The columns of positions of a step: as they are, unwrapped, or in units of the box, which are
+/// taken away.
 std::vector<std::size_t> PositionsOf(Table& table, const Step& step)
 {
   std::vector<std::size_t> positions = FindPositions(table);

@@ -11,9 +11,10 @@
 
 class vtkDataObject;
 
-/// Particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between blanks with
-/// comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Numbers in columns of one name and :0, :1, :2, or
-/// _x, _y, _z, ... are vectors. Throws std::runtime_error with one sentence.
+/// Particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between
+/// blanks with comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Numbers in columns of one
+/// name and :0, :1, :2, or _x, _y, _z, ... are vectors. Throws std::runtime_error with one
+/// sentence.
 
 /// The first step of a file that may hold several, or that of this number.
 vtkSmartPointer<vtkDataObject> ReadCsv(const std::string& file);

@@ -102,8 +102,8 @@ void SayInHandler(const char* text)
   (void)ignored;
 }
 
-/// A reader went astray over a damaged file, or a driver. No output is lost: it is whole before it takes
-/// the place of another one.
+/// A reader went astray over a damaged file, or a driver. No output is lost: it is whole before it
+/// takes the place of another one.
 void EndByCrash(int number)
 {
   RemoveFiles();

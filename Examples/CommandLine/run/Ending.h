@@ -14,8 +14,8 @@ void PrepareForEnding();
 /// own.
 void KeepWatchOfCrashes();
 
-/// Ends the program at once, so that nothing that libraries do at the end of a program takes time, crashes, or writes
-/// what they think of a damaged file.
+/// Ends the program at once, so that nothing that libraries do at the end of a program takes time,
+/// crashes, or writes what they think of a damaged file.
 [[noreturn]] void Finish(int status);
 
 /// Names possible causes of a crash. A file that PoCL has kept half-written makes it crash whenever
@@ -36,15 +36,15 @@ private:
   std::string OuterHint;
 };
 
-/// Loads the drivers of OpenCL, which takes a while, in a thread: files are read meanwhile. Nothing where a
-/// device is named, which may need none.
+/// Loads the drivers of OpenCL, which takes a while, in a thread: files are read meanwhile. Nothing
+/// where a device is named, which may need none.
 void LoadDriversAhead(const std::string& device);
 
 /// Must be called before a device is used.
 void AwaitDrivers();
 
-/// While one lives, nothing but the program's own sentence about a crash reaches standard error: libraries
-/// write there what they think of a damaged file.
+/// While one lives, nothing but the program's own sentence about a crash reaches standard error:
+/// libraries write there what they think of a damaged file.
 class Silence
 {
 public:
@@ -54,8 +54,8 @@ public:
   void operator=(const Silence&) = delete;
 };
 
-/// A new file that nobody could name before, and that goes away with the object or the program unless it
-/// takes the place of another one.
+/// A new file that nobody could name before, and that goes away with the object or the program
+/// unless it takes the place of another one.
 class TemporaryFile
 {
 public:

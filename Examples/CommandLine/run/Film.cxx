@@ -57,8 +57,8 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// No file is written over another, and, beside a .pvd file, none over one that is no step of an older
-/// film: nobody named these.
+/// No file is written over another, and, beside a .pvd file, none over one that is no step of an
+/// older film: nobody named these.
 void CheckFiles(const Job& job, const std::vector<std::string>& stored,
   const std::vector<std::string>& surfaces, MessageCapture* messages)
 {

@@ -50,7 +50,8 @@ void MessageCapture::DisplayText(const char* text)
 void MessageCapture::DisplayErrorText(const char* text)
 {
   const std::string sentence = Sentence(text);
-  // An array's range is passed over, in which VTK writes inf and cannot read it: arrays are checked when used.
+  // An array's range is passed over, in which VTK writes inf and cannot read it: arrays are checked
+  // when used.
   if (sentence.find("reading InformationKey element") == std::string::npos)
   {
     this->Errors.push_back(sentence);

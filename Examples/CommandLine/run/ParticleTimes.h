@@ -19,7 +19,8 @@ struct Job;
 /// A number of a time, with the digits that it was given with.
 std::string TimeText(double time);
 
-/// The particles of a series at the times that it stores, or those that are asked for, between two steps.
+/// The particles of a series at the times that it stores, or those that are asked for, between two
+/// steps.
 class ParticleTimes
 {
 public:

@@ -22,7 +22,8 @@
 namespace
 {
 
-/// JSON, as VTK's own library for it is private in some builds. Members are keys, empty in a list, and texts.
+/// JSON, as VTK's own library for it is private in some builds. Members are keys, empty in a list,
+/// and texts.
 using Members = std::vector<std::pair<std::string, std::string>>;
 
 /// Reads back as the same number; JSON has neither NaN nor infinity.

@@ -11,7 +11,8 @@ class vtkPointSet;
 struct Job;
 struct Run;
 
-/// The table of the pieces of the surfaces of a run, or of the steps of a film, which have a column of times.
+/// The table of the pieces of the surfaces of a run, or of the steps of a film, which have a column
+/// of times.
 class ComponentTable
 {
 public:
@@ -32,8 +33,8 @@ private:
   std::string Lines;
 };
 
-/// A table of a film's numbers, a row for each step: the surface's triangles, area, volume and pieces, and what gauges
-/// read.
+/// A table of a film's numbers, a row for each step: the surface's triangles, area, volume and
+/// pieces, and what gauges read.
 class FilmNumbers
 {
 public:

@@ -14,8 +14,8 @@
 class MessageCapture;
 class ParticleTimes;
 
-/// Hides whether processes share the work; this class is that of one process. If one of them throws,
-/// all throw.
+/// Hides whether processes share the work; this class is that of one process. If one of them
+/// throws, all throw.
 class Sharing
 {
 public:

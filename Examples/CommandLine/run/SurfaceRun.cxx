@@ -44,8 +44,8 @@ bool IsConstant(const std::string& text, vtkPointSet* particles, double& value)
   return !particles->GetPointData()->HasArray(text.c_str()) && ParseNumber(text, value);
 }
 
-/// Makes the settings that depend on the input: whether a text is a number or the name of an array, and
-/// where a period lies.
+/// Makes the settings that depend on the input: whether a text is a number or the name of an array,
+/// and where a period lies.
 void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
   double value = 0.0;

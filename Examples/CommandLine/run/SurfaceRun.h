@@ -18,15 +18,17 @@ struct Job;
 /// Whether standard error is a terminal whose user has not asked for silence.
 bool ShowsProgress(const Job& job);
 
-/// Makes the settings that depend on the input, for one of the job's filters. Returns the particles, with
-/// the arrays derived from theirs. Throws std::runtime_error with one sentence where an array is lacking.
+/// Makes the settings that depend on the input, for one of the job's filters. Returns the
+/// particles, with the arrays derived from theirs. Throws std::runtime_error with one sentence
+/// where an array is lacking.
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input);
 
 /// Does SetUpParticles() for the surface, which gets the particles as its input.
 void SetUpSurface(const Job& job, vtkPointSet* input);
 
-/// Arrays of the particles that are not interpolated because the surface's file could not hold them.
+/// Arrays of the particles that are not interpolated because the surface's file could not hold
+/// them.
 std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles);
 
 struct Run
@@ -44,7 +46,8 @@ double Update(vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages,
 /// Runs the surface once. Throws as Update().
 Run Extract(const Job& job, MessageCapture* messages, const std::string& before = "");
 
-/// The particles of the last run with the factors of their smoothing lengths. Throws std::runtime_error.
+/// The particles of the last run with the factors of their smoothing lengths. Throws
+/// std::runtime_error.
 vtkSmartPointer<vtkPolyData> Widen(const Job& job, MessageCapture* messages);
 
 /// Sentences that the user should know of a run that went well.

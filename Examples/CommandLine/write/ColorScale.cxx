@@ -18,8 +18,8 @@
 namespace
 {
 
-/// Nine of the colours of viridis, by S. van der Walt and N. Smith: evenly brighter, also in grey, and for
-/// the colour-blind.
+/// Nine of the colours of viridis, by S. van der Walt and N. Smith: evenly brighter, also in grey,
+/// and for the colour-blind.
 constexpr int StopCount = 9;
 const double Stops[StopCount][3] = { { 0.267, 0.005, 0.329 }, { 0.279, 0.175, 0.483 },
   { 0.230, 0.322, 0.546 }, { 0.173, 0.449, 0.558 }, { 0.128, 0.567, 0.551 },

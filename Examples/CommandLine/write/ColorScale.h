@@ -19,8 +19,8 @@ class ColorScale
 public:
   explicit ColorScale(const PictureOptions& options);
 
-  /// Takes the values of this data set into the range, unless one was given: a film's colours have that
-  /// of all steps so far. Throws std::runtime_error where it has points and no such array.
+  /// Takes the values of this data set into the range, unless one was given: a film's colours have
+  /// that of all steps so far. Throws std::runtime_error where it has points and no such array.
   void Include(vtkDataSet* data);
 
   /// The array of the data set that colours its points, or its cells; nullptr if there is none.

@@ -28,8 +28,8 @@
 namespace
 {
 
-/// VTK's writers put names into XML as they are: arrays and their components have names fit for it, as long as
-/// this lives.
+/// VTK's writers put names into XML as they are: arrays and their components have names fit for it,
+/// as long as this lives.
 class NamesForXml
 {
 public:

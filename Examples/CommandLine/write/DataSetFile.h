@@ -8,8 +8,8 @@
 class MessageCapture;
 class vtkDataSet;
 
-/// Throws std::runtime_error with one sentence if the ending of the name is not that of a format which
-/// holds data sets of this class.
+/// Throws std::runtime_error with one sentence if the ending of the name is not that of a format
+/// which holds data sets of this class.
 void CheckDataSetFile(const std::string& file, vtkDataSet* data);
 
 /// The bytes of a data set in the format of the file's ending. Throws std::runtime_error.

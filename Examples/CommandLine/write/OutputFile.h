@@ -14,11 +14,12 @@
 /// std::runtime_error if one cannot be written. An empty name is an output that nobody asked for.
 void CheckOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Outputs that belong together. Each is written under a fresh name beside its target; Commit() lets
-/// them take their places. Without it, and where the program is ended, all is as it was. A symbolic link
-/// is followed, and the file that it leads to replaced; mode, owner and group stay as they were. Other
-/// hard links of a replaced file keep what was in it. What is no regular file (a device, a FIFO,
-/// /dev/stdout) is written to by Commit(). All throw std::runtime_error with one sentence.
+/// Outputs that belong together. Each is written under a fresh name beside its target; Commit()
+/// lets them take their places. Without it, and where the program is ended, all is as it was. A
+/// symbolic link is followed, and the file that it leads to replaced; mode, owner and group stay as
+/// they were. Other hard links of a replaced file keep what was in it. What is no regular file (a
+/// device, a FIFO, /dev/stdout) is written to by Commit(). All throw std::runtime_error with one
+/// sentence.
 class OutputFiles
 {
 public:
@@ -38,9 +39,9 @@ private:
 /// Writes one file by itself.
 void WriteOutput(const std::string& file, const std::string& bytes);
 
-/// A file of all steps so far, that can be looked at while there are more and more of them, and where the program is ended.
-/// The file of a long series is not written after each step, but as often as it takes a twentieth of the time. A device
-/// or a pipe gets it once, at the end.
+/// A file of all steps so far, that can be looked at while there are more and more of them, and
+/// where the program is ended. The file of a long series is not written after each step, but as
+/// often as it takes a twentieth of the time. A device or a pipe gets it once, at the end.
 class GrowingFile
 {
 public:

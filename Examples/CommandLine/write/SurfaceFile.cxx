@@ -38,7 +38,8 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Bytes of a length that is known before, the least significant byte of a value first, on every machine.
+/// Bytes of a length that is known before, the least significant byte of a value first, on every
+/// machine.
 class ByteWriter
 {
 public:
@@ -87,8 +88,8 @@ void ForTriangles(vtkPolyData* surface, const F& use)
   }
 }
 
-/// Binary, little endian: triangles with normals of their own. Not by VTK's writer, nor is .obj: they write
-/// to files alone.
+/// Binary, little endian: triangles with normals of their own. Not by VTK's writer, nor is .obj:
+/// they write to files alone.
 void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   bytes = "binary STL by marching-correctors";
@@ -196,8 +197,8 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
     });
 }
 
-/// Writes lines: a row for each point of each line, a column for each component. An array whose column would
-/// have the name of one before it gets another one: readers go by names.
+/// Writes lines: a row for each point of each line, a column for each component. An array whose
+/// column would have the name of one before it gets another one: readers go by names.
 void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 {
   struct Column

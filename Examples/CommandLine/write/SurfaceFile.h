@@ -16,9 +16,9 @@ bool IsSurfaceFile(const std::string& file);
 /// ".vtp, .stl, ... or .obj": the endings of these formats, for sentences and the help.
 std::string SurfaceFileEndings();
 
-/// The bytes of a surface in the format of the file's ending. .stl, .ply and .obj have triangles and
-/// normals, .ply also colours, and no other arrays; .csv the points of lines with all arrays. Throws
-/// std::runtime_error with one sentence.
+/// The bytes of a surface in the format of the file's ending. .stl, .ply and .obj have triangles
+/// and normals, .ply also colours, and no other arrays; .csv the points of lines with all arrays.
+/// Throws std::runtime_error with one sentence.
 std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
   MessageCapture* messages);
 
@@ -31,8 +31,8 @@ bool IsFilmStep(const std::string& file);
 /// Whether files in this format hold arrays of any name.
 bool HoldsArrays(const std::string& file);
 
-/// A sentence about the arrays that a file in this format does not hold, those of the surface and more; empty if it has
-/// all.
+/// A sentence about the arrays that a file in this format does not hold, those of the surface and
+/// more; empty if it has all.
 std::string LostArrays(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
   const std::vector<std::string>& more);
 

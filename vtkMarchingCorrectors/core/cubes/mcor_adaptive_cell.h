@@ -6,22 +6,22 @@
 /* Marching Cubes in a cell with finer cells around it. This file is both included by the C core and
  * compiled as OpenCL C, after mcor_shared.h.
  *
- * A cell has 3 x 3 x 3 positions, half of its edge apart: node x + 3 y + 9 z. Its corners are nodes;
- * the middle of an edge is one where a finer cell touches the edge, which then is two halves: the
- * edge is split; the middle of a face is one where the cells across are finer, and then its four
- * edges are split as well. Bits of `split` say which middles are nodes, bits of `above` which nodes
- * are above the iso value. A slot is a half-edge, axis << 5 | its lower node; the vertex of an edge
- * that is not split has the slot of the lower half.
+ * A cell has 3 x 3 x 3 positions, half of its edge apart: node x + 3 y + 9 z. Its corners are
+ * nodes; the middle of an edge is one where a finer cell touches the edge, which then is two
+ * halves: the edge is split; the middle of a face is one where the cells across are finer, and then
+ * its four edges are split as well. Bits of `split` say which middles are nodes, bits of `above`
+ * which nodes are above the iso value. A slot is a half-edge, axis << 5 | its lower node; the
+ * vertex of an edge that is not split has the slot of the lower half.
  *
- * A split face is four faces of one quarter, the sub-faces. On a sub-face, and on the ring of 4 to 8
- * nodes around a face that is not split, every run of nodes above is cut off by one segment: as in
- * the case table, and the same from both sides. Segments join to loops. A loop is cut into triangles
- * such that no diagonal has both ends in one sub-face, in one whole face or on one edge of the cell:
- * there another cell could use the same side. That such a way always exists, but for loops that lie
- * in one whole face altogether, whose diagonals no other cell can have, is shown by trying all cases
- * (Testing/Core/cubes/test_core_adaptive_cell.c). Of the ways that there are, that with the shortest
- * diagonals is taken, vertices being in the middle of their edges; what lies flat in a face counts
- * as long.
+ * A split face is four faces of one quarter, the sub-faces. On a sub-face, and on the ring of 4 to
+ * 8 nodes around a face that is not split, every run of nodes above is cut off by one segment: as
+ * in the case table, and the same from both sides. Segments join to loops. A loop is cut into
+ * triangles such that no diagonal has both ends in one sub-face, in one whole face or on one edge
+ * of the cell: there another cell could use the same side. That such a way always exists, but for
+ * loops that lie in one whole face altogether, whose diagonals no other cell can have, is shown by
+ * trying all cases (Testing/Core/cubes/test_core_adaptive_cell.c). Of the ways that there are, that
+ * with the shortest diagonals is taken, vertices being in the middle of their edges; what lies flat
+ * in a face counts as long.
  *
  * A loop of two vertices has no triangles: its segments are one line, where two faces that other
  * cells see meet without this one. */

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Nodes of the virtual grid: their values, and the sides of the iso value that they are on. In a plane, the nodes above it get the sides
- * of those in it. */
+/* Nodes of the virtual grid: their values, and the sides of the iso value that they are on. In a
+ * plane, the nodes above it get the sides of those in it. */
 
 #include "mcor_adaptive.h"
 

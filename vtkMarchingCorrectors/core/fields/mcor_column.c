@@ -10,8 +10,9 @@
 
 #include <stdlib.h>
 
-/* Cells from the centre to the end of the support, where pixels are not much smaller than h, and where they are. Errors
- * fall with at least the third power: at h = 3 pixels they are about 1e-8 of the greatest value, at 50 below 1e-6. */
+/* Cells from the centre to the end of the support, where pixels are not much smaller than h, and
+ * where they are. Errors fall with at least the third power: at h = 3 pixels they are about 1e-8 of
+ * the greatest value, at 50 below 1e-6. */
 #define MCOR_COLUMN_CELLS 128
 #define MCOR_COLUMN_FINE_CELLS 256
 #define MCOR_SMALL_PIXEL 0.125
@@ -20,8 +21,8 @@
 #define MCOR_KINK 0.5
 #define MCOR_KINKS 16 /* along a line of sight through a tensor kernel, at most */
 
-/* Gauss quadrature from 0 to 1: of a cell, and of one piece of a line of sight, where it is exact for products of three
- * cubic polynomials. */
+/* Gauss quadrature from 0 to 1: of a cell, and of one piece of a line of sight, where it is exact
+ * for products of three cubic polynomials. */
 #define MCOR_CELL_POINTS 4
 static const double mcor_cell_at[MCOR_CELL_POINTS] = { 0.069431844202973712388,
   0.33000947820757186760, 0.66999052179242813240, 0.93056815579702628761 };
@@ -149,8 +150,9 @@ static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t las
   (void)slice;
 }
 
-/* Where the density is evaluated along an axis, the nodes, then the points of each cell; and how long a cell is there.
- * Cells of radial kernels are shorter near the centre, by the square root, as there may be a cusp. */
+/* Where the density is evaluated along an axis, the nodes, then the points of each cell; and how
+ * long a cell is there. Cells of radial kernels are shorter near the centre, by the square root, as
+ * there may be a cusp. */
 static double mcor_place_of(const mcor_column* column, int axis, int64_t i, double* length)
 {
   const double n = column->cells, reach = column->reach[axis];

@@ -3,8 +3,8 @@
 #ifndef mcor_column_h
 #define mcor_column_h
 
-/* Columns of an SPH kernel, seen along a line of sight: how much of it, which is 1 in all, projects onto a rectangle.
- * Lengths are in h. */
+/* Columns of an SPH kernel, seen along a line of sight: how much of it, which is 1 in all, projects
+ * onto a rectangle. Lengths are in h. */
 
 #include "mcor_internal.h"
 
@@ -21,7 +21,8 @@ typedef struct mcor_column
   double* nodes;   /* [cells + 1][cells + 1][4], y first: E, dE/dx, dE/dy, d2E/dxdy, in cells */
 } mcor_column;
 
-/* The side of a rectangle: a cubic Hermite interpolant's cell, and weights of value and slope at both ends. */
+/* The side of a rectangle: a cubic Hermite interpolant's cell, and weights of value and slope at
+ * both ends. */
 typedef struct mcor_column_side
 {
   int cell;
@@ -31,8 +32,9 @@ typedef struct mcor_column_side
 /* Returns the reach of a kernel of h = 1 along a unit vector. */
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3]);
 
-/* axes: unit vectors along x and y of the image and the line of sight. is_plane: the kernel of two dimensions, as it
- * is. least_pixel: the side of a pixel, in the greatest h. Free with mcor_free_column, whatever the status. */
+/* axes: unit vectors along x and y of the image and the line of sight. is_plane: the kernel of two
+ * dimensions, as it is. least_pixel: the side of a pixel, in the greatest h. Free with
+ * mcor_free_column, whatever the status. */
 mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool is_plane,
   const double axes[3][3], double least_pixel, mcor_column* column);
 void mcor_free_column(mcor_column* column);

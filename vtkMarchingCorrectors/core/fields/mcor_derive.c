@@ -5,8 +5,8 @@
  *
  *   G_i = sum_j V_j (A_j - A_i) grad W_ij,
  *
- * and the first-order corrected one M_i^-1 G_i with M_i = sum_j V_j grad W_ij (x_j - x_i)^T, which is
- * exact for linear A. */
+ * and the first-order corrected one M_i^-1 G_i with M_i = sum_j V_j grad W_ij (x_j - x_i)^T, which
+ * is exact for linear A. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"

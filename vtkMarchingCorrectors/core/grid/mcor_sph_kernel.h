@@ -3,20 +3,20 @@
 #ifndef mcor_sph_kernel_h
 #define mcor_sph_kernel_h
 
-/* The SPH smoothing kernels, for the C core and, as OpenCL C, for devices: a row of the table and three
- * functions each. CONTRIBUTING.md tells where else a kernel has its name.
+/* The SPH smoothing kernels, for the C core and, as OpenCL C, for devices: a row of the table and
+ * three functions each. CONTRIBUTING.md tells where else a kernel has its name.
  *
- * A kernel is W = norm / h^3 * w(q), q = r / h, with w written so that one branch-free expression holds
- * for all q >= 0, 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h) w(|z|/h).
- * All others must be positive and fall with q, for bounds rely on that, and may be off by 96 units of
- * rounding of themselves at most (mcor_bound.cl). Only operations that each device rounds alike: no sine, no
- * power, no exponential. */
+ * A kernel is W = norm / h^3 * w(q), q = r / h, with w written so that one branch-free expression
+ * holds for all q >= 0, 0 beyond the support. A tensor kernel is W = norm / h^3 * w(|x|/h) w(|y|/h)
+ * w(|z|/h). All others must be positive and fall with q, for bounds rely on that, and may be off by
+ * 96 units of rounding of themselves at most (mcor_bound.cl). Only operations that each device
+ * rounds alike: no sine, no power, no exponential. */
 
 /* A row has what the core knows of a kernel, in the order of mcor_sph_kernel:
  *
  *   enumerator, name, support / h, norm, whether it is a tensor product,
  *   variance, variance in the plane: along an axis, in h^2, the integral of x^2 W
- *   c: in two dimensions, W = c h norm / h^3 * w(q) has the integral 1 (of a tensor product: two factors)
+ *   c: in two dimensions, W = c h norm / h^3 * w(q) has the integral 1 (tensor: two factors)
  *   numbers of neighbours that are usual, in space and in the plane: words for a warning */
 // clang-format off
 #define MCOR_SPH_KERNEL_TABLE(ENTRY) \
@@ -214,12 +214,13 @@ MCOR_OF_Q mcor_ddw_wendland_c6(realv q)
     MCOR_FMA(q, MCOR_FMA(q, MCOR_FMA((real)-20, q, (real)-3.75), (real)3), (real)1);
 }
 
-/* w = s^6 with s = sin(x) / x, x = pi q / 2. As s is even and 0 at q = 2, s = t p(t) with t = 1 - q^2 / 4
- * and p(0) = 1/2, p'(0) = 3/8, where p is so smooth that a polynomial does: no two devices' sines have the same
- * bits. Other coefficients are fitted to s / t from t = 0 to 1, for the least relative error, after those
- * before were rounded. Of w that is below 5e-10 in single precision and 1e-16 in double; of the slopes,
- * which are those of this polynomial, 3e-9 and 1e-15. Rounding leaves w within 1.5e-6 and 3e-15 of itself,
- * that of the quintic spline alike. FIRST has the last two coefficients. */
+/* w = s^6 with s = sin(x) / x, x = pi q / 2. As s is even and 0 at q = 2, s = t p(t) with
+ * t = 1 - q^2 / 4, p(0) = 1/2, p'(0) = 3/8. p is so smooth that a polynomial does; sines are out,
+ * because no two devices' sines have the same bits. The other coefficients are fitted to s / t from
+ * t = 0 to 1, one after the other, each with the ones before it rounded, for the least relative
+ * error. The error of w is below 5e-10 in single precision and 1e-16 in double, that of the slopes,
+ * which are those of this polynomial, below 3e-9 and 1e-15. Rounding leaves w within 1.5e-6 and
+ * 3e-15 of itself, as with the quintic spline. FIRST has the last two coefficients. */
 #if defined(MCOR_W_ON_HOST) || MCOR_DOUBLE
 #define MCOR_SINC(FIRST, NEXT)                                                                     \
   FIRST(1.518996494692584e-10, 5.733052293908227e-09)                                              \

@@ -1,10 +1,11 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums over each particle's neighbours for particles that lack what the method begins with: smoothing lengths by
- * neighbours, and densities from masses. On the host, in double precision, with neighbours from a tree of boxes
- * over particles along a Morton curve, as smoothing lengths are not known, or vary by any factor. The order of
- * every sum is that along the curve, so that it depends neither on the order of the input nor on threads. */
+/* Sums over each particle's neighbours for particles that lack what the method begins with:
+ * smoothing lengths by neighbours, and densities from masses. On the host, in double precision,
+ * with neighbours from a tree of boxes over particles along a Morton curve, as smoothing lengths
+ * are not known, or vary by any factor. The order of every sum is that along the curve, so that it
+ * depends neither on the order of the input nor on threads. */
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
@@ -63,8 +64,8 @@ double mcor_w_of(mcor_sph_kernel kernel, double q)
 
 /* ---- The tree ---- */
 
-/* Compares along the curve: by the axis with the highest bit in which places differ. Particles at one place have any
- * order that does not depend on that of the input. */
+/* Compares along the curve: by the axis with the highest bit in which places differ. Particles at
+ * one place have any order that does not depend on that of the input. */
 static int mcor_compare_neighbours(const void* a, const void* b)
 {
   const mcor_neighbour *p = a, *q = b;
@@ -231,8 +232,8 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* About the distance of near particles: of those some places before and behind along the curve, the nearer one, as
- * the curve jumps. */
+/* About the distance of near particles: of those some places before and behind along the curve, the
+ * nearer one, as the curve jumps. */
 static double mcor_guess_length(const mcor_neighbour_job* job, int64_t i)
 {
   double guess = job->extent;

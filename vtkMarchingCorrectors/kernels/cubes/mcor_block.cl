@@ -37,8 +37,8 @@ __kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global cons
 #endif
 
 #if MCOR_OF_LATTICE
-/* One work-item = one cube. Reads the states of cubes. Writes whether it is inactive. A neighbour that
- * does not exist was part of an inactive larger one. */
+/* One work-item = one cube. Reads the states of cubes. Writes whether it is inactive. A neighbour
+ * that does not exist was part of an inactive larger one. */
 __kernel void mcor_block_find_inactive(
   MCOR_BLOCK_PARAMS, __global const uchar* states, __global uchar* inactive)
 {

@@ -18,9 +18,9 @@
  * is that far away; the bound looks as much nearer and farther. A particle's position counts from
  * the first node of the box, as which a larger box takes care of. Given the distance, w is off by
  * less than 96 u of itself, as no kernel subtracts large terms where it is small. A sum of n terms,
- * in whatever order, each a product of a few factors, is off by at most (n + 16) u of the sum of the
- * absolute terms, to first order. Hence what the bound and a node's value are off together is at
- * most
+ * in whatever order, each a product of a few factors, is off by at most (n + 16) u of the sum of
+ * the absolute terms, to first order. Hence what the bound and a node's value are off together is
+ * at most
  *
  *   k / (1 - k) * sum |c_j| * greatest |w_j|,  k = (2 n + 256) u,
  *

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Cells and edges as masks of a brick: bit x + 4 y + 16 z is the cell, or the edge along an axis, whose lowest node has
- * that bit. */
+/* Cells and edges as masks of a brick: bit x + 4 y + 16 z is the cell, or the edge along an axis,
+ * whose lowest node has that bit. */
 
 /* Makes masks of corners from the node masks of a brick and its upper neighbours: mask c becomes
  * the mask of each cell's corner c (bits x, y, z). */

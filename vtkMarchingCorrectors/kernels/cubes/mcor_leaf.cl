@@ -243,9 +243,9 @@ ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
     mcor_cell_all(leaf->corners_valid) & ~hanging;
 }
 
-/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes to its slot which of its cells are
- * plain, which leaf it is, and whether its cells may be used: whether any of them is valid at all nodes and has nodes
- * on both sides. */
+/* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes to its slot which
+ * of its cells are plain, which leaf it is, and whether its cells may be used: whether any of them
+ * is valid at all nodes and has nodes on both sides. */
 __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
   __global ulong* cells, __global ulong* plain, __global int* leaf_of)
 {

@@ -124,8 +124,8 @@ __kernel void mcor_leaf_choose(
       sides |= mcor_leaf_sides(MCOR_KNOWN_ARGS,
         mcor_number_beside(MCOR_BLOCK_ARGS, at, brick, d & 1, d >> 1 & 1, d >> 2), d);
     }
-    /* No branch asks `sides` after the loop: into such a one, LLVM 18 moves what the loop left, and PoCL
-     * 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
+    /* No branch asks `sides` after the loop: into such a one, LLVM 18 moves what the loop left, and
+     * PoCL 6.0 then ends the process ("Instruction Combining did not reach a fixpoint"). */
     found |= (uint)(open | (sides == MCOR_EXAMINE)) << x;
   }
   atomic_or(chosen + (m >> 5), found << (m & 31));

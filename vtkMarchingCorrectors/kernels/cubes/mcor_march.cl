@@ -69,9 +69,9 @@ __kernel void mcor_march_classify(const int brick_count, __global const int* nei
   plain_used[slot] = now;
 }
 
-/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the edge masks for edges
- * that have their lower node in the brick and a used cell around them; counts vertices, triangles, or lines, and
- * tunnels. */
+/* One work-item = one brick. Reads used cells, node masks and decisions. Writes the edge masks for
+ * edges that have their lower node in the brick and a used cell around them; counts vertices,
+ * triangles, or lines, and tunnels. */
 __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int plane,
   const int leaf_count, __global const uint* quadrants, __global const ulong* plain_used,
   __global const ulong* above, __global ulong* edges, __global int* vertex_count,
@@ -133,8 +133,8 @@ real mcor_march_end(__global const int* neighbours, MCOR_BRICK_PARAMS, int4 bric
 }
 
 /* One work-item = one brick. Reads its crossed edges and node values. Writes its vertices: lattice
- * edge of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times the level),
- * and the two values against the iso value. */
+ * edge of its level (lower node; axis, plus 4 where a cell around it is not used, plus 256 times
+ * the level), and the two values against the iso value. */
 __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
   __global const int* neighbours, __global const int4* bricks, __global const ulong* edges,
   __global const real* node_value, __global const int* vertex_base, const real iso,
@@ -168,8 +168,8 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
   }
 }
 
-/* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes triangles and, if
- * wanted, the keys of their cells. */
+/* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes
+ * triangles and, if wanted, the keys of their cells. */
 __kernel void mcor_march_triangles(MCOR_EMIT_PARAMS)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);

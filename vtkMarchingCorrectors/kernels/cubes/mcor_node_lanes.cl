@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: with 16 lanes
- * 2 x 2 x 4, with 8 2 x 2 x 2. The interface is that of mcor_node.cl. */
+/* Sums at the nodes of a brick, in groups of MCOR_LANES nodes that are close together: with 16
+ * lanes 2 x 2 x 4, with 8 2 x 2 x 2. The interface is that of mcor_node.cl. */
 
 #define MCOR_GROUP_XY 2
 #define MCOR_GROUP_Z (MCOR_LANES / 4)

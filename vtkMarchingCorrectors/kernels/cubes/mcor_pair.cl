@@ -5,8 +5,8 @@
  * length and have values on both sides, and all cells on the straight line between them. Cells
  * without a block are not marked: there is certainly no surface. */
 
-/* Adds a cell to the cells of its brick, if the brick exists. `reached` is by the bricks'
- * numbers. Returns whether the cell is new. */
+/* Adds a cell to the cells of its brick, if the brick exists. `reached` is indexed by the
+ * bricks' numbers. Returns whether the cell is new. */
 bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reached)
 {
   const int number = mcor_brick_number(MCOR_BLOCK_ARGS, 0, x >> 2, y >> 2, z >> 2);
@@ -15,8 +15,8 @@ bool mcor_pair_reach(MCOR_BLOCK_PARAMS, int x, int y, int z, __global uint* reac
 }
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells; flags:
- * 1 where one is new. */
+/* One work-item = one brick of a block. Requests the bricks that have nodes of its reached cells;
+ * flags: 1 where one is new. */
 __kernel void mcor_pair_request(
   MCOR_BLOCK_PARAMS, __global const ulong* reached, __global uint* brick_bits, __global int* flags)
 {

@@ -17,9 +17,10 @@ bool mcor_pair_lacks(
   return lacks;
 }
 
-/* One work-item = one brick with cells that are new to this round. Reads its nodes' masks. Grows the cells reached by
- * now through crossed faces of used cells, within the brick to the end, and one step beyond its sides. domain: where
- * nodes have right values. flags: 1 where a cell beyond is new. */
+/* One work-item = one brick with cells that are new to this round. Reads its nodes' masks. Grows
+ * the cells reached by now through crossed faces of used cells, within the brick to the end, and
+ * one step beyond its sides. domain: where nodes have right values. flags: 1 where a cell beyond is
+ * new. */
 __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbours,
   __global const ulong* above, __global const ulong* valid, __global const int4* bricks,
   MCOR_BLOCK_PARAMS, __global const ulong* domain, __global ulong* grown, __global uint* reached,

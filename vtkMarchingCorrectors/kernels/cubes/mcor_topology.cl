@@ -17,8 +17,9 @@
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
 
 #if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads used cells, node masks and, beside leaves of several levels, which cells are plain. Writes
- * the ambiguous faces between plain cells, next to used ones, and their number. */
+/* One work-item = one brick. Reads used cells, node masks and, beside leaves of several levels,
+ * which cells are plain. Writes the ambiguous faces between plain cells, next to used ones, and
+ * their number. */
 __kernel void mcor_topology_faces(const int brick_count, __global const int* neighbours,
   const int leaf_count, const int plane, __global const ulong* plain, __global const ulong* used,
   __global const ulong* above, __global ulong* decisions, __global int* counts)

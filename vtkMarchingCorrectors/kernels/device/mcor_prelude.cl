@@ -13,10 +13,10 @@
  *
  * All lengths are in cubes of the virtual grid. A position is a fixed-point number, 2^-fix_bits
  * cubes, counted from the lattice origin, so that a difference of two positions is exact: a node's
- * value does not depend on the brick it is evaluated in, nor on how far away the origin is. In a periodic
- * box whose periods no cube divides, the edges along x, y, z differ; then a cube, as a length, is a
- * little longer than the longest of them, and each is a whole number of fixed-point units. Nodes, and
- * offsets from them, are counted in edges. */
+ * value does not depend on the brick it is evaluated in, nor on how far away the origin is. In a
+ * periodic box whose periods no cube divides, the edges along x, y, z differ; then a cube, as a
+ * length, is a little longer than the longest of them, and each is a whole number of fixed-point
+ * units. Nodes, and offsets from them, are counted in edges. */
 
 /* Programs, see mcor_program.c. The lattice's program is compiled once for all SPH kernels and
  * fields, with and without solids: of the host's settings, it uses MCOR_LANES and MCOR_DOUBLE

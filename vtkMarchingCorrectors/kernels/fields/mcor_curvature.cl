@@ -1,8 +1,9 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Curvature of the surface on which a field f has the value that it has at a point, from the gradient g and the
- * Hessian H of the SPH sum there. With the normal n = -g / |g|, which points to lower values,
+/* Curvature of the surface on which a field f has the value that it has at a point, from the
+ * gradient g and the Hessian H of the SPH sum there. With the normal n = -g / |g|, which points to
+ * lower values,
  *
  *   2 mean = div n = (g . H g - |g|^2 tr H) / |g|^3        Gaussian = g . adj(H) g / |g|^4
  *
@@ -72,7 +73,8 @@ void mcor_bent_add(mcor_bent* sum, realv m, const mcor_bent* w)
   sum->hessian.zx = MCOR_FMA(m, w->hessian.zx, sum->hessian.zx);
 }
 
-/* The quotient's derivatives, times the weight: (f / w)'' w = f'' - g w'' - g' w' - w' g', g = f / w. */
+/* The derivatives of the quotient g = f / w, times the weight:
+ * (f / w)'' w = f'' - g w'' - g' w' - w' g'. */
 void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
 {
   const realv inv_w = (real)1 / (fabs(w->value) < (real)1e-12f ? (realv)1 : w->value);
@@ -91,8 +93,8 @@ void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
   f->hessian.zx -= g[2] * w->gradient[0] + g[0] * w->gradient[2];
 }
 
-/* Mean and Gaussian curvature; of a line in a plane its curvature, and 0. 0 where the gradient vanishes. The field is
- * scaled first: a square of its gradient may vanish, or overflow. */
+/* Mean and Gaussian curvature; of a line in a plane its curvature, and 0. 0 where the gradient
+ * vanishes. The field is scaled first: a square of its gradient may vanish, or overflow. */
 void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
 {
   realv g[3];
@@ -129,8 +131,8 @@ void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
   *gauss = most > 0 && !plane ? *gauss : (realv)0;
 }
 
-/* One work-item = one group of points. iso: relative to A0 for the Shepard mean. Writes their curvatures, two
- * numbers each; per cube. */
+/* One work-item = one group of points. iso: relative to A0 for the Shepard mean. Writes their
+ * curvatures, two numbers each; per cube. */
 __kernel void mcor_curvature_points(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const real iso, const int plane, __global real* curvature)

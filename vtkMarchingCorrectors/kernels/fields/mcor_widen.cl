@@ -213,7 +213,8 @@ __kernel void mcor_widen_list(
 #define MCOR_WIDEN_LANES(array) MCOR_CAT(vload, MCOR_LANES)(0, array)
 #endif
 
-/* One work-item = MCOR_LANES listed particles. Reads their shares and least sums. Writes their factors. */
+/* One work-item = MCOR_LANES listed particles. Reads their shares and least sums. Writes their
+ * factors. */
 __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest,
   __global const real* least, __global const real* sizes, const int listed, __global const int* list,
   __global real* factor)

@@ -321,8 +321,8 @@ __kernel void mcor_grid_count_places(const int count, MCOR_COINCIDENT_PARAMS, __
   flags[i] = i == 0 || !MCOR_SAME(i, i - 1);
 }
 
-/* One work-item = one sorted particle. Reads the scanned flags. Writes a key that it shares with those
- * coincident with it. */
+/* One work-item = one sorted particle. Reads the scanned flags. Writes a key that it shares with
+ * those coincident with it. */
 __kernel void mcor_grid_fill_places(
   const int count, __global const int* scanned, __global ulong* keys)
 {
@@ -379,8 +379,8 @@ void mcor_density_add(const mcor_grid* grid, __global const real* mass, int k, c
 }
 
 /* Returns the factor of the density, 1 + 5/3 D^2 with D^2 = variance |g|^2 / n^2. It makes up
- * for the side without neighbours. one_sided: 5/3 variance. Solids fill that side, but not more:
- * their part of g is added with the share, 0 to 1, that leaves least. */
+ * for the side without neighbours. one_sided: 5/3 variance. Solids fill that side, but no more
+ * than it: their part of g is added times the share, from 0 to 1, that makes |g| least. */
 realv mcor_density_factor(const mcor_density_sums* sums, real one_sided)
 {
   const realv unit = (real)1 / sums->size;

@@ -132,8 +132,8 @@ void mcor_points_load(
   points->z = MCOR_LOAD(0, n[2]);
 }
 
-/* Fits the query, and the boxes of the parts, to points with offsets between low and high. The query's
- * origin is a node in the middle. */
+/* Fits the query, and the boxes of the parts, to points with offsets between low and high. The
+ * query's origin is a node in the middle. */
 void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv high[3],
   mcor_points* points, mcor_query* query)
 {
@@ -181,7 +181,7 @@ void mcor_points_bound(const mcor_grid* grid, const realv low[3], const realv hi
 }
 
 /* Turns an offset in edges into cubes. If edges differ along the axes, a particle's position is
- * rounded to a fixed-point number again, so that it finds itself when it is evaluated. */
+ * rounded to a fixed-point number again, so that its distance from itself is 0. */
 real mcor_offset_of(const mcor_grid* grid, int axis, real offset)
 {
   const real at = offset * grid->edge[axis], units = at * grid->units,

@@ -275,10 +275,9 @@ int mcor_query_particles(
   return count;
 }
 
-/* The particles of a query are gone through by tiles. What those are, and what one work-item does
- * with them, is up to mcor_gather_lanes.cl (copies of particles, packed, for MCOR_LANES points at
- * once) and mcor_gather_point.cl (the particles themselves, for one point); the host embeds one.
- * Both define
+/* The particles of a query are gone through by tiles. The host embeds one of two files that define
+ * tiles: mcor_gather_lanes.cl (copies of particles, packed, for MCOR_LANES points at once) or
+ * mcor_gather_point.cl (the particles themselves, for one point). Both define
  *
  *   mcor_tile tile;                  particles that may reach the query's box, maybe more: one that
  *   mcor_tile_init(&tile);           does not adds exactly 0
@@ -292,12 +291,12 @@ int mcor_query_particles(
  * brick, exact: MCOR_POINT_EXTENT), inv_h, weight, trim_weight (to be read as MCOR_TRIM_WEIGHT) and
  * value.
  *
- * The loop may be repeated. What is `complete` fits one tile and is then not gathered again, and
+ * The loop may be repeated. A `complete` tile holds all of its query and is not gathered again;
  * mcor_tile_narrow(&wide, &query, &tile) fills a tile, but for MCOR_INDEX, from a complete one of a
  * query with the same origin and a box that holds this one's.
  *
- * mcor_list_lanes(chosen, count, lanes) lists which of the first `count` lanes are chosen, and returns
- * how many.
+ * mcor_list_lanes(chosen, count, lanes) lists which of the first `count` lanes are chosen, and
+ * returns how many.
  *
  * For points (mcor_points.cl), whose lanes may see different particles at a time:
  *
@@ -311,8 +310,8 @@ int mcor_query_particles(
  * mcor_attribute_sums(grid, &query, &points, iso, &reach, evaluated, ...) adds weights, and weights
  * times attributes, of the particles; evaluated: the weights that were kept last hold.
  *
- * mcor_values_load(&reach, arrays, &values) makes sorted arrays readable at the particles of a reach:
- * MCOR_VALUE_OF(&values, &reach, c, i) is that of arrays[c] at particle i. */
+ * mcor_values_load(&reach, arrays, &values) makes sorted arrays readable at the particles of a
+ * reach: MCOR_VALUE_OF(&values, &reach, c, i) is that of arrays[c] at particle i. */
 #if MCOR_SOLIDS
 #define MCOR_TRIM_WEIGHT trim_weight
 #else

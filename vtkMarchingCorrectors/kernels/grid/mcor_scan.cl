@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `segments` runs of
- * equal length; one work-item walks one run. */
+/* Prefix sums, stable radix sort, and lists of distinct keys. An array is cut into `segments` runs
+ * of equal length; one work-item walks one run. */
 
 #define MCOR_DIGIT_BITS MCOR_DIGIT_BITS_OF(MCOR_LANES)
 
@@ -167,8 +167,8 @@ __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* v
 
 #define MCOR_ITEM_BUCKETS MCOR_ITEM_BUCKETS_OF(MCOR_LANES)
 
-/* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Writes, for each bucket, the index of
- * the first key that is not below it: bucket b begins at key b << shift. */
+/* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Writes, for each bucket, the index
+ * of the first key that is not below it: bucket b begins at key b << shift. */
 __kernel void mcor_bucket_fill(__global const ulong* keys, const int count, const int shift,
   const int bucket_count, __global int* buckets)
 {

@@ -86,9 +86,9 @@ MCOR_ONE_COPY void mcor_attribute_nearer(
 }
 
 /* One work-item = one group of points. Writes the nearest fluid particle. It first looks among
- * particles that reach the points; if smoothing lengths differ, others may be nearer that do
- * not. With a very low iso value of the weight, no particle may reach a point; one then reaches
- * an end of its lattice edge. */
+ * particles that reach the points; if smoothing lengths differ, particles that do not reach them
+ * may be nearer. With a very low iso value of the weight, no particle may reach a point; one
+ * then reaches an end of its lattice edge. */
 __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* node, __global const real4* offset,
   const int uniform, __global const int* order, __global int* nearest)

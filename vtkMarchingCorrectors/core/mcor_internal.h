@@ -223,6 +223,9 @@ mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks,
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit);
 void mcor_release_sort(mcor_context* context);
+mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
+  mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count);
+uint64_t mcor_most_buckets(int keys);
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count);
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
@@ -377,11 +380,11 @@ static inline double mcor_edge_of(const mcor_lattice* lattice, int axis)
 #define MCOR_GRID_ARGS(c)                                                                          \
   MCOR_INT((c)->grid.count), MCOR_INT((c)->grid.level_count), MCOR_INT((c)->grid.bucket_shift),    \
     MCOR_REAL(ldexp(1, -(c)->lattice.fix_bits - (c)->grid.view)),                                  \
-    MCOR_REAL(ldexp(1, (c)->lattice.fix_bits + (c)->grid.view)), MCOR_EDGE_ARGS(c),                \
-    MCOR_BUFFER((c)->grid.view > 0 ? &(c)->grid.view_levels : &(c)->grid.level_buffer),            \
+    MCOR_REAL(ldexp(1, (c)->lattice.fix_bits + (c)->grid.view)),                                   \
+    MCOR_REAL(ldexp(1, (c)->grid.view)), MCOR_EDGE_ARGS(c), MCOR_BUFFER(&(c)->grid.level_buffer),  \
     MCOR_BUFFER(&(c)->grid.buckets), MCOR_BUFFER(&(c)->grid.cell_keys),                            \
-    MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py), MCOR_BUFFER(&(c)->grid.pz),            \
-    MCOR_BUFFER((c)->grid.view > 0 ? &(c)->grid.view_inv_h : &(c)->grid.inv_h),                    \
+    MCOR_BUFFER(&(c)->grid.cell_begins), MCOR_BUFFER(&(c)->grid.px), MCOR_BUFFER(&(c)->grid.py),   \
+    MCOR_BUFFER(&(c)->grid.pz), MCOR_BUFFER(&(c)->grid.inv_h),                                     \
     MCOR_BUFFER((c)->grid.has_solids ? &(c)->grid.fluid_weight : &(c)->grid.trim_weight),          \
     MCOR_BUFFER(&(c)->grid.trim_weight), MCOR_BUFFER(&(c)->grid.value)
 

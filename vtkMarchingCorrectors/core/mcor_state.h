@@ -61,12 +61,10 @@ typedef struct mcor_grid
   int count; /* particles on the device */
   int level_count, bucket_shift;
   mcor_level levels[MCOR_LEVEL_LIMIT];
-  mcor_buffer level_buffer, buckets, cell_keys, order;
+  mcor_buffer level_buffer, buckets, cell_keys, cell_begins, order;
   mcor_buffer px, py, pz, inv_h, trim_weight, fluid_weight; /* fluid_weight: only with solids */
   mcor_buffer value;
-  /* The grid in units of the cells of one level of adaptive cubes; see mcor_view_level. */
-  int view;
-  mcor_buffer view_levels, view_inv_h;
+  int view;               /* kernels count in cells of this level of adaptive cubes */
   int most_in_cell;       /* most particles in a cell, at least MCOR_USUAL_IN_CELL */
   mcor_buffer side_flags; /* uchar per chunk of particles, for this iso value; see mcor_seed.cl */
   bool has_solids;

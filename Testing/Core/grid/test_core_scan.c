@@ -182,14 +182,20 @@ static void check_unique(mcor_context* context, int kind, int count)
     CORE_CHECK(index[i] >= 0 && index[i] < found && values[index[i]] == keys[i],
       "%s, size %d: index %d of key %d", kinds[kind].name, count, index[i], i);
   }
+  mcor_buffer runs = { 0 };
+  int run_count = -1;
+  CORE_OK(context, mcor_list_runs(context, &buffer, count, &distinct, &runs, &run_count));
+  assert_int_equal(run_count, found);
+  int* begins = read_back(context, &runs, found + 1, sizeof(int));
+  assert_int_equal(begins[found], count);
   qsort(keys, (size_t)count, sizeof *keys, compare_keys);
   int expected = 0;
   for (int i = 0; i < count; ++i)
   {
     if (i == 0 || keys[i] != keys[i - 1])
     {
-      CORE_CHECK(expected < found && values[expected] == keys[i], "%s, size %d: distinct key %d",
-        kinds[kind].name, count, expected);
+      CORE_CHECK(expected < found && values[expected] == keys[i] && begins[expected] == i,
+        "%s, size %d: distinct key %d", kinds[kind].name, count, expected);
       ++expected;
     }
   }
@@ -197,9 +203,11 @@ static void check_unique(mcor_context* context, int kind, int count)
   mcor_release(context, &buffer);
   mcor_release(context, &distinct);
   mcor_release(context, &index_of);
+  mcor_release(context, &runs);
   free(keys);
   free(values);
   free(index);
+  free(begins);
 }
 
 static void check_index(mcor_context* context, int kind, int count)

@@ -47,9 +47,6 @@ mcor_status mcor_launch_at_vertices(
 /* mcor_correct.c. Corrects vertices by a kernel, level by level. */
 mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel);
 
-/* Makes MCOR_GRID_ARGS count in cells of a level from now on. */
-mcor_status mcor_view_level(mcor_context* context, int level);
-
 /* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless they are there. */
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);
 /* Lists the leaves that may have surface. */

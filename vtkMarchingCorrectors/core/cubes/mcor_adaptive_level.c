@@ -6,34 +6,7 @@
 
 #include "mcor_adaptive.h"
 
-#include <math.h>
 #include <string.h>
-
-mcor_status mcor_view_level(mcor_context* context, int level)
-{
-  mcor_grid* grid = &context->grid;
-  if (grid->view == level)
-  {
-    return MCOR_OK;
-  }
-  grid->view = level;
-  if (level == 0)
-  {
-    return MCOR_OK;
-  }
-  mcor_level levels[MCOR_LEVEL_LIMIT];
-  const int count = grid->count + MCOR_PADDING;
-  memcpy(levels, grid->levels, sizeof levels);
-  for (int l = 0; l < grid->level_count; ++l)
-  {
-    levels[l].support = ldexpf(levels[l].support, -level);
-  }
-  MCOR_TRY(
-    mcor_write(context, &grid->view_levels, levels, (size_t)grid->level_count * sizeof levels[0]));
-  MCOR_TRY(mcor_reserve(context, &grid->view_inv_h, (size_t)count * context->cl.real_size));
-  return MCOR_LAUNCH(context, "mcor_adaptive_scale", MCOR_LIGHT, count, MCOR_INT(count),
-    MCOR_BUFFER(&grid->inv_h), MCOR_REAL(ldexp(1, level)), MCOR_BUFFER(&grid->view_inv_h));
-}
 
 /* Launches a heavy kernel with the search grid, its `own` arguments, and `more`. */
 static mcor_status mcor_launch_joined(mcor_context* context, const char* name, size_t items,
@@ -56,10 +29,11 @@ mcor_status mcor_launch_by_level(mcor_context* context, const char* name, int it
   {
     const int rest = end[l] - first[l];
     const mcor_arg own[3] = { MCOR_INT(first[l]), MCOR_INT(rest) };
-    MCOR_TRY(mcor_view_level(context, l));
+    context->grid.view = l;
     MCOR_TRY(mcor_launch_joined(context, name, (size_t)rest * (size_t)items, own, more, count));
   }
-  return mcor_view_level(context, 0);
+  context->grid.view = 0;
+  return MCOR_OK;
 }
 
 mcor_status mcor_launch_at_vertices(
@@ -79,11 +53,12 @@ mcor_status mcor_launch_at_vertices(
     {
       continue;
     }
-    MCOR_TRY(mcor_view_level(context, level));
+    context->grid.view = level;
     MCOR_TRY(mcor_make_groups(context, &mesh->node, first, last - first, &groups));
     const mcor_arg own[3] = { MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
       MCOR_BUFFER(&context->mesh.node) };
     MCOR_TRY(mcor_launch_joined(context, name, (size_t)groups, own, more, count));
   }
-  return mcor_view_level(context, 0);
+  context->grid.view = 0;
+  return MCOR_OK;
 }

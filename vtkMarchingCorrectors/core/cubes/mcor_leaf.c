@@ -129,6 +129,6 @@ void mcor_release_adaptive(mcor_context* context)
 {
   mcor_adaptive* g = &context->adaptive;
   MCOR_RELEASE(context, &g->chosen, &g->scanned, &g->cells, &g->finer, &g->tables, &g->mixed,
-    &g->proofs, &g->quadrants, &g->flat, &context->grid.view_levels, &context->grid.view_inv_h);
+    &g->proofs, &g->quadrants, &g->flat);
   mcor_release_tree(&context->tree);
 }

@@ -34,14 +34,15 @@ static mcor_status mcor_find_sides(mcor_context* context)
   {
     const size_t slot = (size_t)context->bricks.first_slot[l + 1];
     MCOR_TRY(mcor_read(context, &topology->sample_base, slot * sizeof end, &end, sizeof end));
-    MCOR_TRY(mcor_view_level(context, l));
+    context->grid.view = l;
     MCOR_TRY(mcor_make_groups(context, &topology->sample_node, first, end - first, &groups));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups,
       MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
       MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset),
       MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&topology->sample_side)));
   }
-  return mcor_view_level(context, 0);
+  context->grid.view = 0;
+  return MCOR_OK;
 }
 
 /* Makes room for the samples that sample_base counts, lets `locate` place them, and evaluates

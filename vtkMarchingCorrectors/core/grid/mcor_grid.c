@@ -183,6 +183,35 @@ static mcor_status mcor_move_particles(mcor_context* context)
     MCOR_BUFFER(&grid->order));
 }
 
+/* Makes the tables in which queries look up the particles of a search cell: of all cells if they
+ * are few, else of those that have particles. */
+static mcor_status mcor_index_cells(mcor_context* context, uint64_t cells)
+{
+  mcor_grid* grid = &context->grid;
+  mcor_buffer keys = grid->cell_keys;
+  int count = grid->count;
+  MCOR_TRY(mcor_reserve(context, &grid->cell_begins, sizeof(cl_int)));
+  if (cells > mcor_most_buckets(count))
+  {
+    grid->cell_keys = (mcor_buffer){ 0 };
+    const mcor_status status =
+      mcor_list_runs(context, &keys, grid->count, &grid->cell_keys, &grid->cell_begins, &count);
+    mcor_release(context, &keys);
+    MCOR_TRY(status);
+  }
+  MCOR_TRY(
+    mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
+  if (grid->bucket_shift == 0)
+  {
+    /* Each cell has a bucket, so keys are not needed. The scalar needs memory next. */
+    mcor_release(context, &context->stage.values);
+    context->stage.values = grid->cell_keys;
+    grid->cell_keys = (mcor_buffer){ 0 };
+    MCOR_TRY(mcor_reserve(context, &grid->cell_keys, sizeof(cl_ulong)));
+  }
+  return MCOR_OK;
+}
+
 /* Sorts particles by search cell, then within each cell, and moves them into that order. */
 static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* staging)
 {
@@ -199,23 +228,10 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x),
     MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
-  /* The sort's memory, already touched, goes to the first array that is moved. */
-  grid->px = context->sort.keys;
-  context->sort.keys = (mcor_buffer){ 0 };
   mcor_release_sort(context);
   MCOR_TRY(mcor_order_large_cells(context));
   MCOR_TRY(mcor_move_particles(context));
-  MCOR_TRY(
-    mcor_index_keys(context, &grid->cell_keys, count, cells, &grid->buckets, &grid->bucket_shift));
-  if (grid->bucket_shift == 0)
-  {
-    /* Each cell has a bucket, so keys are not needed. The scalar needs memory next. */
-    mcor_release(context, &context->stage.values);
-    context->stage.values = grid->cell_keys;
-    grid->cell_keys = (mcor_buffer){ 0 };
-    MCOR_TRY(mcor_reserve(context, &grid->cell_keys, sizeof(cl_ulong)));
-  }
-  return MCOR_OK;
+  return mcor_index_cells(context, cells);
 }
 
 /* Returns the buffer for the weights of fluid particles. */
@@ -394,7 +410,8 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
 void mcor_release_grid(mcor_context* context)
 {
   mcor_grid* g = &context->grid;
-  MCOR_RELEASE(context, &g->level_buffer, &g->buckets, &g->cell_keys, &g->order, &g->px, &g->py,
-    &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value, &g->side_flags);
+  MCOR_RELEASE(context, &g->level_buffer, &g->buckets, &g->cell_keys, &g->cell_begins, &g->order,
+    &g->px, &g->py, &g->pz, &g->inv_h, &g->trim_weight, &g->fluid_weight, &g->value,
+    &g->side_flags);
   context->kept.grid = context->kept.value = context->kept.nodes = false;
 }

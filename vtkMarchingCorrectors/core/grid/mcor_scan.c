@@ -162,15 +162,38 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
     MCOR_BUFFER(index_of));
 }
 
-/* Indexes sorted keys: bucket b begins at the first key >= b << shift. At most 4 buckets per key
- * and a million more, so that memory stays linear, however sparse the keys are. */
+/* Lists the distinct ones of sorted keys, and the index of the first of each; behind all, the
+ * number of keys. */
+mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
+  mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count)
+{
+  mcor_buffer* flags = &context->sort.flags;
+  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_unique_count", MCOR_LIGHT, count, MCOR_BUFFER(keys),
+    MCOR_INT(count), MCOR_BUFFER(flags)));
+  MCOR_TRY(mcor_scan(context, flags, count, distinct_count));
+  const size_t n = (size_t)*distinct_count;
+  MCOR_TRY(mcor_reserve(context, distinct, n * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, begins, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_run_fill", MCOR_LIGHT, count, MCOR_BUFFER(keys),
+    MCOR_INT(count), MCOR_BUFFER(flags), MCOR_BUFFER(distinct), MCOR_BUFFER(begins)));
+  mcor_release(context, flags);
+  return MCOR_OK;
+}
+
+/* Most buckets for so many keys: so few more that memory stays linear, however sparse they are. */
+uint64_t mcor_most_buckets(int keys)
+{
+  const uint64_t most = 4 * (uint64_t)keys + (1 << 20);
+  return most < INT32_MAX / 2 ? most : INT32_MAX / 2;
+}
+
+/* Indexes sorted keys: bucket b begins at the first key >= b << shift. */
 mcor_status mcor_index_keys(mcor_context* context, const mcor_buffer* keys, int count,
   uint64_t key_limit, mcor_buffer* buckets, int* shift)
 {
-  const uint64_t wanted = 4 * (uint64_t)count + (1 << 20);
-  const uint64_t most = wanted < INT32_MAX / 2 ? wanted : INT32_MAX / 2;
   *shift = 0;
-  while (key_limit >> *shift > most)
+  while (key_limit >> *shift > mcor_most_buckets(count))
   {
     ++*shift;
   }

@@ -8,20 +8,10 @@
  * sides, 9 along an edge. If all leaves up from it are of its level, each answers for its own
  * nodes, 4 along an edge: by its state (mcor_seed.cl) or by their values. There is no surface in
  * the leaf if it and they are on one side. Beside leaves of other levels, the state has to cover
- * all points of the leaf, sides included. All lengths are in cells of the level; the search grid
- * is seen in them, too (mcor_view_level). */
+ * all points of the leaf, sides included. All lengths are in cells of the level. */
 
 /* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: the finer ones of the 27 bricks in and around a leaf. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
-
-/* One work-item = one element, with the padding. Writes inverse smoothing lengths in cells of
- * another size. */
-__kernel void mcor_adaptive_scale(
-  const int count, __global const real* inv_h, const real factor, __global real* scaled)
-{
-  MCOR_ITEM(i, i < count);
-  scaled[i] = inv_h[i] * factor;
-}
 
 /* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row have their bits set. row: number of
  * its first brick in the block. */

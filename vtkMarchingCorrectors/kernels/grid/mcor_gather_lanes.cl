@@ -95,7 +95,7 @@ int mcor_tile_append(const mcor_grid* grid, mcor_query* query, int count, mcor_t
     const realv x = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->px) - ox) * unit;
     const realv y = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->py) - oy) * unit;
     const realv z = MCOR_CONVERT_REALV(MCOR_LOAD_FIX(j, grid->pz) - oz) * unit;
-    const realv inv_h = MCOR_LOAD(j, grid->inv_h);
+    const realv inv_h = MCOR_LOAD(j, grid->inv_h) * grid->view_edge;
     const fixv near =
       mcor_tile_near(x, y, z, own ? inv_h : inv_radius, cx, cy, cz, hx, hy, hz, reach);
     const mcor_mask mask = MCOR_MASK(near, min(MCOR_LANES, query->end - j));

@@ -21,7 +21,8 @@ real mcor_tile_position(const mcor_tile* tile, __global const fix* position, int
 #define mcor_tile_x(tile, i) mcor_tile_position(tile, (tile)->grid.px, 0, i)
 #define mcor_tile_y(tile, i) mcor_tile_position(tile, (tile)->grid.py, 1, i)
 #define mcor_tile_z(tile, i) mcor_tile_position(tile, (tile)->grid.pz, 2, i)
-#define mcor_tile_inv_h(tile, i) ((tile)->grid.inv_h[(tile)->begin + (i)])
+#define mcor_tile_inv_h(tile, i)                                                                   \
+  ((tile)->grid.inv_h[(tile)->begin + (i)] * (tile)->grid.view_edge)
 #define mcor_tile_weight(tile, i) ((tile)->grid.weight[(tile)->begin + (i)])
 #define mcor_tile_trim_weight(tile, i) ((tile)->grid.trim_weight[(tile)->begin + (i)])
 #define mcor_tile_value(tile, i) ((tile)->grid.value[(tile)->begin + (i)])

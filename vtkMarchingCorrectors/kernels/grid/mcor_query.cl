@@ -10,24 +10,30 @@
 
 #define MCOR_GRID_PARAMS                                                                           \
   const int particle_count, const int level_count, const int bucket_shift, const real unit,        \
-    const real units, const real edge_x, const real edge_y, const real edge_z,                     \
-    __global const mcor_level *levels, __global const int *buckets,                                \
-    __global const ulong *cell_keys, __global const fix *px, __global const fix *py,               \
-    __global const fix *pz, __global const real *p_inv_h, __global const real *p_weight,           \
-    __global const real *p_trim_weight, __global const real *p_value
+    const real units, const real view_edge, const real edge_x, const real edge_y,                  \
+    const real edge_z, __global const mcor_level *levels, __global const int *buckets,             \
+    __global const ulong *cell_keys, __global const int *cell_begins, __global const fix *px,      \
+    __global const fix *py, __global const fix *pz, __global const real *p_inv_h,                  \
+    __global const real *p_weight, __global const real *p_trim_weight,                             \
+    __global const real *p_value
 
 /* Arrays are padded by MCOR_PADDING elements, so that a vector load may run over the end. */
 typedef struct
 {
   int particle_count, level_count, bucket_shift;
-  real unit, units; /* of fixed-point numbers, in cubes; of a cube, in these: powers of two */
-  real edge[3];     /* length of an edge in cubes, at most 1 */
-  fix step[3];      /* length of an edge, from node to node, in fixed-point units */
+  /* Kernels count in cubes, or in the cells of a level of adaptive cubes, which are view_edge cubes
+   * long. unit, units: a fixed-point unit in these, and the inverse. All are powers of two. */
+  real unit, units, view_edge;
+  real edge[3]; /* length of an edge, at most 1 */
+  fix step[3];  /* length of an edge, from node to node, in fixed-point units */
   __global const mcor_level* levels;
-  __global const int* buckets;     /* first particle with cell key >= bucket << bucket_shift */
-  __global const ulong* cell_keys; /* sorted */
+  /* The first particle of each cell if bucket_shift is 0; else the first of the cells that have
+   * particles with a key of at least bucket << bucket_shift. */
+  __global const int* buckets;
+  __global const ulong* cell_keys; /* of the cells that have particles, sorted */
+  __global const int* cell_begins; /* the first particle of each; behind all, particle_count */
   __global const fix *px, *py, *pz;
-  __global const real* inv_h;       /* 1 / (h scale * smoothing length), per cube */
+  __global const real* inv_h;       /* 1 / (h scale * smoothing length), in cubes */
   __global const real* weight;      /* V norm / (scaled h)^3; 0 for solids */
   __global const real* trim_weight; /* V norm / (scaled h)^3, solids included */
   __global const real* value;       /* A - A0 */
@@ -35,9 +41,10 @@ typedef struct
 
 #define MCOR_GRID                                                                                  \
   {                                                                                                \
-    particle_count, level_count, bucket_shift, unit, units, { edge_x, edge_y, edge_z },            \
+    particle_count, level_count, bucket_shift, unit, units, view_edge,                             \
+      { edge_x, edge_y, edge_z },                                                                  \
       { (fix)(edge_x * units), (fix)(edge_y * units), (fix)(edge_z * units) }, levels, buckets,    \
-      cell_keys, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                             \
+      cell_keys, cell_begins, px, py, pz, p_inv_h, p_weight, p_trim_weight, p_value                \
   }
 
 /* Returns the index of the first particle whose cell key is >= key. */
@@ -49,7 +56,7 @@ int mcor_first_particle(const mcor_grid* grid, ulong key)
   {
     return low;
   }
-  return mcor_find_key(grid->cell_keys, low, grid->buckets[bucket + 1], key);
+  return grid->cell_begins[mcor_find_key(grid->cell_keys, low, grid->buckets[bucket + 1], key)];
 }
 
 /* All particles that may reach the box [low, high], row by row of search cells. */
@@ -91,7 +98,9 @@ fix mcor_query_beyond(fix x, fix reach)
 bool mcor_query_level(const mcor_grid* grid, mcor_query* query)
 {
   __global const mcor_level* level = grid->levels + query->level;
-  const float support = query->radius >= 0 ? query->radius : -query->radius * level->support;
+  const float support = query->radius >= 0
+    ? query->radius
+    : -query->radius * (level->support / (float)grid->view_edge);
   const float far = ceil(support * (float)grid->units) + 1;
   const fix reach = mcor_query_reach(far);
   query->reach2 = far * far;

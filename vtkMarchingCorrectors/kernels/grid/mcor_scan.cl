@@ -165,6 +165,23 @@ __kernel void mcor_unique_fill(__global const ulong* keys, __global const int* v
   index_of[values[i]] = index;
 }
 
+/* One work-item = one sorted key. Reads keys and scanned flags. Writes each distinct key once, and
+ * the index of its first; behind all, the count. */
+__kernel void mcor_run_fill(__global const ulong* keys, const int count,
+  __global const int* scanned, __global ulong* distinct, __global int* begins)
+{
+  MCOR_ITEM(i, i < count);
+  if (i == 0 || keys[i] != keys[i - 1])
+  {
+    distinct[scanned[i]] = keys[i];
+    begins[scanned[i]] = i;
+  }
+  if (i == count - 1)
+  {
+    begins[scanned[count]] = count;
+  }
+}
+
 #define MCOR_ITEM_BUCKETS MCOR_ITEM_BUCKETS_OF(MCOR_LANES)
 
 /* One work-item = MCOR_ITEM_BUCKETS buckets. Reads sorted keys. Writes, for each bucket, the index

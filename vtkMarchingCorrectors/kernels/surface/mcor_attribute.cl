@@ -110,7 +110,7 @@ __kernel void mcor_attribute_nearest(MCOR_GRID_PARAMS, const int group_count,
       farthest = fmax(farthest, MCOR_GET_FIX(index, lane) >= 0 ? MCOR_GET(least, lane) : (real)0);
     }
     query.radius = (float)sqrt(farthest) * 1.0001f;
-    query.radius = none ? fmax(query.radius, levels[0].support + 2) : query.radius;
+    query.radius = none ? fmax(query.radius, levels[0].support / (float)view_edge + 2) : query.radius;
     mcor_attribute_nearer(&grid, &query, &points, &least, &index);
   }
   for (int lane = 0; lane < MCOR_LANES; ++lane)

@@ -581,7 +581,7 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
     vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
-  bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine);
+  bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, std::int64_t& outside);
   void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input,
     mcor_options options, mcor_surface& surface, vtkPolyData* output);
   /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */

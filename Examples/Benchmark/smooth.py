@@ -1,17 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How smooth surfaces are, and what that costs: smooth.py PROGRAM [--seed N].
+"""How smooth surfaces are, and what that costs: smooth.py PROGRAM [--seed N] [--smoothing-length 1.3] [--time PARTICLES.vtp].
 
 Two scenes with particles one apart, moved at random by a share of that: a tank at rest; and a crown, a splash with a sheet of one
 layer, threads at its rim and 40 lone drops. For each surface the tilt of its triangles against the true surface (root of the mean
-square, degrees), drops and pieces, triangles, how many have an angle below 20 degrees, the volume over N V, and seconds. Needs
-numpy and vtk; splashsurf is compared where pysplashsurf can be imported.
+square, degrees), drops and pieces, triangles, how many have an angle below 20 degrees, the volume over N V, and seconds. With
+--time only the processor's seconds of whole runs, in turn, and their medians. Needs numpy and vtk; splashsurf is compared where
+pysplashsurf can be imported.
 """
 import argparse
 import json
 import pathlib
+import resource
+import statistics
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -19,7 +23,6 @@ import numpy as np
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 import vtk
 
-H = 1.3  # smoothing length
 DROPS, RADIUS, HEIGHT = 40, 13, 13  # of the crown
 WAYS = {"as it is": [], "--compact": ["--compact"], "--widen 2": ["--widen", "2"], "--smooth": ["--smooth"],
         "--smooth --iso 0.55": ["--smooth", "--iso", "0.55"]}
@@ -123,15 +126,43 @@ def measure(scene, x, points, triangles):
     return row
 
 
-def run_program(program, folder, x, words):
+def run_program(program, folder, x, length, words):
     output, statistics = folder / "surface.vtp", folder / "statistics.json"
     write_particles(folder / "particles.vtp", x)
-    done = subprocess.run([program, folder / "particles.vtp", output, "--free-surface", "--smoothing-length", str(H), *words,
-                           "--stats", statistics, "--repeat", "2", "--no-attributes", "--quiet"], capture_output=True, text=True)
+    done = subprocess.run([program, folder / "particles.vtp", output, "--free-surface", "--smoothing-length", str(length),
+                           *words, "--stats", statistics, "--repeat", "2", "--no-attributes", "--quiet"], capture_output=True, text=True)
     if done.returncode:
         return None
     told = json.loads(statistics.read_text())
     return (*read_surface(output), told["runs"][-1]["wall_seconds"], told["statistics"]["residual_max"])
+
+
+def time_runs(program, particles, rounds=5):
+    """Each run is a process of its own, so that what it takes can be told."""
+    with tempfile.TemporaryDirectory() as folder:
+        plain = [program, particles, pathlib.Path(folder) / "surface.vtp", "--free-surface", "--no-attributes", "--quiet"]
+        runs = {"as it is": plain, "--compact": [*plain, "--compact"], "--smooth": [*plain, "--smooth"],
+                "splashsurf, cubes 0.5 r": [sys.executable, __file__, "-", "--splashsurf", particles]}
+        seconds = {name: [] for name in runs}
+        for _ in range(rounds):
+            for name, command in runs.items():
+                before = resource.getrusage(resource.RUSAGE_CHILDREN)
+                subprocess.run(command, check=True)
+                after = resource.getrusage(resource.RUSAGE_CHILDREN)
+                seconds[name].append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    plain = statistics.median(seconds["as it is"])
+    for name, taken in seconds.items():
+        print(f"| {name} | {statistics.median(taken):.2f} s | {statistics.median(taken) / plain:.2f} |")
+
+
+def read_spaced(path):
+    """Positions, with particles one apart."""
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(path)
+    reader.Update()
+    data = reader.GetOutput()
+    mass, density = (vtk_to_numpy(data.GetPointData().GetArray(name)) for name in ("Mass", "Density"))
+    return vtk_to_numpy(data.GetPoints().GetData()) / np.median(mass / density) ** (1 / 3)
 
 
 def run_splashsurf(x, cube):
@@ -151,7 +182,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program")
     parser.add_argument("--seed", type=int, default=45)
+    parser.add_argument("--smoothing-length", type=float, default=1.0)
+    parser.add_argument("--time", metavar="PARTICLES.vtp")
+    parser.add_argument("--splashsurf", help=argparse.SUPPRESS)
     given = parser.parse_args()
+    if given.time:
+        time_runs(given.program, given.time)
+        return
+    if given.splashsurf:
+        run_splashsurf(read_spaced(given.splashsurf), 0.5)
+        return
     random = np.random.default_rng(given.seed)
     scenes = [("tank", "tank, jitter 0.12", tank(0.12, random)), ("tank", "tank, jitter 0.18", tank(0.18, random)),
               ("crown", "crown, jitter 0.10", crown(0.10, random))]
@@ -165,7 +205,7 @@ def main():
               "|---|---|---|---|---|---|---|---|---|")
         for name, way in {**WAYS, **competitors}.items():
             with tempfile.TemporaryDirectory() as folder:
-                found = run_program(given.program, pathlib.Path(folder), x, way) if isinstance(way, list) \
+                found = run_program(given.program, pathlib.Path(folder), x, given.smoothing_length, way) if isinstance(way, list) \
                     else run_splashsurf(x, way)
             if found is None:
                 print(f"| {name} | not in this program |")

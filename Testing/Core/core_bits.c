@@ -29,7 +29,7 @@ typedef struct bits_case
   mcor_topology topology;
   double wall_share;
   int mixed; /* smoothing lengths 1 : 64 */
-  int compact;
+  int smooth; /* 1: compact, 2: widened, 3: both */
 } bits_case;
 
 static const bits_case cases[] = {
@@ -65,6 +65,10 @@ static const bits_case cases[] = {
     MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 1 },
   { "compact_trimmed", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
     MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 1 },
+  { "widened", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 2 },
+  { "smooth", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
+    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 3 },
 };
 
 /* Gives some particles a far larger support, and as much weight as the others have. */
@@ -118,7 +122,8 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   options.vertex_threshold = small && eigenvalue ? 0.3 : 0.5;
   options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
   options.wall_share = at->wall_share;
-  options.compact = at->compact;
+  options.compact = at->smooth & 1;
+  options.widen = at->smooth & 2 ? 2 : 1;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE;
   mcor_surface surface = { 0 };
   const mcor_status status = mcor_extract(context, &input, &options, &surface);

@@ -222,7 +222,7 @@ void MoveIntoPlane(vtkPolyData* particles)
 const char* const OfSurface[] = { "Area", "Volume", "Length", "CellsUsed",
   "TrianglesBeforeTrimming", "CorrectionMean", "CorrectionMax", "CorrectionStandardDeviation",
   "VerticesCorrected", "VerticesAboveTolerance", "IterationsMean", "IterationsMax", "TrimVertices",
-  "TrimVerticesLinear" };
+  "TrimVerticesLinear", "WideningOutside" };
 constexpr std::size_t OfSurfaceCount = sizeof(OfSurface) / sizeof(OfSurface[0]);
 
 /// A surface, and what the filter says of it: ranges and cells, of the run and of the next one;

@@ -177,6 +177,7 @@ class Results(unittest.TestCase):
                                     **{"volume": volume, **words})
             self.assertEqual(wide.points.tobytes(), plain.points.tobytes())
             self.assertEqual((wide.statistics["widening_min"], wide.statistics["widening_max"]), (factors.min(), 2))
+            self.assertGreaterEqual(wide.statistics["widening_outside"], 0)
 
     def test_compact(self):
         """Fewer triangles, closed as before, around as much."""

@@ -382,6 +382,9 @@ extern "C"
      * as large as the particle itself (0 if volumes are computed). */
     double smoothing_length_median, neighbours_median, spacing_median, filled_median;
     double widening_min, widening_mean, widening_max; /* factors of fluid particles; 0 without widening */
+    /* Fluid particles that are inside with their length and outside with the widened one: the sums of mcor_widen, with
+     * s = 1 and with the factor. mcor_widen in a box counts those next to it, too. */
+    int64_t widening_outside;
     double wall_share;      /* in use; 0: the surface does not end at solids */
     double fluid_extent[3]; /* of the positions of fluid particles, along x, y, z */
     double plane_normal[3]; /* of a plane that all particles are near, in three dimensions; or 0 */
@@ -875,13 +878,14 @@ extern "C"
     int64_t count;  /* of particles */
     double* factor; /* [count]; 1 of solids */
     double* volume; /* [count], of the original lengths; NULL where they are not computed */
+    uint8_t* outside; /* [count], whether statistics.widening_outside counts the particle */
     mcor_statistics statistics;
   } mcor_widening;
 
   /* Finds the factor s of each fluid particle: the greatest in [1, options.widen], on steps of
    * 0.2 with linear interpolation, with which the weight sum V_k W(x_j - x_k, s h_j) is at least
-   * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1; without the
-   * 0.1 for particles with many neighbours, all on one side. The factor is then reduced to 1
+   * a limit. The limit is the free surface's iso value (0.5 for scalars) plus 0.1; or less 0.08
+   * for particles with many neighbours, all on one side. The factor is then reduced to 1
    * where neighbours are few (drops, threads), and to at most the Shepard mean of the factors
    * around the particle. A surface with options.widen is, to the last bit, that of an input with
    * these factors and volumes; or with uniform cubes of the same size, with the products of

@@ -19,6 +19,7 @@
 #include "vtkSPHRanksStatistics.h"
 #include "vtkSPHRanksSurface.h"
 #include "vtkSPHSharedRun.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <memory>
@@ -31,9 +32,10 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   mcor_options& options = run.Options;
   options = mcor_spell_out(&options);
   std::unique_ptr<vtkMarchingCorrectorsInput> widened;
+  std::int64_t outside = 0; // of the particles that this rank was given
   if (options.widen > 1.0)
   {
-    if (!this->WidenDistributed(run, mine))
+    if (!this->WidenDistributed(run, mine, outside))
     {
       return;
     }
@@ -84,13 +86,15 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
         [&](mcor_context* context)
         { return mcor_extract(context, &input.Core, &options, &surface); }))
   {
+    surface.statistics.widening_outside = outside;
     this->FinishDistributed(run, input, whole, surface, output);
   }
 }
 
 // The rank that owns a particle's place finds its factor, which then travels to where the particle
 // came from.
-bool vtkMarchingCorrectors::WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine)
+bool vtkMarchingCorrectors::WidenDistributed(
+  vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, std::int64_t& outside)
 {
   vtkSharedRun sums(this);
   sums.Own = run.Own;
@@ -120,7 +124,17 @@ bool vtkMarchingCorrectors::WidenDistributed(vtkSharedRun& run, vtkMarchingCorre
   {
     vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, near));
   }
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName("WideningOutside");
+  flags->SetArray(widening.outside, near, 1); // which stays the widening's
+  found->AddArray(flags);
   sums.Return(found, run.Own);
+  vtkDataArray* const home = found->GetArray("WideningOutside");
+  for (vtkIdType i = 0; i < home->GetNumberOfTuples(); ++i)
+  {
+    outside += home->GetComponent(i, 0) != 0.0 ? 1 : 0;
+  }
+  found->RemoveArray("WideningOutside");
   for (int i = 0; i < found->GetNumberOfArrays(); ++i)
   {
     run.Own->GetPointData()->AddArray(found->GetAbstractArray(i));

@@ -85,7 +85,8 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides. */
+/* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides, and
+ * less than the iso value where many are on one. */
 static double expected_factor(const core_set* set, int64_t j, double iso)
 {
   double crowd = 0, offset[3] = { 0 };
@@ -101,8 +102,10 @@ static double expected_factor(const core_set* set, int64_t j, double iso)
   }
   const double middle = sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) /
     fmax(crowd, 1) / set->smoothing_length[j];
-  const double least = iso + 0.1 * (1 - ramp(middle, 0.15, 0.35) * ramp(crowd, 4.5, 6.75));
-  double upper = WIDEST, above = weight_with(set, j, upper), s = above >= least ? upper : 1;
+  double upper = WIDEST, above = weight_with(set, j, upper);
+  const double least = iso + 0.1 -
+    (0.1 + 0.08 * ramp(above, iso - 0.16, iso - 0.08)) * ramp(middle, 0.4, 0.6) * ramp(crowd, 4.5, 6);
+  double s = above >= least ? upper : 1;
   for (int step = 4; step >= 0 && above < least; --step)
   {
     const double lower = 1 + 0.2 * step, c = weight_with(set, j, lower);
@@ -125,7 +128,7 @@ static void expect_factors(const core_set* set, const mcor_widening* w, double i
   {
     s[j] = expected_factor(set, j, iso);
   }
-  int wide = 0, narrow = 0;
+  int wide = 0, narrow = 0, outside = 0;
   for (int64_t j = 0; j < set->count; ++j)
   {
     double mean = 0, weight = 0;
@@ -136,6 +139,9 @@ static void expect_factors(const core_set* set, const mcor_widening* w, double i
       mean += v * s[k];
       weight += v;
     }
+    const int is = weight_with(set, j, 1) >= iso && weight_with(set, j, w->factor[j]) < iso;
+    assert_int_equal(w->outside[j], is);
+    outside += is;
     const double expected = fmax(fmin(s[j], mean / weight), 1);
     CORE_CHECK(fabs(w->factor[j] - expected) < 2e-4, "particle %lld: %g, expected %g", (long long)j,
       w->factor[j], expected);
@@ -143,6 +149,8 @@ static void expect_factors(const core_set* set, const mcor_widening* w, double i
     narrow += expected < 1.01;
   }
   CORE_CHECK(wide > 50 && narrow >= 4, "%d wide, %d narrow", wide, narrow);
+  CORE_CHECK(outside > 10 && w->statistics.widening_outside == outside, "%d outside, expected %d",
+    (int)w->statistics.widening_outside, outside);
   free(s);
 }
 
@@ -199,6 +207,7 @@ static void test_surface(void** state)
     const mcor_statistics* s = &widened.statistics;
     CORE_CHECK(s->widening_min == 1 && s->widening_max > 1.99 && s->widening_mean > 1.1,
       "%g %g %g", s->widening_min, s->widening_mean, s->widening_max);
+    assert_int_equal(s->widening_outside, w.statistics.widening_outside);
     options.widen = 1;
     options.cube_size = 0.5 * 1.1;
     for (int64_t j = 0; j < set.count; ++j)

@@ -33,15 +33,22 @@ typedef struct mcor_widen_run
 {
   mcor_widening* out;
   double widest, iso;
-  mcor_buffer sizes, factor, limited, wanted, list;
+  mcor_buffer sizes, factor, limited, wanted, list, outside;
+  mcor_point_batch batch;
+  cl_int*
+    originals; /* whether a sorted particle is in the box, and no periodic image; NULL: all are */
 } mcor_widen_run;
 
 static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
 {
-  MCOR_RELEASE(context, &run->sizes, &run->factor, &run->limited, &run->wanted, &run->list);
+  MCOR_RELEASE(
+    context, &run->sizes, &run->factor, &run->limited, &run->wanted, &run->list, &run->outside);
+  mcor_release_batch(context, &run->batch);
+  free(run->originals);
 }
 
-/* Finds the factors of the sorted particles, into `limited`, which holds the least sums before. */
+/* Finds the factors of the sorted particles, into `limited`, which holds the least sums before;
+ * and which particles they leave outside. */
 static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;
@@ -54,6 +61,7 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
   MCOR_TRY(mcor_reserve(context, &run->factor, bytes));
   MCOR_TRY(mcor_reserve(context, &run->limited, bytes));
   MCOR_TRY(mcor_reserve(context, &run->wanted, ((size_t)n + 1) * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->outside, (size_t)n * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_sizes", MCOR_LIGHT, n, MCOR_INT(n), MCOR_INT(plane),
     MCOR_BUFFER(&grid->inv_h),
     MCOR_BUFFER(grid->has_solids ? &grid->fluid_weight : &grid->trim_weight),
@@ -69,88 +77,81 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_list", MCOR_LIGHT, n, MCOR_INT(n),
       MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->list)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_solve", MCOR_HEAVY, (listed + lanes - 1) / lanes,
-      MCOR_GRID_ARGS(context), MCOR_INT(plane), MCOR_REAL(run->widest),
-      MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->sizes), MCOR_INT(listed), MCOR_BUFFER(&run->list),
-      MCOR_BUFFER(&run->factor)));
+      MCOR_GRID_ARGS(context), MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->iso),
+      MCOR_REAL(MCOR_WIDEN_MARGIN), MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->sizes),
+      MCOR_INT(listed), MCOR_BUFFER(&run->list), MCOR_BUFFER(&run->factor),
+      MCOR_BUFFER(&run->outside)));
   }
-  return MCOR_LAUNCH(context, "mcor_widen_limit", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_REAL(run->widest), MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->limited));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_limit", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_REAL(run->widest), MCOR_BUFFER(&run->factor), MCOR_BUFFER(&run->limited)));
+  return MCOR_LAUNCH(context, "mcor_widen_check", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+    MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->iso), MCOR_BUFFER(&run->sizes),
+    MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-/* Finds which sorted particles are in the box and no periodic images. NULL: all are. */
-static mcor_status mcor_find_originals(mcor_context* context, cl_int** originals)
+static mcor_status mcor_find_originals(mcor_context* context, mcor_widen_run* run)
 {
   const mcor_grid* grid = &context->grid;
-  const int n = grid->count;
+  const size_t n = (size_t)grid->count;
   int first[3], last[3];
-  mcor_point_batch batch = { 0 };
-  *originals = NULL;
   if (!mcor_bound_particles(context, first, last))
   {
     return MCOR_OK;
   }
-  *originals = malloc((size_t)n * sizeof(cl_int));
-  mcor_status status = mcor_allocated(context, *originals);
-  status = status == MCOR_OK ? mcor_reserve(context, &batch.in_node, (size_t)n * 4 * sizeof(cl_int))
-                             : status;
-  status = status == MCOR_OK
-    ? mcor_reserve(context, &batch.in_offset, (size_t)n * 4 * context->cl.real_size)
-    : status;
-  status = status == MCOR_OK
-    ? mcor_reserve(context, &context->points.flags, ((size_t)n + 1) * sizeof(cl_int))
-    : status;
-  status = status == MCOR_OK
-    ? MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, n, MCOR_INT(0), MCOR_INT(n),
-        MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
-        MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(1),
-        MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&batch.in_node),
-        MCOR_BUFFER(&batch.in_offset), MCOR_BUFFER(&context->points.flags))
-    : status;
-  status = status == MCOR_OK
-    ? mcor_read(context, &context->points.flags, 0, *originals, (size_t)n * sizeof(cl_int))
-    : status;
-  mcor_release_batch(context, &batch);
-  return status;
+  run->originals = malloc(n * sizeof(cl_int));
+  MCOR_TRY(mcor_allocated(context, run->originals));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, grid->count, MCOR_INT(0),
+    MCOR_INT(grid->count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
+    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(1),
+    MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&run->batch.in_node),
+    MCOR_BUFFER(&run->batch.in_offset), MCOR_BUFFER(&context->points.flags)));
+  return mcor_read(context, &context->points.flags, 0, run->originals, n * sizeof(cl_int));
 }
 
 typedef struct mcor_widen_job
 {
   const mcor_context* context;
   const mcor_input* input;
-  const mcor_widening* out;
-  const cl_int *order, *originals;
-  const void *factors, *weight, *inv_h; /* views */
+  const mcor_widen_run* run;
+  void *order, *weight, *inv_h, *factors,
+    *outside;                /* views; the last two: NULL if only volumes are wanted */
+  int64_t left[MCOR_SLICES]; /* particles outside */
 } mcor_widen_job;
 
 /* Writes factors to the particles' places in the input; volumes too, from the weights, if they
  * were computed. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_widen_job* job = data;
+  mcor_widen_job* job = data;
   const mcor_context* context = job->context;
+  const mcor_widening* out = job->run->out;
   const mcor_sph_kernel kernel = context->run.options->sph_kernel;
   const bool plane = mcor_is_plane(context);
   const double cube = context->lattice.cube,
                norm = mcor_kernel_norm(kernel) * (plane ? mcor_plane_factor(kernel) : 1);
   for (int64_t i = first; i < last; ++i)
   {
-    const int64_t to = mcor_source_of(context, job->order[i]);
-    if (job->originals && !job->originals[i])
+    const int64_t to = mcor_source_of(context, ((const cl_int*)job->order)[i]);
+    if (job->run->originals && !job->run->originals[i])
     {
       continue;
     }
     if (job->factors && !(job->input->solid && job->input->solid[to]))
     {
-      job->out->factor[to] = mcor_get_real(context, job->factors, i);
+      out->factor[to] = mcor_get_real(context, job->factors, i);
+      out->outside[to] = ((const cl_int*)job->outside)[i] != 0;
+      job->left[slice] += out->outside[to];
     }
-    if (job->out->volume)
+    if (out->volume)
     {
       const double h = 1 / mcor_get_real(context, job->inv_h, i);
-      job->out->volume[to] = mcor_get_real(context, job->weight, i) / norm * h * h *
+      out->volume[to] = mcor_get_real(context, job->weight, i) / norm * h * h *
         (plane ? cube * cube : h * cube * cube * cube);
     }
   }
-  (void)slice;
 }
 
 /* The factors where there are any, and volumes. */
@@ -159,23 +160,20 @@ static mcor_status mcor_deliver_factors(
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)grid->count, real = n * context->cl.real_size;
-  const int count = run->out->factor ? 4 : 3;
-  cl_int* originals;
-  void *order, *weight, *inv_h, *factors = NULL;
-  const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &order },
-    { &grid->trim_weight, real, &weight }, { &grid->inv_h, real, &inv_h },
-    { &run->limited, real, &factors } };
-  mcor_status status = mcor_find_originals(context, &originals);
-  status = status == MCOR_OK ? mcor_map_all(context, views, count) : status;
-  if (status == MCOR_OK)
+  const int count = run->out->factor ? 5 : 3;
+  mcor_widen_job job = { .context = context, .input = input, .run = run };
+  const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &job.order },
+    { &grid->trim_weight, real, &job.weight }, { &grid->inv_h, real, &job.inv_h },
+    { &run->limited, real, &job.factors }, { &run->outside, n * sizeof(cl_int), &job.outside } };
+  MCOR_TRY(mcor_find_originals(context, run));
+  MCOR_TRY(mcor_map_all(context, views, count));
+  const mcor_status status =
+    mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL);
+  for (int i = 0; i < MCOR_SLICES; ++i)
   {
-    mcor_widen_job job = { context, input, run->out, order, originals, factors, weight, inv_h };
-    status =
-      mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL);
-    status = mcor_unmap_all(context, views, count, status);
+    context->run.statistics->widening_outside += job.left[i];
   }
-  free(originals);
-  return status;
+  return mcor_unmap_all(context, views, count, status);
 }
 
 mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, double* volume)
@@ -186,7 +184,10 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   {
     volume[i] = 1;
   }
-  return context->grid.count > 0 ? mcor_deliver_factors(context, input, &run) : MCOR_OK;
+  const mcor_status status =
+    context->grid.count > 0 ? mcor_deliver_factors(context, input, &run) : MCOR_OK;
+  mcor_release_run(context, &run);
+  return status;
 }
 
 static mcor_status mcor_run_widen(
@@ -273,9 +274,10 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   };
   widening->count = input->count;
   widening->factor = malloc(n * sizeof(double) + 1);
+  widening->outside = calloc(n + 1, 1);
   widening->volume = mcor_needs_density(input) ? malloc(n * sizeof(double) + 1) : NULL;
-  mcor_status status =
-    mcor_allocated(context, widening->factor && (widening->volume || !mcor_needs_density(input)));
+  mcor_status status = mcor_allocated(context,
+    widening->factor && widening->outside && (widening->volume || !mcor_needs_density(input)));
   mcor_input particles;
   mcor_options own;
   const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
@@ -296,6 +298,7 @@ void mcor_free_widening(mcor_widening* widening)
   {
     free(widening->factor);
     free(widening->volume);
+    free(widening->outside);
     *widening = (mcor_widening){ 0 };
   }
 }
@@ -318,8 +321,8 @@ static mcor_status mcor_renew_widening(
   mcor_options own;
   const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
   if (kept->widening.factor && mcor_same_particles(&particles, &kept->input) &&
-    mcor_same_options(&own, &kept->options) && kept->widest == options->widen &&
-    kept->iso == iso && kept->uses_solids == uses_solids)
+    mcor_same_options(&own, &kept->options) && kept->widest == options->widen && kept->iso == iso &&
+    kept->uses_solids == uses_solids)
   {
     memset(kept->widening.statistics.seconds, 0, sizeof kept->widening.statistics.seconds);
     kept->widening.statistics.build_seconds = 0;
@@ -385,6 +388,7 @@ mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   {
     mcor_statistics* s = &surface->statistics;
     mcor_take_widening(surface);
+    s->widening_outside = widening.statistics.widening_outside;
     s->build_seconds += widening.statistics.build_seconds;
     for (int p = 0; p < MCOR_PHASE_COUNT; ++p)
     {

@@ -10,14 +10,18 @@
  * where few neighbours are near, because lone drops and threads would shrink. At last it is
  * limited to the Shepard mean of these factors at h.
  *
- * `least` is the iso value and a margin, without which sheets would get holes. There is no
- * margin at the surface of deep water, where all neighbours are on one side. */
+ * `least` is the iso value and a margin, without which sheets would get holes. At the surface of
+ * deep water, where all neighbours are on one side, there is no margin, and a particle may even be
+ * outside a little: each one that must be inside there would raise a bump. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
+
+/* Most by which the weight sum may be below the iso value at the surface of deep water. */
+#define MCOR_WIDEN_OUTSIDE ((real)0.08f)
 
 /* Distance of the neighbours' middle, in smoothing lengths: below the first there is water on
  * both sides, beyond the second on one. */
-#define MCOR_SIDED_FROM ((real)0.15f)
-#define MCOR_SIDED_TO ((real)0.35f)
+#define MCOR_SIDED_FROM ((real)0.4f)
+#define MCOR_SIDED_TO ((real)0.6f)
 
 /* Particles j in the lanes; the first `count` count. x: positions as in the grid. */
 typedef struct
@@ -183,7 +187,7 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   const realv middle = mcor_sqrt(mcor_square(crowd.offset[0], crowd.offset[1], crowd.offset[2])) *
     at.scale / fmax(others, (realv)1);
   const realv sided = mcor_widen_ramp(middle, MCOR_SIDED_FROM, MCOR_SIDED_TO) *
-    mcor_widen_ramp(others, crowd_to, (real)1.5f * crowd_to);
+    mcor_widen_ramp(others, crowd_to, (real)(4 / 3.0f) * crowd_to);
   const realv needed = MCOR_FMA((realv)margin, 1 - sided, (realv)iso);
   const fixv known = c >= needed || taper <= (realv)0;
   const realv result = known ? MCOR_FMA((realv)(widest - 1), taper, (realv)1) : taper;
@@ -214,10 +218,10 @@ __kernel void mcor_widen_list(
 #endif
 
 /* One work-item = MCOR_LANES listed particles. Reads their shares and least sums. Writes their
- * factors. */
-__kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest,
-  __global const real* least, __global const real* sizes, const int listed, __global const int* list,
-  __global real* factor)
+ * factors, and to `outside` whether the iso value is above their sums with the widest one. */
+__kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
+  const real margin, __global const real* least, __global const real* sizes, const int listed,
+  __global const int* list, __global real* factor, __global int* outside)
 {
   const mcor_grid grid = MCOR_GRID;
   const int begin = get_global_id(0) * MCOR_LANES;
@@ -243,39 +247,41 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
     { MCOR_WIDEN_LANES(x[0]), MCOR_WIDEN_LANES(x[1]), MCOR_WIDEN_LANES(x[2]) }, inv_h,
     grid.unit * inv_h, count, plane
   };
-  const realv needed = MCOR_WIDEN_LANES(sum);
-  realv s = 1, above = 0;
+  realv needed = MCOR_WIDEN_LANES(sum), with_widest = 0;
+  mcor_widen_sum(
+    &grid, sizes, &at, 1, &widest, MCOR_SUPPORT * widest, &with_widest, NULL);
+  const realv sided = (iso + margin - needed) / margin;
+  needed -= sided * MCOR_WIDEN_OUTSIDE *
+    mcor_widen_ramp(with_widest, iso - 2 * MCOR_WIDEN_OUTSIDE, iso - MCOR_WIDEN_OUTSIDE);
+  fixv found = mcor_lane_index() >= (fixv)count || with_widest >= needed;
+  realv s = with_widest >= needed ? (realv)widest : (realv)1, above = with_widest;
   real upper = widest;
-  fixv found = mcor_lane_index() >= (fixv)count;
-  int step = (int)ceil((widest - 1) / MCOR_WIDEN_STEP);
-  for (bool first = true; step >= (first ? 1 : 0) && MCOR_ANY(!found); first = false)
+  for (int step = (int)ceil((widest - 1) / MCOR_WIDEN_STEP) - 1; step >= 0 && MCOR_ANY(!found);
+       step -= MCOR_WIDEN_LEVELS)
   {
     real level[MCOR_WIDEN_LEVELS];
     realv c[MCOR_WIDEN_LEVELS];
     for (int l = 0; l < MCOR_WIDEN_LEVELS; ++l)
     {
-      const real at_step = 1 + (real)max(step - l, 0) * MCOR_WIDEN_STEP;
-      level[l] = first && l == 0 ? widest : at_step;
+      level[l] = 1 + (real)max(step - l, 0) * MCOR_WIDEN_STEP;
       c[l] = 0;
     }
     mcor_widen_sum(
       &grid, sizes, &at, MCOR_WIDEN_LEVELS, level, MCOR_SUPPORT * level[0], c, NULL);
     for (int l = 0; l < MCOR_WIDEN_LEVELS; ++l)
     {
-      const bool is_widest = first && l == 0;
       const fixv here = !found && c[l] >= needed;
-      const realv between = (c[l] - needed) / (c[l] - above) * (upper - level[l]);
-      s = here ? (is_widest ? (realv)widest : level[l] + between) : s;
+      s = here ? level[l] + (c[l] - needed) / (c[l] - above) * (upper - level[l]) : s;
       found = found || here;
       above = c[l];
       upper = level[l];
     }
-    step -= MCOR_WIDEN_LEVELS;
   }
   s = MCOR_FMA(s - 1, MCOR_WIDEN_LANES(share), (realv)1);
   for (int lane = 0; lane < count; ++lane)
   {
     factor[list[begin + lane]] = MCOR_GET(s, lane);
+    outside[list[begin + lane]] = MCOR_GET(with_widest, lane) < iso;
   }
 }
 
@@ -354,4 +360,45 @@ __kernel void mcor_widen_limit(MCOR_GRID_PARAMS, const real widest, __global con
 #else
   MCOR_CAT(vstore, MCOR_LANES)(result, 0, limited + begin);
 #endif
+}
+
+/* One work-item = MCOR_LANES sorted particles. Reads factors, which particles were listed, and what
+ * mcor_widen_solve wrote for these. Writes whether c(1) is at least the iso value, and c of the
+ * factor is below it. */
+__kernel void mcor_widen_check(MCOR_GRID_PARAMS, const int plane, const real widest, const real iso,
+  __global const real* sizes, __global const real* factor, __global const int* listed,
+  __global int* outside)
+{
+  const mcor_grid grid = MCOR_GRID;
+  const int begin = get_global_id(0) * MCOR_LANES;
+  if (begin >= particle_count)
+  {
+    return;
+  }
+  const int count = min(MCOR_LANES, particle_count - begin);
+  const realv s = MCOR_LOAD(begin, factor), inv_h = MCOR_LOAD(begin, p_inv_h), one = 1;
+  fixv open = s > one && s < (realv)widest;
+  for (int lane = 0; lane < count; ++lane)
+  {
+    const int i = begin + lane;
+    const bool left = listed[i] != listed[i + 1] && outside[i];
+    open = mcor_lane_index() == (fixv)lane && left ? s > one : open;
+  }
+  open = open && mcor_lane_index() < (fixv)count;
+  for (int way = 0; way < 2 && MCOR_ANY(open); ++way)
+  {
+    const realv inv = way == 0 ? inv_h / s : inv_h;
+    const mcor_widen_at at = {
+      { MCOR_LOAD_FIX(begin, px), MCOR_LOAD_FIX(begin, py), MCOR_LOAD_FIX(begin, pz) }, inv,
+      grid.unit * inv, count, plane
+    };
+    const real level = 1;
+    realv c = 0;
+    mcor_widen_sum(&grid, sizes, &at, 1, &level, MCOR_SUPPORT, &c, NULL);
+    open = open && (way == 0 ? c < (realv)iso : c >= (realv)iso);
+  }
+  for (int lane = 0; lane < count; ++lane)
+  {
+    outside[begin + lane] = MCOR_GET_FIX(open, lane) != 0;
+  }
 }

@@ -18,7 +18,7 @@ typedef struct marked_cells
 {
   int low[3], size[3];
   uint8_t* cell;
-  int count;
+  int count, hits; /* hits: those that the surface uses */
 } marked_cells;
 
 static uint8_t* find_cell(const marked_cells* m, const int at[3])
@@ -38,12 +38,15 @@ static marked_cells read_cells(mcor_context* context)
   marked_cells m = { .count = 0 };
   const int bricks = context->bricks.now.count;
   cl_int* brick = calloc((size_t)bricks + 1, 4 * sizeof *brick);
-  uint64_t* cells = calloc((size_t)bricks + 1, sizeof *cells);
+  uint64_t* cells = calloc((size_t)bricks + 1, 2 * sizeof *cells);
   assert_true(brick && cells);
+  const uint64_t* used = cells + bricks;
   CORE_OK(context,
     mcor_read(context, &context->bricks.now.bricks, 0, brick, (size_t)bricks * 4 * sizeof *brick));
   CORE_OK(
     context, mcor_read(context, &context->bricks.seeds, 0, cells, (size_t)bricks * sizeof *cells));
+  CORE_OK(context,
+    mcor_read(context, &context->mesh.used, 0, cells + bricks, (size_t)bricks * sizeof *cells));
   size_t total = 1;
   for (int a = 0; a < 3; ++a)
   {
@@ -63,6 +66,7 @@ static marked_cells read_cells(mcor_context* context)
         m.low[1] + 4 * brick[4 * b + 1] + c / 4 % 4, m.low[2] + 4 * brick[4 * b + 2] + c / 16 };
       *find_cell(&m, at) = (uint8_t)marked;
       m.count += marked;
+      m.hits += marked && used[b] >> c & 1;
     }
   }
   free(brick);
@@ -115,6 +119,7 @@ static void check_pairs(mcor_context* context, const core_set* set, double cube)
   mcor_surface surface = core_extract(context, &input, &options);
   marked_cells m = read_cells(context);
   assert_int_equal(surface.statistics.seed_cells, m.count);
+  assert_int_equal(surface.statistics.seed_cells_not_intersected, m.count - m.hits);
   CORE_CHECK(m.count > 0, "no cell is marked");
   int pairs = 0;
   for (int64_t j = 0; j < set->count; ++j)

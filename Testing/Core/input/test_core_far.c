@@ -171,6 +171,12 @@ static void test_region(void** state)
   options.field = MCOR_WEIGHT_SUM;
   memcpy(options.box, box, sizeof box);
   check_same(*state, &block, &set, core_input, &options);
+  options.periodic[0] = -5; /* images reach the box from there */
+  options.periodic[1] = 5;
+  options.box[0] = -5;
+  options.box[1] = -4;
+  check_same(*state, &block, &set, core_input, &options);
+  memset(options.periodic, 0, sizeof options.periodic);
   memset(options.box, 0, sizeof box);
   const mcor_gauge_line lines[2] = { { .from = { 0, 0, -20 }, .to = { 0, 0, 20 } },
     { .from = { 50, 0, 0 }, .to = { 60, 0, 0 } } };

@@ -86,8 +86,8 @@ static int compare_shares(const void* a, const void* b)
   return (s > t) - (s < t);
 }
 
-/* The solids' share at the solids, the median by the fluid's weight there. */
-static double find_share(const core_set* set, oracle_kernel kernel)
+/* The solids' share at the solids, the median by the fluid's weight there; with images a period away along y. */
+static double find_share(const core_set* set, oracle_kernel kernel, double period)
 {
   oracle_particles particles = core_oracle(set);
   oracle_field field;
@@ -97,12 +97,20 @@ static double find_share(const core_set* set, oracle_kernel kernel)
   assert_true(oracle_create_field(&field, &particles, kernel, ORACLE_SHEPARD, 1));
   for (int64_t j = 0; j < set->count; ++j)
   {
-    oracle_sample sample;
-    oracle_evaluate(&field, NULL, set->position + 3 * j, &sample);
-    if (set->solid[j] && sample.weight > 0)
+    const double* x = set->position + 3 * j;
+    double fluid = 0, both = 0;
+    for (int image = -(period > 0); image <= (period > 0); ++image)
     {
-      at[count++] = (wall_weight){ 1 - sample.weight / sample.trim_weight, sample.weight };
-      sum += sample.weight;
+      const double place[3] = { x[0], x[1] + image * period, x[2] };
+      oracle_sample sample;
+      oracle_evaluate(&field, NULL, place, &sample);
+      fluid += sample.weight;
+      both += sample.trim_weight;
+    }
+    if (set->solid[j] && fluid > 0)
+    {
+      at[count++] = (wall_weight){ 1 - fluid / both, fluid };
+      sum += fluid;
     }
   }
   oracle_free_field(&field);
@@ -140,21 +148,25 @@ static core_set make_small_tank(void)
   return set;
 }
 
-/* The share that is measured is that at the solids next to the fluid, whatever the kernel. */
+/* The share that is measured is that at the solids next to the fluid, whatever the kernel; over a period, too. */
 static void test_share(void** state)
 {
   core_set set = make_small_tank();
   const double iso = 0;
   const mcor_input input = core_input(&set);
-  for (int kernel = 0; kernel < MCOR_SPH_KERNEL_COUNT; ++kernel)
+  for (int i = 0; i < 2 * MCOR_SPH_KERNEL_COUNT; ++i)
   {
+    const int kernel = i / 2, periodic = i % 2;
     const wall_case at = { .share = MCOR_WALL_SHARE_MEASURED, .kernel = (mcor_sph_kernel)kernel };
-    const mcor_options options = make_options(&at, &iso);
-    const double expected = find_share(&set, (oracle_kernel)kernel);
+    mcor_options options = make_options(&at, &iso);
+    options.periodic[2] = periodic ? -5 : 0;
+    options.periodic[3] = periodic ? 5 : 0;
+    const double expected = find_share(&set, (oracle_kernel)kernel, periodic ? 10 : 0);
     mcor_globals globals;
     CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
     CORE_CHECK(fabs(globals.measured.wall_share - expected) < 1e-6,
-      "kernel %d: share %.9g, not %.9g", kernel, globals.measured.wall_share, expected);
+      "kernel %d%s: share %.9g, not %.9g", kernel, periodic ? ", periodic" : "",
+      globals.measured.wall_share, expected);
     mcor_free_globals(&globals);
   }
   core_free_set(&set);

@@ -166,14 +166,16 @@ void CheckBits()
   CHECK(first->GetExtent()[2] == 2);
 }
 
-/// More points than are treated at a time: one of the last is what it is alone.
+/// More points than are treated at a time, of an image that is turned: one of the last is what it is alone.
 void CheckChunks()
 {
   auto cube = test::MakeCube();
   vtkNew<vtkImageData> image;
-  image->SetDimensions(1100, 1100, 1);
-  image->SetOrigin(-1.2, -1.2, 0.05);
-  image->SetSpacing(2.4 / 1100, 2.4 / 1100, 1.0);
+  image->SetExtent(0, 1099, 0, 1099, 3, 3);
+  image->SetDirectionMatrix(
+    -8.0 / 9, 1.0 / 9, 4.0 / 9, 4.0 / 9, 4.0 / 9, 7.0 / 9, 1.0 / 9, -8.0 / 9, 4.0 / 9);
+  image->SetOrigin(0.5, -1.5, 2.6);
+  image->SetSpacing(2.4 / 1100, 2.4 / 1100, 0.1);
   auto probe = MakeProbe(image, cube);
   probe->AddExcludedArray("Volume");
   probe->KeepDeviceDataOff();

@@ -296,7 +296,7 @@ class RealFiles(CommandLineTest):
                     "h": [0.13] * len(near) + [0.8] * len(gas)})
                 how = ["--scalar", "rho", "--iso", "0.4"]
                 result = self.extract(*how, source=file)
-                self.assertRegex(result.stderr, r"nowhere that the weight sum is above the node threshold 0.1. .*use the sum as "
+                self.assertRegex(result.stderr, r"weight sum is above the node threshold 0.1. .*use the sum as "
                                  r"the field \(--field sum --node-threshold 0 --vertex-threshold 0\)")
                 run = self.succeed(*how, "--field", "sum", "--node-threshold", "0", "--vertex-threshold", "0", source=file)
                 self.assertAlmostEqual(run["statistics"]["volume"] / expected, 1, delta=0.15)

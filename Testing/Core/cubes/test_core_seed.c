@@ -233,6 +233,37 @@ static void test_pairs_in_each_form(void** state)
   (void)state;
 }
 
+/* Means of values that all equal the iso value round to either side: cells there are seeds, too, and the same ones
+ * whether or not their nodes are known from another iso value. */
+static void test_rounding(void** state)
+{
+  const double iso[2] = { 0.4, 0.3 };
+  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.scalar[i] = set.position[3 * i] < -2 ? iso[1] : 50 + set.scalar[i];
+  }
+  const mcor_input input = core_input_to_keep(&set);
+  uint64_t hash[2];
+  for (int fresh = 0; fresh < 2; ++fresh)
+  {
+    mcor_context* context = NULL;
+    assert_int_equal(mcor_create_context(NULL, &context), MCOR_OK);
+    for (int i = fresh; i < 2; ++i)
+    {
+      const mcor_options options = core_options(&iso[i]);
+      mcor_surface surface = core_extract(context, &input, &options);
+      assert_true(surface.triangle_count > 0);
+      hash[fresh] = core_hash(&surface);
+      mcor_free_surface(&surface);
+    }
+    mcor_free_context(context);
+  }
+  assert_true(hash[0] == hash[1]);
+  core_free_set(&set);
+  (void)state;
+}
+
 /* Bricks along an edge of a made-up lattice, of 3 x 3 x 3 blocks without the middle one and the last. */
 #define BRICKS 24
 
@@ -352,6 +383,7 @@ static void test_request(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_request), cmocka_unit_test(test_line),
-    cmocka_unit_test(test_pairs), cmocka_unit_test(test_pairs_in_each_form) };
+    cmocka_unit_test(test_pairs), cmocka_unit_test(test_pairs_in_each_form),
+    cmocka_unit_test(test_rounding) };
   return cmocka_run_group_tests_name("seed", tests, core_set_up, core_tear_down);
 }

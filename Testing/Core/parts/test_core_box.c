@@ -132,6 +132,7 @@ static void given_globals(void** state)
   mcor_globals globals;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &globals));
   assert_int_equal(globals.component_count, 5);
+  const double shift = globals.scalar_shift;
   mcor_surface surface = core_extract(*state, &input, &options);
   core_triangles whole = { 0 }, all = { 0 };
   core_add_surface(&whole, &input, &surface);
@@ -146,6 +147,11 @@ static void given_globals(void** state)
     core_set near = core_take_near(&set, options.box, 8.5);
     fewest = near.count < fewest ? near.count : fewest;
     input = input_of(&near, attributes);
+    input.particles_version = input.scalar_version = 1000 + (uint64_t)i;
+    globals.scalar_shift = shift + 1; /* what is kept of it does not hold */
+    surface = core_extract(*state, &input, &options);
+    mcor_free_surface(&surface);
+    globals.scalar_shift = shift;
     surface = core_extract(*state, &input, &options);
     core_add_surface(&all, &input, &surface);
     mcor_free_surface(&surface);

@@ -94,8 +94,9 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
     const ulong changes = m[0] ^ mcor_from_next(a, m[0], m[1 << a]);
     for (int k = 0; k < 4; ++k)
     {
-      __global const uint* words = quadrants + slot * (long)MCOR_QUADRANT_WORDS + 8 * a + 2 * k;
-      q[k] = (q[k] & changes) | (leaf_count > 0 ? (ulong)words[1] << 32 | words[0] : 0);
+      const long at = slot * (long)MCOR_QUADRANT_WORDS + 8 * a + 2 * k;
+      q[k] = (q[k] & changes) |
+        (leaf_count > 0 ? (ulong)quadrants[at + 1] << 32 | quadrants[at] : 0);
     }
     vertices += mcor_cell_edges(q, a, to);
   }

@@ -166,9 +166,10 @@ static mcor_status mcor_deliver_factors(
     { &grid->trim_weight, real, &job.weight }, { &grid->inv_h, real, &job.inv_h },
     { &run->limited, real, &job.factors }, { &run->outside, n * sizeof(cl_int), &job.outside } };
   MCOR_TRY(mcor_find_originals(context, run));
-  MCOR_TRY(mcor_map_all(context, views, count));
-  const mcor_status status =
-    mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL);
+  mcor_status status = mcor_map_all(context, views, count);
+  status = status == MCOR_OK
+    ? mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL)
+    : status;
   for (int i = 0; i < MCOR_SLICES; ++i)
   {
     context->run.statistics->widening_outside += job.left[i];

@@ -279,9 +279,11 @@ int mcor_list_images(
   {
     const double low = box->low[a] - reach - at[a], high = box->high[a] + reach - at[a];
     const double period = box->period[a];
-    const bool is_near = period > 0 || (low <= 0 && high >= 0);
-    images->first[a] = period > 0 ? (int)ceil(low / period) : 0; /* else 0 is the only one */
-    images->last[a] = period > 0 ? (int)floor(high / period) : 0;
+    /* Not finite where another thread writes to the arrays meanwhile. */
+    const bool wraps = period > 0 && isfinite(low) && isfinite(high);
+    const bool is_near = wraps || (period <= 0 && low <= 0 && high >= 0);
+    images->first[a] = wraps ? (int)ceil(low / period) : 0; /* else 0 is the only one */
+    images->last[a] = wraps ? (int)floor(high / period) : 0;
     const int along = is_near ? images->last[a] - images->first[a] + 1 : 0;
     count *= along > 0 ? along : 0;
   }

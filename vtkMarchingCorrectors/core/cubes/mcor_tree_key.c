@@ -9,15 +9,9 @@
 
 #include <stdlib.h>
 
-static int mcor_compare_brick_keys(const void* a, const void* b)
-{
-  const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
-  return (x > y) - (x < y);
-}
-
 void mcor_sort_keys(uint64_t* keys, size_t count)
 {
-  qsort(keys, count, sizeof *keys, mcor_compare_brick_keys);
+  qsort(keys, count, sizeof *keys, mcor_compare_keys);
 }
 
 /* Writes the keys of a level's split bricks. Returns their number. */

@@ -72,3 +72,9 @@ int32_t mcor_find_number(const mcor_table* map, uint64_t key)
 {
   return (int32_t)mcor_table_find(map, key) - 1;
 }
+
+int mcor_compare_keys(const void* a, const void* b)
+{
+  const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
+  return (x > y) - (x < y);
+}

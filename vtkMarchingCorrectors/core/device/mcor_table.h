@@ -33,4 +33,7 @@ int32_t mcor_table_number(mcor_table* map, uint64_t key, int32_t number);
 /* Returns the key's number; -1: it has none. */
 int32_t mcor_find_number(const mcor_table* map, uint64_t key);
 
+/* Compares two uint64_t, for qsort and bsearch. */
+int mcor_compare_keys(const void* a, const void* b);
+
 #endif

@@ -78,12 +78,6 @@ static double mcor_integrate_radial(const mcor_column_job* job, double r)
   return sum;
 }
 
-static int mcor_compare_kinks(const void* a, const void* b)
-{
-  const double x = *(const double*)a, y = *(const double*)b;
-  return (x > y) - (x < y);
-}
-
 /* Returns the integral of w(|x|) w(|y|) w(|z|) along a line of sight. */
 static double mcor_integrate_tensor(const mcor_column_job* job, double x, double y)
 {
@@ -98,7 +92,7 @@ static double mcor_integrate_tensor(const mcor_column_job* job, double x, double
       kinks[count++] = (k - from[a]) / along[a];
     }
   }
-  qsort(kinks, (size_t)count, sizeof kinks[0], mcor_compare_kinks);
+  qsort(kinks, (size_t)count, sizeof kinks[0], mcor_compare_doubles);
   for (int i = 1; i < count; ++i)
   {
     double piece = 0;

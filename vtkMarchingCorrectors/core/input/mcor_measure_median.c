@@ -201,7 +201,7 @@ int mcor_find_iso_value(
 
 /* ---- Of a few numbers ---- */
 
-static int mcor_compare_doubles(const void* a, const void* b)
+int mcor_compare_doubles(const void* a, const void* b)
 {
   const double x = *(const double*)a, y = *(const double*)b;
   return (x > y) - (x < y);

@@ -3,6 +3,7 @@
 
 /* Trimming [III-D.3]. */
 
+#include "mcor_table.h"
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
 
@@ -106,12 +107,6 @@ mcor_status mcor_extend_vertices(mcor_context* context, int old, int count)
   const size_t attributes = (size_t)context->attributes.count;
   MCOR_TRY(mcor_extend(context, &mesh->means, attributes * reals, attributes * new_reals));
   return mcor_extend(context, &mesh->flag, o, n);
-}
-
-static int mcor_compare_keys(const void* x, const void* y)
-{
-  const cl_ulong *a = x, *b = y;
-  return (*a > *b) - (*a < *b);
 }
 
 int mcor_find_cut(const cl_ulong* cuts, int count, int32_t p, int32_t q)

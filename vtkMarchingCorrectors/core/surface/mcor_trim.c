@@ -3,9 +3,9 @@
 
 /* Trimming [III-D.3]. */
 
-#include "mcor_table.h"
 #include "mcor_adaptive.h"
 #include "mcor_box.h"
+#include "mcor_table.h"
 
 #include <math.h>
 #include <stdlib.h>

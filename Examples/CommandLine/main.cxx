@@ -280,10 +280,11 @@ int Status(const std::function<bool()>& run)
   }
   catch (const UsageError& error)
   {
-    if (LaunchedRank() == 0) // all of them say the same
+    if (LaunchedRank() > 0)
     {
-      Say(std::string(error.what()) + " (see --help)");
+      return 0; // the first process says it; a failure here could end that one before it has
     }
+    Say(std::string(error.what()) + " (see --help)");
     return 2;
   }
   catch (const std::bad_alloc&)

@@ -501,6 +501,13 @@ class Program(unittest.TestCase):
             self.check_fails(done, words)
             self.assertEqual({name: os.path.getsize(self.path(name)) for name in os.listdir(self.folder.name)}, before)
 
+    def test_usage(self):
+        """A mistake on the command line is told once, also where the first process is the last to see it."""
+        late = "if [ ${OMPI_COMM_WORLD_RANK:-$PMI_RANK} = 0 ]; then sleep 1; fi; exec \"$@\""
+        done = subprocess.run([MPIRUN, "-n", RANKS, "sh", "-c", late, "-", PROGRAM, PARTICLES, self.path("o.vtp"), "--nope"],
+                              capture_output=True, text=True, timeout=BOUND, check=False)
+        self.check_fails(done, "--nope")
+
     def test_slice(self):
         """Fitted to the particles of all processes."""
         for output, run in (("alone.vti", self.run_alone), ("ranks.vti", self.run_ranks)):

@@ -1,114 +1,13 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Extraction: bit masks of bricks against naive twins, and cells in any pattern, node by node. */
+/* Extraction: cells in any pattern, node by node; outliers; parts of a surface. */
 
 #include "core_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Masks of a brick and its 7 neighbours -> shifted masks, cells with some / all nodes. */
-static const char source[] =
-  "__kernel void test_masks(const int count, __global const ulong* in, __global ulong* out)\n"
-  "{\n"
-  "  const int i = get_global_id(0);\n"
-  "  if (i >= count)\n"
-  "    return;\n"
-  "  ulong m[8];\n"
-  "  for (int d = 0; d < 8; ++d)\n"
-  "    m[d] = in[8 * i + d];\n"
-  "  __global ulong* o = out + 9 * i;\n"
-  "  o[0] = mcor_from_next(0, m[0], m[1]);\n"
-  "  o[1] = mcor_from_next(1, m[0], m[2]);\n"
-  "  o[2] = mcor_from_next(2, m[0], m[4]);\n"
-  "  o[3] = mcor_from_last(0, m[0], m[1]);\n"
-  "  o[4] = mcor_from_last(1, m[0], m[2]);\n"
-  "  o[5] = mcor_from_last(2, m[0], m[4]);\n"
-  "  mcor_cell_corners(m);\n"
-  "  o[6] = mcor_cell_some(m);\n"
-  "  o[7] = mcor_cell_all(m);\n"
-  "  o[8] = m[0] ? mcor_ctz(in[8 * i] | 1UL << (i & 63)) : 0;\n"
-  "}\n";
-
-/* Node (x, y, z), 0 <= x < 8 and so on, of a brick and its upper neighbours. */
-static int node_at(const uint64_t* m, int x, int y, int z)
-{
-  const int d = x / 4 + y / 4 * 2 + z / 4 * 4;
-  return (int)(m[d] >> (x % 4 + y % 4 * 4 + z % 4 * 16) & 1);
-}
-
-static void check_masks(const uint64_t* m, const uint64_t* out)
-{
-  for (int n = 0; n < 64; ++n)
-  {
-    const int at[3] = { n % 4, n / 4 % 4, n / 16 };
-    for (int a = 0; a < 3; ++a)
-    {
-      int up[3] = { at[0], at[1], at[2] };
-      ++up[a];
-      CORE_CHECK(
-        (int)(out[a] >> n & 1) == node_at(m, up[0], up[1], up[2]), "from_next %d, node %d", a, n);
-      int down[3] = { at[0], at[1], at[2] };
-      down[a] = (at[a] + 3) % 4;
-      const uint64_t from = at[a] == 0 ? m[1 << a] : m[0];
-      CORE_CHECK((out[3 + a] >> n & 1) == (from >> (down[0] + 4 * down[1] + 16 * down[2]) & 1),
-        "from_last %d, node %d", a, n);
-    }
-    int set = 0;
-    for (int c = 0; c < 8; ++c)
-    {
-      set += node_at(m, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2));
-    }
-    CORE_CHECK((out[6] >> n & 1) == (set > 0), "some, cell %d", n);
-    CORE_CHECK((out[7] >> n & 1) == (set == 8), "all, cell %d", n);
-  }
-}
-
-static void test_masks(void** state)
-{
-  enum
-  {
-    N = 256
-  };
-  mcor_context* context = *state;
-  static uint64_t in[N][8], out[N][9];
-  uint64_t seed = 3;
-  for (int i = 0; i < N; ++i)
-  {
-    for (int d = 0; d < 8; ++d)
-    {
-      const uint64_t a = random_bits(&seed), b = random_bits(&seed), c = random_bits(&seed);
-      in[i][d] = i == 0 ? 0 : i == 1 ? ~UINT64_C(0) : i % 3 ? a : i % 2 ? a & b & c : a | b | c;
-    }
-  }
-  mcor_buffer masks = { 0 }, results = { 0 };
-  core_build(context, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32);
-  core_extend_program(context, source);
-  CORE_OK(context, mcor_write(context, &masks, in, sizeof in));
-  CORE_OK(context, mcor_reserve(context, &results, sizeof out));
-  CORE_OK(context,
-    MCOR_LAUNCH(context, "test_masks", MCOR_LIGHT, N, MCOR_INT(N), MCOR_BUFFER(&masks),
-      MCOR_BUFFER(&results)));
-  CORE_OK(context, mcor_read(context, &results, 0, out, sizeof out));
-  for (int i = 0; i < N; ++i)
-  {
-    check_masks(in[i], out[i]);
-    if (~in[i][0] != 0)
-    {
-      const uint64_t mask = in[i][0] | UINT64_C(1) << (i & 63);
-      uint64_t lowest = 0;
-      while (!(mask >> lowest & 1))
-      {
-        ++lowest;
-      }
-      CORE_CHECK(out[i][8] == lowest, "lowest bit %d", (int)out[i][8]);
-    }
-  }
-  mcor_release(context, &masks);
-  mcor_release(context, &results);
-}
 
 /* The surface around one huge value is found, and ends where the support does. */
 static void test_outlier(void** state)
@@ -361,8 +260,7 @@ static void test_node_by_node(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_masks),
-    cmocka_unit_test(test_outlier), cmocka_unit_test(test_parts_have_the_bits_of_the_whole),
-    cmocka_unit_test(test_node_by_node) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_outlier),
+    cmocka_unit_test(test_parts_have_the_bits_of_the_whole), cmocka_unit_test(test_node_by_node) };
   return cmocka_run_group_tests_name("march", tests, core_set_up, core_tear_down);
 }

@@ -1,0 +1,342 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Triangles of cells: those of the topology table with any decisions, and those of cells beside finer ones. Cells with
+ * nodes on either side at random, side by side, make a closed surface. */
+
+#include "core_fixture.h"
+#include "mcor_adaptive_cell.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A lattice of nodes, `ends` along an axis, those on its border below. Triangles between vertices on edges, which
+ * their lower node and axis name. */
+typedef struct lattice
+{
+  int ends;
+  uint8_t* above;
+  int32_t* vertex; /* [nodes][3], -1: none */
+  double* points;
+  int32_t* triangles;
+  int64_t point_count, triangle_count;
+} lattice;
+
+static int node_at(const lattice* l, int x, int y, int z)
+{
+  return (z * l->ends + y) * l->ends + x;
+}
+
+/* The sign changes every `pitch` nodes near z = 0, and the less regularly the farther away: cells of all cases, many
+ * of which are ambiguous. */
+static lattice make_lattice(int ends, int pitch, uint64_t seed)
+{
+  const size_t nodes = (size_t)ends * (size_t)ends * (size_t)ends, cells = 12 * nodes;
+  lattice l = { .ends = ends,
+    .above = calloc(nodes, 1),
+    .vertex = malloc(3 * nodes * sizeof(int32_t)),
+    .points = malloc(3 * 3 * nodes * sizeof(double)),
+    .triangles = malloc(3 * cells * sizeof(int32_t)) };
+  assert_true(l.above && l.vertex && l.points && l.triangles);
+  memset(l.vertex, -1, 3 * nodes * sizeof(int32_t));
+  for (int n = 0; n < (int)nodes; ++n)
+  {
+    const int x = n % ends, y = n / ends % ends, z = n / ends / ends;
+    const int border =
+      x == 0 || y == 0 || z == 0 || x == ends - 1 || y == ends - 1 || z == ends - 1;
+    const int other = random_unit(&seed) < 0.5 * z / ends;
+    l.above[n] = !border && (((x ^ y ^ z) / pitch & 1) ^ other);
+  }
+  return l;
+}
+
+/* The vertex on the edge from a node along an axis, where chance has it. */
+static int32_t vertex_on(lattice* l, int node, int axis, int length)
+{
+  int32_t* vertex = l->vertex + 3 * (size_t)node + axis;
+  if (*vertex < 0)
+  {
+    uint64_t seed = 3 * (uint64_t)node + (uint64_t)axis;
+    double* x = l->points + 3 * l->point_count;
+    *vertex = (int32_t)l->point_count++;
+    for (int a = 0; a < 3; ++a)
+    {
+      x[a] = a == 0 ? node % l->ends : a == 1 ? node / l->ends % l->ends : node / l->ends / l->ends;
+    }
+    x[axis] += length * (0.1 + 0.8 * random_unit(&seed));
+  }
+  return *vertex;
+}
+
+/* Fails unless the triangles enclose what is above, as an oriented manifold. A node above that is alone has less
+ * volume than a cell. */
+static void check_closed(lattice* l, double volume_above)
+{
+  const mcor_surface surface = { .points = l->points,
+    .point_count = l->point_count,
+    .triangles = l->triangles,
+    .triangle_count = l->triangle_count };
+  mesh_report report = core_check_mesh(&surface);
+  assert_int_equal(report.boundary_edges, 0);
+  CORE_CHECK(report.volume > 0.4 * volume_above, "%lld triangles, volume %g of %g",
+    (long long)report.triangles, report.volume, volume_above);
+  mesh_free_report(&report);
+  free(l->above);
+  free(l->vertex);
+  free(l->points);
+  free(l->triangles);
+}
+
+/* ---- the topology table ---- */
+
+static mcor_topology_table table;
+
+static int set_up(void** state)
+{
+  (void)state;
+  mcor_make_topology_table(&table);
+  return 0;
+}
+
+/* The number of the edge from a corner along an axis: axis << 3 | lower corner. */
+static int edge_of(int corner, int axis)
+{
+  return axis << 3 | (corner & ~(1 << axis));
+}
+
+static int crossed_edges(int cube_case)
+{
+  int count = 0;
+  for (int i = 0; i < 24; ++i)
+  {
+    const int corner = i % 8, axis = i / 8;
+    count +=
+      !(corner >> axis & 1) && ((cube_case >> corner ^ cube_case >> (corner | 1 << axis)) & 1);
+  }
+  return count;
+}
+
+/* On an ambiguous face each corner above, or, where these are joined, each corner below has a side of a triangle
+ * around it. */
+static void check_faces(int cube_case, int joined, const mcor_cell_row* row)
+{
+  uint8_t side[24][24] = { { 0 } };
+  for (int i = 0; i < 3 * row->triangles; ++i)
+  {
+    ++side[row->edges[i]][row->edges[i % 3 == 2 ? i - 2 : i + 1]];
+  }
+  for (int i = 0; i < 48; ++i)
+  {
+    const int face = i / 8, corner = i % 8, u = (face / 2 + 1) % 3, v = (face / 2 + 2) % 3;
+    if ((table.cases[cube_case] >> face & 1) && (corner >> face / 2 & 1) == (face & 1) &&
+      (cube_case >> corner & 1) != (joined >> face & 1))
+    {
+      const int a = edge_of(corner, u), b = edge_of(corner, v);
+      CORE_CHECK(side[a][b] + side[b][a] == 1, "case %d, joined %x: corner %d on face %d",
+        cube_case, joined, corner, face);
+    }
+  }
+}
+
+/* A row of a case, with a tunnel if it has one and chance wants it. Loops of a and b sides have a + b - 4 triangles,
+ * and with a tunnel 4 more. */
+static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed)
+{
+  const mcor_cell_row* first = table.rows + (table.cases[cube_case] >> 6);
+  int number = 0, bit = 1;
+  for (int face = 0; face < 6; ++face)
+  {
+    number |= joined >> face & 1 ? bit : 0;
+    bit <<= table.cases[cube_case] >> face & 1;
+  }
+  const mcor_cell_row* row = first + number;
+  const int loops = (crossed_edges(cube_case) - row->triangles) / 2;
+  const int tunnels = (row->tunnel[0] > 0) + (row->tunnel[1] > 0);
+  const uint64_t way = random_bits(seed) % 3;
+  const int tunnel = way < 2 ? row->tunnel[way] : 0;
+  CORE_CHECK(loops == 2 ? tunnels == 1 : loops > 2 || tunnels == 0,
+    "case %d, joined %x: %d tunnels", cube_case, joined, tunnels);
+  CORE_CHECK(tunnel == 0 || first[tunnel].triangles == row->triangles + 4, "case %d, joined %x",
+    cube_case, joined);
+  check_faces(cube_case, joined, row);
+  return tunnel > 0 ? first + tunnel : row;
+}
+
+/* Decisions on faces and in cells as chance has them. */
+static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_TOPOLOGY_ROWS])
+{
+  const int n = l->ends;
+  const uint64_t of_round = seed << 40;
+  double volume = 0;
+  for (int c = 0; c < n * n * n; ++c)
+  {
+    const int at[3] = { c % n, c / n % n, c / n / n };
+    int cube_case = 0, joined = 0, node[8];
+    volume += l->above[c];
+    if (at[0] == n - 1 || at[1] == n - 1 || at[2] == n - 1)
+    {
+      continue;
+    }
+    for (int k = 0; k < 8; ++k)
+    {
+      node[k] = node_at(l, at[0] + (k & 1), at[1] + (k >> 1 & 1), at[2] + (k >> 2));
+      cube_case |= l->above[node[k]] << k;
+    }
+    for (int face = 0; face < 6; ++face)
+    {
+      /* By the face's lowest node, for both of its cells. */
+      uint64_t chance = of_round + (uint64_t)(3 * node[(face & 1) << face / 2] + face / 2);
+      joined |= (int)(random_bits(&chance) & (uint64_t)table.cases[cube_case] >> face & 1) << face;
+    }
+    const mcor_cell_row* row = choose_row(cube_case, joined, &seed);
+    used[row - table.rows] = 1;
+    for (int i = 0; i < 3 * row->triangles; ++i)
+    {
+      l->triangles[3 * l->triangle_count + i] =
+        vertex_on(l, node[row->edges[i] & 7], row->edges[i] >> 3, 1);
+    }
+    l->triangle_count += row->triangles;
+  }
+  check_closed(l, volume);
+}
+
+/* All rows of the table are used. */
+static void test_whole_table(void** state)
+{
+  static uint8_t used[MCOR_TOPOLOGY_ROWS];
+  for (int round = 0; round < 2; ++round)
+  {
+    lattice l = make_lattice(64, 1, (uint64_t)round);
+    fill_by_table(&l, (uint64_t)round, used);
+  }
+  for (int r = 0; r < table.row_count; ++r)
+  {
+    CORE_CHECK(used[r], "row %d was not used", r);
+  }
+  (void)state;
+}
+
+/* Where nothing is joined, cells without a tunnel are those of the case table, and so are cells without finer ones
+ * around them. Opposite corners alone have the tunnel that joins them. */
+static void test_first_rows(void** state)
+{
+  uint8_t cases[256][16];
+  mcor_make_case_table(cases);
+  for (int c = 0; c < 256; ++c)
+  {
+    const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
+    uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
+    uint32_t above = 0x2aaaaaa; /* at nodes that are not there */
+    assert_int_equal(row->triangles, cases[c][15]);
+    assert_memory_equal(row->edges, cases[c], 3 * (size_t)row->triangles);
+    for (int k = 0; k < 8; ++k)
+    {
+      const int node = 2 * (k & 1) + 6 * (k >> 1 & 1) + 18 * (k >> 2);
+      above = (above & ~(1u << node)) | (uint32_t)(c >> k & 1) << node;
+    }
+    assert_int_equal(mcor_adaptive_triangulate(0, above, triangles), cases[c][15]);
+    for (int i = 0; i < 3 * cases[c][15]; ++i)
+    {
+      const int k = cases[c][i] & 7, axis = cases[c][i] >> 3;
+      assert_int_equal(triangles[i], axis << 5 | (2 * (k & 1) + 6 * (k >> 1 & 1) + 18 * (k >> 2)));
+    }
+  }
+  const mcor_cell_row* opposite = table.rows + (table.cases[0x81] >> 6);
+  assert_int_equal(opposite->tunnel[0], 0);
+  assert_int_equal((opposite + opposite->tunnel[1])->triangles, 6);
+  (void)state;
+}
+
+/* ---- cells beside finer ones ---- */
+
+/* Adds a cell whose nodes are `step` apart, with these middles as nodes. */
+static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
+{
+  static const int stride[3] = { 1, 3, 9 };
+  uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
+  uint32_t above = 0;
+  int node[27], flat = 0;
+  for (int n = 0; n < 27; ++n)
+  {
+    node[n] =
+      node_at(l, at[0] + n % 3 * step / 2, at[1] + n / 3 % 3 * step / 2, at[2] + n / 9 * step / 2);
+    above |= (uint32_t)l->above[node[n]] << n; /* bits of what is no node do not matter */
+  }
+  const int count = mcor_adaptive_triangulate(split, above, triangles);
+  assert_int_equal(mcor_adaptive_count(split, above, &flat), count);
+  assert_in_range(count, 0, MCOR_ADAPTIVE_TRIANGLES);
+  for (int i = 0; i < 3 * count; ++i)
+  {
+    const int axis = triangles[i] >> 5, low = triangles[i] & 31, next = low + stride[axis];
+    const int middle = low / stride[axis] % 3 == 1 || (split >> next & 1);
+    l->triangles[3 * l->triangle_count + i] =
+      vertex_on(l, node[low], axis, middle ? step / 2 : step);
+  }
+  l->triangle_count += count;
+}
+
+/* Which middles of a cell's edges and faces are nodes: where one of the cells that touch them is divided. */
+static uint32_t find_split(const uint8_t* divided, int cells, const int cell[3])
+{
+  uint32_t split = 0;
+  for (int n = 0; n < 27; ++n)
+  {
+    const int place[3] = { n % 3, n / 3 % 3, n / 9 };
+    const int middles = (place[0] == 1) + (place[1] == 1) + (place[2] == 1);
+    for (int touching = 0; touching < 8 && (middles == 1 || middles == 2); ++touching)
+    {
+      int index = 0, inside = 1;
+      for (int a = 2; a >= 0; --a)
+      {
+        const int by = touching >> a & 1 ? place[a] - 1 : 0;
+        inside = inside && cell[a] + by >= 0 && cell[a] + by < cells;
+        index = index * cells + cell[a] + by;
+      }
+      split |= (uint32_t)(inside && divided[index]) << n;
+    }
+  }
+  return split;
+}
+
+/* Few or many cells are divided into eight, so that the others have split faces and edges of all kinds. */
+static void test_beside_finer(void** state)
+{
+  enum
+  {
+    N = 40,
+    ENDS = 2 * N + 1
+  };
+  for (int round = 0; round < 4; ++round)
+  {
+    static uint8_t divided[N * N * N];
+    lattice l = make_lattice(ENDS, 2, (uint64_t)round);
+    uint64_t seed = (uint64_t)round;
+    for (int c = 0; c < N * N * N; ++c)
+    {
+      divided[c] = random_unit(&seed) < 0.08 * (1 << round) - 0.07;
+    }
+    double volume = 0;
+    for (int c = 0; c < N * N * N; ++c)
+    {
+      const int cell[3] = { c % N, c / N % N, c / N / N };
+      const int at[3] = { 2 * cell[0], 2 * cell[1], 2 * cell[2] };
+      volume += l.above[node_at(&l, at[0], at[1], at[2])] * 8;
+      for (int part = 0; part < 8 && divided[c]; ++part)
+      {
+        const int child[3] = { at[0] + (part & 1), at[1] + (part >> 1 & 1), at[2] + (part >> 2) };
+        add_adaptive(&l, child, 1, 0);
+      }
+      divided[c] ? (void)0 : add_adaptive(&l, at, 2, find_split(divided, N, cell));
+    }
+    check_closed(&l, volume);
+  }
+  (void)state;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_first_rows),
+    cmocka_unit_test(test_whole_table), cmocka_unit_test(test_beside_finer) };
+  return cmocka_run_group_tests_name("cell", tests, set_up, NULL);
+}

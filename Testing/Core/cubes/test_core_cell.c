@@ -304,7 +304,7 @@ static void test_beside_finer(void** state)
 {
   enum
   {
-    N = 40,
+    N = 32,
     ENDS = 2 * N + 1
   };
   for (int round = 0; round < 4; ++round)

@@ -30,6 +30,24 @@
     }                                                                                              \
   } while (0)
 
+/* Makes a call unless one before it has failed; for functions that end by freeing something. */
+#define MCOR_THEN(status, call) ((status) = (status) == MCOR_OK ? (call) : (status))
+
+/* An array that grows, and a value appended to it. */
+#define MCOR_LIST(type)                                                                            \
+  struct                                                                                           \
+  {                                                                                                \
+    type* of; /* [room] */                                                                         \
+    int64_t count, room;                                                                           \
+  }
+#define MCOR_APPEND(context, list, ...)                                                            \
+  do                                                                                               \
+  {                                                                                                \
+    MCOR_TRY(mcor_make_room(context, (void**)&(list)->of, (list)->count, &(list)->room,            \
+      sizeof *(list)->of));                                                                        \
+    (list)->of[(list)->count++] = __VA_ARGS__;                                                     \
+  } while (0)
+
 /* Keeps the sentence in the context, which may be NULL if nobody will ask for it. */
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)
 #if defined(__GNUC__)

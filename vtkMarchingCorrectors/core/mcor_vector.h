@@ -22,6 +22,24 @@ static inline void mcor_cross(const double a[3], const double b[3], double cross
   }
 }
 
+static inline void mcor_subtract(const double a[3], const double b[3], double difference[3])
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    difference[i] = a[i] - b[i];
+  }
+}
+
+/* Finds the point at a place, from 0 to 1, on the way from one point to another. */
+static inline void mcor_point_between(
+  const double from[3], const double to[3], double place, double point[3])
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    point[a] = from[a] + place * (to[a] - from[a]);
+  }
+}
+
 /* Makes the vector as long as 1, unless it is 0; returns how long it was. */
 static inline double mcor_normalise(double vector[3])
 {

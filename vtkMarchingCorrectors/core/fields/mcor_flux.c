@@ -110,16 +110,6 @@ static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
   return MCOR_OK;
 }
 
-/* Arguments of a call under way. */
-typedef struct mcor_flux_call
-{
-  const mcor_section* sections;
-  int64_t count;
-  double level;
-  const double* box;
-  mcor_fluxes* fluxes;
-} mcor_flux_call;
-
 static mcor_status mcor_flux_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flux_job* job)
 {
@@ -140,39 +130,35 @@ static mcor_status mcor_flux_input(
 static mcor_status mcor_run_flux(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
-  const mcor_flux_call* call = data;
+  mcor_flux_job job = *(const mcor_flux_job*)data;
+  mcor_fluxes* fluxes = job.fluxes;
   double box[6];
-  mcor_flux_job job = {
-    .edges = { .context = context, .level = call->level, .box = call->box, .map = mcor_map_patch },
-    .sections = call->sections,
-    .section_count = call->count,
-    .is_plane = context->space.flat,
-    .velocity_components = mcor_components(&input->attributes[0]),
-    .has_density = input->attribute_count == 2,
-    .low = { DBL_MAX, DBL_MAX, DBL_MAX },
-    .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX }
-  };
+  job.is_plane = context->space.flat;
+  job.form = &mcor_flux_forms[context->space.flat];
   job.edges.map_data = &job;
-  if (call->box && job.is_plane)
+  if (job.edges.box && job.is_plane)
   {
-    mcor_flatten_sides(&context->plane, call->box, box);
+    mcor_flatten_sides(&context->plane, job.edges.box, box);
     job.edges.box = box;
   }
-  mcor_free_fluxes(call->fluxes); /* results of an earlier attempt */
-  job.found = calloc((size_t)call->count + 1, sizeof *job.found);
+  mcor_free_fluxes(fluxes); /* results of an earlier attempt */
+  job.found = calloc((size_t)job.section_count + 1, sizeof *job.found);
   mcor_status status = mcor_allocated(context, job.found);
-  status = status == MCOR_OK ? mcor_flux_input(context, input, options, &job) : status;
-  status = status == MCOR_OK ? mcor_read_fluxes(&job, call->fluxes) : status;
+  MCOR_THEN(status, mcor_flux_input(context, input, options, &job));
+  MCOR_THEN(status, mcor_read_fluxes(&job, fluxes));
   mcor_free_gauge_parts(&job.edges);
   free(job.found);
-  free(job.patches);
-  free(job.cells);
-  if (status != MCOR_OK || input->count == 0 || call->count == 0)
-  {
-    return status;
-  }
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-  return mcor_finish_statistics(context);
+  free(job.patches.of);
+  free(job.cells.of);
+  free(job.field.at);
+  free(job.pieces.of);
+  free(job.parts.of);
+  free(job.inside.of);
+  free(job.cuts.of);
+  free(job.lines.of);
+  return status != MCOR_OK || input->count == 0 || job.section_count == 0
+    ? status
+    : mcor_finish_field(context);
 }
 
 mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor_options* options,
@@ -190,18 +176,20 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
     context, MCOR_INVALID_ARGUMENT,
     "The input has %d attributes; fluxes need the velocity, and take the density as the second.",
     input->attribute_count);
-  mcor_flux_call call = { .sections = sections, .count = count, .fluxes = fluxes };
-  mcor_options own;
-  MCOR_TRY(mcor_begin_level(context, input, options, "Fluxes", &own, &call.level));
-  const bool uses_solids = mcor_uses_solids(input, &own);
   mcor_input given = *input;
-  given.particles_version = mcor_has_box(&own)
-    ? 0
-    : input->particles_version; /* a grid cut by another box must not be reused */
-  call.box = mcor_has_box(&own) ? options->box : NULL;
-  memset(own.box, 0, sizeof own.box);
-  const mcor_status status =
-    mcor_run_call(context, &given, &own, uses_solids, &fluxes->statistics, mcor_run_flux, &call);
+  mcor_options own;
+  mcor_flux_job job = { .edges = { .context = context, .map = mcor_map_patch },
+    .sections = sections,
+    .section_count = count,
+    .fluxes = fluxes,
+    .velocity_components = mcor_components(&input->attributes[0]),
+    .has_density = input->attribute_count == 2,
+    .low = { DBL_MAX, DBL_MAX, DBL_MAX },
+    .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX } };
+  MCOR_TRY(
+    mcor_begin_level(context, options, "Fluxes", &given, &own, &job.edges.level, &job.edges.box));
+  const mcor_status status = mcor_run_call(
+    context, &given, &own, mcor_uses_solids(input, &own), &fluxes->statistics, mcor_run_flux, &job);
   if (status != MCOR_OK)
   {
     mcor_free_fluxes(fluxes);

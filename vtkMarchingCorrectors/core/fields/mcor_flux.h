@@ -48,6 +48,7 @@ typedef struct mcor_flux_section
 typedef struct mcor_flux_piece
 {
   int64_t patch;
+  int64_t whole;       /* of the part of a cut piece that is in fluid: the number of that piece */
   int depth;           /* divisions since the piece of its cell */
   bool unclear;        /* the level may cross it in a way that its corners do not show */
   double corner[3][2]; /* u, v */
@@ -57,50 +58,33 @@ typedef struct mcor_flux_piece
   double sum[MCOR_FLUX_SUMS]; /* over the part in fluid */
 } mcor_flux_piece;
 
-typedef struct mcor_flux_pieces
-{
-  mcor_flux_piece* pieces; /* [room] */
-  int64_t count, room;
-} mcor_flux_pieces;
+typedef MCOR_LIST(mcor_flux_piece) mcor_flux_pieces;
 
 typedef struct mcor_flux_cell
 {
   int64_t patch, u, v;
 } mcor_flux_cell;
 
-typedef struct mcor_flux_job
+/* A piece with corners on both sides of the level. */
+typedef struct mcor_flux_cut
 {
-  mcor_gauge_job
-    edges; /* must be first; finds crossings on edges of pieces; its run evaluates the field */
-  const mcor_section* sections;
-  int64_t section_count;
-  bool is_plane;
-  int velocity_components; /* of the velocity, the input's first attribute */
-  bool has_density;
-  double smoothing_length; /* the smallest scaled smoothing length */
-  double speed_floor, density_floor;
-  mcor_flux_section* found; /* [section_count] */
-  mcor_patch* patches;      /* [patch_room] */
-  int64_t patch_count, patch_room;
-  mcor_flux_cell* cells; /* [cell_room] */
-  int64_t cell_count, cell_room;
-  double low[3], high[3]; /* around all patches */
-} mcor_flux_job;
+  int64_t piece, between; /* between: its line from the lone corner through the chord; -1: none */
+  int sides;              /* bits of the corners in fluid */
+  double weight[3];       /* at the corners */
+  /* In a triangle: crossings on the edges from its lone corner to the next and to the last corner,
+   * and their places, from that corner. */
+  double crossing[2][2], places[2];
+} mcor_flux_cut;
 
-/* mcor_flux_patch.c. Checks a section and appends its patches. */
-mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
-/* mcor_flux_closed.c. Sets sign to -1 if the triangles form a closed surface with normals
- * inwards, else to 1. */
-mcor_status mcor_orient_triangles(
-  mcor_context* context, const double* points, int64_t point_count, double* sign);
-/* Maps parameters (u, v, number of the patch) to a point. */
-void mcor_map_patch(const void* job, const double parameters[3], double point[3]);
-/* Returns the area for a unit of parameters at (u, v). */
-double mcor_patch_measure(const mcor_patch* patch, const double uv[2]);
-/* Lists the cells that this call owns and that particles may reach. The lattice must be known. */
-mcor_status mcor_list_flux_cells(mcor_flux_job* job);
-
-#define MCOR_FLUX_POINTS 7 /* samples of a triangle; a line has 3 */
+/* What differs between triangles and lines. Samples of a piece are its corners, the middles of its
+ * edges, and the middle. */
+#define MCOR_FLUX_POINTS 7
+typedef struct mcor_flux_form
+{
+  int corners, points, parts;     /* parts: that a piece is divided into */
+  double share[MCOR_FLUX_POINTS]; /* of the samples in an integral */
+  int part[4][3];                 /* the samples that are the corners of each part */
+} mcor_flux_form;
 
 /* Samples of a batch. */
 typedef struct mcor_flux_field
@@ -110,26 +94,53 @@ typedef struct mcor_flux_field
   double* values[2]; /* velocity and density, as the probe takes them */
 } mcor_flux_field;
 
-/* Returns the number of samples of a piece. The first ones are its corners. */
-static inline int mcor_piece_points(const mcor_flux_job* job)
+typedef struct mcor_flux_job
 {
-  return job->is_plane ? 3 : MCOR_FLUX_POINTS;
-}
+  mcor_gauge_job
+    edges; /* must be first; finds crossings on edges of pieces; its run evaluates the field */
+  const mcor_section* sections;
+  int64_t section_count;
+  mcor_fluxes* fluxes;
+  bool is_plane;
+  const mcor_flux_form* form;
+  int velocity_components; /* of the velocity, the input's first attribute */
+  bool has_density;
+  double smoothing_length; /* the smallest scaled smoothing length */
+  double speed_floor, density_floor;
+  mcor_flux_section* found; /* [section_count] */
+  MCOR_LIST(mcor_patch) patches;
+  MCOR_LIST(mcor_flux_cell) cells;
+  double low[3], high[3]; /* around all patches */
+  /* Work space: pieces, their parts, and what of those lies in fluid; cuts; lines that the level
+   * crosses, in parameters, one for each of the changed parts of `edges`. */
+  mcor_flux_field field;
+  mcor_flux_pieces pieces, parts, inside;
+  MCOR_LIST(mcor_flux_cut) cuts;
+  MCOR_LIST(mcor_gauge_line) lines;
+} mcor_flux_job;
 
-static inline int mcor_piece_corners(const mcor_flux_job* job)
-{
-  return job->is_plane ? 2 : 3;
-}
+/* mcor_flux_patch.c. Checks a section and appends its patches. */
+mcor_status mcor_add_section(mcor_flux_job* job, int64_t number);
+/* Maps parameters (u, v, number of the patch) to a point. */
+void mcor_map_patch(const void* job, const double parameters[3], double point[3]);
+/* Returns the area for a unit of parameters at (u, v). */
+double mcor_patch_measure(const mcor_patch* patch, const double uv[2]);
+/* Lists the cells that this call owns and that particles may reach. The lattice must be known. */
+mcor_status mcor_list_flux_cells(mcor_flux_job* job);
+/* mcor_flux_closed.c. Sets sign to -1 if the triangles form a closed surface with normals
+ * inwards, else to 1. */
+mcor_status mcor_orient_triangles(
+  mcor_context* context, const double* points, int64_t point_count, double* sign);
 
-/* mcor_flux_piece.c. Evaluates the field at samples [0, count). */
-mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int count);
-double mcor_speed_along(const mcor_flux_job* job, const mcor_flux_field* field, int64_t sample,
-  const double direction[3]);
-/* Finds sample k of a piece: corners first, then middles of edges, then the middle. */
+/* mcor_flux_piece.c */
+extern const mcor_flux_form mcor_flux_forms[2]; /* of triangles, of lines */
+/* Evaluates the field at samples [0, count). */
+mcor_status mcor_sample_flux(mcor_flux_job* job, int count);
+double mcor_speed_along(const mcor_flux_job* job, int64_t sample, const double direction[3]);
+/* Finds sample k of a piece. */
 void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, int k, double at[3]);
 /* Integrates pieces. */
-mcor_status mcor_measure_pieces(
-  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces);
+mcor_status mcor_measure_pieces(mcor_flux_job* job, mcor_flux_pieces* pieces);
 
 /* mcor_flux_divide.c. Adds up all cells. A rank without particles calls mcor_scale_sections alone,
  * because it reduces over all ranks. */

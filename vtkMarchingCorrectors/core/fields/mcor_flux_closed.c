@@ -51,9 +51,9 @@ mcor_status mcor_orient_triangles(
     if (i % 3 == 0)
     {
       double corners[3][3], product[3];
-      for (int c = 0; c < 9; ++c)
+      for (int c = 0; c < 3; ++c)
       {
-        corners[c / 3][c % 3] = from[c] - points[c % 3];
+        mcor_subtract(from + 3 * c, points, corners[c]);
       }
       mcor_cross(corners[1], corners[2], product);
       volume += mcor_dot(corners[0], product);

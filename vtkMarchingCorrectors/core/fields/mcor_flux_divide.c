@@ -42,30 +42,31 @@ mcor_status mcor_scale_sections(mcor_flux_job* job)
   return MCOR_OK;
 }
 
-static mcor_status mcor_find_speeds(mcor_flux_job* job, mcor_flux_field* field)
+static mcor_status mcor_find_speeds(mcor_flux_job* job)
 {
-  for (int64_t first = 0; first < job->cell_count; first += MCOR_GAUGE_BATCH)
+  const mcor_flux_field* field = &job->field;
+  for (int64_t first = 0; first < job->cells.count; first += MCOR_GAUGE_BATCH)
   {
-    const int64_t rest = job->cell_count - first;
+    const int64_t rest = job->cells.count - first;
     const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
     for (int i = 0; i < count; ++i)
     {
-      const mcor_flux_cell* cell = &job->cells[first + i];
-      const double* counts = job->patches[cell->patch].counts;
+      const mcor_flux_cell* cell = &job->cells.of[first + i];
+      const double* counts = job->patches.of[cell->patch].counts;
       field->at[i][0] = ((double)cell->u + 0.5) / counts[0];
       field->at[i][1] = job->is_plane ? 0 : ((double)cell->v + 0.5) / counts[1];
       field->at[i][2] = (double)cell->patch;
     }
-    MCOR_TRY(mcor_sample_flux(job, field, count));
+    MCOR_TRY(mcor_sample_flux(job, count));
     for (int i = 0; i < count; ++i)
     {
-      const mcor_patch* patch = &job->patches[job->cells[first + i].patch];
+      const mcor_patch* patch = &job->patches.of[job->cells.of[first + i].patch];
       mcor_flux_section* found = &job->found[patch->section];
       found->reached = found->reached || field->weight[i] != 0;
       if (field->weight[i] >= job->edges.level)
       {
         const double* velocity = field->velocity + (int64_t)i * job->velocity_components;
-        found->speed = fmax(found->speed, sqrt(mcor_speed_along(job, field, i, velocity)));
+        found->speed = fmax(found->speed, sqrt(mcor_speed_along(job, i, velocity)));
         found->density = fmax(found->density, fabs(field->density[i]));
       }
     }
@@ -75,71 +76,54 @@ static mcor_status mcor_find_speeds(mcor_flux_job* job, mcor_flux_field* field)
 
 /* ---- division ---- */
 
-static mcor_status mcor_append_piece(
-  mcor_context* context, mcor_flux_pieces* pieces, const mcor_flux_piece* piece)
-{
-  MCOR_TRY(mcor_make_room(
-    context, (void**)&pieces->pieces, pieces->count, &pieces->room, sizeof *pieces->pieces));
-  pieces->pieces[pieces->count++] = *piece;
-  return MCOR_OK;
-}
-
 /* Makes the pieces of cells [first, last). */
-static mcor_status mcor_begin_pieces(
-  mcor_flux_job* job, int64_t first, int64_t last, mcor_flux_pieces* pieces)
+static mcor_status mcor_begin_pieces(mcor_flux_job* job, int64_t first, int64_t last)
 {
-  pieces->count = 0;
+  job->pieces.count = 0;
   for (int64_t i = first; i < last; ++i)
   {
-    const mcor_flux_cell* cell = &job->cells[i];
-    const mcor_patch* patch = &job->patches[cell->patch];
+    const mcor_flux_cell* cell = &job->cells.of[i];
+    const mcor_patch* patch = &job->patches.of[cell->patch];
     const double u[2] = { (double)cell->u / patch->counts[0],
       (double)(cell->u + 1) / patch->counts[0] };
     const double v[2] = { (double)cell->v / patch->counts[1],
       (double)(cell->v + 1) / patch->counts[1] };
     const double middle[2] = { 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]) };
     const double size = job->is_plane ? u[1] - u[0] : 0.5 * (u[1] - u[0]) * (v[1] - v[0]);
+    const double low = job->is_plane ? 0 : v[0];
     mcor_flux_piece piece = { .patch = cell->patch,
       .factor = 1,
-      .corner = { { u[0], job->is_plane ? 0 : v[0] }, { u[1], job->is_plane ? 0 : v[0] },
-        { u[0], v[1] } },
+      .corner = { { u[0], low }, { u[1], low }, { u[0], v[1] } },
       .area = size * mcor_patch_measure(patch, middle) };
-    MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
+    MCOR_APPEND(job->edges.context, &job->pieces, piece);
     /* A triangle patch has no second piece beyond its diagonal. */
     if (!job->is_plane &&
       (patch->shape != MCOR_PATCH_TRIANGLE || (double)(cell->u + cell->v + 2) <= patch->counts[0]))
     {
-      memcpy(piece.corner[0], (double[2]){ u[1], v[1] }, sizeof piece.corner[0]);
-      memcpy(piece.corner[1], (double[2]){ u[0], v[1] }, sizeof piece.corner[1]);
-      memcpy(piece.corner[2], (double[2]){ u[1], v[0] }, sizeof piece.corner[2]);
-      MCOR_TRY(mcor_append_piece(job->edges.context, pieces, &piece));
+      const double corner[3][2] = { { u[1], v[1] }, { u[0], v[1] }, { u[1], v[0] } };
+      memcpy(piece.corner, corner, sizeof corner);
+      MCOR_APPEND(job->edges.context, &job->pieces, piece);
     }
   }
   return MCOR_OK;
 }
 
-/* Divides lines into two halves, triangles into four quarters. */
-static mcor_status mcor_divide_pieces(
-  const mcor_flux_job* job, const mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
+/* Divides the pieces into their parts. */
+static mcor_status mcor_divide_pieces(mcor_flux_job* job)
 {
-  static const int triangle[4][3] = { { 0, 3, 5 }, { 3, 1, 4 }, { 5, 4, 2 }, { 3, 4, 5 } };
-  static const int line[2][3] = { { 0, 2, 2 }, { 2, 1, 1 } };
-  const int(*points)[3] = job->is_plane ? line : triangle;
-  parts->count = 0;
-  for (int64_t i = 0; i < pieces->count; ++i)
+  job->parts.count = 0;
+  for (int64_t i = 0; i < job->form->parts * job->pieces.count; ++i)
   {
-    for (int part = 0; part < (job->is_plane ? 2 : 4); ++part)
+    const mcor_flux_piece* whole = &job->pieces.of[i / job->form->parts];
+    mcor_flux_piece part = *whole;
+    ++part.depth;
+    for (int c = 0; c < 3; ++c)
     {
-      mcor_flux_piece piece = pieces->pieces[i];
-      ++piece.depth;
-      for (int c = 0; c < 3; ++c)
-      {
-        double at[3];
-        mcor_place_point(job, &pieces->pieces[i], points[part][c], at);
-        memcpy(piece.corner[c], at, sizeof piece.corner[c]);
-      }
-      MCOR_TRY(mcor_append_piece(job->edges.context, parts, &piece));
+      double at[3];
+      mcor_place_point(job, whole, job->form->part[i % job->form->parts][c], at);
+      memcpy(part.corner[c], at, sizeof part.corner[c]);
     }
+    MCOR_APPEND(job->edges.context, &job->parts, part);
   }
   return MCOR_OK;
 }
@@ -148,14 +132,14 @@ static mcor_status mcor_divide_pieces(
 static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
   const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
 {
-  const mcor_flux_section* section = &job->found[job->patches[piece->patch].section];
+  const mcor_flux_section* section = &job->found[job->patches.of[piece->patch].section];
   const double tolerance = MCOR_FLUX_TOLERANCE *
     fmax(piece->area, MCOR_FLUX_SMALL * sqrt(piece->area) * sqrt(section->area));
   const double scale[MCOR_FLUX_SUMS] = { 1, section->speed, section->speed * section->density };
   double bulge = 0;
   bool settled = true;
   memset(sum, 0, MCOR_FLUX_SUMS * sizeof *sum);
-  for (int part = 0; part < (job->is_plane ? 2 : 4); ++part)
+  for (int part = 0; part < job->form->parts; ++part)
   {
     settled = settled && !(parts[part].unclear && parts[part].depth < MCOR_FLUX_UNCLEAR_DEPTH);
     bulge += parts[part].bulge;
@@ -172,79 +156,60 @@ static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* pie
   return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
 }
 
-/* Divides pieces until they are settled, and adds them to their sections. */
-static mcor_status mcor_settle_pieces(
-  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_pieces* parts)
+/* Divides the pieces until they are settled, and adds them to their sections. */
+static mcor_status mcor_settle_pieces(mcor_flux_job* job)
 {
-  const int divided = job->is_plane ? 2 : 4;
-  while (pieces->count > 0)
+  const int divided = job->form->parts;
+  while (job->pieces.count > 0)
   {
-    MCOR_TRY(mcor_divide_pieces(job, pieces, parts));
-    MCOR_TRY(mcor_measure_pieces(job, field, parts));
-    const int64_t count = pieces->count;
+    MCOR_TRY(mcor_divide_pieces(job));
+    MCOR_TRY(mcor_measure_pieces(job, &job->parts));
+    mcor_flux_piece* parts = job->parts.of;
     int64_t left = 0;
-    for (int64_t i = 0; i < count; ++i)
+    for (int64_t i = 0; i < job->pieces.count; ++i)
     {
-      const mcor_flux_piece* piece = &pieces->pieces[i];
-      mcor_flux_section* found = &job->found[job->patches[piece->patch].section];
+      const mcor_flux_piece* piece = &job->pieces.of[i];
+      mcor_flux_section* found = &job->found[job->patches.of[piece->patch].section];
       double sum[MCOR_FLUX_SUMS];
-      if (mcor_is_settled(job, piece, &parts->pieces[divided * i], sum))
+      if (!mcor_is_settled(job, piece, &parts[divided * i], sum))
       {
-        for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
-        {
-          found->sum[s] += llrint(fmin(fmax(sum[s] / found->unit[s], -0x1p62), 0x1p62));
-        }
+        memmove(&parts[left], &parts[divided * i], (size_t)divided * sizeof *parts);
+        left += divided;
         continue;
       }
-      memmove(
-        &parts->pieces[left], &parts->pieces[divided * i], (size_t)divided * sizeof *parts->pieces);
-      left += divided;
+      for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+      {
+        found->sum[s] += llrint(fmin(fmax(sum[s] / found->unit[s], -0x1p62), 0x1p62));
+      }
     }
-    const mcor_flux_pieces settled = *pieces;
-    *pieces = *parts;
-    pieces->count = left;
-    *parts = settled;
+    const mcor_flux_pieces settled = job->pieces;
+    job->pieces = job->parts;
+    job->pieces.count = left;
+    job->parts = settled;
   }
   return MCOR_OK;
-}
-
-static mcor_status mcor_add_cells(mcor_flux_job* job, mcor_flux_field* field)
-{
-  mcor_flux_pieces pieces = { 0 }, parts = { 0 };
-  mcor_status status = MCOR_OK;
-  for (int64_t first = 0, last; first < job->cell_count && status == MCOR_OK; first = last)
-  {
-    const double count = (double)job->cell_count;
-    last =
-      first + MCOR_FLUX_TOGETHER < job->cell_count ? first + MCOR_FLUX_TOGETHER : job->cell_count;
-    status = mcor_report(job->edges.context, "flux", 0.2 + 0.8 * (double)first / count,
-      0.2 + 0.8 * (double)last / count);
-    status = status == MCOR_OK ? mcor_begin_pieces(job, first, last, &pieces) : status;
-    status = status == MCOR_OK ? mcor_measure_pieces(job, field, &pieces) : status;
-    status = status == MCOR_OK ? mcor_settle_pieces(job, field, &pieces, &parts) : status;
-  }
-  free(pieces.pieces);
-  free(parts.pieces);
-  return status;
 }
 
 mcor_status mcor_add_fluxes(mcor_gauge_job* edges)
 {
   mcor_flux_job* job = (mcor_flux_job*)edges;
   const size_t n = MCOR_GAUGE_BATCH;
-  mcor_flux_field field = { .at = malloc(n * sizeof *field.at),
-    .weight = malloc(n * sizeof(double)),
-    .velocity = malloc(3 * n * sizeof(double)),
-    .density = malloc(n * sizeof(double)) };
-  field.values[0] = field.velocity;
-  field.values[1] = field.density;
-  mcor_status status =
-    mcor_allocated(job->edges.context, field.at && field.weight && field.velocity && field.density);
-  status = status == MCOR_OK ? mcor_find_speeds(job, &field) : status;
-  status = status == MCOR_OK ? mcor_add_cells(job, &field) : status;
-  free(field.at);
-  free(field.weight);
-  free(field.velocity);
-  free(field.density);
-  return status;
+  const double count = (double)job->cells.count;
+  double* samples = malloc(8 * n * sizeof *samples);
+  MCOR_TRY(mcor_allocated(edges->context, samples));
+  double *weight = samples + 3 * n, *velocity = weight + n, *density = velocity + 3 * n;
+  job->field =
+    (mcor_flux_field){ (double(*)[3])samples, weight, velocity, density, { velocity, density } };
+  MCOR_TRY(mcor_find_speeds(job));
+  for (int64_t first = 0, last; first < job->cells.count; first = last)
+  {
+    const int64_t rest = job->cells.count - first;
+    last = first + (rest < MCOR_FLUX_TOGETHER ? rest : MCOR_FLUX_TOGETHER);
+    MCOR_TRY(mcor_report(
+      edges->context, "flux", 0.2 + 0.8 * (double)first / count, 0.2 + 0.8 * (double)last / count));
+    MCOR_TRY(mcor_begin_pieces(job, first, last));
+    MCOR_TRY(mcor_measure_pieces(job, &job->pieces));
+    MCOR_TRY(mcor_settle_pieces(job));
+  }
+  return MCOR_OK;
 }

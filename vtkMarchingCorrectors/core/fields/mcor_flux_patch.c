@@ -53,9 +53,7 @@ static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch
       patch.normal[c++] = normal[axis];
     }
   }
-  MCOR_TRY(mcor_make_room(
-    context, (void**)&job->patches, job->patch_count, &job->patch_room, sizeof *job->patches));
-  job->patches[job->patch_count++] = patch;
+  MCOR_APPEND(context, &job->patches, patch);
   return MCOR_OK;
 }
 
@@ -172,11 +170,8 @@ static mcor_status mcor_add_triangles(mcor_flux_job* job, int64_t number)
   for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 9)
   {
     double edges[2][3], normal[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      edges[0][a] = x[3 + a] - x[a];
-      edges[1][a] = x[6 + a] - x[a];
-    }
+    mcor_subtract(x + 3, x, edges[0]);
+    mcor_subtract(x + 6, x, edges[1]);
     mcor_cross(edges[0], edges[1], normal);
     for (int a = 0; a < 3; ++a)
     {
@@ -202,10 +197,7 @@ static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
   for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 6)
   {
     double along[3], normal[3] = { 0 };
-    for (int a = 0; a < 3; ++a)
-    {
-      along[a] = x[3 + a] - x[a];
-    }
+    mcor_subtract(x + 3, x, along);
     normal[first] = along[second];
     normal[second] = -along[first];
     MCOR_TRY(x[w] != plane->at || x[3 + w] != plane->at ? mcor_leaves_plane(job, number)
@@ -223,11 +215,8 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
   switch (section->shape)
   {
     case MCOR_SECTION_RECTANGLE:
-      for (int a = 0; a < 3; ++a)
-      {
-        edges[0][a] = x[3 + a] - x[a];
-        edges[1][a] = x[6 + a] - x[a];
-      }
+      mcor_subtract(x + 3, x, edges[0]);
+      mcor_subtract(x + 6, x, edges[1]);
       mcor_cross(edges[0], edges[1], normal);
       return mcor_normalise(normal) > 0
         ? mcor_add_rectangle(job, number, x, (const double(*)[3])edges, normal)
@@ -304,7 +293,7 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
 void mcor_map_patch(const void* data, const double parameters[3], double point[3])
 {
   const mcor_flux_job* job = data;
-  const mcor_patch* patch = &job->patches[(int64_t)parameters[2]];
+  const mcor_patch* patch = &job->patches.of[(int64_t)parameters[2]];
   double along = parameters[0], across = parameters[1];
   if (patch->shape == MCOR_PATCH_QUARTER)
   {
@@ -344,7 +333,7 @@ typedef struct mcor_flux_reach
 static bool mcor_is_near(
   const mcor_flux_job* job, const mcor_flux_reach* reach, const mcor_flux_block* block)
 {
-  const mcor_patch* patch = &job->patches[block->patch];
+  const mcor_patch* patch = &job->patches.of[block->patch];
   double low[3] = { INFINITY, INFINITY, INFINITY }, high[3] = { -INFINITY, -INFINITY, -INFINITY };
   for (int corner = 0; corner < 4; ++corner)
   {
@@ -377,7 +366,7 @@ static bool mcor_is_near(
 static mcor_status mcor_list_block(
   mcor_flux_job* job, const mcor_flux_reach* reach, const mcor_flux_block* block)
 {
-  const mcor_patch* patch = &job->patches[block->patch];
+  const mcor_patch* patch = &job->patches.of[block->patch];
   const int64_t counts[2] = { block->last[0] - block->first[0], block->last[1] - block->first[1] };
   if (!mcor_is_near(job, reach, block) ||
     (patch->shape == MCOR_PATCH_TRIANGLE &&
@@ -402,15 +391,13 @@ static mcor_status mcor_list_block(
     return MCOR_OK;
   }
   mcor_context* context = job->edges.context;
-  MCOR_RETURN_IF(job->cell_count >= MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
+  MCOR_RETURN_IF(job->cells.count >= MCOR_FLUX_MOST, context, MCOR_INVALID_ARGUMENT,
     "Section %s has, with those before it, more than %d cells of %g, 3/4 of the smallest smoothing "
     "length, near particles. Make it smaller.",
     mcor_label_section(job, patch->section).text, MCOR_FLUX_MOST,
     MCOR_FLUX_CELL * job->smoothing_length);
-  MCOR_TRY(mcor_make_room(
-    context, (void**)&job->cells, job->cell_count, &job->cell_room, sizeof *job->cells));
-  job->cells[job->cell_count++] =
-    (mcor_flux_cell){ block->patch, block->first[0], block->first[1] };
+  MCOR_APPEND(
+    context, &job->cells, (mcor_flux_cell){ block->patch, block->first[0], block->first[1] });
   return MCOR_OK;
 }
 
@@ -418,10 +405,7 @@ static mcor_status mcor_list_block(
 static void mcor_count_cells_of(mcor_patch* patch, double step)
 {
   double third[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    third[a] = patch->across[a] - patch->along[a];
-  }
+  mcor_subtract(patch->across, patch->along, third);
   double lengths[2] = { sqrt(mcor_dot(patch->along, patch->along)),
     sqrt(mcor_dot(patch->across, patch->across)) };
   if (patch->shape == MCOR_PATCH_TRIANGLE)
@@ -459,9 +443,9 @@ mcor_status mcor_list_flux_cells(mcor_flux_job* job)
       reach.high[a] = fmin(reach.high[a], box[2 * a + 1] + 2 * step);
     }
   }
-  for (int64_t p = 0; p < job->patch_count; ++p)
+  for (int64_t p = 0; p < job->patches.count; ++p)
   {
-    mcor_patch* patch = &job->patches[p];
+    mcor_patch* patch = &job->patches.of[p];
     mcor_count_cells_of(patch, step);
     MCOR_RETURN_IF(
       !(patch->counts[0] <= MCOR_FLUX_MOST_ALONG) || !(patch->counts[1] <= MCOR_FLUX_MOST_ALONG),

@@ -21,8 +21,15 @@
 /* Rounds of mcor_solve_crossings, after which a crossing is known to 1e-7 of its edge. */
 #define MCOR_FLUX_SOLVE_ROUNDS 3
 
-mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int count)
+const mcor_flux_form mcor_flux_forms[2] = {
+  { 3, 7, 4, { 1 / 20.0, 1 / 20.0, 1 / 20.0, 2 / 15.0, 2 / 15.0, 2 / 15.0, 9 / 20.0 },
+    { { 0, 3, 5 }, { 3, 1, 4 }, { 5, 4, 2 }, { 3, 4, 5 } } },
+  { 2, 3, 2, { 1 / 6.0, 1 / 6.0, 2 / 3.0 }, { { 0, 2, 2 }, { 2, 1, 1 } } },
+};
+
+mcor_status mcor_sample_flux(mcor_flux_job* job, int count)
 {
+  mcor_flux_field* field = &job->field;
   mcor_probe_run* run = job->edges.run;
   double* points = (double*)run->points->data;
   for (int i = 0; i < count; ++i)
@@ -38,20 +45,19 @@ mcor_status mcor_sample_flux(mcor_flux_job* job, mcor_flux_field* field, int cou
   return mcor_probe_batch(run, 0, count);
 }
 
-double mcor_speed_along(
-  const mcor_flux_job* job, const mcor_flux_field* field, int64_t sample, const double direction[3])
+double mcor_speed_along(const mcor_flux_job* job, int64_t sample, const double direction[3])
 {
   double sum = 0;
   for (int c = 0; c < job->velocity_components; ++c)
   {
-    sum += field->velocity[sample * job->velocity_components + c] * direction[c];
+    sum += job->field.velocity[sample * job->velocity_components + c] * direction[c];
   }
   return sum;
 }
 
 void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, int k, double at[3])
 {
-  const int corners = mcor_piece_corners(job);
+  const int corners = job->form->corners;
   const double(*c)[2] = piece->corner;
   for (int p = 0; p < 2; ++p)
   {
@@ -63,74 +69,46 @@ void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, in
 }
 
 /* Adds the integrals of a piece. first: number of its first sample. */
-static void mcor_integrate_piece(const mcor_flux_job* job, const mcor_flux_field* field,
-  const mcor_flux_piece* piece, int64_t first, double sum[MCOR_FLUX_SUMS])
+static void mcor_integrate_piece(
+  const mcor_flux_job* job, const mcor_flux_piece* piece, int64_t first, double sum[MCOR_FLUX_SUMS])
 {
-  static const double triangle[MCOR_FLUX_POINTS] = { 1 / 20.0, 1 / 20.0, 1 / 20.0, 2 / 15.0,
-    2 / 15.0, 2 / 15.0, 9 / 20.0 };
-  static const double line[3] = { 1 / 6.0, 1 / 6.0, 2 / 3.0 };
-  const double* share = job->is_plane ? line : triangle;
-  const mcor_patch* patch = &job->patches[piece->patch];
+  const mcor_patch* patch = &job->patches.of[piece->patch];
   const double(*c)[2] = piece->corner;
-  const double size = piece->factor *
-    (job->is_plane ? fabs(c[1][0] - c[0][0])
-                   : 0.5 *
-          fabs(
-            (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1])));
-  for (int k = 0; k < mcor_piece_points(job); ++k)
+  const double du = c[1][0] - c[0][0],
+               twice = du * (c[2][1] - c[0][1]) - (c[2][0] - c[0][0]) * (c[1][1] - c[0][1]);
+  const double size = piece->factor * (job->is_plane ? fabs(du) : 0.5 * fabs(twice));
+  for (int k = 0; k < job->form->points; ++k)
   {
-    const double area = share[k] * size * mcor_patch_measure(patch, field->at[first + k]);
-    const double flux = area * mcor_speed_along(job, field, first + k, patch->normal);
+    const double area =
+      job->form->share[k] * size * mcor_patch_measure(patch, job->field.at[first + k]);
+    const double flux = area * mcor_speed_along(job, first + k, patch->normal);
     sum[0] += area;
     sum[1] += flux;
-    sum[2] += field->density[first + k] * flux;
+    sum[2] += job->field.density[first + k] * flux;
   }
 }
 
-/* A piece with corners on both sides of the level. */
-typedef struct mcor_flux_cut
-{
-  int64_t piece;
-  int sides;        /* bits of the corners in fluid */
-  double weight[3]; /* at the corners */
-  double crossing
-    [2]
-    [2]; /* in a triangle: on the edges from its lone corner to the next and to the last corner */
-  double places[2]; /* places of the crossings, from that corner */
-} mcor_flux_cut;
-
-typedef struct mcor_flux_cuts
-{
-  mcor_flux_cut* cuts; /* [room] */
-  int64_t count, room;
-  mcor_gauge_line* lines; /* [line_room] lines that the level crosses, in parameters */
-  int64_t line_count, line_room;
-} mcor_flux_cuts;
+/* ---- cuts ---- */
 
 /* Appends a line, in parameters, that the level crosses. */
-static mcor_status mcor_append_crossed(mcor_flux_job* job, mcor_flux_cuts* cuts,
-  const double from[3], const double to[3], double from_weight, double to_weight)
+static mcor_status mcor_append_crossed(mcor_flux_job* job, const double from[3], const double to[3],
+  double from_weight, double to_weight)
 {
-  mcor_gauge_parts* parts = &job->edges.changed;
   mcor_gauge_line line = { .name = NULL };
   memcpy(line.from, from, sizeof line.from);
   memcpy(line.to, to, sizeof line.to);
-  MCOR_TRY(mcor_make_room(job->edges.context, (void**)&cuts->lines, cuts->line_count,
-    &cuts->line_room, sizeof *cuts->lines));
-  MCOR_TRY(mcor_make_room(job->edges.context, (void**)&parts->parts, parts->count, &parts->capacity,
-    sizeof *parts->parts));
-  parts->parts[parts->count++] =
-    (mcor_gauge_part){ cuts->line_count, 0, 1, from_weight, to_weight };
-  cuts->lines[cuts->line_count++] = line;
+  MCOR_APPEND(job->edges.context, &job->edges.changed,
+    (mcor_gauge_part){ job->lines.count, 0, 1, from_weight, to_weight });
+  MCOR_APPEND(job->edges.context, &job->lines, line);
   return MCOR_OK;
 }
 
-/* Finds where the level crosses the lines so far. The job's parts stay for mcor_crossing_at. */
-static mcor_status mcor_solve_cuts(mcor_flux_job* job, const mcor_flux_cuts* cuts)
+/* Finds where the level crosses the lines so far. The changed parts stay for mcor_crossing_at. */
+static mcor_status mcor_solve_lines(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
   const int arrays = context->attributes.count;
-  job->edges.lines = cuts->lines;
+  job->edges.lines = job->lines.of;
   context->attributes.count = 0; /* crossings need weights alone */
   const mcor_status status = mcor_solve_crossings(&job->edges, MCOR_FLUX_SOLVE_ROUNDS, true);
   context->attributes.count = arrays;
@@ -138,13 +116,13 @@ static mcor_status mcor_solve_cuts(mcor_flux_job* job, const mcor_flux_cuts* cut
 }
 
 /* Returns the place from 0 to 1 where line i is crossed; sets `at` to its parameters. */
-static double mcor_crossing_at(
-  const mcor_flux_job* job, const mcor_flux_cuts* cuts, int64_t i, double at[2])
+static double mcor_crossing_at(const mcor_flux_job* job, int64_t i, double at[2])
 {
-  const mcor_gauge_line* line = &cuts->lines[i];
-  const double place = mcor_crossing_of(&job->edges, &job->edges.changed.parts[i]);
-  at[0] = line->from[0] + place * (line->to[0] - line->from[0]);
-  at[1] = line->from[1] + place * (line->to[1] - line->from[1]);
+  const mcor_gauge_line* line = &job->lines.of[i];
+  const double place = mcor_crossing_of(&job->edges, &job->edges.changed.of[i]);
+  double point[3];
+  mcor_point_between(line->from, line->to, place, point);
+  memcpy(at, point, 2 * sizeof *at);
   return place;
 }
 
@@ -177,13 +155,11 @@ static bool mcor_may_cross(const mcor_flux_job* job, const mcor_flux_piece* piec
 
 /* Sorts a piece by its samples: integrates it if it lies in fluid, appends a cut if the level
  * crosses it. */
-static mcor_status mcor_take_piece(mcor_flux_job* job, const mcor_flux_field* field,
-  mcor_flux_pieces* pieces, int64_t number, int64_t first, mcor_flux_cuts* cuts)
+static mcor_status mcor_take_piece(
+  mcor_flux_job* job, mcor_flux_piece* piece, int64_t number, int64_t first)
 {
-  mcor_flux_piece* piece = &pieces->pieces[number];
-  const double* weight = field->weight + first;
-  const int corners = mcor_piece_corners(job), count = mcor_piece_points(job);
-  const int all = (1 << corners) - 1;
+  const double* weight = job->field.weight + first;
+  const int corners = job->form->corners, count = job->form->points, all = (1 << corners) - 1;
   bool in[MCOR_FLUX_POINTS];
   int sides = 0;
   for (int k = 0; k < count; ++k)
@@ -202,17 +178,15 @@ static mcor_status mcor_take_piece(mcor_flux_job* job, const mcor_flux_field* fi
   piece->bulge = 0;
   if (sides == all)
   {
-    mcor_integrate_piece(job, field, piece, first, piece->sum);
+    mcor_integrate_piece(job, piece, first, piece->sum);
   }
   if (sides == 0 || sides == all)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_make_room(
-    job->edges.context, (void**)&cuts->cuts, cuts->count, &cuts->room, sizeof *cuts->cuts));
-  mcor_flux_cut* cut = &cuts->cuts[cuts->count++];
-  *cut = (mcor_flux_cut){ .piece = number, .sides = sides };
-  memcpy(cut->weight, weight, (size_t)corners * sizeof *weight);
+  mcor_flux_cut cut = { .piece = number, .between = -1, .sides = sides };
+  memcpy(cut.weight, weight, (size_t)corners * sizeof *weight);
+  MCOR_APPEND(job->edges.context, &job->cuts, cut);
   const int lone = job->is_plane ? 0 : mcor_lone_corner(sides);
   for (int other = 1; other < corners; ++other)
   {
@@ -220,82 +194,72 @@ static mcor_status mcor_take_piece(mcor_flux_job* job, const mcor_flux_field* fi
     double from_at[3], to_at[3];
     mcor_place_point(job, piece, lone, from_at);
     mcor_place_point(job, piece, to, to_at);
-    MCOR_TRY(mcor_append_crossed(job, cuts, from_at, to_at, weight[lone], weight[to]));
+    MCOR_TRY(mcor_append_crossed(job, from_at, to_at, weight[lone], weight[to]));
   }
   return MCOR_OK;
 }
 
-/* Samples all pieces. Without cuts, piece i lies in fluid and is added to the sums of owners'
- * piece whose[i]. */
-static mcor_status mcor_sample_pieces(mcor_flux_job* job, mcor_flux_field* field,
-  mcor_flux_pieces* pieces, mcor_flux_cuts* cuts, mcor_flux_pieces* owners, const int64_t* whose)
+/* Samples all pieces. wholes: the pieces lie in fluid, and are added to the sums of these. */
+static mcor_status mcor_sample_pieces(
+  mcor_flux_job* job, mcor_flux_pieces* pieces, mcor_flux_pieces* wholes)
 {
-  const int points = mcor_piece_points(job), most = MCOR_GAUGE_BATCH / points;
+  const int points = job->form->points, most = MCOR_GAUGE_BATCH / points;
   for (int64_t first = 0; first < pieces->count; first += most)
   {
     const int64_t rest = pieces->count - first;
     const int count = rest < most ? (int)rest : most;
     for (int i = 0; i < count * points; ++i)
     {
-      mcor_place_point(job, &pieces->pieces[first + i / points], i % points, field->at[i]);
+      mcor_place_point(job, &pieces->of[first + i / points], i % points, job->field.at[i]);
     }
-    MCOR_TRY(mcor_sample_flux(job, field, count * points));
+    MCOR_TRY(mcor_sample_flux(job, count * points));
     for (int i = 0; i < count; ++i)
     {
-      const int64_t number = first + i, sample = (int64_t)i * points;
-      if (cuts)
+      mcor_flux_piece* piece = &pieces->of[first + i];
+      const int64_t sample = (int64_t)i * points;
+      if (wholes)
       {
-        MCOR_TRY(mcor_take_piece(job, field, pieces, number, sample, cuts));
+        mcor_integrate_piece(job, piece, sample, wholes->of[piece->whole].sum);
         continue;
       }
-      mcor_integrate_piece(
-        job, field, &pieces->pieces[number], sample, owners->pieces[whose[number]].sum);
+      MCOR_TRY(mcor_take_piece(job, piece, first + i, sample));
     }
   }
   return MCOR_OK;
 }
 
-/* Parts of pieces that lie in fluid, and the number of the piece that each belongs to. */
-typedef struct mcor_flux_parts
+/* Appends a part of a cut piece that lies in fluid. */
+static mcor_status mcor_append_inside(mcor_flux_job* job, const mcor_flux_piece* piece,
+  int64_t number, const double* a, const double* b, const double* c, double factor)
 {
-  mcor_flux_pieces pieces; /* has room for three of each cut */
-  int64_t* whose;
-} mcor_flux_parts;
-
-static void mcor_append_part(mcor_flux_parts* parts, const mcor_flux_pieces* pieces, int64_t whose,
-  const double* a, const double* b, const double* c, double factor)
-{
-  mcor_flux_piece* part = &parts->pieces.pieces[parts->pieces.count];
-  *part = (mcor_flux_piece){ .patch = pieces->pieces[whose].patch, .factor = factor };
-  memcpy(part->corner[0], a, sizeof part->corner[0]);
-  memcpy(part->corner[1], b, sizeof part->corner[1]);
-  memcpy(part->corner[2], c, sizeof part->corner[2]);
-  parts->whose[parts->pieces.count++] = whose;
+  mcor_flux_piece part = { .patch = piece->patch, .whole = number, .factor = factor };
+  memcpy(part.corner[0], a, sizeof part.corner[0]);
+  memcpy(part.corner[1], b, sizeof part.corner[1]);
+  memcpy(part.corner[2], c, sizeof part.corner[2]);
+  MCOR_APPEND(job->edges.context, &job->inside, part);
+  return MCOR_OK;
 }
 
 /* Appends the part of a triangle up to the chord between its crossings, or of a line up to its
  * crossing. */
-static void mcor_append_chord(const mcor_flux_job* job, const mcor_flux_pieces* pieces,
-  const mcor_flux_cut* cut, mcor_flux_parts* parts)
+static mcor_status mcor_append_chord(
+  mcor_flux_job* job, const mcor_flux_piece* piece, const mcor_flux_cut* cut)
 {
-  const mcor_flux_piece* piece = &pieces->pieces[cut->piece];
   const int lone = mcor_lone_corner(cut->sides);
   const double *p = cut->crossing[0], *q = cut->crossing[1];
   const double *here = piece->corner[lone], *next = piece->corner[(lone + 1) % 3],
                *last = piece->corner[(lone + 2) % 3];
   if (job->is_plane)
   {
-    mcor_append_part(parts, pieces, cut->piece, piece->corner[cut->sides == 1 ? 0 : 1], p, p, 1);
+    return mcor_append_inside(
+      job, piece, cut->piece, piece->corner[cut->sides == 1 ? 0 : 1], p, p, 1);
   }
-  else if (cut->sides >> lone & 1)
+  if (cut->sides >> lone & 1)
   {
-    mcor_append_part(parts, pieces, cut->piece, here, p, q, 1);
+    return mcor_append_inside(job, piece, cut->piece, here, p, q, 1);
   }
-  else
-  {
-    mcor_append_part(parts, pieces, cut->piece, p, next, last, 1);
-    mcor_append_part(parts, pieces, cut->piece, p, last, q, 1);
-  }
+  MCOR_TRY(mcor_append_inside(job, piece, cut->piece, p, next, last, 1));
+  return mcor_append_inside(job, piece, cut->piece, p, last, q, 1);
 }
 
 /* Finds the line from the lone corner through the middle of the chord to the opposite edge. */
@@ -317,105 +281,81 @@ static void mcor_place_between(
 
 /* Appends the bulge between the chord and the level. A parabola and its chord enclose 4/3 of the
  * triangle of the two crossings and the one between them. */
-static void mcor_append_bulge(mcor_flux_job* job, mcor_flux_pieces* pieces,
-  const mcor_flux_cut* cut, const mcor_flux_cuts* between, int64_t line, mcor_flux_parts* parts)
+static mcor_status mcor_append_bulge(
+  mcor_flux_job* job, mcor_flux_piece* piece, const mcor_flux_cut* cut)
 {
-  mcor_flux_piece* piece = &pieces->pieces[cut->piece];
   const double *p = cut->crossing[0], *q = cut->crossing[1];
   double m[2];
   const bool lone_in = cut->sides >> mcor_lone_corner(cut->sides) & 1;
   const bool beyond =
-    mcor_crossing_at(job, between, line, m) > 0.5 * (cut->places[0] + cut->places[1]);
-  mcor_append_part(parts, pieces, cut->piece, p, m, q, (lone_in == beyond ? 4 : -4) / 3.0);
-  piece->bulge = 2 / 3.0 * mcor_patch_measure(&job->patches[piece->patch], m) *
+    mcor_crossing_at(job, cut->between, m) > 0.5 * (cut->places[0] + cut->places[1]);
+  piece->bulge = 2 / 3.0 * mcor_patch_measure(&job->patches.of[piece->patch], m) *
     fabs((m[0] - p[0]) * (q[1] - p[1]) - (q[0] - p[0]) * (m[1] - p[1]));
+  return mcor_append_inside(job, piece, cut->piece, p, m, q, (lone_in == beyond ? 4 : -4) / 3.0);
 }
 
 /* Adds the bulges of triangles. If the level does not cross the line between the crossings, the
  * piece is unclear. */
-static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_field* field,
-  mcor_flux_pieces* pieces, const mcor_flux_cuts* cuts, mcor_flux_cuts* between,
-  mcor_flux_parts* parts)
+static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_pieces* pieces)
 {
-  int64_t* of = malloc((size_t)cuts->count * sizeof *of); /* number of each line's cut */
-  mcor_status status = mcor_allocated(job->edges.context, of);
-  job->edges.changed.count = 0;
-  for (int64_t first = 0; first < cuts->count && status == MCOR_OK; first += MCOR_GAUGE_BATCH)
+  job->lines.count = job->edges.changed.count = 0;
+  for (int64_t first = 0; first < job->cuts.count; first += MCOR_GAUGE_BATCH)
   {
-    const int64_t rest = cuts->count - first;
+    const int64_t rest = job->cuts.count - first;
     const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
     double from[3];
     for (int i = 0; i < count; ++i)
     {
-      const mcor_flux_cut* cut = &cuts->cuts[first + i];
-      mcor_place_between(&pieces->pieces[cut->piece], cut, from, field->at[i]);
+      const mcor_flux_cut* cut = &job->cuts.of[first + i];
+      mcor_place_between(&pieces->of[cut->piece], cut, from, job->field.at[i]);
     }
-    status = mcor_sample_flux(job, field, count);
-    for (int i = 0; i < count && status == MCOR_OK; ++i)
+    MCOR_TRY(mcor_sample_flux(job, count));
+    for (int i = 0; i < count; ++i)
     {
-      const mcor_flux_cut* cut = &cuts->cuts[first + i];
-      mcor_flux_piece* piece = &pieces->pieces[cut->piece];
+      mcor_flux_cut* cut = &job->cuts.of[first + i];
+      mcor_flux_piece* piece = &pieces->of[cut->piece];
       const int lone = mcor_lone_corner(cut->sides);
+      const double weight = job->field.weight[i];
       double to[3];
-      piece->unclear =
-        piece->unclear || (field->weight[i] >= job->edges.level) == (cut->sides >> lone & 1);
-      if ((field->weight[i] >= job->edges.level) != (cut->sides >> lone & 1))
+      if ((weight >= job->edges.level) == (cut->sides >> lone & 1))
       {
-        mcor_place_between(piece, cut, from, to);
-        of[between->line_count] = first + i;
-        status = mcor_append_crossed(job, between, from, to, cut->weight[lone], field->weight[i]);
+        piece->unclear = true;
+        continue;
       }
+      mcor_place_between(piece, cut, from, to);
+      cut->between = job->lines.count;
+      MCOR_TRY(mcor_append_crossed(job, from, to, cut->weight[lone], weight));
     }
   }
-  status = status == MCOR_OK ? mcor_solve_cuts(job, between) : status;
-  for (int64_t i = 0; i < between->line_count && status == MCOR_OK; ++i)
+  MCOR_TRY(mcor_solve_lines(job));
+  for (int64_t i = 0; i < job->cuts.count; ++i)
   {
-    mcor_append_bulge(job, pieces, &cuts->cuts[of[i]], between, i, parts);
+    const mcor_flux_cut* cut = &job->cuts.of[i];
+    MCOR_TRY(cut->between < 0 ? MCOR_OK : mcor_append_bulge(job, &pieces->of[cut->piece], cut));
   }
-  free(of);
-  return status;
+  return MCOR_OK;
 }
 
-/* Adds to each cut piece the integrals of its part in fluid. */
-static mcor_status mcor_add_cuts(
-  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces, mcor_flux_cuts* cuts)
+mcor_status mcor_measure_pieces(mcor_flux_job* job, mcor_flux_pieces* pieces)
 {
-  mcor_context* context = job->edges.context;
-  const int crossings = job->is_plane ? 1 : 2;
-  MCOR_TRY(mcor_solve_cuts(job, cuts));
-  for (int64_t i = 0; i < crossings * cuts->count; ++i)
+  const int crossings = job->form->corners - 1;
+  job->cuts.count = job->inside.count = job->lines.count = job->edges.changed.count = 0;
+  MCOR_TRY(mcor_sample_pieces(job, pieces, NULL));
+  if (job->cuts.count == 0)
   {
-    mcor_flux_cut* cut = &cuts->cuts[i / crossings];
-    cut->places[i % crossings] = mcor_crossing_at(job, cuts, i, cut->crossing[i % crossings]);
+    return MCOR_OK;
   }
-  mcor_flux_parts parts = { .whose = malloc(3 * (size_t)cuts->count * sizeof *parts.whose),
-    .pieces.pieces = malloc(3 * (size_t)cuts->count * sizeof *parts.pieces.pieces) };
-  mcor_flux_cuts between = { .lines = NULL };
-  mcor_status status = mcor_allocated(context, parts.whose && parts.pieces.pieces);
-  for (int64_t c = 0; c < cuts->count && status == MCOR_OK; ++c)
+  MCOR_TRY(mcor_solve_lines(job));
+  for (int64_t i = 0; i < crossings * job->cuts.count; ++i)
   {
-    mcor_append_chord(job, pieces, &cuts->cuts[c], &parts);
+    mcor_flux_cut* cut = &job->cuts.of[i / crossings];
+    cut->places[i % crossings] = mcor_crossing_at(job, i, cut->crossing[i % crossings]);
   }
-  status = status == MCOR_OK && !job->is_plane
-    ? mcor_append_bulges(job, field, pieces, cuts, &between, &parts)
-    : status;
-  status = status == MCOR_OK
-    ? mcor_sample_pieces(job, field, &parts.pieces, NULL, pieces, parts.whose)
-    : status;
-  free(parts.whose);
-  free(parts.pieces.pieces);
-  free(between.lines);
-  return status;
-}
-
-mcor_status mcor_measure_pieces(
-  mcor_flux_job* job, mcor_flux_field* field, mcor_flux_pieces* pieces)
-{
-  mcor_flux_cuts cuts = { 0 };
-  job->edges.changed.count = 0;
-  mcor_status status = mcor_sample_pieces(job, field, pieces, &cuts, NULL, NULL);
-  status = status == MCOR_OK && cuts.count > 0 ? mcor_add_cuts(job, field, pieces, &cuts) : status;
-  free(cuts.cuts);
-  free(cuts.lines);
-  return status;
+  for (int64_t c = 0; c < job->cuts.count; ++c)
+  {
+    const mcor_flux_cut* cut = &job->cuts.of[c];
+    MCOR_TRY(mcor_append_chord(job, &pieces->of[cut->piece], cut));
+  }
+  MCOR_TRY(job->is_plane ? MCOR_OK : mcor_append_bulges(job, pieces));
+  return mcor_sample_pieces(job, &job->inside, pieces);
 }

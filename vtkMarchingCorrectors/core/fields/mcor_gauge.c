@@ -28,13 +28,13 @@ const char* mcor_gauge_state_name(mcor_gauge_state state)
 /* Treats lines together, as many as have about MCOR_GAUGE_TOGETHER samples. */
 static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 {
-  const int64_t count = job->sample_count;
+  const int64_t count = job->samples.count;
   for (int64_t first = 0, last; first < count; first = last)
   {
     int64_t points = 0;
     for (last = first; last < count && points < MCOR_GAUGE_TOGETHER; ++last)
     {
-      points += job->samples[last].last - job->samples[last].first + 1;
+      points += job->samples.of[last].last - job->samples.of[last].first + 1;
     }
     MCOR_TRY(mcor_report(job->context, "gauges", 0.2 + 0.8 * (double)first / (double)count,
       0.2 + 0.8 * (double)last / (double)count));
@@ -100,8 +100,8 @@ mcor_status mcor_run_points(
   };
   job->run = &run;
   mcor_status status = mcor_allocated(context, places && valid);
-  status = status == MCOR_OK ? mcor_load_attributes(context, input, 0) : status;
-  status = status == MCOR_OK ? work(job) : status;
+  MCOR_THEN(status, mcor_load_attributes(context, input, 0));
+  MCOR_THEN(status, work(job));
   mcor_release_probe(&run);
   free(places);
   free(valid);
@@ -127,51 +127,19 @@ static mcor_status mcor_gauge_particles(
   return context->grid.count > 0 ? mcor_run_points(job, input, mcor_gauge_all) : MCOR_OK;
 }
 
-static mcor_status mcor_gauge_input(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_gauge_job* job)
+/* Turns the lines and the box into the plane z = 0. */
+static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* lines, double box[6])
 {
-  mcor_free_gauges(job->gauges); /* results of an earlier attempt */
-  MCOR_TRY(mcor_check_input(context, input, options));
+  const mcor_plane* plane = &job->context->plane;
+  const int w = mcor_plane_axis(plane, 2);
   for (int64_t i = 0; i < job->line_count; ++i)
   {
-    MCOR_TRY(mcor_check_line(context, &job->lines[i], i));
-  }
-  mcor_status status = mcor_gauge_particles(context, input, options, job);
-  const void* all = NULL;
-  int64_t count = 0;
-  status = status == MCOR_OK
-    ? mcor_gather(context, job->records, job->record_count, sizeof *job->records, &all, &count)
-    : status;
-  status = status == MCOR_OK ? mcor_read_lines(job, all, count) : status;
-  mcor_free_gauge_parts(job);
-  if (status != MCOR_OK || input->count == 0 || job->line_count == 0)
-  {
-    return status;
-  }
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-  return mcor_finish_statistics(context);
-}
-
-/* Runs a call. In two dimensions, turns the lines and the box into the plane z = 0, and the
- * results back. */
-static mcor_status mcor_run_gauge(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
-{
-  mcor_gauge_job job = *(const mcor_gauge_job*)data;
-  const mcor_plane* plane = &context->plane;
-  if (!mcor_is_plane(context) || job.line_count == 0)
-  {
-    return mcor_gauge_input(context, input, options, &job);
-  }
-  mcor_gauge_line* lines = malloc((size_t)job.line_count * sizeof *lines);
-  MCOR_TRY(mcor_allocated(context, lines));
-  mcor_status status = MCOR_OK;
-  for (int64_t i = 0; i < job.line_count && status == MCOR_OK; ++i)
-  {
-    const mcor_gauge_line* line = &job.lines[i];
-    const int w = mcor_plane_axis(plane, 2);
+    const mcor_gauge_line* line = &job->lines[i];
     const bool off = isfinite(line->from[w]) && isfinite(line->to[w]) &&
       (line->from[w] != plane->at || line->to[w] != plane->at);
+    MCOR_RETURN_IF(off, job->context, MCOR_INVALID_ARGUMENT,
+      "Gauge %s leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
+      mcor_label_gauge(line->name, i).text, 'x' + w, plane->at);
     lines[i] = *line;
     for (int a = 0; a < 3; ++a)
     {
@@ -179,31 +147,54 @@ static mcor_status mcor_run_gauge(
       lines[i].from[a] = line->from[mcor_plane_axis(plane, a)] - shift;
       lines[i].to[a] = line->to[mcor_plane_axis(plane, a)] - shift;
     }
-    if (off)
-    {
-      status = mcor_fail(context, MCOR_INVALID_ARGUMENT,
-        "Gauge %s leaves the plane %c = %.9g of the particles. Give both ends that coordinate.",
-        mcor_label_gauge(line->name, i).text, 'x' + w, plane->at);
-    }
   }
+  job->lines = lines;
+  if (job->box)
+  {
+    mcor_flatten_sides(plane, job->box, box);
+    job->box = box;
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_gauge_lines(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_gauge_job* job, mcor_gauge_line* flat)
+{
   double box[6];
-  if (job.box)
+  const void* all = NULL;
+  int64_t count = 0;
+  MCOR_TRY(mcor_is_plane(context) ? mcor_flatten_lines(job, flat, box) : MCOR_OK);
+  MCOR_TRY(mcor_check_input(context, input, options));
+  for (int64_t i = 0; i < job->line_count; ++i)
   {
-    mcor_flatten_sides(plane, job.box, box);
-    job.box = box;
+    MCOR_TRY(mcor_check_line(context, &job->lines[i], i));
   }
-  job.lines = lines;
-  status = status == MCOR_OK ? mcor_gauge_input(context, input, options, &job) : status;
-  for (int64_t i = 0; i < job.gauges->count && status == MCOR_OK; ++i)
+  MCOR_TRY(mcor_gauge_particles(context, input, options, job));
+  MCOR_TRY(mcor_gather(
+    context, job->records.of, job->records.count, sizeof *job->records.of, &all, &count));
+  MCOR_TRY(mcor_read_lines(job, all, count));
+  for (int64_t i = 0; i < job->gauges->count; ++i)
   {
-    mcor_unflatten_doubles(plane, job.gauges->readings[i].place, 1, plane->at);
+    mcor_unflatten_doubles(&context->plane, job->gauges->readings[i].place, 1, context->plane.at);
   }
-  free(lines);
+  return input->count == 0 || job->line_count == 0 ? MCOR_OK : mcor_finish_field(context);
+}
+
+static mcor_status mcor_run_gauge(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  mcor_gauge_job job = *(const mcor_gauge_job*)data;
+  mcor_gauge_line* flat = malloc((size_t)job.line_count * sizeof *flat + 1);
+  mcor_free_gauges(job.gauges); /* results of an earlier attempt */
+  mcor_status status = mcor_allocated(context, flat);
+  MCOR_THEN(status, mcor_gauge_lines(context, input, options, &job, flat));
+  mcor_free_gauge_parts(&job);
+  free(flat);
   return status;
 }
 
-mcor_status mcor_begin_level(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const char* who, mcor_options* own, double* level)
+mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options, const char* who,
+  mcor_input* input, mcor_options* own, double* level, const double** box)
 {
   *level =
     options->iso_count > 0 && options->iso_values ? options->iso_values[0] : MCOR_GAUGE_LEVEL;
@@ -215,6 +206,12 @@ mcor_status mcor_begin_level(mcor_context* context, const mcor_input* input,
   own->ranks = options->globals ? options->ranks : NULL;
   own->outputs = 0;
   own->node_threshold = 0;
+  if (mcor_has_box(own))
+  {
+    *box = options->box;
+    memset(own->box, 0, sizeof own->box);
+    input->particles_version = 0; /* a grid cut by another box must not be reused */
+  }
   return MCOR_OK;
 }
 
@@ -229,25 +226,15 @@ mcor_status mcor_gauge(mcor_context* context, const mcor_input* input, const mco
   MCOR_RETURN_IF(!input || !options || count < 0 || (count > 0 && !lines), context,
     MCOR_INVALID_ARGUMENT,
     "input, options and lines must not be NULL, and count must not be negative.");
-  double level;
-  mcor_options own;
-  MCOR_TRY(mcor_begin_level(context, input, options, "Gauges", &own, &level));
-  const bool uses_solids = mcor_uses_solids(input, &own);
   mcor_input without = *input;
-  without.attributes = NULL;
+  mcor_options own;
+  mcor_gauge_job job = {
+    .context = context, .lines = lines, .line_count = count, .gauges = gauges
+  };
   without.attribute_count = 0;
-  without.particles_version = mcor_has_box(&own)
-    ? 0
-    : input->particles_version; /* a grid cut by another box must not be reused */
-  mcor_gauge_job job = { .context = context,
-    .lines = lines,
-    .line_count = count,
-    .level = level,
-    .box = mcor_has_box(&own) ? options->box : NULL,
-    .gauges = gauges };
-  memset(own.box, 0, sizeof own.box);
-  const mcor_status status =
-    mcor_run_call(context, &without, &own, uses_solids, &gauges->statistics, mcor_run_gauge, &job);
+  MCOR_TRY(mcor_begin_level(context, options, "Gauges", &without, &own, &job.level, &job.box));
+  const mcor_status status = mcor_run_call(context, &without, &own, mcor_uses_solids(input, &own),
+    &gauges->statistics, mcor_run_gauge, &job);
   if (status != MCOR_OK)
   {
     mcor_free_gauges(gauges);

@@ -16,11 +16,7 @@ typedef struct mcor_gauge_part
   double low_weight, high_weight;
 } mcor_gauge_part;
 
-typedef struct mcor_gauge_parts
-{
-  mcor_gauge_part* parts; /* [capacity] */
-  int64_t count, capacity;
-} mcor_gauge_parts;
+typedef MCOR_LIST(mcor_gauge_part) mcor_gauge_parts;
 
 /* Samples of a line, or of a part of one: at i / steps for first <= i <= last; no particle
  * reaches the rest. This call owns samples own_first to own_last: the extrema at them, and the
@@ -31,14 +27,16 @@ typedef struct mcor_gauge_samples
   int64_t begin; /* first sample of the whole line */
 } mcor_gauge_samples;
 
-/* A record of a line: a crossing at a place from 0 to 1, or one of these instead. */
+/* A place on a line. As a record it is a crossing, or one of these instead. */
 #define MCOR_GAUGE_REACHED (-1.0) /* a particle reaches the line */
 #define MCOR_GAUGE_ENDS_IN (-2.0) /* the line ends in fluid */
-typedef struct mcor_gauge_record
+typedef struct mcor_gauge_place
 {
   int64_t line;
   double place;
-} mcor_gauge_record;
+} mcor_gauge_place;
+
+typedef MCOR_LIST(mcor_gauge_place) mcor_gauge_places;
 
 /* A call under way: its arguments, then its results. */
 typedef struct mcor_gauge_job
@@ -54,12 +52,14 @@ typedef struct mcor_gauge_job
    * points. */
   void (*map)(const void* data, const double parameters[3], double point[3]);
   const void* map_data;
-  mcor_gauge_samples* samples; /* [sample_room], sample_count of them in use */
-  int64_t sample_count, sample_room;
-  mcor_gauge_record* records; /* [record_room] */
-  int64_t record_count, record_room;
+  MCOR_LIST(mcor_gauge_samples) samples;
+  mcor_gauge_places records;
   mcor_gauge_parts changed;  /* parts whose ends are on different sides of the level */
   mcor_gauge_parts suspects; /* parts with an extremum that may be beyond the level */
+  /* Work space: parts that are divided; where the field is evaluated; the weight sums there. */
+  mcor_gauge_parts divided;
+  mcor_gauge_places inner;
+  double* weights;
 } mcor_gauge_job;
 
 /* Points that are on the device at a time. */
@@ -72,9 +72,10 @@ typedef struct mcor_gauge_label
 } mcor_gauge_label;
 
 /* mcor_gauge.c. Shared by gauges and fluxes. Derives the options of the call in `own`, and the
- * level, which it checks. who: subject of the error sentence. */
-mcor_status mcor_begin_level(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const char* who, mcor_options* own, double* level);
+ * level, which it checks; moves the box, if there is one, out of `own` to *box. who: subject of the
+ * error sentence. */
+mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options, const char* who,
+  mcor_input* input, mcor_options* own, double* level, const double** box);
 /* Sets the box in which the field is evaluated: from low to high, or, if ranks share the work,
  * the caller's box and `margin` around it. */
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
@@ -97,7 +98,7 @@ double mcor_gauge_step(double h_scale, double smoothing_length_min);
 mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
 /* Makes the readings of all lines from the records of all ranks. */
 mcor_status mcor_read_lines(
-  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count);
+  const mcor_gauge_job* job, const mcor_gauge_place* records, int64_t count);
 
 /* mcor_gauge_solve.c. Evaluates entries [first, last) of the job's samples, and appends the
  * results to its records. */

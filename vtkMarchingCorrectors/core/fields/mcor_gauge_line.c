@@ -8,6 +8,7 @@
 
 #include "mcor_box.h"
 #include "mcor_gauge.h"
+#include "mcor_vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,9 +27,9 @@ static double mcor_gauge_length(const mcor_gauge_line* line)
 {
   double way[3], most = 0, sum = 0;
   int exponent;
+  mcor_subtract(line->to, line->from, way);
   for (int a = 0; a < 3; ++a)
   {
-    way[a] = line->to[a] - line->from[a];
     most = fmax(most, fabs(way[a]));
   }
   frexp(most, &exponent);
@@ -57,18 +58,18 @@ mcor_gauge_label mcor_label_gauge(const char* name, int64_t number)
 mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number)
 {
   const mcor_gauge_label label = mcor_label_gauge(line->name, number);
-  const char* which = label.text;
+  const double *from = line->from, *to = line->to, length = mcor_gauge_length(line);
   for (int a = 0; a < 3; ++a)
   {
-    MCOR_RETURN_IF(!isfinite(line->from[a]) || !isfinite(line->to[a]), context,
-      MCOR_INVALID_ARGUMENT,
+    MCOR_RETURN_IF(!isfinite(from[a]) || !isfinite(to[a]), context, MCOR_INVALID_ARGUMENT,
       "Gauge %s has an end that is not finite, (%g, %g, %g) or (%g, %g, %g). Give it two points.",
-      which, line->from[0], line->from[1], line->from[2], line->to[0], line->to[1], line->to[2]);
+      label.text, from[0], from[1], from[2], to[0], to[1], to[2]);
   }
-  const double length = mcor_gauge_length(line);
-  MCOR_RETURN_IF(!(length > 0) || !isfinite(length), context, MCOR_INVALID_ARGUMENT,
-    "Gauge %s has no length: both its ends are at (%g, %g, %g). Give it two points.", which,
-    line->from[0], line->from[1], line->from[2]);
+  MCOR_RETURN_IF(!(length > 0), context, MCOR_INVALID_ARGUMENT,
+    "Gauge %s has no length: both its ends are at (%g, %g, %g). Give it two points.", label.text,
+    from[0], from[1], from[2]);
+  MCOR_RETURN_IF(!isfinite(length), context, MCOR_INVALID_ARGUMENT,
+    "Gauge %s is too long for its length to be a number. Shorten it.", label.text);
   return MCOR_OK;
 }
 
@@ -112,15 +113,13 @@ double mcor_gauge_step(double h_scale, double smoothing_length_min)
 static mcor_status mcor_append_samples(
   mcor_gauge_job* job, const mcor_gauge_samples* whole, int64_t own_first, int64_t own_last)
 {
-  MCOR_TRY(mcor_make_room(job->context, (void**)&job->samples, job->sample_count, &job->sample_room,
-    sizeof *job->samples));
-  mcor_gauge_samples* samples = &job->samples[job->sample_count++];
-  *samples = *whole;
-  samples->begin = whole->first;
-  samples->own_first = own_first;
-  samples->own_last = own_last;
-  samples->first = own_first - 2 > whole->first ? own_first - 2 : whole->first;
-  samples->last = own_last + 2 < whole->last ? own_last + 2 : whole->last;
+  mcor_gauge_samples samples = *whole;
+  samples.begin = whole->first;
+  samples.own_first = own_first;
+  samples.own_last = own_last;
+  samples.first = own_first - 2 > whole->first ? own_first - 2 : whole->first;
+  samples.last = own_last + 2 < whole->last ? own_last + 2 : whole->last;
+  MCOR_APPEND(job->context, &job->samples, samples);
   return MCOR_OK;
 }
 
@@ -166,11 +165,7 @@ static mcor_status mcor_append_owned(mcor_gauge_job* job, const mcor_gauge_sampl
   int64_t begin = -1;
   for (int64_t i = whole->first; i <= whole->last + 1; ++i)
   {
-    const double place = (double)i / (double)whole->steps;
-    for (int a = 0; a < 3; ++a)
-    {
-      point[a] = line->from[a] + place * (line->to[a] - line->from[a]);
-    }
+    mcor_point_between(line->from, line->to, (double)i / (double)whole->steps, point);
     const bool owned = i <= whole->last && mcor_owns_point(job->context, point, cells);
     if (owned && begin < 0)
     {
@@ -238,10 +233,7 @@ static void mcor_read_line(
     r->first = end;
     r->last = isnan(r->last) ? end : r->last;
   }
-  for (int a = 0; a < 3; ++a)
-  {
-    r->place[a] = line->from[a] + r->last * (line->to[a] - line->from[a]);
-  }
+  mcor_point_between(line->from, line->to, r->last, r->place);
   r->first *= length;
   r->last *= length;
   for (int64_t i = 0; i < n; ++i)
@@ -252,17 +244,17 @@ static void mcor_read_line(
 
 static int mcor_compare_records(const void* a, const void* b)
 {
-  const mcor_gauge_record *left = a, *right = b;
+  const mcor_gauge_place *left = a, *right = b;
   return left->line != right->line ? (left->line < right->line ? -1 : 1)
     : left->place != right->place  ? (left->place < right->place ? -1 : 1)
                                    : 0;
 }
 
 mcor_status mcor_read_lines(
-  const mcor_gauge_job* job, const mcor_gauge_record* records, int64_t count)
+  const mcor_gauge_job* job, const mcor_gauge_place* records, int64_t count)
 {
   mcor_gauges* gauges = job->gauges;
-  mcor_gauge_record* sorted = malloc((size_t)(count + 1) * sizeof *sorted);
+  mcor_gauge_place* sorted = malloc((size_t)(count + 1) * sizeof *sorted);
   gauges->readings = calloc((size_t)job->line_count + 1, sizeof *gauges->readings);
   gauges->crossings = calloc((size_t)count + 1, sizeof *gauges->crossings);
   if (!sorted || !gauges->readings || !gauges->crossings)

@@ -10,6 +10,7 @@
  * times that, the part is looked at more finely. */
 
 #include "mcor_gauge.h"
+#include "mcor_vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,39 +25,40 @@
 
 void mcor_free_gauge_parts(mcor_gauge_job* job)
 {
-  free(job->samples);
-  free(job->records);
-  free(job->changed.parts);
-  free(job->suspects.parts);
-  job->samples = NULL;
-  job->records = NULL;
-  job->changed = job->suspects = (mcor_gauge_parts){ 0 };
+  free(job->samples.of);
+  free(job->records.of);
+  free(job->changed.of);
+  free(job->suspects.of);
+  free(job->divided.of);
+  free(job->inner.of);
+  free(job->weights);
 }
 
-/* Evaluates weight sums at places on lines. */
-static mcor_status mcor_gauge_weights(
-  mcor_gauge_job* job, int64_t count, const int64_t* line, const double* place, double* weight)
+/* Evaluates the weight sums at the inner places. */
+static mcor_status mcor_gauge_weights(mcor_gauge_job* job)
 {
   mcor_probe_run* run = job->run;
   double* points = (double*)run->points->data;
-  memset(weight, 0, (size_t)count * sizeof *weight);
+  const int64_t count = job->inner.count;
+  free(job->weights);
+  job->weights = calloc((size_t)count + 1, sizeof *job->weights);
+  MCOR_TRY(mcor_allocated(job->context, job->weights));
   for (int64_t first = 0; first < count; first += MCOR_GAUGE_BATCH)
   {
     const int64_t rest = count - first;
     const int n = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
-    for (int i = 0; i < 3 * n; ++i)
+    for (int i = 0; i < n; ++i)
     {
-      const mcor_gauge_line* l = &job->lines[line[first + i / 3]];
-      const int a = i % 3;
-      points[i] = l->from[a] + place[first + i / 3] * (l->to[a] - l->from[a]);
+      const mcor_gauge_place* at = &job->inner.of[first + i];
+      const mcor_gauge_line* line = &job->lines[at->line];
+      double parameters[3], *point = points + 3 * i;
+      mcor_point_between(line->from, line->to, at->place, job->map ? parameters : point);
+      if (job->map)
+      {
+        job->map(job->map_data, parameters, point);
+      }
     }
-    for (int i = 0; i < n && job->map; ++i)
-    {
-      double at[3];
-      memcpy(at, points + 3 * i, sizeof at);
-      job->map(job->map_data, at, points + 3 * i);
-    }
-    run->samples->weight_sum = weight + first;
+    run->samples->weight_sum = job->weights + first;
     MCOR_TRY(mcor_report_launch(job->context));
     MCOR_TRY(mcor_probe_batch(run, 0, n));
   }
@@ -69,9 +71,8 @@ typedef struct mcor_gauge_row
   int64_t line, count;
   int64_t own_first, own_last; /* see mcor_gauge_samples; counted in this row */
   int64_t before;              /* number of places on the line before this row */
-  double first, step,
-    last; /* first: of the line's first place; step: between places; last: of this row's last place */
-  const double* weight; /* [count] */
+  double first, step, last;    /* the line's first place; between places; this row's last place */
+  const double* weight;        /* [count] */
 } mcor_gauge_row;
 
 static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
@@ -79,51 +80,35 @@ static double mcor_row_place(const mcor_gauge_row* row, int64_t i)
   return i + 1 == row->count ? row->last : row->first + (double)(row->before + i) * row->step;
 }
 
-/* Returns the distance of sample i from the level. */
-static double mcor_row_distance(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
-{
-  return fabs(row->weight[i] - job->level);
-}
-
-static bool mcor_row_above(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
-{
-  return row->weight[i] >= job->level;
-}
-
 static mcor_status mcor_append_part(const mcor_gauge_job* job, mcor_gauge_parts* parts,
   const mcor_gauge_row* row, int64_t low, int64_t high)
 {
-  MCOR_TRY(mcor_make_room(
-    job->context, (void**)&parts->parts, parts->count, &parts->capacity, sizeof *parts->parts));
-  parts->parts[parts->count++] = (mcor_gauge_part){ .line = row->line,
-    .low = mcor_row_place(row, low),
-    .high = mcor_row_place(row, high),
-    .low_weight = row->weight[low],
-    .high_weight = row->weight[high] };
+  MCOR_APPEND(job->context, parts,
+    (mcor_gauge_part){ row->line, mcor_row_place(row, low), mcor_row_place(row, high),
+      row->weight[low], row->weight[high] });
   return MCOR_OK;
 }
 
 /* Whether the weight sum may pass the level and come back next to sample i. Sample i must be
  * nearer to the level than its neighbours, and on their side of it. */
-static bool mcor_row_suspect(const mcor_gauge_job* job, const mcor_gauge_row* row, int64_t i)
+static bool mcor_row_suspect(double level, const mcor_gauge_row* row, int64_t i)
 {
   const int64_t last = row->count - 1, at = i == 0 ? 1 : i == last ? last - 1 : i;
-  const double here = mcor_row_distance(job, row, i);
-  const bool side = mcor_row_above(job, row, i);
+  const double *weight = row->weight, here = fabs(weight[i] - level);
   double most = 0;
   for (int64_t j = i - 1; j <= i + 1; j += 2)
   {
     if (j >= 0 && j <= last)
     {
-      const double there = mcor_row_distance(job, row, j);
-      if (mcor_row_above(job, row, j) != side || there < here || (there == here && j < i))
+      const double there = fabs(weight[j] - level);
+      if ((weight[j] >= level) != (weight[i] >= level) || there < here || (there == here && j < i))
       {
         return false;
       }
       most = fmax(most, there - here);
     }
   }
-  const double bend = row->weight[at - 1] - 2 * row->weight[at] + row->weight[at + 1];
+  const double bend = weight[at - 1] - 2 * weight[at] + weight[at + 1];
   return here <= MCOR_GAUGE_NEAR * fmax(most, fabs(bend)) && (most > 0 || bend != 0);
 }
 
@@ -135,7 +120,7 @@ static mcor_status mcor_scan_row(
   *found = false;
   for (int64_t i = row->own_first; i <= row->own_last && i + 1 < row->count; ++i)
   {
-    if (mcor_row_above(job, row, i) != mcor_row_above(job, row, i + 1))
+    if ((row->weight[i] >= job->level) != (row->weight[i + 1] >= job->level))
     {
       *found = true;
       MCOR_TRY(mcor_append_part(job, &job->changed, row, i, i + 1));
@@ -143,54 +128,13 @@ static mcor_status mcor_scan_row(
   }
   for (int64_t i = row->own_first; i <= row->own_last && suspects; ++i)
   {
-    if (mcor_row_suspect(job, row, i))
+    if (mcor_row_suspect(job->level, row, i))
     {
       const int64_t low = i > 0 ? i - 1 : 0, high = i + 1 < row->count ? i + 1 : i;
       MCOR_TRY(mcor_append_part(job, suspects, row, low, high));
     }
   }
   return MCOR_OK;
-}
-
-/* Weight sums inside of parts, at count - 1 places between the ends of each. Free with
- * mcor_free_inner. */
-typedef struct mcor_gauge_inner
-{
-  double *place, *weight;
-  int64_t* line;
-} mcor_gauge_inner;
-
-static void mcor_free_inner(mcor_gauge_inner* inner)
-{
-  free(inner->place);
-  free(inner->weight);
-  free(inner->line);
-}
-
-static mcor_status mcor_make_inner(const mcor_gauge_job* job, int64_t n, mcor_gauge_inner* inner)
-{
-  inner->place = calloc((size_t)(n + 1), sizeof *inner->place);
-  inner->weight = malloc((size_t)(n + 1) * sizeof *inner->weight);
-  inner->line = calloc((size_t)(n + 1), sizeof *inner->line);
-  MCOR_TRY(mcor_allocated(job->context, inner->place && inner->weight && inner->line));
-  return MCOR_OK;
-}
-
-static mcor_status mcor_evaluate_inner(
-  mcor_gauge_job* job, const mcor_gauge_parts* parts, int count, mcor_gauge_inner* inner)
-{
-  const int64_t n = parts->count * (count - 1);
-  MCOR_TRY(mcor_make_inner(job, n, inner));
-  for (int64_t p = 0, at = 0; p < parts->count; ++p)
-  {
-    const mcor_gauge_part* part = &parts->parts[p];
-    for (int i = 1; i < count; ++i, ++at)
-    {
-      inner->line[at] = part->line;
-      inner->place[at] = part->low + (part->high - part->low) * i / count;
-    }
-  }
-  return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
 }
 
 /* Divides parts into sections, and replaces them by the sections with a crossing or a suspect
@@ -201,83 +145,60 @@ static mcor_status mcor_look_closer(
 {
   const bool suspects = parts == &job->suspects;
   const mcor_gauge_parts whole = *parts;
-  mcor_gauge_inner inner = { 0 };
-  *parts = (mcor_gauge_parts){ 0 };
-  mcor_status status = mcor_evaluate_inner(job, &whole, sections, &inner);
-  for (int64_t p = 0; p < whole.count && status == MCOR_OK; ++p)
+  *parts = job->divided;
+  job->divided = whole;
+  parts->count = job->inner.count = 0;
+  for (int64_t p = 0; p < whole.count; ++p)
   {
-    const mcor_gauge_part* part = &whole.parts[p];
+    const mcor_gauge_part* part = &whole.of[p];
+    for (int i = 1; i < sections; ++i)
+    {
+      MCOR_APPEND(job->context, &job->inner,
+        (mcor_gauge_place){ part->line, part->low + (part->high - part->low) * i / sections });
+    }
+  }
+  MCOR_TRY(mcor_gauge_weights(job));
+  for (int64_t p = 0; p < whole.count; ++p)
+  {
+    const mcor_gauge_part* part = &whole.of[p];
     double weight[MCOR_GAUGE_FINER + 1];
     weight[0] = part->low_weight;
-    memcpy(weight + 1, inner.weight + p * (sections - 1), (size_t)(sections - 1) * sizeof *weight);
+    memcpy(weight + 1, job->weights + p * (sections - 1), (size_t)(sections - 1) * sizeof *weight);
     weight[sections] = part->high_weight;
     const mcor_gauge_row row = { part->line, sections + 1, 0, sections, 0, part->low,
       (part->high - part->low) / sections, part->high, weight };
     const int64_t before = parts->count;
     bool found = false;
-    status = mcor_scan_row(job, &row, suspects ? parts : NULL, &found);
+    MCOR_TRY(mcor_scan_row(job, &row, suspects ? parts : NULL, &found));
     if (found && (suspects || one))
     {
       parts->count = suspects ? before : before + 1;
     }
   }
-  mcor_free_inner(&inner);
-  free(whole.parts);
-  return status;
-}
-
-/* Evaluates the weight sums at samples of lines, line after line. */
-static mcor_status mcor_evaluate_samples(
-  mcor_gauge_job* job, int64_t first, int64_t last, mcor_gauge_inner* inner)
-{
-  int64_t n = 0;
-  for (int64_t l = first; l < last; ++l)
-  {
-    n += job->samples[l].last - job->samples[l].first + 1;
-  }
-  MCOR_TRY(mcor_make_inner(job, n, inner));
-  n = 0;
-  for (int64_t l = first; l < last; ++l)
-  {
-    const mcor_gauge_samples* samples = &job->samples[l];
-    for (int64_t i = samples->first; i <= samples->last; ++i, ++n)
-    {
-      inner->line[n] = samples->line;
-      inner->place[n] = (double)i / (double)samples->steps;
-    }
-  }
-  return mcor_gauge_weights(job, n, inner->line, inner->place, inner->weight);
-}
-
-static mcor_status mcor_append_record(mcor_gauge_job* job, int64_t line, double place)
-{
-  MCOR_TRY(mcor_make_room(job->context, (void**)&job->records, job->record_count, &job->record_room,
-    sizeof *job->records));
-  job->records[job->record_count++] = (mcor_gauge_record){ line, place };
   return MCOR_OK;
 }
 
+/* Appends the parts and records that samples of a line show. weight: the sums there. */
 static mcor_status mcor_scan_samples(
-  mcor_gauge_job* job, int64_t first, int64_t last, const mcor_gauge_inner* inner)
+  mcor_gauge_job* job, const mcor_gauge_samples* s, const double* weight)
 {
-  int64_t at = 0;
-  for (int64_t l = first; l < last; ++l)
+  const double begin = (double)s->begin / (double)s->steps, step = 1 / (double)s->steps;
+  const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
+    s->own_last - s->first, s->first - s->begin, begin, step,
+    begin + (double)(s->last - s->begin) * step, weight };
+  bool found, reached = false;
+  MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
+  for (int64_t i = row.own_first; i <= row.own_last; ++i)
   {
-    const mcor_gauge_samples* s = &job->samples[l];
-    const double begin = (double)s->begin / (double)s->steps, step = 1 / (double)s->steps;
-    const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
-      s->own_last - s->first, s->first - s->begin, begin, step,
-      begin + (double)(s->last - s->begin) * step, inner->weight + at };
-    bool found, reached = false;
-    MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
-    for (int64_t i = row.own_first; i <= row.own_last; ++i)
-    {
-      reached = reached || row.weight[i] != 0;
-    }
-    MCOR_TRY(reached ? mcor_append_record(job, s->line, MCOR_GAUGE_REACHED) : MCOR_OK);
-    const bool ends_in = s->own_last == s->steps && mcor_row_above(job, &row, row.own_last);
-    MCOR_TRY(ends_in ? mcor_append_record(job, s->line, MCOR_GAUGE_ENDS_IN) : MCOR_OK);
-    at += row.count;
+    reached = reached || weight[i] != 0;
+  }
+  if (reached)
+  {
+    MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
+  }
+  if (s->own_last == s->steps && weight[row.own_last] >= job->level)
+  {
+    MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
   }
   return MCOR_OK;
 }
@@ -301,12 +222,24 @@ mcor_status mcor_solve_crossings(mcor_gauge_job* job, int rounds, bool one)
 
 mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t last)
 {
-  mcor_gauge_inner inner = { 0 };
-  job->changed.count = job->suspects.count = 0;
-  mcor_status status = mcor_evaluate_samples(job, first, last, &inner);
-  status = status == MCOR_OK ? mcor_scan_samples(job, first, last, &inner) : status;
-  mcor_free_inner(&inner);
-  MCOR_TRY(status);
+  job->changed.count = job->suspects.count = job->inner.count = 0;
+  for (int64_t l = first; l < last; ++l)
+  {
+    const mcor_gauge_samples* s = &job->samples.of[l];
+    for (int64_t i = s->first; i <= s->last; ++i)
+    {
+      MCOR_APPEND(
+        job->context, &job->inner, (mcor_gauge_place){ s->line, (double)i / (double)s->steps });
+    }
+  }
+  MCOR_TRY(mcor_gauge_weights(job));
+  const double* weight = job->weights;
+  for (int64_t l = first; l < last; ++l)
+  {
+    const mcor_gauge_samples* s = &job->samples.of[l];
+    MCOR_TRY(mcor_scan_samples(job, s, weight));
+    weight += s->last - s->first + 1;
+  }
   for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
   {
     MCOR_TRY(mcor_look_closer(job, &job->suspects, MCOR_GAUGE_FINER, false));
@@ -314,8 +247,9 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
   MCOR_TRY(mcor_solve_crossings(job, MCOR_GAUGE_SOLVE_ROUNDS, false));
   for (int64_t p = 0; p < job->changed.count; ++p)
   {
-    const mcor_gauge_part* part = &job->changed.parts[p];
-    MCOR_TRY(mcor_append_record(job, part->line, mcor_crossing_of(job, part)));
+    const mcor_gauge_part* part = &job->changed.of[p];
+    MCOR_APPEND(
+      job->context, &job->records, (mcor_gauge_place){ part->line, mcor_crossing_of(job, part) });
   }
   return MCOR_OK;
 }

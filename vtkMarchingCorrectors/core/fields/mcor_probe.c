@@ -374,6 +374,11 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   mcor_release_probe(run);
   mcor_keep_attributes(context, input, samples);
   MCOR_TRY(status);
+  return mcor_finish_field(context);
+}
+
+mcor_status mcor_finish_field(mcor_context* context)
+{
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   return mcor_finish_statistics(context);
 }
@@ -384,16 +389,15 @@ static mcor_status mcor_run_probe(
 {
   mcor_probe_run run = *(const mcor_probe_run*)data;
   const mcor_plane* plane = &context->plane;
-  run.input = input;
-  if (!mcor_is_plane(context) || run.point_count == 0)
-  {
-    return mcor_probe_points(&run, options);
-  }
   mcor_samples* s = run.samples;
   mcor_array points = { 0 };
   double* flat = NULL;
-  MCOR_TRY(mcor_flatten_points(context, run.points, run.point_count, &points, &flat));
-  run.points = &points;
+  run.input = input;
+  if (mcor_is_plane(context) && run.point_count > 0)
+  {
+    MCOR_TRY(mcor_flatten_points(context, run.points, run.point_count, &points, &flat));
+    run.points = &points;
+  }
   const mcor_status status = mcor_probe_points(&run, options);
   free(flat);
   MCOR_TRY(status);

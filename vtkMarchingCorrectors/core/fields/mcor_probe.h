@@ -33,5 +33,7 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
 /* mcor_probe.c. Evaluates the attributes on the device at points [first, last). */
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last);
 void mcor_release_probe(mcor_probe_run* run);
+/* Ends a call without a surface. */
+mcor_status mcor_finish_field(mcor_context* context);
 
 #endif

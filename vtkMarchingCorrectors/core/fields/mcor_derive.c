@@ -201,9 +201,8 @@ static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
     { &run->slopes, n * 3 * arrays * real, &views[2] } };
   mcor_status status = mcor_map_all(context, mappings, 3);
   mcor_derive_job job = { run, views[0], views[1], views[2] };
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL)
-    : status;
+  MCOR_THEN(status,
+    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL));
   return mcor_unmap_all(context, mappings, 3, status);
 }
 
@@ -260,21 +259,15 @@ static mcor_status mcor_make_derivatives(
   d->gradients = calloc(arrays + 1, sizeof(double*));
   d->corrected = calloc(n + 1, 1);
   d->attribute_not_finite = calloc(arrays + 1, sizeof(int64_t));
-  bool complete = d->gradients && d->corrected && d->attribute_not_finite;
-  if (complete)
-  {
-    MCOR_TRY(mcor_list_components(context, input, false, d->attribute_not_finite));
-  }
-  for (int a = 0; a < input->attribute_count && complete; ++a)
+  MCOR_TRY(mcor_allocated(context, d->gradients && d->corrected && d->attribute_not_finite));
+  MCOR_TRY(mcor_list_components(context, input, false, d->attribute_not_finite));
+  for (int a = 0; a < input->attribute_count; ++a)
   {
     const size_t width = (size_t)mcor_components(&input->attributes[a]);
-    if (d->attribute_not_finite[a] < 0)
-    {
-      d->gradients[a] = calloc(n + 1, 3 * width * sizeof(double));
-      complete = d->gradients[a] != NULL;
-    }
+    const bool some = d->attribute_not_finite[a] < 0;
+    d->gradients[a] = some ? calloc(n + 1, 3 * width * sizeof(double)) : NULL;
+    MCOR_TRY(mcor_allocated(context, !some || d->gradients[a]));
   }
-  MCOR_TRY(mcor_allocated(context, complete));
   return MCOR_OK;
 }
 
@@ -292,10 +285,7 @@ static mcor_status mcor_run_derive(
   {
     return MCOR_OK;
   }
-  if (mcor_has_box(options))
-  {
-    mcor_bound_by_box(context, options);
-  }
+  mcor_bound_by_box(context, options);
   MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
@@ -306,8 +296,7 @@ static mcor_status mcor_run_derive(
     mcor_unflatten_doubles(&context->plane, derivatives->gradients[a],
       input->count * mcor_components(&input->attributes[a]), 0);
   }
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-  return mcor_finish_statistics(context);
+  return mcor_finish_field(context);
 }
 
 mcor_status mcor_derive(mcor_context* context, const mcor_input* input, const mcor_options* options,

@@ -169,9 +169,8 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
     { &run->gradients, n * 3 * arrays * real, &job.views.gradients } };
   const int count = run->samples->weight_gradient ? 5 : 3;
   mcor_status status = mcor_map_all(context, views, count);
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL)
-    : status;
+  MCOR_THEN(status,
+    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL));
   return mcor_unmap_all(context, views, count, status);
 }
 
@@ -293,44 +292,22 @@ static void* mcor_zeros(size_t count, size_t size)
   return calloc(count + 1, size);
 }
 
-/* Allocates the results. Points that no particle reaches keep the zeros. */
+/* Lists the components of the attributes, and allocates the results. Points that no particle
+ * reaches keep the zeros. */
 static mcor_status mcor_make_samples(
   mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
 {
-  const size_t n = (size_t)s->count;
+  const size_t n = (size_t)s->count, arrays = (size_t)input->attribute_count;
   s->weight_sum = mcor_zeros(n, sizeof(double));
   s->valid = mcor_zeros(n, 1);
   s->weight_gradient = gradients ? mcor_zeros(n, 3 * sizeof(double)) : NULL;
-  bool complete = s->weight_sum && s->valid && (s->weight_gradient || !gradients);
-  for (int a = 0; a < input->attribute_count && complete; ++a)
-  {
-    if (s->attribute_not_finite[a] >= 0)
-    {
-      continue;
-    }
-    const size_t width = (size_t)mcor_components(&input->attributes[a]);
-    s->values[a] = mcor_zeros(n, width * sizeof(double));
-    complete = s->values[a] != NULL;
-    if (gradients && complete)
-    {
-      s->gradients[a] = mcor_zeros(n, 3 * width * sizeof(double));
-      complete = s->gradients[a] != NULL;
-    }
-  }
-  return mcor_allocated(context, complete);
-}
-
-/* Allocates the tables of the attributes, and lists their components. */
-static mcor_status mcor_make_tables(
-  mcor_context* context, const mcor_input* input, bool gradients, mcor_samples* s)
-{
-  const size_t arrays = (size_t)input->attribute_count;
   s->values = mcor_zeros(arrays, sizeof(double*));
   s->gradients = gradients ? mcor_zeros(arrays, sizeof(double*)) : NULL;
   s->attribute_not_finite = mcor_zeros(arrays, sizeof(int64_t));
   s->attribute_count = input->attribute_count;
-  MCOR_TRY(
-    mcor_allocated(context, s->values && (s->gradients || !gradients) && s->attribute_not_finite));
+  MCOR_TRY(mcor_allocated(context,
+    s->weight_sum && s->valid && s->values && s->attribute_not_finite &&
+      (!gradients || (s->weight_gradient && s->gradients))));
   if (!context->kept.grid || !mcor_same_particles(input, &context->kept.input) ||
     context->run.options->globals || input->attribute_count != context->kept.input.attribute_count)
   {
@@ -340,9 +317,22 @@ static mcor_status mcor_make_tables(
   {
     s->attribute_not_finite[a] = -1;
   }
-  return mcor_has_attributes(context, input)
-    ? MCOR_OK
-    : mcor_list_components(context, input, false, s->attribute_not_finite);
+  if (!mcor_has_attributes(context, input))
+  {
+    MCOR_TRY(mcor_list_components(context, input, false, s->attribute_not_finite));
+  }
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const size_t width = (size_t)mcor_components(&input->attributes[a]);
+    const bool some = s->attribute_not_finite[a] < 0;
+    s->values[a] = some ? mcor_zeros(n, width * sizeof(double)) : NULL;
+    if (some && gradients)
+    {
+      s->gradients[a] = mcor_zeros(n, 3 * width * sizeof(double));
+    }
+    MCOR_TRY(mcor_allocated(context, !some || (s->values[a] && (!gradients || s->gradients[a]))));
+  }
+  return MCOR_OK;
 }
 
 static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* options)
@@ -354,17 +344,12 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   mcor_free_samples(samples); /* results of an earlier attempt */
   samples->count = run->point_count;
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_TRY(mcor_make_tables(context, input, gradients, samples));
   MCOR_TRY(mcor_make_samples(context, input, gradients, samples));
   if (input->count == 0 || samples->count == 0)
   {
     return MCOR_OK;
   }
-  if (mcor_has_box(options))
-  {
-    mcor_bound_by_box(context, options);
-  }
-  else
+  if (!mcor_bound_by_box(context, options))
   {
     mcor_bound_probe(context, run->points, samples->count, input->particles_version == 0);
   }

@@ -24,8 +24,9 @@ typedef struct mcor_probe_run
 
 /* mcor_probe_points.c. Limits the particles used to those near the caller's finite points. */
 void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count, bool alone);
-/* Limits the particles used to those near options->box, which holds the caller's points. */
-void mcor_bound_by_box(mcor_context* context, const mcor_options* options);
+/* Limits the particles used to those near options->box, which holds the caller's points. Returns
+ * false if there is no box. */
+bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
 /* Writes the caller's points [first, last) to the device. */
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);

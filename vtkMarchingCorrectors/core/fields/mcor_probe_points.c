@@ -22,10 +22,14 @@ void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t c
   context->box.of_points = alone || context->run.far;
 }
 
-void mcor_bound_by_box(mcor_context* context, const mcor_options* options)
+bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
 {
+  if (!mcor_has_box(options))
+  {
+    return false;
+  }
   memcpy(context->box.points, options->box, sizeof options->box);
-  context->box.of_points = true;
+  return context->box.of_points = true;
 }
 
 /* Points of a batch during upload, and the results of each slice of them. */
@@ -83,31 +87,12 @@ static void mcor_read_points(
   }
 }
 
-/* Writes the node and the offset of a point; the node is -1 if no particle may reach it. Returns
- * whether one may. */
-static bool mcor_put_point(
-  const mcor_point_job* job, int64_t i, const double at[3][MCOR_CHUNK], int in_chunk)
-{
-  const mcor_lattice* lattice = &job->run->context->lattice;
-  bool located = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double x = at[a][in_chunk];
-    located = located && x >= (double)lattice->first[a] && x <= (double)lattice->last[a];
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    const double x = located ? at[a][in_chunk] : -1;
-    const cl_int node = (cl_int)x;
-    ((cl_int*)job->node)[4 * i + a] = node;
-    mcor_put_real(job->run->context, job->offset, 4 * i + a, x - node);
-  }
-  return located;
-}
-
+/* Writes nodes and offsets of points; the node is -1 if no particle may reach the point. */
 static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_point_job* job = data;
+  const mcor_context* context = job->run->context;
+  const mcor_lattice* lattice = &context->lattice;
   cl_int low[3] = { CL_INT_MAX, CL_INT_MAX, CL_INT_MAX }, high[3] = { 0 };
   double at[3][MCOR_CHUNK];
   int inside = 0;
@@ -117,13 +102,21 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
     mcor_read_points(job->run, begin, count, at);
     for (int i = 0; i < count; ++i)
     {
-      const bool located = mcor_put_point(job, begin + i, (const double(*)[MCOR_CHUNK])at, i);
-      const cl_int* node = (const cl_int*)job->node + 4 * (begin + i);
+      bool located = true;
+      for (int a = 0; a < 3; ++a)
+      {
+        const double x = at[a][i];
+        located = located && x >= (double)lattice->first[a] && x <= (double)lattice->last[a];
+      }
       inside += located;
       for (int a = 0; a < 3; ++a)
       {
-        low[a] = located && node[a] < low[a] ? node[a] : low[a];
-        high[a] = node[a] > high[a] ? node[a] : high[a];
+        const double x = located ? at[a][i] : -1;
+        const cl_int node = (cl_int)x;
+        ((cl_int*)job->node)[4 * (begin + i) + a] = node;
+        mcor_put_real(context, job->offset, 4 * (begin + i) + a, x - node);
+        low[a] = located && node < low[a] ? node : low[a];
+        high[a] = node > high[a] ? node : high[a];
       }
     }
   }
@@ -162,15 +155,13 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
     { &run->batch.in_offset, n * 4 * real, &job.offset } };
   MCOR_TRY(mcor_reserve(context, &run->batch.in_node, views[0].bytes));
   MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, views[1].bytes));
-  mcor_status status = mcor_map(context, views[0].buffer, views[0].bytes, true, &job.node);
-  status = status == MCOR_OK ? mcor_map(context, views[1].buffer, views[1].bytes, true, &job.offset)
-                             : status;
+  int slices = 0;
   run->first = first;
   run->count = (int)n;
-  int slices = 0;
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices)
-    : status;
+  mcor_status status = mcor_map(context, views[0].buffer, views[0].bytes, true, &job.node);
+  MCOR_THEN(status, mcor_map(context, views[1].buffer, views[1].bytes, true, &job.offset));
+  MCOR_THEN(status,
+    mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices));
   mcor_bound_points(run, &job, slices);
   return mcor_unmap_all(context, views, 2, status);
 }

@@ -55,31 +55,18 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   {
     for (int a = 0; a < 3; ++a)
     {
-      sight[a] /= largest;
+      axes[2][a] = sight[a] / largest;
     }
-    const double length = sqrt(mcor_dot(sight, sight));
-    for (int a = 0; a < 3; ++a)
-    {
-      axes[2][a] = sight[a] / length;
-    }
+    mcor_normalise(axes[2]);
     const int up = fabs(axes[2][2]) > 0.9 ? 1 : 2;
-    double rest = 0;
     for (int a = 0; a < 3; ++a)
     {
       axes[1][a] = (a == up) - axes[2][up] * axes[2][a];
-      rest += axes[1][a] * axes[1][a];
     }
-    for (int a = 0; a < 3; ++a)
-    {
-      axes[1][a] /= sqrt(rest);
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      const int b = (a + 1) % 3, c = (a + 2) % 3;
-      axes[0][a] = axes[1][b] * axes[2][c] - axes[1][c] * axes[2][b];
-    }
+    mcor_normalise(axes[1]);
+    mcor_cross(axes[1], axes[2], axes[0]);
   }
-  MCOR_RETURN_IF(job->is_plane && axes[2][mcor_plane_axis(plane, 2)] != 1, context,
+  MCOR_RETURN_IF(mcor_is_plane(context) && axes[2][mcor_plane_axis(plane, 2)] != 1, context,
     MCOR_INVALID_ARGUMENT,
     "The particles lie in a plane of constant %c, so they can be projected along %c alone.",
     mcor_axis_letter(context, 2), mcor_axis_letter(context, 2));
@@ -94,9 +81,8 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
-  double *low = job->low[slice], *high = job->high[slice], *h_range = job->h_range[slice];
-  double reach[6];
-  for (int k = 0; k < 6; ++k)
+  double *low = job->low[slice], *high = job->high[slice], reach[7];
+  for (int k = 0; k < 7; ++k)
   {
     const double unit[3] = { k == 3, k == 4, k == 5 };
     reach[k] = k == 2
@@ -105,8 +91,6 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
     low[k] = DBL_MAX;
     high[k] = -DBL_MAX;
   }
-  h_range[0] = DBL_MAX;
-  h_range[1] = -DBL_MAX;
   mcor_project_chunk chunk;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
@@ -121,7 +105,7 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
         high[k] = fmax(high[k], at + reach[k] * chunk.h[i]);
       }
     }
-    mcor_widen_range(chunk.h, chunk.count, &h_range[0], &h_range[1]);
+    mcor_widen_range(chunk.h, chunk.count, &low[6], &high[6]);
   }
 }
 
@@ -134,7 +118,8 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
   mcor_statistics* s = context->run.statistics;
   const double* periodic = context->run.options->periodic;
   const int w = mcor_plane_axis(&context->plane, 2);
-  double low[7], high[7]; /* the last of h */
+  const double support = mcor_support_factor(context->run.options->sph_kernel);
+  double low[7], high[7];
   bool is_bounded = false, is_given = false;
   int slices;
   MCOR_TRY(mcor_parallel_run(
@@ -145,8 +130,8 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
     high[k] = -DBL_MAX;
     for (int i = 0; i < slices; ++i)
     {
-      low[k] = fmin(low[k], k < 6 ? job->low[i][k] : job->h_range[i][0]);
-      high[k] = fmax(high[k], k < 6 ? job->high[i][k] : job->h_range[i][1]);
+      low[k] = fmin(low[k], job->low[i][k]);
+      high[k] = fmax(high[k], job->high[i][k]);
     }
   }
   MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 7));
@@ -165,24 +150,21 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
       "The box along %c goes from %g to %g; the first must be lower than the second.", 'x' + axis,
       from, to);
     job->period[a] = periodic[2 * a + 1] - periodic[2 * a];
-    MCOR_RETURN_IF(job->period[a] > 0 && high[6] > 0 &&
-        high[6] * mcor_support_factor(context->run.options->sph_kernel) >
-          MCOR_MOST_PERIODS * job->period[a],
-      context, MCOR_INVALID_ARGUMENT,
-      "The period along %c is %g, too short for support radii of up to %g. Correct the period, or "
-      "the smoothing "
-      "lengths.",
-      'x' + axis, job->period[a], high[6] * mcor_support_factor(context->run.options->sph_kernel));
     const bool is_periodic = job->period[a] > 0;
-    const bool is_across_plane = job->is_plane && a == 2;
-    job->box[2 * a] = is_across_plane ? -INFINITY
-      : isfinite(from)                ? from
-      : is_periodic                   ? periodic[2 * a]
-                                      : -INFINITY;
-    job->box[2 * a + 1] = is_across_plane ? INFINITY
-      : isfinite(to)                      ? to
-      : is_periodic                       ? periodic[2 * a + 1]
-                                          : INFINITY;
+    MCOR_RETURN_IF(is_periodic && high[6] * support > MCOR_MOST_PERIODS * job->period[a], context,
+      MCOR_INVALID_ARGUMENT,
+      "The period along %c is %g, too short for support radii of up to %g. Correct the period, or "
+      "the smoothing lengths.",
+      'x' + axis, job->period[a], high[6] * support);
+    const bool is_open = a >= context->space.axes; /* across the plane */
+    job->box[2 * a] = is_open ? -INFINITY
+      : isfinite(from)        ? from
+      : is_periodic           ? periodic[2 * a]
+                              : -INFINITY;
+    job->box[2 * a + 1] = is_open ? INFINITY
+      : isfinite(to)              ? to
+      : is_periodic               ? periodic[2 * a + 1]
+                                  : INFINITY;
     is_bounded = is_bounded || isfinite(job->box[2 * a]) || isfinite(job->box[2 * a + 1]);
     MCOR_RETURN_IF(
       is_periodic && job->box[2 * a + 1] - job->box[2 * a] > MCOR_MOST_IMAGES * job->period[a],
@@ -239,10 +221,7 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
     mcor_check_reuse(context, input, options); /* kept data may be of other particles */
     return MCOR_OK;
   }
-  if (mcor_has_box(options))
-  {
-    mcor_bound_by_box(context, options);
-  }
+  mcor_bound_by_box(context, options);
   if (input->count == 0)
   {
     return MCOR_OK;
@@ -275,7 +254,6 @@ static mcor_status mcor_run_project(
     .input = input,
     .view = view,
     .out = job->out,
-    .is_plane = context->space.flat,
     .places_only = job->places_only,
     .h_scale = options->h_scale,
     .channels = view->weight.data ? 2 : 1 };

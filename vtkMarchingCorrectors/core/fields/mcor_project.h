@@ -8,6 +8,7 @@
 #include "mcor_column.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_vector.h"
 
 /* A particle, or a periodic image of it, in the pixels of the call. */
 typedef struct mcor_splat
@@ -33,11 +34,10 @@ typedef struct mcor_project_job
   mcor_projection* out;
   double axes[3][3]; /* out->axes, turned as the particles are */
   bool is_aligned;   /* the axes are along those of the particles */
-  bool is_plane;
-  bool places_only; /* no values are wanted */
-  double box[6];    /* turned; sides that are not given are infinite */
-  double period[3]; /* 0: open */
-  double* volumes;  /* computed volumes; else NULL */
+  bool places_only;  /* no values are wanted */
+  double box[6];     /* turned; sides that are not given are infinite */
+  double period[3];  /* 0: open */
+  double* volumes;   /* computed volumes; else NULL */
   double h_scale;
   mcor_column column;
   int channels; /* 2: a mean */
@@ -51,10 +51,9 @@ typedef struct mcor_project_job
   int64_t* listed; /* indices of the splats that reach each band */
   int64_t first_listed[MCOR_SLICES + 1];
   mcor_brush brushes[MCOR_SLICES];
-  /* Findings of each slice. */
-  double low[MCOR_SLICES][6], high[MCOR_SLICES][6]; /* along the axes of the image, then x, y, z */
+  /* Findings of each slice: ranges along the axes of the image, along x, y, z, and of h. */
+  double low[MCOR_SLICES][7], high[MCOR_SLICES][7];
   double most[MCOR_SLICES][2];
-  double h_range[MCOR_SLICES][2];
   int64_t wrong[MCOR_SLICES];
 } mcor_project_job;
 
@@ -70,11 +69,6 @@ typedef struct mcor_project_chunk
 static inline bool mcor_projects_density(const mcor_input* input)
 {
   return !input->scalar.data;
-}
-
-static inline double mcor_dot(const double a[3], const double b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* mcor_project_spread.c. Reads at most MCOR_CHUNK particles, with or without amounts. */

@@ -6,6 +6,7 @@
  * same for all, and the rest to a multiple of a second one. Sums are therefore exact: they have
  * the same bits in any order, for any number of threads and ranks. */
 
+#include "mcor_plane.h"
 #include "mcor_project.h"
 #include "mcor_ranks.h"
 
@@ -447,8 +448,8 @@ mcor_status mcor_spread_particles(mcor_project_job* job)
   job->sums = calloc(pixels, 2 * (size_t)job->channels * sizeof(double));
   job->splats_before = malloc(((size_t)blocks + 1) * sizeof(int64_t));
   MCOR_TRY(mcor_allocated(job->context, out->values && job->sums && job->splats_before));
-  MCOR_TRY(mcor_make_column(job->context, job->context->run.options->sph_kernel, job->is_plane,
-    job->axes, least_pixel, &job->column));
+  MCOR_TRY(mcor_make_column(job->context, job->context->run.options->sph_kernel,
+    mcor_is_plane(job->context), job->axes, least_pixel, &job->column));
   MCOR_TRY(mcor_count_splats(job, blocks));
   MCOR_TRY(mcor_spread_all(job, blocks));
   return mcor_finish_image(job);

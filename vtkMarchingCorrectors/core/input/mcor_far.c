@@ -156,7 +156,7 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
     job->centre[a] = mcor_median_of(x, samples.count);
   }
   MCOR_TRY(mcor_mark_far(context, job));
-  const int64_t share = job->all.used / MCOR_FAR_SHARE;
+  const int64_t own = far->first, share = job->all.used / MCOR_FAR_SHARE;
   far->count = job->all.absent;
   *good = far->count > 0 && far->count <= (share > MCOR_FAR_FEW ? share : MCOR_FAR_FEW) &&
     2 * far->count < job->all.used && job->all.fluid > 0;
@@ -165,7 +165,6 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
     return MCOR_OK;
   }
   /* The place is that of a rank whose first one has the least number of all. */
-  const int64_t own = far->first;
   MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &far->first));
   bool is_mine = own == far->first;
   for (int a = 0; a < 3; ++a)

@@ -15,7 +15,7 @@ int mcor_is_given(const mcor_array* array)
   return array->data || array->constant != 0;
 }
 
-/* Compilers vectorise these loops because the stride is known. */
+/* Compilers vectorise this loop where the stride is known. */
 static inline void mcor_read_floats(const float* data, int64_t stride, int count, double* out)
 {
   for (int i = 0; i < count; ++i)
@@ -24,41 +24,25 @@ static inline void mcor_read_floats(const float* data, int64_t stride, int count
   }
 }
 
-static inline void mcor_read_doubles(const double* data, int64_t stride, int count, double* out)
-{
-  for (int i = 0; i < count; ++i)
-  {
-    out[i] = data[i * stride];
-  }
-}
-
 void mcor_read_array(const mcor_array* array, int64_t first, int count, int component, double* out)
 {
   const int64_t stride = mcor_components(array), begin = first * stride + component;
   const float* floats = array->data;
   const double* doubles = array->data;
-  if (!array->data)
+  if (array->data && array->type != MCOR_FLOAT64)
   {
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] = array->constant;
-    }
+    stride == 1     ? mcor_read_floats(floats + begin, 1, count, out)
+      : stride == 3 ? mcor_read_floats(floats + begin, 3, count, out)
+                    : mcor_read_floats(floats + begin, stride, count, out);
+    return;
   }
-  else if (array->type == MCOR_FLOAT64)
+  for (int i = 0; i < count && array->data; ++i)
   {
-    mcor_read_doubles(doubles + begin, stride, count, out);
+    out[i] = doubles[begin + i * stride];
   }
-  else if (stride == 1)
+  for (int i = 0; i < count && !array->data; ++i)
   {
-    mcor_read_floats(floats + begin, 1, count, out);
-  }
-  else if (stride == 3)
-  {
-    mcor_read_floats(floats + begin, 3, count, out);
-  }
-  else
-  {
-    mcor_read_floats(floats + begin, stride, count, out);
+    out[i] = array->constant;
   }
 }
 
@@ -182,31 +166,24 @@ void mcor_measure_component(mcor_context* context, const mcor_input* input, int 
 
 typedef struct mcor_legal_job
 {
-  const mcor_array* array;
+  mcor_array values; /* all components, one after the other */
   bool positive;
   bool illegal[MCOR_SLICES];
 } mcor_legal_job;
 
-/* Written to be vectorised. */
 static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_legal_job* job = data;
   const bool positive = job->positive;
+  double x[MCOR_CHUNK];
   int illegal = 0;
-  if (job->array->type == MCOR_FLOAT64)
+  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    const double *x = job->array->data, least = positive ? 0 : -DBL_MAX;
-    for (int64_t i = first; i < last; ++i)
+    const int count = mcor_chunk_of(last - begin);
+    mcor_read_array(&job->values, begin, count, 0, x);
+    for (int i = 0; i < count; ++i) /* written to be vectorised */
     {
-      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > least : x[i] >= least));
-    }
-  }
-  else
-  {
-    const float *x = job->array->data, least = positive ? 0 : -FLT_MAX;
-    for (int64_t i = first; i < last; ++i)
-    {
-      illegal |= !((x[i] <= FLT_MAX) & (positive ? x[i] > least : x[i] >= least));
+      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > 0 : x[i] >= -DBL_MAX));
     }
   }
   job->illegal[slice] = illegal;
@@ -216,7 +193,8 @@ int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const 
   mcor_skip skip, int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
-  mcor_legal_job job = { .array = array, .positive = positive };
+  mcor_legal_job job = { .values = *array, .positive = positive };
+  job.values.components = 1;
   const int slices = array->data
     ? mcor_parallel_for(context, count * components, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job)
     : 0;
@@ -285,50 +263,29 @@ static double mcor_scaled_product(
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 
-/* Compilers vectorise these loops because the stride is known. */
-static inline void mcor_square_floats(const float* x, int components, int count, double* out)
+/* Sums products of components, in their order. */
+static void mcor_sum_products(
+  const mcor_array* a, const mcor_array* b, int64_t first, int count, double* out)
 {
-  for (int i = 0; i < count; ++i)
+  double x[MCOR_CHUNK], y[MCOR_CHUNK], *other = a == b ? x : y;
+  memset(out, 0, (size_t)count * sizeof *out);
+  for (int c = 0; c < mcor_components(a); ++c)
   {
-    double sum = 0;
-    for (int c = 0; c < components; ++c)
+    mcor_read_array(a, first, count, c, x);
+    if (a != b)
     {
-      const double v = (double)x[(int64_t)i * components + c];
-      sum += v * v;
+      mcor_read_array(b, first, count, c, y);
     }
-    out[i] = sum;
-  }
-}
-
-static inline void mcor_square_doubles(const double* x, int components, int count, double* out)
-{
-  for (int i = 0; i < count; ++i)
-  {
-    double sum = 0;
-    for (int c = 0; c < components; ++c)
+    for (int i = 0; i < count; ++i)
     {
-      const double v = x[(int64_t)i * components + c];
-      sum += v * v;
+      out[i] += x[i] * other[i];
     }
-    out[i] = sum;
   }
 }
 
 static void mcor_read_magnitude(const mcor_array* a, int64_t first, int count, double* out)
 {
-  const int components = mcor_components(a);
-  if (a->type == MCOR_FLOAT64)
-  {
-    const double* x = (const double*)a->data + first * components;
-    components == 3 ? mcor_square_doubles(x, 3, count, out)
-                    : mcor_square_doubles(x, components, count, out);
-  }
-  else
-  {
-    const float* x = (const float*)a->data + first * components;
-    components == 3 ? mcor_square_floats(x, 3, count, out)
-                    : mcor_square_floats(x, components, count, out);
-  }
+  mcor_sum_products(a, a, first, count, out);
   for (int i = 0; i < count; ++i)
   {
     const bool good = out[i] > MCOR_SQUARE_MIN && out[i] < MCOR_SQUARE_MAX;
@@ -346,17 +303,7 @@ static void mcor_read_magnitude(const mcor_array* a, int64_t first, int count, d
 static void mcor_read_dot(
   const mcor_array* a, const mcor_array* b, int64_t first, int count, double* out)
 {
-  double x[MCOR_CHUNK], y[MCOR_CHUNK];
-  memset(out, 0, (size_t)count * sizeof *out);
-  for (int c = 0; c < mcor_components(a); ++c)
-  {
-    mcor_read_array(a, first, count, c, x);
-    mcor_read_array(b, first, count, c, y);
-    for (int i = 0; i < count; ++i)
-    {
-      out[i] += x[i] * y[i];
-    }
-  }
+  mcor_sum_products(a, b, first, count, out);
   for (int i = 0; i < count; ++i)
   {
     out[i] = isfinite(out[i]) ? out[i] : mcor_scaled_product(a, b, first + i, false);

@@ -121,7 +121,7 @@ mcor_status mcor_choose_samples(
   const mcor_sample* own = job.found[0].sample;
   const void* all = own;
   int64_t count = job.found[0].count;
-  status = status == MCOR_OK ? mcor_gather(context, own, count, sizeof *own, &all, &count) : status;
+  MCOR_THEN(status, mcor_gather(context, own, count, sizeof *own, &all, &count));
   if (all != own && status == MCOR_OK)
   {
     job.found[0].count = 0;
@@ -143,7 +143,7 @@ mcor_status mcor_choose_samples(
  * are), ascending. */
 typedef struct mcor_neighbours
 {
-  int count;
+  int sample, count;
   double d2[MCOR_SAMPLE_NEIGHBOURS + 1];
 } mcor_neighbours;
 
@@ -208,44 +208,29 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-/* Finds each sample's farthest neighbour over all ranks, and the number of neighbours: bit by
- * bit, since ranks exchange counts only. */
-static mcor_status mcor_find_farthest(mcor_context* context, const mcor_spacing* job,
-  double farthest[MCOR_SAMPLES], int64_t neighbours[MCOR_SAMPLES])
+/* Merges the nearest neighbours that all ranks have found. */
+static mcor_status mcor_merge_neighbours(mcor_context* context, mcor_spacing* job)
 {
-  const int count = job->samples.count;
-  int64_t below[MCOR_SAMPLES] = { 0 }, found[MCOR_SAMPLES];
-  for (int s = 0; s < count; ++s)
+  const void* found;
+  int64_t count = job->samples.count;
+  for (int s = 0; s < job->samples.count; ++s)
   {
-    neighbours[s] = job->nearest[s].count;
+    job->nearest[s].sample = s;
   }
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, count));
-  for (int s = 0; s < count; ++s)
+  MCOR_TRY(mcor_gather(context, job->nearest, count, sizeof *job->nearest, &found, &count));
+  if (found == job->nearest)
   {
-    neighbours[s] =
-      neighbours[s] < MCOR_SAMPLE_NEIGHBOURS + 1 ? neighbours[s] : MCOR_SAMPLE_NEIGHBOURS + 1;
+    return MCOR_OK;
   }
-  for (int bit = 62; bit >= 0; --bit)
+  for (int s = 0; s < job->samples.count; ++s)
   {
-    for (int s = 0; s < count; ++s)
-    {
-      /* Bits of numbers above 0 have the order of the numbers. */
-      const int64_t bits = below[s] + ((INT64_C(1) << bit) - 1);
-      const mcor_neighbours* nearest = &job->nearest[s];
-      double limit;
-      memcpy(&limit, &bits, sizeof limit);
-      for (found[s] = 0; found[s] < nearest->count && nearest->d2[found[s]] <= limit;)
-      {
-        ++found[s];
-      }
-    }
-    MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, found, count));
-    for (int s = 0; s < count; ++s)
-    {
-      below[s] += found[s] < neighbours[s] ? INT64_C(1) << bit : 0;
-    }
+    job->nearest[s].count = 0;
   }
-  memcpy(farthest, below, (size_t)count * sizeof *farthest);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const mcor_neighbours* of = (const mcor_neighbours*)found + i;
+    mcor_add_neighbours(&job->nearest[of->sample], of->d2, of->count);
+  }
   return MCOR_OK;
 }
 
@@ -270,7 +255,6 @@ static mcor_status mcor_find_spacing(
   mcor_context* context, const mcor_input* input, mcor_spacing* job, double* estimate)
 {
   double spacing[MCOR_SAMPLES], largest[3];
-  int64_t neighbours[MCOR_SAMPLES];
   int exponent = 0, most = INT_MIN;
   job->samples.most = MCOR_SAMPLES;
   job->input = input;
@@ -288,12 +272,13 @@ static mcor_status mcor_find_spacing(
   MCOR_TRY(mcor_choose_samples(context, input, MCOR_ALL_PARTICLES, &job->samples));
   const int count = job->samples.count;
   MCOR_TRY(mcor_parallel_run(context, count, 1, mcor_near_slice, job, NULL));
-  MCOR_TRY(mcor_find_farthest(context, job, spacing, neighbours));
+  MCOR_TRY(mcor_merge_neighbours(context, job));
   for (int s = 0; s < count; ++s)
   {
-    const double share = context->space.ball / (double)neighbours[s];
-    spacing[s] =
-      sqrt(spacing[s]) * (context->space.axes == 2 ? sqrt(share) : mcor_cube_root(share));
+    const mcor_neighbours* nearest = &job->nearest[s];
+    const double share = context->space.ball / (double)nearest->count;
+    spacing[s] = sqrt(nearest->d2[nearest->count - 1]) *
+      (context->space.axes == 2 ? sqrt(share) : mcor_cube_root(share));
   }
   *estimate = 1.3 * mcor_median_of(spacing, count) / job->scale;
   return MCOR_OK;

@@ -318,10 +318,12 @@ static void test_weird(void** state)
   options.iso_count = 0;
   const mcor_gauge_line none = { .from = { 1, 2, 3 }, .to = { 1, 2, 3 }, .name = "bow" };
   const mcor_gauge_line nan = { .from = { 1, NAN, 3 }, .to = { 1, 2, 4 } };
+  const mcor_gauge_line endless = { .from = { -1e308, 0, 3 }, .to = { 1e308, 2, 4 } };
   const mcor_gauge_line far = { .from = { 100, 2, 3 }, .to = { 1e9, 2, 4 } };
   const mcor_gauge_line good = { .from = { 3, 3, 3 }, .to = { 3, 3, 3.1 } };
   refuse(*state, &input, &options, &none, "'bow' has no length");
   refuse(*state, &input, &options, &nan, "not finite");
+  refuse(*state, &input, &options, &endless, "too long");
   const double zero = 0;
   options.iso_values = &zero;
   options.iso_count = 1;

@@ -241,10 +241,15 @@ static void test_derivatives_and_gauges(void** state)
         j[3 * v + v]);
     }
     mcor_free_derivatives(&derivatives);
-    mcor_gauge_line line = { .name = "across" };
-    line.from[axis] = line.to[axis] = 5;
+    mcor_gauge_line line = { .name = "across" }, dry = line;
+    line.from[axis] = line.to[axis] = dry.from[axis] = dry.to[axis] = 5;
     line.to[(axis + 1) % 3] = 12;
+    dry.to[(axis + 1) % 3] = dry.to[(axis + 2) % 3] = -99;
+    dry.from[(axis + 1) % 3] = -90;
     mcor_gauges gauges;
+    CORE_OK(context, mcor_gauge(context, &input, &options, &dry, 1, &gauges));
+    assert_true(gauges.readings[0].outside && isnan(gauges.readings[0].place[axis]));
+    mcor_free_gauges(&gauges);
     CORE_OK(context, mcor_gauge(context, &input, &options, &line, 1, &gauges));
     const plane_field field = { &set, &options, axis, NULL };
     const double at = gauges.readings[0].place[(axis + 1) % 3];

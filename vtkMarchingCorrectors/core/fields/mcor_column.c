@@ -262,8 +262,7 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
     status = mcor_parallel_run(context, MCOR_PROFILE, 64, mcor_profile_slice, &job, NULL);
     job.profile[0] = job.profile[2];
   }
-  status = status == MCOR_OK ? mcor_parallel_run(context, places, 16, mcor_column_slice, &job, NULL)
-                             : status;
+  MCOR_THEN(status, mcor_parallel_run(context, places, 16, mcor_column_slice, &job, NULL));
   if (status == MCOR_OK)
   {
     mcor_fill_nodes(&job);

@@ -134,6 +134,8 @@ static mcor_status mcor_run_flux(
   mcor_fluxes* fluxes = job.fluxes;
   double box[6];
   job.is_plane = context->space.flat;
+  job.plane = &context->plane;
+  job.across = mcor_plane_axis(job.plane, 2);
   job.form = &mcor_flux_forms[context->space.flat];
   job.edges.map_data = &job;
   if (job.edges.box && job.is_plane)

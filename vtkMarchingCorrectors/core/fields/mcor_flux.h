@@ -102,6 +102,8 @@ typedef struct mcor_flux_job
   int64_t section_count;
   mcor_fluxes* fluxes;
   bool is_plane;
+  const mcor_plane* plane;
+  int across; /* the caller's axis across the plane */
   const mcor_flux_form* form;
   int velocity_components; /* of the velocity, the input's first attribute */
   bool has_density;

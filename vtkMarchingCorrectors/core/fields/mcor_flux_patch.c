@@ -24,8 +24,7 @@ static mcor_gauge_label mcor_label_section(const mcor_flux_job* job, int64_t num
 static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch_shape shape,
   const double corner[3], const double along[3], const double across[3], const double normal[3])
 {
-  mcor_context* context = job->edges.context;
-  const mcor_plane* plane = &context->plane;
+  const mcor_plane* plane = job->plane;
   mcor_patch patch = { .shape = shape, .section = number };
   double product[3];
   mcor_cross(along, across, product);
@@ -48,21 +47,20 @@ static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch
   for (int c = 0, axis = 0; axis < 3; ++axis)
   {
     /* A velocity of two components has none along the constant axis. */
-    if (job->velocity_components == 3 || axis != mcor_plane_axis(plane, 2))
+    if (job->velocity_components == 3 || axis != job->across)
     {
       patch.normal[c++] = normal[axis];
     }
   }
-  MCOR_APPEND(context, &job->patches, patch);
+  MCOR_APPEND(job->edges.context, &job->patches, patch);
   return MCOR_OK;
 }
 
 static mcor_status mcor_leaves_plane(const mcor_flux_job* job, int64_t number)
 {
-  const mcor_plane* plane = &job->edges.context->plane;
   return mcor_fail(job->edges.context, MCOR_INVALID_ARGUMENT,
     "Section %s is not a line in the plane %c = %.9g of the particles. Give it two points there.",
-    mcor_label_section(job, number).text, 'x' + mcor_plane_axis(plane, 2), plane->at);
+    mcor_label_section(job, number).text, 'x' + job->across, job->plane->at);
 }
 
 static mcor_status mcor_add_line(mcor_flux_job* job, int64_t number, const double corner[3],
@@ -76,13 +74,12 @@ static mcor_status mcor_add_line(mcor_flux_job* job, int64_t number, const doubl
 static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const double corner[3],
   const double edges[2][3], const double normal[3])
 {
-  const mcor_plane* plane = &job->edges.context->plane;
   if (!job->is_plane)
   {
     return mcor_add_patch(job, number, MCOR_PATCH_RECTANGLE, corner, edges[0], edges[1], normal);
   }
-  const int u = mcor_plane_axis(plane, 0), v = mcor_plane_axis(plane, 1),
-            w = mcor_plane_axis(plane, 2);
+  const int w = job->across, u = (w + 1) % 3, v = (w + 2) % 3;
+  const double at = job->plane->at;
   for (int e = 0; e < 2; ++e)
   {
     const double *line = edges[e], *through = edges[1 - e];
@@ -90,18 +87,35 @@ static mcor_status mcor_add_rectangle(mcor_flux_job* job, int64_t number, const 
     {
       const double low = corner[w] + fmin(through[w], 0), high = corner[w] + fmax(through[w], 0);
       double begin[3] = { corner[0], corner[1], corner[2] };
-      begin[w] = plane->at;
-      return low <= plane->at && plane->at <= high ? mcor_add_line(job, number, begin, line, normal)
-                                                   : MCOR_OK;
+      begin[w] = at;
+      return low <= at && at <= high ? mcor_add_line(job, number, begin, line, normal) : MCOR_OK;
     }
   }
   return mcor_leaves_plane(job, number);
 }
 
+/* Appends a rectangle or triangle from a corner and the ends of its edges, if it has an area. sign:
+ * of the normal. */
+static mcor_status mcor_add_corners(
+  mcor_flux_job* job, int64_t number, mcor_patch_shape shape, const double x[9], double sign)
+{
+  double edges[2][3], normal[3];
+  mcor_subtract(x + 3, x, edges[0]);
+  mcor_subtract(x + 6, x, edges[1]);
+  mcor_cross(edges[0], edges[1], normal);
+  for (int a = 0; a < 3; ++a)
+  {
+    normal[a] *= sign;
+  }
+  return !(mcor_normalise(normal) > 0) ? MCOR_OK
+    : shape == MCOR_PATCH_RECTANGLE
+    ? mcor_add_rectangle(job, number, x, (const double(*)[3])edges, normal)
+    : mcor_add_patch(job, number, shape, x, edges[0], edges[1], normal);
+}
+
 static mcor_status mcor_add_box(mcor_flux_job* job, int64_t number, const double* low)
 {
   const double* high = low + 3;
-  const int w = mcor_plane_axis(&job->edges.context->plane, 2);
   for (int side = 0; side < 6; ++side)
   {
     const int a = side / 2, is_high = side % 2;
@@ -113,37 +127,41 @@ static mcor_status mcor_add_box(mcor_flux_job* job, int64_t number, const double
       const int along = (a + e) % 3;
       edges[is_high ? e - 1 : 2 - e][along] = high[along] - low[along];
     }
-    MCOR_TRY(job->is_plane && a == w
+    MCOR_TRY(job->is_plane && a == job->across
         ? MCOR_OK
         : mcor_add_rectangle(job, number, corner, (const double(*)[3])edges, normal));
   }
   return MCOR_OK;
 }
 
+/* Appends the line along which a disc crosses the plane. */
+static mcor_status mcor_add_chord(
+  mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
+{
+  const int w = job->across;
+  const double off = job->plane->at - centre[w], half = sqrt(fmax(radius * radius - off * off, 0));
+  double corner[3], along[3], axis[3] = { 0 };
+  axis[w] = 1;
+  mcor_cross(axis, normal, along);
+  for (int a = 0; a < 3; ++a)
+  {
+    corner[a] = a == w ? job->plane->at : centre[a] - half * along[a];
+    along[a] *= 2 * half;
+  }
+  return normal[w] != 0 ? mcor_leaves_plane(job, number)
+    : half > 0          ? mcor_add_line(job, number, corner, along, normal)
+                        : MCOR_OK;
+}
+
 static mcor_status mcor_add_disc(
   mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
 {
-  const mcor_plane* plane = &job->edges.context->plane;
   double axes[2][3], axis[3] = { 0 };
-  if (job->is_plane)
+  int least = 0;
+  for (int a = 1; a < 3; ++a)
   {
-    const int w = mcor_plane_axis(plane, 2);
-    const double off = plane->at - centre[w], half = sqrt(fmax(radius * radius - off * off, 0));
-    double corner[3] = { 0 };
-    axis[w] = 1;
-    mcor_cross(axis, normal, axes[0]);
-    for (int a = 0; a < 3; ++a)
-    {
-      corner[a] = a == w ? plane->at : centre[a] - half * axes[0][a];
-      axes[0][a] *= 2 * half;
-    }
-    return normal[w] != 0 ? mcor_leaves_plane(job, number)
-      : half > 0          ? mcor_add_line(job, number, corner, axes[0], normal)
-                          : MCOR_OK;
+    least = fabs(normal[a]) < fabs(normal[least]) ? a : least;
   }
-  const int least = fabs(normal[0]) <= fabs(normal[1])
-    ? (fabs(normal[0]) <= fabs(normal[2]) ? 0 : 2)
-    : (fabs(normal[1]) <= fabs(normal[2]) ? 1 : 2);
   axis[least] = 1;
   mcor_cross(normal, axis, axes[0]);
   mcor_normalise(axes[0]);
@@ -161,35 +179,10 @@ static mcor_status mcor_add_disc(
   return MCOR_OK;
 }
 
-/* Appends triangles; leaves out the ones without area. */
-static mcor_status mcor_add_triangles(mcor_flux_job* job, int64_t number)
-{
-  const mcor_section* section = &job->sections[number];
-  double sign = 1;
-  MCOR_TRY(mcor_orient_triangles(job->edges.context, section->points, section->point_count, &sign));
-  for (const double* x = section->points; x < section->points + 3 * section->point_count; x += 9)
-  {
-    double edges[2][3], normal[3];
-    mcor_subtract(x + 3, x, edges[0]);
-    mcor_subtract(x + 6, x, edges[1]);
-    mcor_cross(edges[0], edges[1], normal);
-    for (int a = 0; a < 3; ++a)
-    {
-      normal[a] *= sign;
-    }
-    MCOR_TRY(job->is_plane ? mcor_leaves_plane(job, number)
-        : mcor_normalise(normal) > 0
-        ? mcor_add_patch(job, number, MCOR_PATCH_TRIANGLE, x, edges[0], edges[1], normal)
-        : MCOR_OK);
-  }
-  return MCOR_OK;
-}
-
 static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
 {
   const mcor_section* section = &job->sections[number];
-  const mcor_plane* plane = &job->edges.context->plane;
-  const int w = mcor_plane_axis(plane, 2), first = w == 0 ? 1 : 0, second = w == 2 ? 1 : 2;
+  const int w = job->across, first = w == 0 ? 1 : 0, second = w == 2 ? 1 : 2;
   MCOR_RETURN_IF(!job->is_plane, job->edges.context, MCOR_INVALID_ARGUMENT,
     "Section %s is a line, which is a section only of particles in a plane. Give it an area, by a "
     "corner and two ends.",
@@ -200,7 +193,7 @@ static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
     mcor_subtract(x + 3, x, along);
     normal[first] = along[second];
     normal[second] = -along[first];
-    MCOR_TRY(x[w] != plane->at || x[3 + w] != plane->at ? mcor_leaves_plane(job, number)
+    MCOR_TRY(x[w] != job->plane->at || x[3 + w] != job->plane->at ? mcor_leaves_plane(job, number)
         : mcor_normalise(normal) > 0 ? mcor_add_line(job, number, x, along, normal)
                                      : MCOR_OK);
   }
@@ -210,26 +203,27 @@ static mcor_status mcor_add_lines(mcor_flux_job* job, int64_t number)
 static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
 {
   const mcor_section* section = &job->sections[number];
-  const double* x = section->points;
-  double normal[3], edges[2][3];
+  const double *x = section->points, *end = x + 3 * section->point_count;
+  double normal[3], sign = 1;
   switch (section->shape)
   {
     case MCOR_SECTION_RECTANGLE:
-      mcor_subtract(x + 3, x, edges[0]);
-      mcor_subtract(x + 6, x, edges[1]);
-      mcor_cross(edges[0], edges[1], normal);
-      return mcor_normalise(normal) > 0
-        ? mcor_add_rectangle(job, number, x, (const double(*)[3])edges, normal)
-        : MCOR_OK;
+      return mcor_add_corners(job, number, MCOR_PATCH_RECTANGLE, x, 1);
     case MCOR_SECTION_DISC:
       memcpy(normal, x + 3, sizeof normal);
-      return mcor_normalise(normal) > 0 && section->radius > 0
-        ? mcor_add_disc(job, number, x, normal, section->radius)
-        : MCOR_OK;
+      return !(mcor_normalise(normal) > 0 && section->radius > 0) ? MCOR_OK
+        : job->is_plane ? mcor_add_chord(job, number, x, normal, section->radius)
+                        : mcor_add_disc(job, number, x, normal, section->radius);
     case MCOR_SECTION_BOX:
       return mcor_add_box(job, number, x);
     case MCOR_SECTION_TRIANGLES:
-      return mcor_add_triangles(job, number);
+      MCOR_TRY(mcor_orient_triangles(job->edges.context, x, section->point_count, &sign));
+      for (; x < end; x += 9)
+      {
+        MCOR_TRY(job->is_plane ? mcor_leaves_plane(job, number)
+                               : mcor_add_corners(job, number, MCOR_PATCH_TRIANGLE, x, sign));
+      }
+      return MCOR_OK;
     default:
       return mcor_add_lines(job, number);
   }
@@ -246,7 +240,7 @@ static bool mcor_has_size(const mcor_flux_job* job, int64_t number)
   }
   for (int a = 0; a < 3 && section->shape == MCOR_SECTION_BOX; ++a)
   {
-    const bool flat = job->is_plane && a == mcor_plane_axis(&job->edges.context->plane, 2);
+    const bool flat = job->is_plane && a == job->across;
     if (flat ? x[a] > x[3 + a] : x[a] >= x[3 + a])
     {
       return false;

@@ -175,7 +175,8 @@ static mcor_status mcor_gauge_lines(mcor_context* context, const mcor_input* inp
   MCOR_TRY(mcor_read_lines(job, all, count));
   for (int64_t i = 0; i < job->gauges->count; ++i)
   {
-    mcor_unflatten_doubles(&context->plane, job->gauges->readings[i].place, 1, context->plane.at);
+    double* place = job->gauges->readings[i].place; /* NaN where dry */
+    mcor_unflatten_doubles(&context->plane, place, 1, place[2] + context->plane.at);
   }
   return input->count == 0 || job->line_count == 0 ? MCOR_OK : mcor_finish_field(context);
 }

@@ -197,8 +197,8 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   const bool whole_is_countable = steps < 4e15; /* doubles can then tell places on it apart */
   MCOR_RETURN_IF(last - first >= MCOR_GAUGE_MOST || !whole_is_countable, context,
     MCOR_OUT_OF_CAPACITY,
-    "Gauge %s needs %.3g sample points, one every quarter of the smallest smoothing "
-    "length %g; the limit is %.3g. Shorten the gauge.",
+    "Gauge %s needs %.3g sample points, one every quarter of the smallest smoothing length %g; the "
+    "limit is %.3g. Shorten the gauge.",
     mcor_label_gauge(line->name, number).text, (whole_is_countable ? last - first : steps) + 1,
     context->measure.h_min, whole_is_countable ? (double)MCOR_GAUGE_MOST : 4e15);
   mcor_gauge_samples whole = {

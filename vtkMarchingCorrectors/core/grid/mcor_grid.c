@@ -240,15 +240,6 @@ static const mcor_buffer* mcor_fluid_weight(const mcor_grid* grid)
   return grid->has_solids ? &grid->fluid_weight : &grid->trim_weight;
 }
 
-static mcor_status mcor_weigh_volumes(mcor_context* context)
-{
-  const mcor_grid* grid = &context->grid;
-  const double norm = mcor_kernel_norm(context->cl.build.sph_kernel);
-  return MCOR_LAUNCH(context, "mcor_grid_weigh", MCOR_LIGHT, grid->count, MCOR_INT(grid->count),
-    MCOR_REAL(norm), MCOR_BUFFER(&grid->inv_h), MCOR_BUFFER(mcor_fluid_weight(grid)),
-    MCOR_BUFFER(&grid->trim_weight));
-}
-
 /* Says why a particle's volume cannot be computed. */
 static mcor_status mcor_refuse_density(
   mcor_context* context, const mcor_input* input, int64_t particle)
@@ -284,8 +275,8 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
     MCOR_REAL(context->run.options->h_scale), MCOR_INT(context->space.flat),
-    MCOR_REAL(MCOR_ONE_SIDED *
-      mcor_kernel_variance(context->run.options->sph_kernel, context->space.flat)),
+    MCOR_REAL(
+      MCOR_ONE_SIDED * mcor_kernel_variance(context->run.options->sph_kernel, context->space.flat)),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(density)));
   double low[3], high[3];
   cl_int first = INT32_MAX;
@@ -307,22 +298,20 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
 {
+  mcor_grid* grid = &context->grid;
   mcor_staging staging = { .context = context, .input = input };
   mcor_status status = mcor_stage(&staging);
-  status =
-    status == MCOR_OK ? mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15) : status;
-  context->grid.count = staging.count;
+  MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.1, 0.15));
+  grid->count = staging.count;
   context->attributes.kept = 0; /* in another order */
-  status = status == MCOR_OK && staging.count > 0 ? mcor_sort_particles(context, &staging) : status;
-  const mcor_status unmapped = mcor_unmap_all(context, staging.views, staging.view_count, MCOR_OK);
-  MCOR_TRY(status);
-  MCOR_TRY(unmapped);
-  if (staging.count > 0)
-  {
-    MCOR_TRY(mcor_needs_density(input) ? mcor_compute_volumes(context, input)
-                                       : mcor_weigh_volumes(context));
-  }
-  return MCOR_OK;
+  MCOR_THEN(status, staging.count > 0 ? mcor_sort_particles(context, &staging) : MCOR_OK);
+  MCOR_TRY(mcor_unmap_all(context, staging.views, staging.view_count, status));
+  return staging.count == 0 ? MCOR_OK
+    : mcor_needs_density(input)
+    ? mcor_compute_volumes(context, input)
+    : MCOR_LAUNCH(context, "mcor_grid_weigh", MCOR_LIGHT, grid->count, MCOR_INT(grid->count),
+        MCOR_REAL(mcor_kernel_norm(context->cl.build.sph_kernel)), MCOR_BUFFER(&grid->inv_h),
+        MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight));
 }
 
 #define MCOR_COINCIDENT_ARGS(g)                                                                    \
@@ -377,7 +366,7 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   mcor_grid* grid = &context->grid;
   const mcor_field field = context->run.options->field;
   context->value_shift = 0;
-  if (grid->count == 0)
+  if (grid->count == 0 || field == MCOR_WEIGHT_SUM)
   {
     return MCOR_OK;
   }
@@ -388,10 +377,6 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input)
   else if (field == MCOR_SHEPARD)
   {
     MCOR_TRY(mcor_find_median(context, input, &context->value_shift));
-  }
-  if (field == MCOR_WEIGHT_SUM)
-  {
-    return MCOR_OK;
   }
   const bool single = context->cl.real_size == sizeof(float);
   const double low = context->measure.scalar_min, high = context->measure.scalar_max;

@@ -126,7 +126,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 #define MCOR_NEED(condition, ...)                                                                  \
   MCOR_RETURN_IF(!(condition), context, MCOR_INVALID_ARGUMENT, __VA_ARGS__)
   MCOR_NEED(options->iso_count >= 0 && (options->iso_count == 0 || options->iso_values),
-    "iso_count is %d; it must match iso_values and not be negative.", options->iso_count);
+    "iso_count is %d; it must not be negative, and iso_values must hold as many numbers.",
+    options->iso_count);
   for (int i = 0; i < options->iso_count; ++i)
   {
     MCOR_NEED(isfinite(options->iso_values[i]), "Iso value %d is not a finite number.", i);
@@ -150,9 +151,8 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
 static mcor_status mcor_check_form(
   mcor_context* context, const mcor_array* array, const char* role, int components)
 {
-  const char* name = mcor_array_name(array, role);
-  const bool same = strcmp(name, role) == 0;
-  const char *space = same ? "" : " ", *its = same ? "" : name;
+  const bool same = strcmp(mcor_array_name(array, role), role) == 0;
+  const char *space = same ? "" : " ", *its = same ? "" : array->name;
   MCOR_RETURN_IF((unsigned)array->type > MCOR_FLOAT64, context, MCOR_INVALID_ARGUMENT,
     "The %s array%s%s has an unknown element type.", role, space, its);
   MCOR_RETURN_IF(array->components < 0 || mcor_components(array) != components, context,
@@ -165,8 +165,7 @@ static mcor_status mcor_check_form(
 static mcor_status mcor_check_array(mcor_context* context, const mcor_input* input,
   const mcor_array* array, mcor_skip skip, const char* role, int components, bool positive)
 {
-  const char* name = mcor_array_name(array, role);
-  const bool same = strcmp(name, role) == 0;
+  const bool same = strcmp(mcor_array_name(array, role), role) == 0;
   MCOR_TRY(mcor_check_form(context, array, role, components));
   int c = 0;
   const int64_t i =
@@ -180,7 +179,7 @@ static mcor_status mcor_check_array(mcor_context* context, const mcor_input* inp
   return array->data
     ? mcor_fail(context, MCOR_INVALID_DATA,
         "The %s%s%s of particle %lld is %s. Remove such particles or choose another array.", role,
-        same ? "" : " array ", same ? "" : name, (long long)i, problem)
+        same ? "" : " array ", same ? "" : array->name, (long long)i, problem)
     : mcor_fail(context, MCOR_INVALID_DATA, "The %s is %s.", role, problem);
 }
 

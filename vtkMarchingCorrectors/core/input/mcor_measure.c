@@ -198,9 +198,8 @@ static mcor_status mcor_measure_particles(
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
   mcor_status status = mcor_begin_watch(context, input, &job.watch);
   int slices;
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices)
-    : status;
+  MCOR_THEN(status,
+    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
   if (status == MCOR_OK)
   {
     for (int s = 0; s < slices; ++s)
@@ -292,8 +291,8 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
     const int limit = m->cut ? MCOR_CUT_LIMIT : MCOR_LATTICE_LIMIT;
     context->run.is_too_long = !(last - first <= limit);
     MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. "
-      "Use a larger cube size, or remove particles that are far away from the rest.",
+      "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. Use a "
+      "larger cube size, or remove particles that are far away from the rest.",
       edge, last - first, mcor_axis_letter(context, a), limit);
     MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
     if (a >= context->space.axes) /* one layer of cells */
@@ -319,8 +318,7 @@ static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_option
   context->run.is_too_long = !mcor_has_keys(m, lattice, top);
   MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
     "With cube size %g the virtual grid would be %.3g cells long, which is too long together with "
-    "its other sides. "
-    "Use a larger cube size, or remove particles that are far away from the rest.",
+    "its other sides. Use a larger cube size, or remove particles that are far away from the rest.",
     cube, (double)extent);
   lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
   /* Needs the last bit: where smoothing lengths differ much, lattices are long. */

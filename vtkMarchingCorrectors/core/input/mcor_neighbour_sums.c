@@ -12,8 +12,8 @@
 #include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_sph_kernel.h"
+#include "mcor_vector.h"
 
-#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,8 +25,7 @@
 typedef struct mcor_neighbour
 {
   double x[3], mass;
-  uint64_t
-    place[3]; /* as numbers of the curve: 62 bits of the extent, so that none is too far away */
+  uint64_t place[3]; /* along the curve: 62 bits of the extent, so that none is too far away */
   int64_t source;
 } mcor_neighbour;
 
@@ -35,16 +34,15 @@ typedef struct mcor_neighbour_job
   const mcor_input* input;
   const mcor_options* options;
   double eta; /* to the power of the dimension; 0: densities are summed */
-  bool plane;
+  int axes;
   double norm, support;
   double period[3];       /* 0: open */
   double extent;          /* the greatest, of a period, too */
   int64_t count, wanted;  /* particles that are present; the first ones of the input, asked for */
   int64_t leaves;         /* a power of 2 */
   mcor_neighbour* sorted; /* [count] */
-  double (
-    *box)[6];  /* [2 * leaves]: low and high of x, y, z; of node n the children are 2 n, 2 n + 1 */
-  double* out; /* [wanted], in input order */
+  double (*box)[6]; /* [2 * leaves]: low and high of x, y, z; node n has children 2 n, 2 n + 1 */
+  double* out;      /* [wanted], in input order */
   bool failed[MCOR_SLICES];
 } mcor_neighbour_job;
 
@@ -137,55 +135,51 @@ static void mcor_make_boxes(mcor_neighbour_job* job)
 
 /* ---- Neighbours of one particle ---- */
 
-/* Squared distances and masses; it grows. */
+typedef struct mcor_near
+{
+  double square, mass; /* of the distance */
+} mcor_near;
+
 typedef struct mcor_neighbour_list
 {
   double h; /* within the support of this length, at least; 0: not listed yet */
-  int64_t count, room;
-  double (*at)[2];
+  MCOR_LIST(mcor_near) near;
   bool failed;
 } mcor_neighbour_list;
 
-/* Adds the particles within `radius` of a place. */
-static void mcor_list_around(
-  const mcor_neighbour_job* job, const double x[3], double radius, mcor_neighbour_list* list)
+/* Adds the particles of node n of the tree that are within `radius` of a place. */
+static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const double x[3],
+  double radius, mcor_neighbour_list* list)
 {
-  int64_t stack[128];
-  int top = 0;
-  for (stack[top++] = 1; top > 0 && !list->failed;)
+  const double* box = job->box[n];
+  double apart = 0;
+  for (int a = 0; a < 3; ++a)
   {
-    const int64_t n = stack[--top], first = (n - job->leaves) * MCOR_LEAF;
-    const double* box = job->box[n];
-    double apart = 0;
-    for (int a = 0; a < 3; ++a)
+    const double d = fmax(fmax(box[a] - x[a], x[a] - box[a + 3]), 0);
+    apart += d * d;
+  }
+  if (!(apart < radius * radius))
+  {
+    return;
+  }
+  if (n < job->leaves)
+  {
+    mcor_list_around(job, 2 * n, x, radius, list);
+    mcor_list_around(job, 2 * n + 1, x, radius, list);
+    return;
+  }
+  const int64_t first = (n - job->leaves) * MCOR_LEAF;
+  for (int64_t i = first; i < first + MCOR_LEAF && i < job->count; ++i)
+  {
+    double d[3];
+    mcor_subtract(x, job->sorted[i].x, d);
+    const mcor_near near = { mcor_dot(d, d), job->sorted[i].mass };
+    list->failed = list->failed ||
+      mcor_make_room(
+        NULL, (void**)&list->near.of, list->near.count, &list->near.room, sizeof near) != MCOR_OK;
+    if (near.square < radius * radius && !list->failed)
     {
-      const double d = fmax(fmax(box[a] - x[a], x[a] - box[a + 3]), 0);
-      apart += d * d;
-    }
-    if (apart < radius * radius && n < job->leaves)
-    {
-      stack[top++] = 2 * n + 1;
-      stack[top++] = 2 * n;
-    }
-    if (!(apart < radius * radius) || n < job->leaves)
-    {
-      continue;
-    }
-    if (list->count + MCOR_LEAF > list->room)
-    {
-      list->room = 2 * list->room + 1024;
-      void* more = realloc(list->at, (size_t)list->room * sizeof *list->at);
-      list->failed = !more;
-      list->at = more ? more : list->at;
-    }
-    for (int64_t i = first; i < first + MCOR_LEAF && i < job->count && !list->failed; ++i)
-    {
-      const double* y = job->sorted[i].x;
-      const double d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
-      const double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      list->at[list->count][0] = r2;
-      list->at[list->count][1] = job->sorted[i].mass;
-      list->count += r2 < radius * radius;
+      list->near.of[list->near.count++] = near;
     }
   }
 }
@@ -195,7 +189,7 @@ static void mcor_list_neighbours(
   const mcor_neighbour_job* job, const double x[3], double h, mcor_neighbour_list* list)
 {
   int most[3];
-  list->count = 0;
+  list->near.count = 0;
   list->h = h;
   for (int a = 0; a < 3; ++a)
   {
@@ -209,7 +203,7 @@ static void mcor_list_neighbours(
       {
         const double at[3] = { x[0] + i * job->period[0], x[1] + j * job->period[1],
           x[2] + k * job->period[2] };
-        mcor_list_around(job, at, job->support * h, list);
+        mcor_list_around(job, 1, at, job->support * h, list);
       }
     }
   }
@@ -224,10 +218,11 @@ static double mcor_sum_at(
   {
     mcor_list_neighbours(job, x, h, list);
   }
-  for (int64_t i = 0; i < list->count && !list->failed; ++i)
+  for (int64_t i = 0; i < list->near.count && !list->failed; ++i)
   {
-    sum += (job->eta > 0 ? 1 : list->at[i][1]) *
-      mcor_w_of(job->options->sph_kernel, sqrt(list->at[i][0]) / h);
+    const mcor_near* near = &list->near.of[i];
+    sum +=
+      (job->eta > 0 ? 1 : near->mass) * mcor_w_of(job->options->sph_kernel, sqrt(near->square) / h);
   }
   return job->norm * sum;
 }
@@ -239,9 +234,9 @@ static double mcor_guess_length(const mcor_neighbour_job* job, int64_t i)
   double guess = job->extent;
   for (int64_t k = i - 4; k <= i + 4; k += 8)
   {
-    const double *x = job->sorted[i].x, *y = job->sorted[k < 0 || k >= job->count ? i : k].x;
-    const double d[3] = { x[0] - y[0], x[1] - y[1], x[2] - y[2] };
-    const double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    double d[3];
+    mcor_subtract(job->sorted[i].x, job->sorted[k < 0 || k >= job->count ? i : k].x, d);
+    const double r = sqrt(mcor_dot(d, d));
     guess = r > 0 ? fmin(guess, r) : guess;
   }
   return fmax(guess, MCOR_LENGTH_ERROR * job->extent);
@@ -307,12 +302,11 @@ static void mcor_sum_slice(void* data, int slice, int64_t first, int64_t last)
     else if (source < job->wanted)
     {
       const double h = mcor_array_at(&job->input->smoothing_length, source, 0) * scale;
-      job->out[source] =
-        mcor_sum_at(job, job->sorted[i].x, h, &list) / (job->plane ? h * h : h * h * h);
+      job->out[source] = mcor_sum_at(job, job->sorted[i].x, h, &list) / mcor_power(h, job->axes);
     }
   }
   job->failed[slice] = list.failed;
-  free(list.at);
+  free(list.near.of);
 }
 
 /* Makes the particles that are present, positions within the period, and their tree. */
@@ -324,17 +318,21 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
   for (job->leaves = 1; job->leaves * MCOR_LEAF < input->count; job->leaves *= 2)
   {
   }
+  for (int a = 0; a < 3; ++a)
+  {
+    job->period[a] = fmax(job->options->periodic[2 * a + 1] - job->options->periodic[2 * a], 0);
+  }
   job->sorted = malloc((size_t)input->count * sizeof *job->sorted);
   job->box = malloc(2 * (size_t)job->leaves * sizeof *job->box);
   MCOR_TRY(mcor_allocated(context, job->sorted && job->box));
+  for (int64_t i = 0; i < job->wanted; ++i)
+  {
+    job->out[i] = 0;
+  }
   for (int64_t i = 0; i < input->count; ++i)
   {
     if (!mcor_is_present(input, i))
     {
-      if (i < job->wanted)
-      {
-        job->out[i] = 0;
-      }
       continue;
     }
     mcor_neighbour* p = &job->sorted[job->count++];
@@ -342,10 +340,9 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
       .mass = mcor_is_given(&input->mass) ? mcor_array_at(&input->mass, i, 0) : 1 };
     for (int a = 0; a < 3; ++a)
     {
-      const double *period = job->options->periodic + 2 * a, length = period[1] - period[0];
-      job->period[a] = length > 0 ? length : 0;
+      const double length = job->period[a], first = job->options->periodic[2 * a];
       p->x[a] = mcor_array_at(&positions, i, a);
-      p->x[a] -= length > 0 ? floor((p->x[a] - period[0]) / length) * length : 0;
+      p->x[a] -= length > 0 ? floor((p->x[a] - first) / length) * length : 0;
     }
   }
   mcor_sort_neighbours(job);
@@ -384,17 +381,17 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
       "The %s of particle %lld is not a number above 0. Remove such particles.", names[k],
       (long long)i);
   }
-  job->plane = mcor_find_dimension(input, NULL, job->options->dimension) == 2;
+  job->axes = mcor_find_dimension(input, NULL, job->options->dimension);
   job->support = mcor_support_factor(kernel);
-  job->norm = mcor_kernel_norm(kernel) * (job->plane ? mcor_plane_factor(kernel) : 1);
+  job->norm = mcor_kernel_norm(kernel) * (job->axes == 2 ? mcor_plane_factor(kernel) : 1);
   if (job->eta > 0)
   {
-    job->eta = job->plane ? eta * eta : eta * eta * eta;
+    job->eta = mcor_power(eta, job->axes);
     const double own = job->norm * mcor_w_of(kernel, 0);
     MCOR_RETURN_IF(!(isfinite(job->eta) && eta > 0 && job->eta > own), context,
       MCOR_INVALID_ARGUMENT,
       "ETA is %g; it must be above %.3g, the value of a particle without neighbours. %g is usual.",
-      eta, pow(own, job->plane ? 0.5 : 1.0 / 3), MCOR_USUAL_ETA);
+      eta, pow(own, 1.0 / job->axes), MCOR_USUAL_ETA);
   }
   return MCOR_OK;
 }
@@ -413,9 +410,7 @@ static mcor_status mcor_run_neighbours(double eta, mcor_neighbour_job* job, char
   if (status == MCOR_OK && job->input->count > 0)
   {
     status = mcor_load_neighbours(context, job);
-    status = status == MCOR_OK
-      ? mcor_parallel_run(NULL, job->count, 256, mcor_sum_slice, job, &slices)
-      : status;
+    MCOR_THEN(status, mcor_parallel_run(NULL, job->count, 256, mcor_sum_slice, job, &slices));
     free(job->sorted);
     free(job->box);
   }

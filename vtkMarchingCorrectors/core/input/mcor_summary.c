@@ -110,8 +110,7 @@ char* mcor_describe_estimate(double cells)
   return !(cells >= MCOR_HUGE_CELLS)
     ? NULL
     : mcor_text("The fluid fills about %g cells of the virtual grid, so this may take minutes and "
-                "much memory. "
-                "A larger cube size takes less; the run can be cancelled.",
+                "much memory. A larger cube size takes less; the run can be cancelled.",
         cells);
 }
 

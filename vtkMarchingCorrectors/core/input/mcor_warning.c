@@ -75,10 +75,9 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
   }
   if (!unusual)
   {
-    return mcor_text(
-      "Check the volumes, or masses and densities: they fill the supports of the particles %.3g "
-      "times (median), so weights in the fluid are about that, not 1. Perhaps they are not in the "
-      "unit of the positions.",
+    return mcor_text("Check the volumes, or masses and densities: they fill the supports of the "
+                     "particles %.3g times (median), so weights in the fluid are about that, not "
+                     "1. Perhaps they are not in the unit of the positions.",
       n->filled_median);
   }
   if (n->fluid_extent[0] == 0 && n->fluid_extent[1] == 0 && n->fluid_extent[2] == 0)
@@ -88,13 +87,11 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
       (long long)n->fluid_particles);
   }
   const bool is_radius = s->input->smoothing_length_is_support_radius;
-  const char* why = few && is_radius
-    ? "Perhaps the array holds the smoothing length, not the support radius, or is not in the unit "
-      "of the positions."
-    : few || is_radius
-    ? "Perhaps the smoothing length is not in the unit of the positions."
-    : "Perhaps the array holds the support radius (there is an option for that), or is not in the "
-      "unit of the positions.";
+  const char* why = few && is_radius ? "Perhaps the array holds the smoothing length, not the "
+                                       "support radius, or is not in the unit of the positions."
+    : few || is_radius ? "Perhaps the smoothing length is not in the unit of the positions."
+                       : "Perhaps the array holds the support radius (there is an option for "
+                         "that), or is not in the unit of the positions.";
   const char* likely = mcor_likely_kernel(kernel, near, few && spacing > 0);
   char times[100] = "no other particle is within that";
   if (spacing > 0)
@@ -102,13 +99,12 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
     snprintf(times, sizeof times, "%.3g times the distance %.4g of the nearest particle",
       h / spacing, spacing);
   }
-  return mcor_text(
-    "Check the smoothing length: a fluid particle has %.0f neighbours within its support radius; "
-    "its smoothing length is %.4g, "
-    "%s (medians). With the %s kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
+  return mcor_text("Check the smoothing length: a fluid particle has %.0f neighbours within its "
+                   "support radius; its smoothing length is %.4g, %s (medians). With the %s "
+                   "kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
     n->neighbours_median, h, times, mcor_sph_kernel_name(kernel),
-    mcor_usual_neighbours(kernel, plane),
-    wendland ? 2.2 : 1.7, why, *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
+    mcor_usual_neighbours(kernel, plane), wendland ? 2.2 : 1.7, why,
+    *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 
 /* Warns where less than so many steps of single precision lie between nearest particles. */
@@ -127,22 +123,21 @@ static char* mcor_warn_coarse(const mcor_suspicion* s)
   const mcor_statistics* n = &s->surface->statistics;
   const mcor_input* input = s->input;
   mcor_array coordinates = input->positions;
-  coordinates.components = 1;
   const bool known = n->spacing_median > 0 && n->fluid_particles >= MCOR_FEW_PARTICLES;
   const int64_t count = known && input->positions.data ? input->count : 0;
-  double largest[3] = { 0 };
-  for (int64_t i = 0; i < count; ++i)
+  double largest = 0;
+  int axis = 0;
+  coordinates.components = 3;
+  for (int a = 0; a < 3; ++a)
   {
-    for (int a = 0; a < 3 && !(input->solid && input->solid[i]); ++a)
-    {
-      const double x = fabs(mcor_array_at(&coordinates, 3 * i + a, 0));
-      largest[a] = x > largest[a] ? x : largest[a];
-    }
+    double range[2];
+    mcor_find_range(NULL, &coordinates, input->solid, MCOR_SKIP_SOLIDS, count, a, range);
+    const double along = mcor_largest_of(range[0], range[1]);
+    axis = along > largest ? a : axis;
+    largest = fmax(along, largest);
   }
-  const int axis = largest[2] > largest[1] && largest[2] > largest[0] ? 2
-    : largest[1] > largest[0]                                         ? 1
-                                                                      : 0;
-  const double step = mcor_single_step(largest[axis]);
+  coordinates.components = 1;
+  const double step = mcor_single_step(largest);
   bool coarse = step * MCOR_COARSE_STEPS > n->spacing_median;
   for (int64_t i = 0; i < 3 * count && coarse; ++i)
   {
@@ -151,11 +146,10 @@ static char* mcor_warn_coarse(const mcor_suspicion* s)
   }
   return !coarse
     ? NULL
-    : mcor_text(
-        "The positions are too coarse: they were stored in single precision, which rounds %c to "
-        "steps of %.3g, and the nearest particle is %.3g away (median). Surfaces and volumes are "
-        "wrong by about as much. Subtract a constant from the coordinates, or store them in double "
-        "precision, where they are written.",
+    : mcor_text("The positions are too coarse: they were stored in single precision, which rounds "
+                "%c to steps of %.3g, and the nearest particle is %.3g away (median). Surfaces and "
+                "volumes are wrong by about as much. Subtract a constant from the coordinates, or "
+                "store them in double precision, where they are written.",
         "xyz"[axis], step, n -> spacing_median);
 }
 
@@ -173,8 +167,7 @@ static char* mcor_warn_period(const mcor_suspicion* s)
     {
       return mcor_text(
         "The fluid particles extend over %.6g along %c, farther than the period %.6g: those beyond "
-        "it were moved by "
-        "whole periods, onto others. Is the period right?",
+        "it were moved by whole periods, onto others. Is the period right?",
         n->fluid_extent[a], "xyz"[a], p[1] - p[0]);
     }
   }
@@ -192,10 +185,9 @@ static char* mcor_is_flat(const mcor_suspicion* s)
     if (n->dimension != 2 && n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h &&
       other > 8 * h)
     {
-      return mcor_text(
-        "The fluid particles lie in a plane: their extent along %c is %.3g, %.4g times the "
-        "smoothing length. The kernels are three-dimensional, so in a two-dimensional simulation "
-        "the weights in the fluid are not about 1.",
+      return mcor_text("The fluid particles lie in a plane: their extent along %c is %.3g, %.4g "
+                       "times the smoothing length. The kernels are three-dimensional, so in a "
+                       "two-dimensional simulation the weights in the fluid are not about 1.",
         "xyz"[a], e[a], e[a] / h);
     }
   }
@@ -208,14 +200,11 @@ static char* mcor_is_flat(const mcor_suspicion* s)
   }
   return !(tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES)
     ? NULL
-    : mcor_text(
-        "The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, %.4g), "
-        "and "
-        "their extent along it is %.3g, %.2g times the smoothing length. They count as "
-        "three-dimensional, so the weights in the fluid are not about 1. In a two-dimensional "
-        "simulation, turn them into a plane of constant x, y or z that all share exactly; "
-        "otherwise "
-        "set the dimension to 3.",
+    : mcor_text("The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, "
+                "%.4g), and their extent along it is %.3g, %.2g times the smoothing length. They "
+                "count as three-dimensional, so the weights in the fluid are not about 1. In a "
+                "two-dimensional simulation, turn them into a plane of constant x, y or z that all "
+                "share exactly; otherwise set the dimension to 3.",
         normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
 }
 
@@ -279,12 +268,10 @@ static char* mcor_warn_discarded(const mcor_suspicion* s)
   }
   if (n->triangles_below_threshold > 0)
   {
-    return mcor_text(
-      "The node threshold %g removed the whole surface of %lld %s: all its nodes have a lower "
-      "weight sum. If the fluid "
-      "ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as the node "
-      "threshold and the vertex "
-      "threshold; else check the units of volumes, or of masses and densities.",
+    return mcor_text("The node threshold %g removed the whole surface of %lld %s: all its nodes "
+                     "have a lower weight sum. If the fluid ends in a vacuum, as gas and planets "
+                     "do, use the sum as the field, and 0 as the node threshold and the vertex "
+                     "threshold; else check the units of volumes, or of masses and densities.",
       o->node_threshold, (long long)n->triangles_below_threshold,
       n->dimension == 2 ? "lines" : "triangles");
   }
@@ -299,11 +286,9 @@ static char* mcor_warn_discarded(const mcor_suspicion* s)
   return !(is_between && extent[0] + extent[1] + extent[2] > 0 && o->field != MCOR_WEIGHT_SUM &&
            !mcor_has_box(o) && o->node_threshold > 0)
     ? NULL
-    : mcor_text(
-        "The field does not reach the iso value where the weight sum is above the node threshold "
-        "%g. "
-        "If the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and 0 as "
-        "the node threshold and the vertex threshold.",
+    : mcor_text("The field does not reach the iso value where the weight sum is above the node "
+                "threshold %g. If the fluid ends in a vacuum, as gas and planets do, use the sum "
+                "as the field, and 0 as the node threshold and the vertex threshold.",
         o->node_threshold);
 }
 
@@ -336,15 +321,15 @@ static char* mcor_warn_trimmed(const mcor_suspicion* s)
       (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
       plane ? "them" : "the surface", share);
   }
-  return mcor_text("All %lld %s were trimmed: everywhere on %s the %s is below the vertex "
-                   "threshold %g%s%s. %s",
+  return mcor_text(
+    "All %lld %s were trimmed: everywhere on %s the %s is below the vertex threshold %g%s%s. %s",
     (long long)n->triangles_before_trimming, plane ? "lines" : "triangles",
     plane ? "them" : "the surface", eigenvalue ? "boundary eigenvalue" : "weight sum",
     o->vertex_threshold, wall ? ", or " : "", share,
     eigenvalue ? "Try 0.3."
                : "In the fluid, weights are about 1 if volumes, masses and densities are right. If "
-                 "the fluid ends in a "
-                 "vacuum, as gas and planets do, use the sum as the field, and thresholds of 0.");
+                 "the fluid ends in a vacuum, as gas and planets do, use the sum as the field, and "
+                 "thresholds of 0.");
 }
 
 /* A share of the smallest smoothing length: residuals are then off by about as much of the
@@ -386,10 +371,8 @@ static char* mcor_warn_tolerance(const mcor_suspicion* s)
   {
     return NULL;
   }
-  return mcor_text(
-    "%lld of %lld vertices are off the iso value by more than the tolerance %.3g, by %.3g at most, "
-    "of a "
-    "range of %.4g. Try %s.",
+  return mcor_text("%lld of %lld vertices are off the iso value by more than the tolerance %.3g, "
+                   "by %.3g at most, of a range of %.4g. Try %s.",
     (long long)n->vertices_above_tolerance, (long long)n->correction_count, o->tolerance * range,
     n->residual_max, range,
     n->iterations_max >= o->iteration_limit ? "a higher iteration limit"
@@ -404,10 +387,8 @@ static char* mcor_warn_far(const mcor_suspicion* s)
   return n->far_particles == 0
     ? NULL
     : mcor_text("%lld %s so far away from all others that the virtual grid cannot reach %s, and %s "
-                "left out: "
-                "%sparticle %lld is at (%.6g, %.6g, %.6g). If that is not meant, leave %s out by a "
-                "range of "
-                "positions, or use a larger cube size.",
+                "left out: %sparticle %lld is at (%.6g, %.6g, %.6g). If that is not meant, leave "
+                "%s out by a range of positions, or use a larger cube size.",
         (long long)n->far_particles, one ? "particle is" : "particles are", one ? "it" : "them",
         one ? "was" : "were", one ? "" : "the first one, ", (long long)n->far_first,
         n->far_place[0], n->far_place[1], n->far_place[2], one ? "it" : "them");
@@ -437,10 +418,9 @@ char* mcor_describe_unused_type(
   }
   if (strcmp(name, MCOR_WALL_BLOCK) == 0)
   {
-    return mcor_text(
-      "The names of some blocks suggest walls, but all particles count as fluid. Let the fluid be "
-      "detected, or select '" MCOR_WALL_BLOCK
-      "' as the array that marks the fluid, with the value 0.");
+    return mcor_text("The names of some blocks suggest walls, but all particles count as fluid. "
+                     "Let the fluid be detected, or select '" MCOR_WALL_BLOCK
+                     "' as the array that marks the fluid, with the value 0.");
   }
   char list[40 * MCOR_PARTICLE_TYPES] = "", seems[50] = "", *end = list;
   double low = values[0], high = values[0], fluid;

@@ -25,13 +25,13 @@ mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
   cl_ulong* cells = malloc(2 * bytes);
   MCOR_TRY(mcor_allocated(context, cells));
   mcor_status status = mcor_read(context, buffer, 0, cells, bytes);
-  status = status == MCOR_OK ? mcor_read(context, shared, 0, cells + triangles, bytes) : status;
+  MCOR_THEN(status, mcor_read(context, shared, 0, cells + triangles, bytes));
   for (size_t i = 0; i < triangles && status == MCOR_OK; ++i)
   {
     const bool others = (cells[i] & MCOR_RING_CELL) && !(cells[triangles + i] & MCOR_RING_CELL);
     cells[i] |= others ? MCOR_OTHERS_CELL : 0;
   }
-  status = status == MCOR_OK ? mcor_write(context, buffer, cells, bytes) : status;
+  MCOR_THEN(status, mcor_write(context, buffer, cells, bytes));
   free(cells);
   return status;
 }

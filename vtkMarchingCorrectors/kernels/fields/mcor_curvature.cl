@@ -9,11 +9,10 @@
  *
  * so that both are those of a sphere of radius R, 1 / R and 1 / R^2, around higher values. */
 
-/* A sum and its derivatives; per cube. */
+/* A sum and its derivatives, per cube. Elements of the Hessian: xx, yy, zz, xy, yz, zx. */
 typedef struct
 {
-  realv value, gradient[3];
-  mcor_symmetric hessian;
+  realv value, gradient[3], hessian[6];
 } mcor_bent;
 
 /* Derivatives of W / norm * h^3 at offset u. */
@@ -29,15 +28,13 @@ void mcor_weight_hessian(const realv u[3], realv inv_h, mcor_bent* w)
     bend[a] = MCOR_DDW(q) * inv_h * inv_h;
   }
   w->value = k[0] * k[1] * k[2];
-  w->gradient[0] = slope[0] * k[1] * k[2];
-  w->gradient[1] = slope[1] * k[2] * k[0];
-  w->gradient[2] = slope[2] * k[0] * k[1];
-  w->hessian.xx = bend[0] * k[1] * k[2];
-  w->hessian.yy = bend[1] * k[2] * k[0];
-  w->hessian.zz = bend[2] * k[0] * k[1];
-  w->hessian.xy = slope[0] * slope[1] * k[2];
-  w->hessian.yz = slope[1] * slope[2] * k[0];
-  w->hessian.zx = slope[2] * slope[0] * k[1];
+  for (int a = 0; a < 3; ++a)
+  {
+    const int b = (a + 1) % 3, c = (a + 2) % 3;
+    w->gradient[a] = slope[a] * k[b] * k[c];
+    w->hessian[a] = bend[a] * k[b] * k[c];
+    w->hessian[3 + a] = slope[a] * slope[b] * k[c];
+  }
 #else
   const realv r2 = mcor_square(u[0], u[1], u[2]), inv_r = mcor_rsqrt(r2), q = r2 * inv_r * inv_h;
   const realv n[3] = { u[0] * inv_r, u[1] * inv_r, u[2] * inv_r };
@@ -46,15 +43,12 @@ void mcor_weight_hessian(const realv u[3], realv inv_h, mcor_bent* w)
   const fixv here = q < (real)1e-4f;
   const realv across = here ? bend : slope * inv_r, along = bend - across;
   w->value = MCOR_W(q);
-  w->gradient[0] = slope * n[0];
-  w->gradient[1] = slope * n[1];
-  w->gradient[2] = slope * n[2];
-  w->hessian.xx = MCOR_FMA(along * n[0], n[0], across);
-  w->hessian.yy = MCOR_FMA(along * n[1], n[1], across);
-  w->hessian.zz = MCOR_FMA(along * n[2], n[2], across);
-  w->hessian.xy = along * n[0] * n[1];
-  w->hessian.yz = along * n[1] * n[2];
-  w->hessian.zx = along * n[2] * n[0];
+  for (int a = 0; a < 3; ++a)
+  {
+    w->gradient[a] = slope * n[a];
+    w->hessian[a] = MCOR_FMA(along * n[a], n[a], across);
+    w->hessian[3 + a] = along * n[a] * n[(a + 1) % 3];
+  }
 #endif
 }
 
@@ -64,13 +58,9 @@ void mcor_bent_add(mcor_bent* sum, realv m, const mcor_bent* w)
   for (int a = 0; a < 3; ++a)
   {
     sum->gradient[a] = MCOR_FMA(m, w->gradient[a], sum->gradient[a]);
+    sum->hessian[a] = MCOR_FMA(m, w->hessian[a], sum->hessian[a]);
+    sum->hessian[3 + a] = MCOR_FMA(m, w->hessian[3 + a], sum->hessian[3 + a]);
   }
-  sum->hessian.xx = MCOR_FMA(m, w->hessian.xx, sum->hessian.xx);
-  sum->hessian.yy = MCOR_FMA(m, w->hessian.yy, sum->hessian.yy);
-  sum->hessian.zz = MCOR_FMA(m, w->hessian.zz, sum->hessian.zz);
-  sum->hessian.xy = MCOR_FMA(m, w->hessian.xy, sum->hessian.xy);
-  sum->hessian.yz = MCOR_FMA(m, w->hessian.yz, sum->hessian.yz);
-  sum->hessian.zx = MCOR_FMA(m, w->hessian.zx, sum->hessian.zx);
 }
 
 /* The derivatives of the quotient g = f / w, times the weight:
@@ -79,54 +69,45 @@ void mcor_bent_divide(mcor_bent* f, const mcor_bent* w)
 {
   const realv inv_w = (real)1 / (fabs(w->value) < (real)1e-12f ? (realv)1 : w->value);
   const realv mean = f->value * inv_w;
-  realv g[3];
   mcor_bent_add(f, -mean, w);
+  const realv g[3] = { f->gradient[0] * inv_w, f->gradient[1] * inv_w, f->gradient[2] * inv_w };
   for (int a = 0; a < 3; ++a)
   {
-    g[a] = f->gradient[a] * inv_w;
+    const int b = (a + 1) % 3;
+    f->hessian[a] -= (real)2 * g[a] * w->gradient[a];
+    f->hessian[3 + a] -= g[a] * w->gradient[b] + g[b] * w->gradient[a];
   }
-  f->hessian.xx -= (real)2 * g[0] * w->gradient[0];
-  f->hessian.yy -= (real)2 * g[1] * w->gradient[1];
-  f->hessian.zz -= (real)2 * g[2] * w->gradient[2];
-  f->hessian.xy -= g[0] * w->gradient[1] + g[1] * w->gradient[0];
-  f->hessian.yz -= g[1] * w->gradient[2] + g[2] * w->gradient[1];
-  f->hessian.zx -= g[2] * w->gradient[0] + g[0] * w->gradient[2];
 }
 
 /* Mean and Gaussian curvature; of a line in a plane its curvature, and 0. 0 where the gradient
  * vanishes. The field is scaled first: a square of its gradient may vanish, or overflow. */
 void mcor_bend_of(const mcor_bent* f, bool plane, realv* mean, realv* gauss)
 {
-  realv g[3];
+  realv g[3], h[6];
   const realv most =
     fmax(fabs(f->gradient[0]), fmax(fabs(f->gradient[1]), plane ? (realv)0 : fabs(f->gradient[2])));
   const realv inv = (real)1 / (most > 0 ? most : (realv)1);
   for (int a = 0; a < 3; ++a)
   {
     g[a] = f->gradient[a] * inv;
+    h[a] = f->hessian[a] * inv;
+    h[3 + a] = f->hessian[3 + a] * inv;
   }
-  mcor_symmetric h = f->hessian;
-  h.xx *= inv;
-  h.yy *= inv;
-  h.zz *= inv;
-  h.xy *= inv;
-  h.yz *= inv;
-  h.zx *= inv;
   if (plane)
   {
-    g[2] = h.zz = h.yz = h.zx = 0;
+    g[2] = h[2] = h[4] = h[5] = 0;
   }
   const realv g2 = mcor_square(g[0], g[1], g[2]), inv_g = mcor_rsqrt(g2);
   const realv n[3] = { g[0] * inv_g, g[1] * inv_g, g[2] * inv_g };
-  const realv bent = n[0] * (h.xx * n[0] + (real)2 * h.xy * n[1]) +
-    n[1] * (h.yy * n[1] + (real)2 * h.yz * n[2]) + n[2] * (h.zz * n[2] + (real)2 * h.zx * n[0]);
-  *mean = (plane ? inv_g : (real)0.5 * inv_g) * (bent - (h.xx + h.yy + h.zz));
+  const realv bent = n[0] * (h[0] * n[0] + (real)2 * h[3] * n[1]) +
+    n[1] * (h[1] * n[1] + (real)2 * h[4] * n[2]) + n[2] * (h[2] * n[2] + (real)2 * h[5] * n[0]);
+  *mean = (plane ? inv_g : (real)0.5 * inv_g) * (bent - (h[0] + h[1] + h[2]));
   *gauss = inv_g * inv_g *
-    (n[0] * n[0] * (h.yy * h.zz - h.yz * h.yz) + n[1] * n[1] * (h.zz * h.xx - h.zx * h.zx) +
-      n[2] * n[2] * (h.xx * h.yy - h.xy * h.xy) +
+    (n[0] * n[0] * (h[1] * h[2] - h[4] * h[4]) + n[1] * n[1] * (h[2] * h[0] - h[5] * h[5]) +
+      n[2] * n[2] * (h[0] * h[1] - h[3] * h[3]) +
       (real)2 *
-        (n[0] * n[1] * (h.yz * h.zx - h.xy * h.zz) + n[1] * n[2] * (h.zx * h.xy - h.yz * h.xx) +
-          n[2] * n[0] * (h.xy * h.yz - h.zx * h.yy)));
+        (n[0] * n[1] * (h[4] * h[5] - h[3] * h[2]) + n[1] * n[2] * (h[5] * h[3] - h[4] * h[0]) +
+          n[2] * n[0] * (h[3] * h[4] - h[5] * h[1])));
   *mean = most > 0 ? *mean : (realv)0;
   *gauss = most > 0 && !plane ? *gauss : (realv)0;
 }
@@ -142,11 +123,8 @@ __kernel void mcor_curvature_points(MCOR_GRID_PARAMS, const int group_count,
   mcor_points points;
   mcor_query query;
   mcor_reach reach;
-  mcor_bent f, w, sum;
+  mcor_bent f = { 0, { 0, 0, 0 }, { 0, 0, 0, 0, 0, 0 } }, w = f, sum;
   realv at[3], u[3], mean, gauss;
-  w.value = w.gradient[0] = w.gradient[1] = w.gradient[2] = 0;
-  w.hessian.xx = w.hessian.yy = w.hessian.zz = w.hessian.xy = w.hessian.yz = w.hessian.zx = 0;
-  f = w;
   mcor_group_load(&grid, groups[group], groups[group + 1], node, offset, 0, &points, &query);
   mcor_points_relative(&grid, &query, &points, at);
   mcor_tile_init(&reach.tile);

@@ -495,6 +495,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 np.abs(found.points).max(initial=0.0), self.UsedCubeSize)))
             found.points = found.points.astype(np.float32)
         nearest, iso = arrays.pop("NearestParticle", None), arrays.pop("IsoValue", None)
+        arrays.update({name: found.attributes[name] for name in ("NearestParticle", "IsoValue") if name in found.attributes})
         if iso is not None:
             single = particles.scalar is not None and is_single(particles.scalar)
             arrays[particles.iso_value_name] = iso.astype(np.float32 if single else np.float64)

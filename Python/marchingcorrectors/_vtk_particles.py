@@ -235,9 +235,12 @@ class Particles:
             raise Unusable(describe_missing_length(self.data, "Name the array, give a constant, or ask for an estimate.")
                            + self.list_point_arrays())
         is_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName) or choice.Mass or choice.Density)
-        # A density alone says nothing of volumes.
-        if not self.collect_quantity("volume", may_detect=not is_set) and self.collect_quantity("mass"):
+        if not self.collect_quantity("volume", may_detect=not is_set):
+            has_mass = self.collect_quantity("mass")
             self.collect_quantity("density")
+            if not has_mass:  # a density alone says nothing of volumes
+                self.values.pop("density", None)
+                self.used["density"] = None
         if choice.ParticleVolume > 0 and "volume" not in self.values and not {"mass", "density"} <= set(self.values):
             self.values["volume"], self.used["mass"], self.used["density"] = choice.ParticleVolume, None, None
             self.values.pop("mass", None)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures against the baselines of TestModesImage.cxx and TestFilledImage.cxx.
+"""Pictures against baselines, drawn here.
 
-mode_images.py                     filled bands, through the filter's Python package
-pvpython mode_images.py [MODE...]  each way in which the filter draws, through the plugin: made by ParaView, drawn here
+mode_images.py [MODE...]           each way in which the filters draw, by the Python package
+pvpython mode_images.py [MODE...]  by the plugin: made by ParaView
 """
 import math
 import os
@@ -12,6 +12,7 @@ import sys
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkImagingCore import vtkImageDifference
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
@@ -24,8 +25,10 @@ THRESHOLD = 10.0  # VTK's own for its image tests
 MODES = ("Iso", "Speed", "FreeSurface", "Preview", "Untrimmed", "Wall", "Weight", "Slice", "Filled")
 WEIGHT = ("WeightSum", 0.0, 1.0)
 COLORS = {"Weight": WEIGHT, "Untrimmed": WEIGHT, "Speed": ("Velocity_Magnitude", 0.0, 3.0)}
+PLANE = {"Origin": [0.0, 0.0, 0.1], "Point1": [3.22, 0.0, 0.1], "Point2": [0.0, 1.0, 0.1]}  # upright, along the tank
+RESOLUTION = 322, 100
 SPEEDS = [0.5, 1.0, 1.5, 2.0, 2.5]
-RADII = [0.6, -1.0, 0.3, 0.9]  # and particles: as in TestPlaneParticles.h
+RADII = [0.6, -1.0, 0.3, 0.9]  # the least value below all
 
 
 def write_square():
@@ -50,16 +53,35 @@ def write_square():
     return writer.GetFileName()
 
 
-def by_package(_):
+def by_package(mode):
     from marchingcorrectors import vtkMarchingCorrectors
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(write_square())
-    extract = vtkMarchingCorrectors()
-    extract.SetInputConnection(reader.GetOutputPort())
-    extract.SetInputArrayToProcess(0, 0, 0, 0, "Radius")
-    for i, radius in enumerate(RADII):
-        extract.SetValue(i, radius)
-    extract.FilledOn()
+    reader.SetFileName(write_square() if mode == "Filled" else DATA)
+    if mode == "Slice":
+        from marchingcorrectors import vtkSPHProbe
+        plane, extract = vtkPlaneSource(), vtkSPHProbe()
+        for name, place in PLANE.items():
+            getattr(plane, "Set" + name)(place)
+        plane.SetResolution(*RESOLUTION)
+        extract.SetInputConnection(plane.GetOutputPort())
+        extract.SetInputConnection(1, reader.GetOutputPort())
+    else:
+        extract = vtkMarchingCorrectors()
+        extract.SetInputConnection(reader.GetOutputPort())
+        extract.SetInputArrayToProcess(0, 0, 0, 0, "Radius" if mode == "Filled" else "Velocity")
+        for i, value in enumerate(RADII if mode == "Filled" else SPEEDS if mode == "Speed" else [0.7]):
+            extract.SetValue(i, value)
+        extract.ComputeWeightSumOn()
+        extract.SetFilled(mode == "Filled")
+        extract.SetPreview(mode == "Preview")
+        extract.SetCubeSizeFactor(2.0 if mode == "Preview" else 0.5)
+        extract.SetTrim(mode != "Untrimmed")
+        extract.SetNodeThreshold(0.001 if mode == "Untrimmed" else 0.1)  # where kernels end, so that the picture shows it
+        extract.SetFreeSurface(mode in ("Wall", "FreeSurface"))
+        extract.SetSolids(vtkMarchingCorrectors.SOLIDS_WALL if mode == "Wall" else vtkMarchingCorrectors.SOLIDS_AUTO)
+        extract.SetHScaleFactor(0.75 if mode == "Weight" else 1.0)
+    if mode != "Filled":
+        extract.SetFluidArrayName("ParticleType")
     extract.Update()
     return extract.GetOutput()
 
@@ -71,8 +93,7 @@ def by_plugin(mode):
     if mode == "Filled":
         extract = globals()["MarchingCorrectors"](Input=reader, ContourBy=["POINTS", "Radius"], Isosurfaces=RADII, Filled=1)
     elif mode == "Slice":
-        plane = simple.Plane(Origin=[0.0, 0.0, 0.1], Point1=[3.22, 0.0, 0.1], Point2=[0.0, 1.0, 0.1],
-                             XResolution=322, YResolution=100)
+        plane = simple.Plane(**PLANE, XResolution=RESOLUTION[0], YResolution=RESOLUTION[1])
         extract = globals()["SPHProbe"](Points=plane, Particles=reader, FluidArray="ParticleType",
                                         NaNOutsideOfTheFluid=0)
     else:
@@ -107,7 +128,6 @@ def make_actor(surface, color_by, low, high, cells=False):
 
 
 def draw(surface, color_by, low, high, path):
-    """As CompareImage() in TestImage.h does."""
     renderer = vtkRenderer()
     renderer.AddActor(make_actor(surface, color_by, low, high))
     camera = renderer.GetActiveCamera()
@@ -120,7 +140,7 @@ def draw(surface, color_by, low, high, path):
 
 
 def draw_filled(surface, path):
-    """As TestFilledImage.cxx does: lines over bands."""
+    """Lines over bands."""
     bands = make_actor(surface, "BandValue", 0.0, 1.0, cells=True)
     lines = vtkPolyData()
     lines.SetPoints(surface.GetPoints())
@@ -196,4 +216,4 @@ def main(make, prefix, modes):
 if "MCOR_TEST_PLUGIN" in os.environ:
     main(by_plugin, "plugin_", sys.argv[1:] or MODES)
 else:
-    main(by_package, "python_", ["Filled"])
+    main(by_package, "python_", sys.argv[1:] or MODES)

@@ -1,19 +1,20 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""vtkSPHDerivatives and vtkSPHProbe from Python: weird input first, then what users do."""
+"""vtkSPHDerivatives, vtkSPHProbe and vtkSPHResample: weird input first, then against brute force and known fields."""
 import math
 import pathlib
 import unittest
 
 import numpy
-from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE, VTK_VERTEX, vtkDataObject, vtkImageData, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import (
+    VTK_TRIANGLE, VTK_VERTEX, vtkImageData, vtkPolyData, vtkRectilinearGrid, vtkUnstructuredGrid)
 from vtkmodules.vtkFiltersGeneral import vtkImageDataToPointSet
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives, vtkSPHProbe
-from vtk_test import add, bytes_of, particles_of, points_of, run, values_of
+from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives, vtkSPHProbe, vtkSPHResample
+from vtk_test import (
+    COUNT, H, POINTS, aborted, add, blocks_of, bytes_of, cube, particles_of, points_of, run, sums_at, take, values_of)
 
-POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 DATA = pathlib.Path(__file__).resolve().parents[2] / "Examples" / "Data"
 
 
@@ -126,15 +127,96 @@ class TestPeriod(unittest.TestCase):
 
 
 class TestDerivatives(unittest.TestCase):
-    def test_something_weird(self):
+    def test_refused(self):
+        """A sentence and an empty output; nothing at all is no fault."""
         data, told = run(vtkSPHDerivatives(), vtkPolyData())
         self.assertEqual((data.GetNumberOfPoints(), told), (0, []))
+        broken, bare = cube(), cube()
+        values_of(broken, "Radius")[5] = math.nan
+        bare.GetPointData().RemoveArray("SmoothingLength")
+        alone = particles_of(points_of(cube()), SmoothingLength=numpy.full(COUNT, H))  # nothing varies
+        for particles, name, words in ((cube(), "Nonsense", "'Nonsense'.*SmoothingLength, Volume, Radius"),
+                                       (alone, None, "No array was chosen"), (broken, "Radius", "particle 5"),
+                                       (bare, "Radius", "smoothing length")):
+            made = vtkSPHDerivatives()
+            data, told = run(made, particles, **({"InputArrayToProcess": (0, 0, 0, POINTS, name)} if name else {}))
+            self.assertEqual((data.GetNumberOfPoints(), len(told)), (0, 1))
+            self.assertRegex(made.GetErrorMessage(), words)
 
-    def test_error_is_a_sentence(self):
-        filter_ = vtkSPHDerivatives()
-        filter_.SetInputArrayToProcess(0, 0, 0, POINTS, "Nonsense")
-        run(filter_, make_vortex(5))
-        self.assertRegex(filter_.GetErrorMessage(), "'Nonsense'.*Velocity, h")
+    def test_linear(self):
+        """Exact, of a rotation and of a shear, where h is the same, and where it varies."""
+        rotation = numpy.array([[0, -0.5, -0.2], [0.5, 0, -0.3], [0.2, 0.3, 0]])  # w = (0.3, -0.2, 0.5)
+        shear = numpy.array([[0.0, 2, 0], [0, 0, 0], [0, 0, 0]])
+        for j, lambda2 in ((rotation, -0.38), (shear, 0)):  # a rotation has -|w|^2; a shear's S S + O O is 0
+            for varies in (False, True):
+                for precision, kind, tolerance in ((1, "f8", 1e-12), (0, "f4", 1e-5)):
+                    particles = cube()
+                    x = points_of(particles)
+                    values_of(particles, "SmoothingLength")[:] *= 1.25 + 0.25 * x[:, 0] if varies else 1
+                    made = vtkSPHDerivatives()
+                    data, _ = run(made, add(particles, Velocity=(x @ j.T + 7).astype(kind)), Precision=precision,
+                                  ComputeStrainRate=1, InputArrayToProcess=(0, 0, 0, POINTS, "Velocity"))
+                    self.assertEqual(values_of(data, "Gradients").dtype, kind)
+                    self.assertEqual(set(values_of(data, "GradientsCorrected")), {1})
+                    for name, expected in (
+                            ("Gradients", j.ravel()), ("Divergence", 0), ("StrainRate", (j + j.T).ravel() / 2),
+                            ("Vorticity", [j[2, 1] - j[1, 2], j[0, 2] - j[2, 0], j[1, 0] - j[0, 1]]),
+                            ("Q-criterion", -0.5 * (j * j.T).sum()), ("Lambda2", lambda2)):
+                        self.assertLess(abs(values_of(data, name) - expected).max(), 4 * tolerance, name)
+
+    def test_solids(self):
+        """Have zeros and do not count; arrays of the file stay, unless they are to be replaced."""
+        x = points_of(cube())
+        solid = x[:, 2] < -0.5
+        velocity = numpy.stack([numpy.where(solid, math.nan, 2 * x[:, 1]), *0 * x[:, 1:].T], axis=1)
+        particles = cube(Velocity=velocity, Type=numpy.where(solid, 4, 1).astype(numpy.uint8), Lambda2=numpy.full(COUNT, 17.0))
+        made = vtkSPHDerivatives()  # whose array is Velocity
+        data, _ = run(made, particles, FluidArrayName="Type", FluidValue=1, ResultArrayName="Slope", ComputeQCriterion=0)
+        self.assertLess(abs(values_of(data, "Slope")[:, 1] - numpy.where(solid, 0, 2)).max(), 1e-5)
+        self.assertEqual(values_of(data, "SlopeCorrected").tolist(), (~solid).astype(int).tolist())
+        self.assertLess(abs(values_of(data, "Lambda2_SPH")[~solid]).max(), 1e-4)
+        arrays = data.GetPointData()
+        self.assertFalse(arrays.HasArray("Q-criterion") or arrays.HasArray("StrainRate"))
+        self.assertIs(arrays.GetArray("Type"), particles.GetPointData().GetArray("Type"))
+        self.assertEqual(set(values_of(particles, "Lambda2")), {17})
+        replaced = run(made, ReplaceArrays=1)[0].GetPointData()
+        self.assertFalse(replaced.HasArray("Lambda2_SPH"))
+        self.assertLess(replaced.GetArray("Lambda2").GetRange()[1], 1)
+        data, told = run(made, FluidValue=2)
+        self.assertEqual((len(told), made.GetErrorMessage(), data.GetNumberOfPoints()), (1, "", COUNT))
+
+    def test_found_fluid(self):
+        """By every filter, as by SPH Contour."""
+        particles, probe = cube(ParticleType=(points_of(cube())[:, 2] < -0.45).astype(numpy.int32)), vtkSPHProbe()
+        probe.SetSourceData(particles)
+        for made, data in ((vtkSPHDerivatives(), particles), (probe, cube())):
+            self.assertEqual((len(run(made, data)[1]), made.GetUsedFluid()), (1, ""))
+            self.assertEqual((run(made, DetectFluid=1)[1], made.GetUsedFluid()), ([], "ParticleType = 0"))
+
+    def test_outputs(self):
+        """A run that is stopped, another class, the standard form."""
+        grid, made = vtkUnstructuredGrid(), vtkSPHDerivatives()
+        grid.SetPoints(cube().GetPoints())
+        grid.GetPointData().ShallowCopy(cube().GetPointData())
+        data, _ = run(made, grid, InputArrayToProcess=(0, 0, 0, POINTS, "Radius"), CorrectGradients=0)
+        self.assertEqual((data.GetClassName(), set(values_of(data, "GradientsCorrected"))), ("vtkUnstructuredGrid", {0}))
+        self.assertFalse(data.GetPointData().HasArray("Vorticity") or data.GetPointData().HasArray("Lambda2"))
+        self.assertEqual(aborted(made).GetNumberOfPoints(), 0)
+
+    def test_derivatives(self):
+        """Stay in their blocks, and see the others."""
+        data = cube()
+        left = points_of(data)[:, 0] < 0.05
+        outputs = []
+        for each in (data, blocks_of(take(data, left), None, take(data, ~left))):
+            derivatives = vtkSPHDerivatives()
+            derivatives.SetInputArrayToProcess(0, 0, 0, POINTS, "Radius")
+            outputs.append(run(derivatives, each)[0])
+        whole, blocks = outputs
+        self.assertIsNone(blocks.GetBlock(1))
+        for i, chosen in ((0, left), (2, ~left)):
+            self.assertEqual(values_of(blocks.GetBlock(i), "Gradients").tobytes(), values_of(whole, "Gradients")[chosen].tobytes())
+            self.assertTrue(blocks.GetBlock(i).GetPointData().HasArray("Radius"))
 
     def test_taylor_green(self):
         """Twice as fine, about a quarter of the error."""
@@ -223,13 +305,99 @@ class TestProbe(unittest.TestCase):
         probe.AddExcludedArray("h")
         self.assertTrue((values_of(run(probe)[0], "Velocity") == after).all())
 
-    def test_source(self):
-        probe = self.make()
-        self.assertEqual(probe.GetSource().GetNumberOfPoints(), 12 ** 3)
+    def probe(self, points, particles, **settings):
+        self.made = vtkSPHProbe()
+        self.made.SetSourceData(particles)
+        return run(self.made, points, **settings)[0]
+
+    def places(self, count):
+        """In and around the cube; every fiftieth is far away."""
+        places = numpy.random.default_rng(7).uniform(-1.3, 1.3, (count, 3))
+        places[::50] *= 4e5
+        return places
+
+    def test_values(self):
+        """Against brute force: means, and sums."""
+        places, particles = self.places(800), cube()
+        weight, total = sums_at(particles, values_of(particles, "Radius"), places)
+        valid = weight >= 0.3
+        self.assertTrue(valid.sum() > 200 and (weight == 0).sum() > 16)
+        for mean in (1, 0):
+            points = particles_of(places, Number=numpy.arange(800))
+            data = self.probe(points, particles, ShepardNormalization=mean, Precision=1, WeightThreshold=0.3)
+            expected = numpy.where(valid, total / numpy.where(valid, weight, 1) if mean else total, 0)
+            for name, values in (("WeightSum", weight), ("Radius", expected), ("vtkValidPointMask", valid)):
+                self.assertLess(abs(values_of(data, name) - values).max(), 1e-12, name)
+            self.assertIs(data.GetPointData().GetArray("Number"), points.GetPointData().GetArray("Number"))
+            self.assertFalse(data.GetPointData().HasArray("Radius_Gradient"))
+
+    def image(self, *extent, spacing, origin=(0, 0, 0)):
+        image = vtkImageData()
+        image.SetExtent(*extent)
+        image.SetOrigin(*origin)
+        image.SetSpacing(spacing, spacing, spacing)
+        return image
+
+    def test_gradients(self):
+        """Of a linear array inside of the cube: the particles' gradient to some digits; that of the weight, 0."""
+        y = points_of(cube())[:, 1:2]
+        particles = cube(Pair=(100 + y * [1, 2]).astype(numpy.float32))
+        data = self.probe(self.image(0, 8, 0, 8, 0, 2, spacing=0.1, origin=(-0.4, -0.4, -0.1)), particles, ComputeGradients=1)
+        found = values_of(data, "Pair_Gradient")
+        self.assertEqual((found.shape[1], found.dtype), (6, "f4"))
+        self.assertLess(abs(found.mean(axis=0) - [0, 1, 0, 0, 2, 0]).max(), 0.05)
+        self.assertLess(abs(values_of(data, "WeightSum_Gradient").mean(axis=0)).max(), 0.1)
+
+    def test_bits(self):
+        """The same in any order, of points in any class, with device data kept or not, of particles in blocks."""
+        particles, places = cube(), self.places(5000)
+        expected = self.probe(particles_of(places), particles)
+        back = self.probe(particles_of(places[::-1]), particles, KeepDeviceData=0)
+        for name in ("Radius", "WeightSum"):
+            self.assertEqual(values_of(back, name)[::-1].tobytes(), values_of(expected, name).tobytes())
+        image, grid = self.image(-5, 5, 2, 12, 0, 0, spacing=0.125), vtkRectilinearGrid()
+        grid.SetExtent(image.GetExtent())
+        for axis, values in (("X", range(-5, 6)), ("Y", range(2, 13)), ("Z", [0])):
+            getattr(grid, f"Set{axis}Coordinates")(add(vtkPolyData(), x=0.125 * numpy.array(values, float)).GetPointData().GetArray(0))
+        both = self.probe(blocks_of(image, grid), particles)
+        self.assertEqual(*(values_of(both.GetBlock(i), "Radius").tobytes() for i in range(2)))
+        self.assertEqual((both.GetBlock(0).GetExtent(), values_of(both.GetBlock(0), "WeightSum")[20] > 0.5),
+                         (image.GetExtent(), True))
+        halves = [take(particles, slice(half, None, 2)) for half in range(2)]
+        halves[1].GetPointData().RemoveArray("Radius")  # only arrays that all have
+        joined = self.probe(particles_of(places), blocks_of(*halves))
+        self.assertEqual(values_of(joined, "WeightSum").tobytes(), values_of(expected, "WeightSum").tobytes())
+        self.assertFalse(joined.GetPointData().HasArray("Radius"))
+
+    def test_solids(self):
+        places = self.places(500)
+        particles = cube(Type=(points_of(cube())[:, 0] > 0).astype(int))
+        data = self.probe(particles_of(places), particles, FluidArrayName="Type")
+        self.assertFalse(values_of(data, "WeightSum")[places[:, 0] > 0.3].any())
+        self.assertGreater(values_of(data, "WeightSum").max(), 0.9)
+        self.assertFalse(data.GetPointData().HasArray("Type"))
+
+    def test_refused(self):
+        """Nothing to probe, nothing to probe with, what cannot be used, and a run that is stopped."""
+        data = self.probe(particles_of(self.places(100)), vtkPolyData())
+        self.assertEqual((values_of(data, "vtkValidPointMask").tolist(), self.made.GetErrorMessage()), ([0] * 100, ""))
+        data = self.probe(vtkPolyData(), cube())
+        self.assertEqual((data.GetPointData().GetArray("Radius").GetNumberOfTuples(), self.made.GetErrorMessage()), (0, ""))
+        for port, word in ((0, "points"), (1, "particles")):
+            forgotten = vtkSPHProbe()
+            forgotten.SetInputDataObject(1 - port, cube())
+            self.assertEqual((len(run(forgotten)[1]), word in forgotten.GetErrorMessage()), (1, True))
+        particles = cube()
+        values_of(particles, "Radius")[3] = math.nan
+        self.assertFalse(self.probe(particles_of(self.places(100)), particles).GetPointData().HasArray("Radius"))
+        data, told = run(self.made, InterpolateAttributes=0, ValidPointMaskArrayName="Mask")
+        self.assertEqual((data.GetPointData().GetNumberOfArrays(), data.GetPointData().HasArray("Mask"), told), (2, 1, []))
+        data, told = run(self.made, SmoothingLengthArrayName="Nonsense")
+        self.assertEqual((data.GetNumberOfPoints(), len(told), "'Nonsense'" in told[0]), (0, 1, True))
+        self.made.SetSmoothingLengthArrayName("")
+        self.assertEqual(aborted(self.made).GetNumberOfPoints(), 0)
+        self.assertIs(self.made.GetSource(), particles)
         self.assertIsNone(vtkSPHProbe().GetSource())
-        image, _ = run(probe, SmoothingLengthArrayName="Nonsense")
-        self.assertIn("'Nonsense'", probe.GetErrorMessage())
-        self.assertEqual(image.GetNumberOfPoints(), 0)
 
     def test_particles_among_meshes(self):
         """Vertices beside other cells are the particles; derivatives come with these, in the class of the input."""
@@ -246,6 +414,66 @@ class TestProbe(unittest.TestCase):
         found = derive(mesh)
         self.assertEqual((found.GetClassName(), found.GetNumberOfCells()), ("vtkUnstructuredGrid", count - 3))
         self.assertEqual(bytes_of(found), bytes_of(expected))
+
+
+class TestResample(unittest.TestCase):
+    """Slices, lines and volumes: where their points are, their values as the probe has them, NaN outside."""
+
+    def setUp(self):
+        self.particles, self.made = cube(Velocity=points_of(cube()) + 3), vtkSPHResample()
+        run(self.made, self.particles, Resolution=41, WeightThreshold=0.4)  # so that the fluid ends before the points do
+
+    def check_values(self, **settings):
+        made, _ = run(self.made, **settings)
+        self.assertEqual(self.made.GetErrorMessage(), "")
+        probe, bare = vtkSPHProbe(), made.NewInstance()
+        bare.CopyStructure(made)
+        probe.SetSourceData(self.particles)
+        expected, _ = run(probe, bare, WeightThreshold=0.4)
+        self.assertEqual(values_of(made, "WeightSum").tobytes(), values_of(expected, "WeightSum").tobytes())
+        self.assertEqual(made.GetPointData().GetScalars().GetName(), "Velocity")
+        valid = values_of(made, "vtkValidPointMask") != 0
+        self.assertEqual(values_of(made, "Radius")[valid].tolist(), values_of(expected, "Radius")[valid].tolist())
+        self.assertTrue(numpy.isnan(values_of(made, "Radius")[~valid]).all())
+        self.assertTrue(10 < valid.sum() < len(valid))
+        return made
+
+    def test_slice(self):
+        made = self.check_values(Normal=(0, 2, 0))
+        low, high = points_of(made).min(axis=0), points_of(made).max(axis=0)
+        self.assertTrue(41 * 40 <= made.GetNumberOfPoints() <= 41 * 41)
+        self.assertTrue(abs(low[1]) < 0.02 and low[1] == high[1] and -1.2 < low[0] < -1 and 1 < high[2] < 1.2)
+        self.assertTrue(900 < made.GetNumberOfCells() < 40 * 39)  # quads end where the fluid does
+        self.assertGreaterEqual(run(self.made, OnlyFluid=0)[0].GetNumberOfCells(), 40 * 39)
+        # An inclined plane: its points are on it, and the cube's corner is cut off.
+        x = points_of(self.check_values(FitBounds=0, Origin=(0.5, 0.5, 0.5), Normal=(1, 1, 1)))
+        self.assertLess(abs(x.sum(axis=1) - 1.5).max(), 1e-12)
+        self.assertTrue(x[:, 0].min() < 0 and x[:, 0].max() > 1)
+        made, told = run(self.made, Origin=(5, 0, 0), Normal=(1, 0, 0))  # beside the fluid
+        self.assertEqual((made.GetNumberOfPoints(), told), (0, []))
+
+    def test_line(self):
+        made = self.check_values(Shape=vtkSPHResample.LINE, FitBounds=0, Point1=(-2, 0.1, 0.1), Point2=(2, 0.1, 0.1))
+        self.assertEqual((made.GetNumberOfPoints(), made.GetNumberOfLines()), (41, 1))
+        self.assertLess(abs(values_of(made, "arc_length") - 0.1 * numpy.arange(41)).max(), 1e-12)
+        self.assertTrue(2 < run(self.made, FitBounds=1)[0].GetLength() < 2.3)
+
+    def test_volume(self):
+        made = self.check_values(Shape=vtkSPHResample.VOLUME, Dimensions=(20, 10, 5))
+        self.assertEqual(made.GetDimensions(), (20, 10, 5))
+        self.assertTrue(made.GetBounds()[0] < -1 and made.GetBounds()[5] > 1)
+        made, _ = run(self.made, FitBounds=0, Bounds=(0, 3, 0, 0.5, -0.5, 0.5), NaNOutside=0, NullValue=-9)
+        self.assertEqual((made.GetBounds()[1], values_of(made, "Radius").min()), (3, -9))
+        self.assertTrue(run(self.made, Shape=vtkSPHResample.SLICE)[0].IsA("vtkPolyData"))  # another class of output
+
+    def test_inputs(self):
+        """Walls do not count, in the bounds neither; blocks are one set; nothing is no error."""
+        add(self.particles, ParticleType=(points_of(self.particles)[:, 0] > 0.05).astype(int))
+        made, _ = run(self.made, blocks_of(self.particles), DetectFluid=1)
+        self.assertEqual(self.made.GetUsedFluid(), "ParticleType = 0")
+        self.assertTrue(points_of(made)[:, 0].max() < 0.2 and made.GetNumberOfCells() > 0)
+        made, told = run(self.made, vtkPolyData())
+        self.assertEqual((made.GetNumberOfPoints(), self.made.GetErrorMessage()), (0, ""))
 
 
 if __name__ == "__main__":

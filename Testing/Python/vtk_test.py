@@ -4,9 +4,13 @@
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkMultiBlockDataSet, vtkPolyData
 
-SPACING = 0.1
+from marchingcorrectors import vtkMarchingCorrectors
+
+SPACING, H = 0.1, 0.13
+COUNT = 21 ** 3  # of cube()
+POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 
 
 def lattice(*sides, around_origin=False):
@@ -31,6 +35,43 @@ def particles_of(points, **arrays):
     return add(result, **arrays)
 
 
+def cube(kind=float, **arrays):
+    """21^3 particles in [-1, 1]^3, a little off their lattice so that no two neighbourhoods are alike; Radius is the
+    distance from the middle."""
+    places = lattice(21, 21, 21, around_origin=True)
+    places = (places + 0.1 * SPACING * numpy.random.default_rng(21).uniform(-1, 1, places.shape)).astype(kind)
+    return particles_of(places, SmoothingLength=numpy.full(COUNT, H), Volume=numpy.full(COUNT, SPACING ** 3),
+                        Radius=numpy.linalg.norm(places.astype(float), axis=1), **arrays)
+
+
+def sphere(data=None, scalar="Radius", iso=0.6):
+    """A filter for about a sphere in the cube."""
+    extract = vtkMarchingCorrectors()
+    extract.SetInputDataObject(cube() if data is None else data)
+    extract.SetInputArrayToProcess(0, 0, 0, POINTS, scalar)
+    extract.SetValue(0, iso)
+    return extract
+
+
+def sums_at(particles, values, places):
+    """Weight sum and sum of a scalar by the textbooks' cubic spline: no code shared with the core."""
+    x, volume = points_of(particles), values_of(particles, "Volume")
+    found = []
+    for place in numpy.asarray(places, float):
+        q = numpy.linalg.norm(x - place, axis=1) / H
+        near = q < 2
+        q = q[near]
+        w = volume[near] * numpy.where(q < 1, 1 - 1.5 * q ** 2 + 0.75 * q ** 3, 0.25 * (2 - q) ** 3) / numpy.pi / H ** 3
+        found.append((w.sum(), w @ values[near]))
+    return numpy.array(found).T
+
+
+def take(data, chosen):
+    """These particles, with all arrays."""
+    arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
+    return particles_of(points_of(data)[chosen], **{array.GetName(): vtk_to_numpy(array)[chosen] for array in arrays})
+
+
 def blocks_of(*blocks, **named):
     """Blocks without names, and with them."""
     result = vtkMultiBlockDataSet()
@@ -39,6 +80,15 @@ def blocks_of(*blocks, **named):
     for i, name in enumerate(named, len(blocks)):
         result.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
     return result
+
+
+def take_step(step, extract, *data):
+    """A step is what to set, or a function."""
+    if callable(step):
+        step(extract, *data)
+        return
+    for name, value in step.items():
+        getattr(extract, "Set" + name)(*(value if isinstance(value, tuple) else (value,)))
 
 
 def run(made, data=None, **settings):
@@ -53,9 +103,8 @@ def run(made, data=None, **settings):
     for event in ("ErrorEvent", "WarningEvent"):
         tags.append(made.AddObserver(event, keep))
     if data is not None:
-        made.SetInputData(data)
-    for name, value in settings.items():
-        getattr(made, "Set" + name)(*(value if isinstance(value, tuple) else (value,)))
+        made.SetInputDataObject(data)
+    take_step(settings, made)
     made.Update()
     for tag in tags:
         made.RemoveObserver(tag)
@@ -75,3 +124,39 @@ def bytes_of(data):
     """Bytes of the points and all their arrays."""
     arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
     return [bytes(memoryview(array)) for array in (data.GetPoints().GetData(), *arrays)]
+
+
+def surface_of(data):
+    """All that a surface has, by the names of its arrays."""
+    arrays = [data.GetPointData().GetArray(i) for i in range(data.GetPointData().GetNumberOfArrays())]
+    return {"points": points_of(data).tobytes(), "corners": vtk_to_numpy(data.GetPolys().GetConnectivityArray()).tobytes(),
+            **{array.GetName(): bytes(memoryview(array)) for array in arrays}}
+
+
+def statistics_of(extract):
+    """The run's statistics, but for what another run for the same surface may not cost."""
+    data = extract.GetRunStatistics()
+    arrays = [data.GetAbstractArray(i) for i in range(data.GetNumberOfArrays())]
+    return [(array.GetName(), [array.GetVariantValue(i).ToString() for i in range(array.GetNumberOfValues())])
+            for array in arrays if array.GetName() not in ("Seconds", "DeviceBytesPeak", "ParticlesInReach", "Bricks",
+                                                           "NodesEvaluated", "MarchRounds")]
+
+
+def statistic(extract, name):
+    return extract.GetRunStatistics().GetAbstractArray(name).GetVariantValue(0).ToDouble()
+
+
+def on_progress(extract, act):
+    """Calls act(extract) at each sign of progress."""
+    return extract.AddObserver("ProgressEvent", lambda *_: act(extract))
+
+
+def aborted(extract):
+    """The output of a run that is ended at its first sign of progress."""
+    tag = on_progress(extract, lambda made: made.SetAbortExecute(1))
+    extract.Modified()
+    output, told = run(extract)
+    extract.RemoveObserver(tag)
+    extract.SetAbortExecute(0)
+    assert (told, extract.GetErrorMessage()) == ([], ""), told
+    return output

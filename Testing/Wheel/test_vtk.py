@@ -37,10 +37,6 @@ class Test(unittest.TestCase):
     def setUpClass(cls):
         cls.dam = pyvista.read(DAM)
 
-    def assert_same(self, found, expected):
-        """Points, cells and all point arrays, to the bit."""
-        self.assertEqual(report_mesh(found), report_mesh(expected))
-
     def test_class_is_that_of_python(self):
         self.assertIn("MarchingCorrectorsFilter", vtkMarchingCorrectors.__module__)
         import marchingcorrectors
@@ -112,30 +108,6 @@ class Test(unittest.TestCase):
                 continue
             if value.replace(".", "").replace("e-", "").isdigit() and hasattr(vtkMarchingCorrectors, "Get" + name):
                 self.assertEqual(getattr(vtkMarchingCorrectors(), "Get" + name)(), float(value), name)
-
-    def test_reuse_changes_nothing(self):
-        particles = pyvista.read(DATA / "double_dam_break_small.vtp")
-        extract, first = run_filter(particles, scalar="Speed", value=1.5)
-        extract.SetValue(0, 2.0)
-        extract.Update()
-        extract.SetValue(0, 1.5)
-        extract.Update()
-        self.assert_same(pyvista.wrap(extract.GetOutput()), first)
-        particles["Speed"] *= 2
-        particles.point_data.GetArray("Speed").Modified()
-        extract.Update()
-        changed = pyvista.wrap(extract.GetOutput())
-        self.assertNotEqual(changed.points.tobytes(), first.points.tobytes())
-        _, fresh = run_filter(particles, scalar="Speed", value=1.5)
-        self.assert_same(changed, fresh)
-
-    def test_abort(self):
-        extract = vtkMarchingCorrectors()
-        extract.SetInputData(self.dam)
-        extract.FreeSurfaceOn()
-        extract.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
-        extract.Update()
-        self.assertEqual((extract.GetOutput().GetNumberOfPoints(), extract.GetErrorMessage()), (0, ""))
 
 
 if __name__ == "__main__":

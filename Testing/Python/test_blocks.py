@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Composite data: blocks that are one set of particles; and each block by itself, in its place, where messages name the
+block, and none is lost."""
+import unittest
+
+import numpy
+from vtkmodules.vtkCommonDataModel import (
+    vtkCompositeDataSet, vtkImageData, vtkMultiBlockDataSet, vtkOverlappingAMR, vtkPartitionedDataSet,
+    vtkPartitionedDataSetCollection, vtkPolyData, vtkTable)
+
+from vtk_test import (
+    POINTS, add, blocks_of, cube, on_progress, particles_of, points_of, run, sphere, statistic, statistics_of, surface_of, take,
+    values_of)
+
+APART = {"BlocksToApart": ()}
+
+
+def broken():
+    data = cube()
+    values_of(data, "SmoothingLength")[17] = -1
+    return data
+
+
+def timed(data):
+    data.GetFieldData().AddArray(particles_of([[0.0] * 3], TimeValue=numpy.array([0.5])).GetPointData().GetArray(0))
+    return data
+
+
+class TestApart(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.alone = surface_of(run(sphere())[0])
+
+    def test_messages(self):
+        """Broken, good, an image, empty, none, broken without a name within a block, good."""
+        blocks = blocks_of(broken(), timed(cube()), vtkImageData(), vtkPolyData(), None, blocks_of(broken()), cube())
+        for i, name in ((0, "first"), (2, "picture")):
+            blocks.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), name)
+        extract = sphere(blocks)
+        output, told = run(extract, **APART)
+        message = extract.GetErrorMessage()
+        self.assertEqual((len(told), output.GetNumberOfBlocks()), (3, 7))
+        self.assertRegex(message, "^Block 'first', index 1: The smoothing length.*particle 17.*\nBlock index 7: The smoothing length")
+        self.assertEqual(sum("Block 'picture'" in sentence for sentence in told), 1)
+        self.assertEqual(output.GetMetaData(0).Get(vtkCompositeDataSet.NAME()), "first")
+        self.assertEqual([output.GetBlock(i).GetNumberOfPoints() for i in (0, 2, 3)], [0, 0, 0])
+        self.assertIsNone(output.GetBlock(4))
+        for i in (1, 6):
+            self.assertTrue(surface_of(output.GetBlock(i)) == self.alone)
+        data = output.GetBlock(1).GetFieldData()
+        self.assertTrue(data.HasArray("TimeValue") and data.HasArray("IsoValues"))
+        # Good data again, and other kinds of output: nothing of the errors stays.
+        blocks.SetBlock(0, cube())
+        blocks.SetBlock(5, None)
+        run(extract)
+        self.assertEqual(extract.GetErrorMessage(), "")
+        self.assertTrue(surface_of(run(extract, cube())[0]) == self.alone)
+
+    def test_partitions(self):
+        """Are called by the name of what they are parts of."""
+        walls, water, collection = vtkPartitionedDataSet(), vtkPartitionedDataSet(), vtkPartitionedDataSetCollection()
+        walls.SetPartition(0, cube())
+        water.SetPartition(0, cube())
+        water.SetPartition(1, broken())
+        collection.SetPartitionedDataSet(0, walls)
+        collection.SetPartitionedDataSet(1, water)
+        collection.GetMetaData(1).Set(vtkCompositeDataSet.NAME(), "water")
+        extract = sphere(collection)
+        output, _ = run(extract, **APART)
+        self.assertIn("Block 'water', index 5: ", extract.GetErrorMessage())
+        for i in range(2):
+            self.assertTrue(surface_of(output.GetPartitionedDataSet(i).GetPartition(0)) == self.alone)
+        left = output.GetPartitionedDataSet(1).GetPartition(1)
+        self.assertFalse(left and left.GetNumberOfPoints())
+        self.assertTrue(surface_of(run(extract, water)[0].GetPartition(0)) == self.alone)
+
+    def test_sums(self):
+        """The cost is that of all blocks; the fraction of the progress never falls."""
+        extract, seen = sphere(), [0]
+        run(extract, **APART, KeepDeviceData=0)
+        bricks, peak = statistic(extract, "Bricks"), statistic(extract, "DeviceBytesPeak")
+        on_progress(extract, lambda made: seen.append(made.GetProgress()))
+        run(extract, blocks_of(cube(), cube()))
+        self.assertEqual(sorted(seen), seen)
+        self.assertTrue(0.9 < seen[-1] <= 1)
+        self.assertEqual((statistic(extract, "Bricks"), statistic(extract, "DeviceBytesPeak")), (2 * bricks, peak))
+        self.assertEqual((extract.GetProgressScale(), extract.GetProgressShift()), (1, 0))
+
+    def test_abort(self):
+        """In the second block: no surface of the first one alone."""
+        extract = sphere(blocks_of(cube(), cube()))
+        on_progress(extract, lambda made: made.SetAbortExecute(made.GetProgress() > 0.6))
+        output, told = run(extract, **APART)
+        self.assertEqual((output.GetNumberOfPoints(), told, extract.GetErrorMessage()), (0, [], ""))
+
+    def test_no_point_sets(self):
+        """Blocks of cells without points of their own: refused, not crashed on."""
+        amr, extract = vtkOverlappingAMR(), sphere()
+        amr.Initialize(1, [1])
+        messages = []
+        extract.GetExecutive().AddObserver("ErrorEvent", lambda *_: messages.append(1))
+        for data in (amr, vtkTable()):
+            run(extract, data)
+        self.assertGreater(len(messages), 0)
+        self.assertEqual(run(extract, vtkMultiBlockDataSet())[0].GetNumberOfPoints(), 0)
+        self.assertEqual(extract.GetErrorMessage(), "")
+        self.assertTrue(run(extract, **APART)[0].IsA("vtkMultiBlockDataSet"))
+        self.assertEqual(extract.GetErrorMessage(), "")
+
+
+class TestTogether(unittest.TestCase):
+    def test_one_set(self):
+        """In any order, beside empty blocks: the surface of one set, to the last bit. An array that one block lacks is left
+        out. What is put together is kept while the blocks are the same."""
+        data = cube()
+        left = points_of(data)[:, 0] < 0.05
+        first, second = take(data, ~left), timed(take(data, left))
+        add(first, Own=numpy.ones(first.GetNumberOfPoints()))
+        whole, extract = sphere(data), sphere(blocks_of(first, blocks_of(second), vtkPolyData(), vtkImageData()))
+        for settings in ({}, {"Value": (0, 0.7)}):
+            expected, (surface, told) = run(whole, **settings)[0], run(extract, **settings)
+            self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
+            self.assertTrue(surface_of(surface) == surface_of(expected))
+            self.assertEqual(statistics_of(extract), statistics_of(whole))
+        self.assertTrue(surface.GetFieldData().HasArray("TimeValue"))
+        values_of(second, "Radius")[:] *= 2
+        second.GetPointData().GetArray("Radius").Modified()
+        extract.Modified()
+        self.assertFalse(surface_of(run(extract)[0]) == surface_of(expected))
+        self.assertTrue(run(extract, **APART)[0].IsA("vtkMultiBlockDataSet"))
+
+    def test_widths_that_differ(self):
+        """An array has one width in a block, two in another one: left out."""
+        data = cube()
+        left = points_of(data)[:, 0] < 0.05
+        halves = take(data, left), take(data, ~left)
+        for half, width in zip(halves, (1, 2)):
+            add(half, Pair=numpy.ones((half.GetNumberOfPoints(), width)))
+        surface, told = run(sphere(blocks_of(*halves)))
+        self.assertEqual(told, [])
+        self.assertFalse(surface.GetPointData().HasArray("Pair"))
+
+    def test_walls(self):
+        """In a block of their own, as its name says, without the scalar: solid, where that is asked for."""
+        data = cube()
+        wall = points_of(data)[:, 2] < -0.45
+        walls = take(data, wall)
+        walls.GetPointData().RemoveArray("Radius")
+        walls.GetPointData().RemoveArray("Volume")
+        extract = sphere(blocks_of(Boundary=walls, Fluid=take(data, ~wall)))
+        surface, told = run(extract)
+        self.assertEqual((len(told), extract.GetUsedFluid()), (1, ""))
+        everywhere = surface.GetNumberOfCells()
+        extract.DetectFluidOn()
+        self.assertEqual(extract.GetNextFluid(), "WallBlock = 0")
+        surface, told = run(extract)
+        self.assertEqual((told, extract.GetUsedFluid()), ([], "WallBlock = 0"))
+        self.assertFalse(surface.GetPointData().HasArray("WallBlock"))
+        one = sphere(add(data, Kind=numpy.where(wall, 7, 4)))  # as one set in which an array tells
+        one.AddExcludedArray("Kind")
+        self.assertTrue(surface_of(surface) == surface_of(run(one, FluidArrayName="Kind", FluidValue=4)[0]))
+        self.assertGreater(surface.GetNumberOfCells(), 100)
+        self.assertNotEqual(surface.GetNumberOfCells(), everywhere)
+        self.assertGreater(len(run(extract, **APART)[1]), 0)  # walls that are not seen
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,320 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What comes in. Weird input first: an empty output and one sentence, and the filter works again. Then arrays and point
+sets of any kind, and what is found where nobody has named it."""
+import math
+import unittest
+
+import numpy
+from vtkmodules.vtkCommonCore import vtkBitArray, vtkFloatArray, vtkPoints, vtkSOADataArrayTemplate, vtkStringArray, vtkVariantArray
+from vtkmodules.vtkCommonDataModel import (
+    VTK_HEXAHEDRON, VTK_VERTEX, vtkCellArray, vtkDataObject, vtkPolyData, vtkStructuredGrid, vtkUnstructuredGrid)
+
+from marchingcorrectors import vtkMarchingCorrectors
+from vtk_test import (
+    COUNT, H, POINTS, SPACING, add, blocks_of, cube, lattice, particles_of, points_of, run, sphere, statistics_of, surface_of,
+    values_of)
+
+ONES = numpy.ones((COUNT, 3))
+BARE = {"InterpolateAttributes": 0, "ComputeScalars": 0}
+
+
+def bare(data=None, *scalar, **settings):
+    """The surface without what is interpolated, for all comparisons of inputs."""
+    extract = sphere(data, *scalar)
+    surface, told = run(extract, **BARE, **settings)
+    assert told == [] and surface.GetNumberOfCells() > 100, told
+    return surface_of(surface)
+
+
+class TestWeird(unittest.TestCase):
+    def test_refused(self):
+        text, short = vtkStringArray(), vtkFloatArray()
+        text.SetNumberOfTuples(COUNT)
+        short.InsertNextValue(1)
+
+        def changed(name, i, value):
+            data = cube()
+            data.GetPointData().GetArray(name).SetComponent(i, 0, value)
+            return data
+
+        def without(*names):
+            data = cube()
+            for name in names:
+                data.GetPointData().RemoveArray(name)
+            return data
+
+        moved = cube()
+        moved.GetPoints().SetPoint(20, 0, math.nan, 0)
+        scalar = {name: {"InputArrayToProcess": (0, 0, 0, POINTS, name)} for name in ("NoSuch", "Text", "Short", "Vector", "")}
+        for words, data, settings in (
+                (("scalar", "free surface", "Volume"), without("Radius"), scalar[""]),  # no other one varies
+                (("'NoSuch'", "scalar", "Radius"), cube(), scalar["NoSuch"]),
+                (("'NoSuch'", "scalar"), cube(), {"InputArrayToProcess": (0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "NoSuch")}),
+                (("'Text'", "numbers"), cube(Text=text), scalar["Text"]),
+                (("'Short'", "9261 points"), cube(Short=short), scalar["Short"]),
+                (("'Vector'", "component 7"), cube(Vector=ONES), {**scalar["Vector"], "ScalarComponent": 7}),
+                (("dot product", "'Vector'"), cube(Vector=ONES), {"InputArrayToProcess": (1, 0, 0, POINTS, "Vector")}),
+                (("'Vector'", "smoothing length", "3 components"), cube(Vector=ONES), {"SmoothingLengthArrayName": "Vector"}),
+                (("'Pair' has 2 components",), cube(Pair=ONES[:, :2]), {"FluidArrayName": "Pair"}),
+                (("no smoothing length", "stimate"), without("SmoothingLength"), {}),
+                (("no smoothing length",), cube(), {"DetectArrays": 0}),
+                *(((f"'NoSuch' for the {role}", "Point arrays"), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
+                    ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
+                    ("Fluid", "fluid"))),
+                # The core's sentences arrive; core_input has all that it refuses.
+                (("17", "SmoothingLength"), changed("SmoothingLength", 17, math.nan), {}),
+                (("18", "Radius"), changed("Radius", 18, math.inf), {}),
+                (("20", "osition"), moved, {}),
+                (("moothing length",), cube(), {"SmoothingLength": -0.1}),
+                (("ube size",), cube(), {"CubeSize": 1e-12}),
+                (("NoSuchDevice",), cube(), {"Device": "NoSuchDevice"})):
+            with self.subTest(words):
+                extract = sphere(data)
+                surface, told = run(extract, **settings)
+                self.assertEqual((surface.GetNumberOfPoints(), surface.GetNumberOfCells()), (0, 0))
+                self.assertIn(extract.GetErrorMessage(), told[-1])  # which for cubes so small follows a warning
+                for word in words:
+                    self.assertIn(word, extract.GetErrorMessage())
+                self.assertNotIn("\n", extract.GetErrorMessage())
+
+    def test_legal(self):
+        """Nothing at all, a point in the middle of nowhere, twice the same, no such value: no error."""
+        empty, one = vtkPolyData(), particles_of([[1.0, 2.0, 3.0]])
+        nothing = particles_of(numpy.empty((0, 3)))
+        single = {"SmoothingLength": 0.1, "FreeSurface": 1}
+        for data, settings, there in ((empty, {}, False), (nothing, {"FreeSurface": 1}, False), (one, single, True),
+                                      (particles_of([[1.0, 2.0, 3.0]] * 2), single, None)):
+            extract = sphere(data)
+            surface, _ = run(extract, **settings)
+            self.assertEqual(extract.GetErrorMessage(), "")
+            self.assertIn(surface.GetNumberOfPoints() > 0, (there, there is None or there))
+        for settings in ({"Value": (0, 99)}, {"FluidArrayName": "Radius", "FluidValue": -5}):
+            extract = sphere()
+            surface, told = run(extract, **settings)
+            self.assertEqual((surface.GetNumberOfPoints(), len(told), extract.GetErrorMessage()), (0, 1, ""))
+
+    def test_recovery(self):
+        extract = sphere()
+        run(extract, HScaleFactor=-1)
+        self.assertNotEqual(extract.GetErrorMessage(), "")
+        surface, told = run(extract, HScaleFactor=1)
+        self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
+        self.assertGreater(surface.GetNumberOfCells(), 100)
+
+
+class TestKinds(unittest.TestCase):
+    def apart(self, kind, values):
+        """An array that has each component by itself."""
+        array = vtkSOADataArrayTemplate[kind]()
+        array.SetNumberOfComponents(values.shape[1])
+        array.SetNumberOfTuples(len(values))
+        for (i, c), value in numpy.ndenumerate(values):
+            array.SetComponent(i, c, value)
+        return array
+
+    def test_scalars(self):
+        """Whole numbers, so that every type can hold them."""
+        values = numpy.floor(100 * values_of(cube(), "Radius"))
+        expected = bare(cube(Count=values), "Count", 60.5)
+        for kind in ("f4", "i4", "i2", "i8", "u1"):
+            self.assertTrue(bare(cube(Count=values.astype(kind)), "Count", 60.5) == expected, kind)
+        for kind in ("float32", "float64"):
+            self.assertTrue(bare(cube(Count=self.apart(kind, values[:, None])), "Count", 60.5) == expected, kind)
+
+    def test_vectors(self):
+        """Magnitude, one component, the dot product of two: as if computed beforehand."""
+        x = points_of(cube())
+        data = cube(Vector=x, Apart=self.apart("float64", x), Third=x[:, 2], Square=(x ** 2).sum(axis=1))
+        self.assertTrue(bare(data, "Vector") == bare(data, "Apart"))
+        self.assertTrue(bare(data, "Vector", 0.03, ScalarComponent=2) == bare(data, "Third", 0.03))
+        dot = bare(data, "Vector", 0.36, InputArrayToProcess=(1, 0, 0, POINTS, "Apart"))
+        self.assertEqual(*(len(each["corners"]) for each in (dot, bare(data, "Square", 0.36))))
+        named = sphere(data, "Vector", 0.1)
+        self.assertTrue(run(named, ScalarComponent=1)[0].GetPointData().HasArray("Vector_Y"))
+
+    def test_rare_arrays(self):
+        """Each as scalar, and carried to the surface; one array in several roles, and arrays without values or name."""
+        data, bits, variants, none = cube(), vtkBitArray(), vtkVariantArray(), vtkFloatArray()
+        inside = (values_of(data, "Radius") < 0.6).astype(numpy.uint8)
+        for i, value in enumerate(inside):
+            bits.InsertNextValue(value)
+            variants.InsertNextValue(i)
+        add(data, Byte=inside, Bit=bits, Variant=variants, hsml=none)
+        data.GetPointData().AddArray(vtkFloatArray())
+        data.GetPoints().GetData().SetName("Position")
+        data.GetPointData().AddArray(data.GetPoints().GetData())  # the points' own array
+        self.assertEqual(*(bare(data, name, 0.5)["points"] for name in ("Byte", "Bit")))
+        surface, _ = run(sphere(data))
+        arrays, count = surface.GetPointData(), surface.GetNumberOfPoints()
+        self.assertTrue(arrays.HasArray("Position") and not arrays.HasArray("hsml"))
+        self.assertIsNot(arrays.GetArray("Position"), surface.GetPoints().GetData())
+        found = [int(arrays.GetArray("Bit").GetValue(i)) for i in range(count)]
+        self.assertEqual(found, values_of(surface, "Byte").tolist())
+        self.assertEqual(found, [inside[arrays.GetAbstractArray("Variant").GetValue(i).ToInt()] for i in range(count)])
+        self.assertEqual({arrays.GetAbstractArray(i).GetNumberOfTuples() for i in range(arrays.GetNumberOfArrays())}, {count})
+        shared = sphere(cube(), "SmoothingLength", H / 2)
+        surface, _ = run(shared, FluidArrayName="SmoothingLength", FluidValue=H, MassArrayName="SmoothingLength")
+        self.assertEqual((shared.GetErrorMessage(), surface.GetNumberOfPoints()), ("", 0))  # nowhere half of it
+
+    def test_points(self):
+        """Whole numbers are as good as others; the surface's points have the type of the particles'."""
+        whole, surfaces = vtkPoints(), []
+        whole.SetDataTypeToInt()
+        for place in numpy.rint(lattice(10, 10, 10) / SPACING):
+            whole.InsertNextPoint(place)
+        for points in (whole, particles_of(numpy.rint(lattice(10, 10, 10) / SPACING)).GetPoints()):
+            data = vtkPolyData()
+            data.SetPoints(points)
+            surfaces.append(surface_of(run(vtkMarchingCorrectors(), data, SmoothingLength=1.3, FreeSurface=1,
+                                           OutputPointsPrecision=1)[0]))
+        self.assertTrue(surfaces[0] == surfaces[1] and len(surfaces[0]["points"]) > 0)
+        for kind in (numpy.float32, numpy.float64):
+            extract = sphere(cube(kind))
+            types = [points_of(run(extract, OutputPointsPrecision=precision)[0]).dtype for precision in (2, 1, 0)]
+            self.assertEqual(types, [kind, numpy.float64, numpy.float32])
+
+    def test_point_sets(self):
+        data = cube()
+        expected, sets = bare(data), [vtkUnstructuredGrid(), vtkStructuredGrid(), vtkPolyData()]
+        for each in sets:
+            each.SetPoints(data.GetPoints())
+            each.GetPointData().ShallowCopy(data.GetPointData())
+        sets[1].SetDimensions(21, 21, 21)
+        vertices = vtkCellArray()
+        for i in range(COUNT):
+            vertices.InsertNextCell(1, [i])
+        sets[2].SetVerts(vertices)
+        for each in sets:
+            self.assertTrue(bare(each) == expected, each.GetClassName())
+        apart, _ = run(sphere(blocks_of(data, sets[0])), BlocksToApart=(), **BARE)
+        self.assertTrue(all(surface_of(apart.GetBlock(i)) == expected for i in range(2)))
+
+    def make_mesh(self, particles, arrays):
+        """Hexahedra, between points of their own, before the particles' vertices, if there are any; with the particles'
+        arrays for all cells, or all points."""
+        places = numpy.array([(i & 1, i >> 1 & 1, i >> 2) for i in (0, 1, 3, 2, 4, 5, 7, 6)], float)
+        grid, count = vtkUnstructuredGrid(), COUNT if particles else 0
+        grid.SetPoints(particles_of(numpy.concatenate([places, points_of(particles)] if particles else [places])).GetPoints())
+        for _ in range(2):
+            grid.InsertNextCell(VTK_HEXAHEDRON, 8, list(range(8)))
+        for i in range(count):
+            grid.InsertNextCell(VTK_VERTEX, 1, [8 + i])
+        nodes = numpy.full(2 if arrays == "cells" else 8, -1.0)  # which no smoothing length may be
+        of_all = add(vtkPolyData(), **{name: numpy.concatenate([nodes, values_of(particles, name)])
+                                       for name in (("Radius", "SmoothingLength") if particles else ())}).GetPointData()
+        (grid.GetCellData() if arrays == "cells" else grid.GetPointData()).ShallowCopy(of_all)
+        return grid
+
+    def test_particles_among_meshes(self):
+        """Vertices beside other cells are the particles; so they are where blocks have either."""
+        particles, mesh = cube(), self.make_mesh(None, "points")
+        particles.GetPointData().RemoveArray("Volume")
+        expected = run(sphere(particles))[0].GetNumberOfCells()
+        for arrays in ("points", "cells"):
+            grid = self.make_mesh(particles, arrays)
+            for data in (grid, blocks_of(mesh, grid)):
+                extract = sphere(data)
+                if arrays == "cells":
+                    extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "Radius")
+                surface, told = run(extract)
+                self.assertEqual((extract.GetErrorMessage(), len(told), surface.GetNumberOfCells()), ("", 1, expected))
+                self.assertAlmostEqual(values_of(surface, "SmoothingLength")[0], H)
+        alone = vtkMarchingCorrectors()  # no vertices at all: all points are particles
+        self.assertGreater(run(alone, mesh, EstimateSmoothingLength=1, FreeSurface=1)[0].GetNumberOfCells(), 0)
+
+    def test_untouched(self):
+        data, before = cube(), vtkPolyData()
+        before.DeepCopy(data)
+        time = data.GetMTime()
+        bare(data)
+        self.assertEqual(data.GetMTime(), time)
+        self.assertTrue(surface_of(before) == surface_of(data))
+
+
+class TestQuantities(unittest.TestCase):
+    def test_volumes(self):
+        """All ways to the same volumes; a mass that is set goes before a volume array that is there."""
+        volume = SPACING ** 3
+        extract = sphere(cube(**{"my masses": numpy.full(COUNT, 4 * volume), "RHO": numpy.full(COUNT, 4.0)}))
+        surfaces = []
+        for settings, used in (
+                ({}, ("SmoothingLength", "Volume", "", "")),
+                ({"MassArrayName": "my masses"}, ("SmoothingLength", "", "my masses", "RHO")),
+                ({"MassArrayName": "", "Mass": 4 * volume, "Density": 4, "SmoothingLength": H}, ("", "", "", "")),
+                ({"SmoothingLength": 2 * H, "SmoothingLengthIsSupportRadius": 1}, ("", "", "", ""))):
+            surfaces.append(surface_of(run(extract, **BARE, **settings)[0]))
+            self.assertEqual(tuple(getattr(extract, f"GetUsed{name}ArrayName")() for name in (
+                "SmoothingLength", "Volume", "Mass", "Density")), used)
+            self.assertTrue(surfaces[-1] == surfaces[0])
+
+    def test_density_alone_is_not_used(self):
+        particles = cube(rho=numpy.full(COUNT, 1000.0))
+        particles.GetPointData().RemoveArray("Volume")
+        extract = sphere(particles)
+        for data, mass, used in ((None, 0.0, ""), (None, 1.0, "rho"), (vtkPolyData(), 1.0, "")):
+            run(extract, data, Mass=mass)
+            self.assertEqual(extract.GetUsedDensityArrayName(), used)
+
+
+class TestFound(unittest.TestCase):
+    def test_fluid(self):
+        """Where it is not to look, the filter warns."""
+        wall = points_of(cube())[:, 2] < -0.45
+        for name, fluid, other, expected, warns in (
+                ("ParticleType", 0, 1, "ParticleType = 0", True), ("Type", 3, 0, "Type = 3", True),
+                ("isFluid", 1, 0, "isFluid = 1", None), ("is_boundary", 0, 1, "is_boundary = 0", None),
+                ("ParticleType", 2, 5, "", True), ("ParticleType", 1, 1, "", False), ("Colour", 0, 1, "", False)):
+            with self.subTest(name, fluid=fluid):
+                extract = sphere(cube(**{name: numpy.where(wall, other, fluid).astype(numpy.int32)}))
+                told = run(extract)[1]
+                self.assertEqual((extract.GetUsedFluid(), extract.GetNextFluid()), ("", ""))
+                if warns is not None:
+                    self.assertEqual(len(told), warns)
+                told = run(extract, DetectFluid=1)[1]
+                self.assertEqual((extract.GetUsedFluid(), extract.GetNextFluid()), (expected, expected))
+                self.assertTrue(not expected or told == [])
+
+    def test_named(self):
+        """Found is as good as named, and what is named goes before."""
+        particles = cube(ParticleType=(points_of(cube())[:, 2] < -0.45).astype(numpy.int32))
+        named, found = sphere(particles), sphere(particles)
+        surfaces = [surface_of(run(named, FluidArrayName="ParticleType")[0]),
+                    surface_of(run(found, DetectFluid=1, FluidArrayName="(automatic)")[0])]  # as ParaView's panel says it
+        self.assertTrue(surfaces[0] == surfaces[1])
+        self.assertEqual(statistics_of(named), statistics_of(found))
+        run(named, FluidValue=1, DetectFluid=1)
+        self.assertEqual(named.GetUsedFluid(), "ParticleType = 1")
+
+    def test_scalar(self):
+        """Velocities, the first vector, the first scalar that varies; no numbers of particles."""
+        data, x = cube(Idp=numpy.arange(COUNT), IsoValue=numpy.full(COUNT, 0.5)), points_of(cube())
+        data.GetPointData().RemoveArray("Radius")
+        extract = vtkMarchingCorrectors()
+        extract.SetInputData(data)
+        self.assertEqual(extract.GetNextArray(), "")
+        data.GetPointData().SetActiveScalars("Idp")
+        for more, array, active in (({"Height": x[:, 2]}, "Height", ""), ({"Force": x}, "Force", "Height"),
+                                    ({"velocity": x[:, ::-1]}, "velocity", "Height"), ({}, "velocity", "velocity")):
+            add(data, **more)
+            if not more:
+                data.GetPointData().SetActiveScalars("Height")  # fit, and so it is taken
+            data.Modified()
+            self.assertEqual(extract.GetNextArray(), array)
+            surface, _ = run(extract)
+            scalars = surface.GetPointData().GetScalars()  # what is the iso value everywhere shows nothing
+            self.assertEqual((surface.GetNumberOfCells() > 0, scalars.GetName() if scalars else ""), (True, active))
+        self.assertEqual(len(set(values_of(surface, "Height"))), 1)
+
+    def test_before_there_is_a_smoothing_length(self):
+        data = cube(Velocity=points_of(cube()))
+        data.GetPointData().RemoveArray("SmoothingLength")
+        extract = sphere(data, "Velocity")
+        extract.SetScalarComponent(1)
+        low, high = extract.GetNextScalarRange()
+        self.assertTrue(low < -0.9 and high > 0.9 and abs(extract.GetNextIsoValue()) < 0.1)
+        self.assertEqual(extract.GetNextCells(), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -359,10 +359,9 @@ class OutputFiles(CommandLineTest):
         run = self.start_and_wait_for_writing(
             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
         run.send_signal(signal.SIGHUP)
-        time.sleep(0.5)
         run.terminate()
-        run.communicate()
-        self.assertIn(run.returncode, (0, -signal.SIGTERM))  # not by the hangup
+        self.assertEqual((run.communicate()[1], run.returncode), ("", -signal.SIGTERM))  # not by the hangup
+        self.assertFalse(self.output.exists())
 
 
 if __name__ == "__main__":

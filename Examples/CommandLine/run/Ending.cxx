@@ -165,16 +165,16 @@ void PrepareForEnding()
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   SetHandlersOfCrashes();
+  // All later threads leave these signals to one thread that waits for them: it may lock and
+  // allocate. Ignored ones are blocked, too, and never awaited: LLVM, which PoCL brings, takes them,
+  // and its handler unblocks all others.
+  sigset_t all;
+  sigemptyset(&all);
   for (const int number : EndingSignals)
   {
-    if (!sigismember(&Awaited, number))
-    {
-      std::signal(number, SIG_IGN); // whatever libraries have made of it
-    }
+    sigaddset(&all, number);
   }
-  // All later threads leave these signals to one thread that waits for them: it may lock and
-  // allocate.
-  pthread_sigmask(SIG_BLOCK, &Awaited, nullptr);
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);
   try
   {
     std::thread(WaitForSignal).detach();

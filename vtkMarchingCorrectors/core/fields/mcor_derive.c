@@ -38,13 +38,6 @@ typedef struct mcor_derive_run
   cl_int* particles; /* [grid.count] index on the device, in input order, of each sorted particle */
 } mcor_derive_run;
 
-static void mcor_release_derive(mcor_derive_run* run)
-{
-  mcor_release_batch(run->context, &run->batch);
-  MCOR_RELEASE(run->context, &run->arrays, &run->moments, &run->slopes);
-  free(run->particles);
-}
-
 /* ---- arrays ---- */
 
 /* Loads the varying components as fixed-point numbers, and sets their scales to match. */
@@ -136,8 +129,7 @@ static bool mcor_invert(const double m[3][3], double inverse[3][3])
 typedef struct mcor_derive_job
 {
   const mcor_derive_run* run;
-  const cl_int* order;
-  const void *moments, *slopes;
+  void *order, *moments, *slopes; /* views */
 } mcor_derive_job;
 
 static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t last)
@@ -149,7 +141,8 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
   const mcor_derivatives* derivatives = run->derivatives;
   for (int64_t i = first; i < last; ++i)
   {
-    const int64_t to = mcor_source_of(context, run->particles[run->first + job->order[i]]);
+    const int64_t to =
+      mcor_source_of(context, run->particles[run->first + ((const cl_int*)job->order)[i]]);
     double m[3][3], inverse[3][3];
     for (int k = 0; k < 9; ++k)
     {
@@ -190,22 +183,6 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
   (void)slice;
 }
 
-static mcor_status mcor_deliver_derivatives(mcor_derive_run* run)
-{
-  mcor_context* context = run->context;
-  const size_t n = (size_t)run->inside, real = context->cl.real_size;
-  const size_t arrays = (size_t)context->attributes.varying_count;
-  void* views[3] = { NULL };
-  const mcor_mapping mappings[] = { { &run->batch.order, n * sizeof(cl_int), &views[0] },
-    { &run->moments, n * 9 * real, &views[1] },
-    { &run->slopes, n * 3 * arrays * real, &views[2] } };
-  mcor_status status = mcor_map_all(context, mappings, 3);
-  mcor_derive_job job = { run, views[0], views[1], views[2] };
-  MCOR_THEN(status,
-    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL));
-  return mcor_unmap_all(context, mappings, 3, status);
-}
-
 static mcor_status mcor_derive_batch(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
@@ -231,7 +208,14 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
   }
   MCOR_TRY(mcor_finish(context));
   MCOR_TRY(mcor_report_launch(context));
-  return mcor_deliver_derivatives(run);
+  mcor_derive_job job = { .run = run };
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
+    { &run->moments, n * 9 * real, &job.moments },
+    { &run->slopes, n * 3 * (size_t)arrays * real, &job.slopes } };
+  mcor_status status = mcor_map_all(context, views, 3);
+  MCOR_THEN(status,
+    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL));
+  return mcor_unmap_all(context, views, 3, status);
 }
 
 static mcor_status mcor_derive_all(mcor_derive_run* run)
@@ -289,7 +273,9 @@ static mcor_status mcor_run_derive(
   MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   const mcor_status status = context->grid.count > 0 ? mcor_derive_all(&run) : MCOR_OK;
-  mcor_release_derive(&run);
+  mcor_release_batch(context, &run.batch);
+  MCOR_RELEASE(context, &run.arrays, &run.moments, &run.slopes);
+  free(run.particles);
   MCOR_TRY(status);
   for (int a = 0; a < input->attribute_count; ++a)
   {

@@ -77,20 +77,6 @@ static mcor_status mcor_scale_flux(mcor_flux_job* job)
   return MCOR_OK;
 }
 
-static mcor_status mcor_flux_particles(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flux_job* job)
-{
-  const double margin = job->edges.box
-    ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
-      0.5 * options->globals->measured.cube
-    : 0;
-  MCOR_TRY(mcor_bound_level(context, input, options, job->edges.box, margin, job->low, job->high));
-  MCOR_TRY(mcor_prepare(context, input, options));
-  MCOR_TRY(context->grid.count > 0 ? mcor_list_flux_cells(job) : MCOR_OK);
-  return context->grid.count > 0 ? mcor_run_points(&job->edges, input, mcor_add_fluxes)
-                                 : mcor_scale_sections(job);
-}
-
 static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
 {
   fluxes->readings = calloc((size_t)job->section_count + 1, sizeof *fluxes->readings);
@@ -122,9 +108,22 @@ static mcor_status mcor_flux_input(
     MCOR_TRY(mcor_add_section(job, s));
   }
   MCOR_TRY(mcor_scale_flux(job));
-  return input->count > 0 && job->section_count > 0
-    ? mcor_flux_particles(context, input, options, job)
-    : mcor_scale_sections(job);
+  if (input->count == 0 || job->section_count == 0)
+  {
+    return mcor_scale_sections(job);
+  }
+  const double margin = job->edges.box
+    ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
+      0.5 * options->globals->measured.cube
+    : 0;
+  MCOR_TRY(mcor_bound_level(context, input, options, job->edges.box, margin, job->low, job->high));
+  MCOR_TRY(mcor_prepare(context, input, options));
+  if (context->grid.count == 0)
+  {
+    return mcor_scale_sections(job);
+  }
+  MCOR_TRY(mcor_list_flux_cells(job));
+  return mcor_run_points(&job->edges, input, mcor_add_fluxes);
 }
 
 static mcor_status mcor_run_flux(

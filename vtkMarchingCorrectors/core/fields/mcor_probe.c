@@ -210,22 +210,6 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   return mcor_deliver_samples(run);
 }
 
-/* Adapts the size of the next batch to the time since `begin`. The size is kept for the next
- * call. */
-static void mcor_fit_batch(mcor_context* context, double begin, double built)
-{
-  const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
-  int* size = &context->probe_batch;
-  if (seconds > 1.5 * MCOR_BATCH_SECONDS && *size > MCOR_LEAST_IN_BATCH)
-  {
-    *size /= 2;
-  }
-  else if (seconds < 0.5 * MCOR_BATCH_SECONDS && *size < MCOR_MOST_IN_BATCH)
-  {
-    *size *= 2;
-  }
-}
-
 /* Whether the attributes on the device are those of this call. */
 static bool mcor_has_attributes(const mcor_context* context, const mcor_input* input)
 {
@@ -271,16 +255,16 @@ static mcor_status mcor_probe_all(mcor_probe_run* run)
     for (int64_t first = 0; first < points; first += count)
     {
       const int64_t rest = points - first;
-      const double before = done, begin = mcor_seconds(), built = context->cl.build_seconds;
+      const double before = done, begin = mcor_seconds() - context->cl.build_seconds;
       const int size = context->probe_batch;
       count = rest < size ? rest : size;
       done += 0.8 * (double)count / (double)points / rounds;
       MCOR_TRY(mcor_report(context, "probe", before, done));
       MCOR_TRY(mcor_probe_batch(run, first, first + count));
-      if (count == size)
-      {
-        mcor_fit_batch(context, begin, built);
-      }
+      const double seconds = mcor_seconds() - context->cl.build_seconds - begin;
+      const bool halves = seconds > 1.5 * MCOR_BATCH_SECONDS && size > MCOR_LEAST_IN_BATCH;
+      const bool doubles = seconds < 0.5 * MCOR_BATCH_SECONDS && size < MCOR_MOST_IN_BATCH;
+      context->probe_batch = count < size ? size : halves ? size / 2 : doubles ? 2 * size : size;
     }
   }
   return MCOR_OK;

@@ -232,19 +232,6 @@ static mcor_status mcor_prepare_project(mcor_project_job* job, const mcor_option
   return computes ? mcor_read_volumes(context, input, job->volumes) : MCOR_OK;
 }
 
-static mcor_status mcor_project_particles(mcor_project_job* job)
-{
-  mcor_context* context = job->context;
-  const mcor_options* options = context->run.options;
-  bool is_empty = true;
-  MCOR_TRY(mcor_prepare_project(job, options));
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
-  MCOR_TRY(mcor_choose_axes(job));
-  MCOR_TRY(mcor_place_image(job, &is_empty));
-  MCOR_TRY(is_empty || job->places_only ? MCOR_OK : mcor_spread_particles(job));
-  return mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1);
-}
-
 static mcor_status mcor_run_project(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
@@ -272,7 +259,13 @@ static mcor_status mcor_run_project(
     context, MCOR_INVALID_ARGUMENT,
     "There is neither mass nor density, so there is no column density. Name one of them, or choose "
     "a scalar.");
-  const mcor_status status = mcor_project_particles(job);
+  bool is_empty = true;
+  mcor_status status = mcor_prepare_project(job, options);
+  MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.3));
+  MCOR_THEN(status, mcor_choose_axes(job));
+  MCOR_THEN(status, mcor_place_image(job, &is_empty));
+  MCOR_THEN(status, is_empty || job->places_only ? MCOR_OK : mcor_spread_particles(job));
+  MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
   mcor_release_spread(job);
   free(job->volumes);
   return status;

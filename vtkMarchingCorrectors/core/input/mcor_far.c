@@ -37,11 +37,11 @@ typedef struct mcor_far_job
   const mcor_context* context;
   const mcor_input* input;
   mcor_far* far;
-  bool open[3]; /* axes without a period */
-  double reach,
-    slack;       /* of a particle, per smoothing length: support radius, and what it needs beyond */
-  double radius; /* as if no reach were less */
-  double centre[3], half; /* without a region: how far from there the grid may go */
+  bool open[3];        /* axes without a period */
+  double reach, slack; /* per smoothing length: support radius, and what a particle needs beyond */
+  double radius;       /* the least distance at which a particle still counts */
+  double centre[3],
+    half; /* without a region: the grid's middle, and how far it may go from there */
   mcor_far_tally slices[MCOR_SLICES], all; /* all: of all ranks, but for `first` */
 } mcor_far_job;
 

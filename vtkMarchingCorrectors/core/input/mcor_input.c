@@ -263,68 +263,37 @@ static double mcor_scaled_product(
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
 
-/* Sums products of components, in their order. */
-static void mcor_sum_products(
-  const mcor_array* a, const mcor_array* b, int64_t first, int count, double* out)
+void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
 {
-  double x[MCOR_CHUNK], y[MCOR_CHUNK], *other = a == b ? x : y;
+  const bool is_dot = input->scalar_dot.data, has_many = mcor_components(&input->scalar) > 1;
+  const int component = has_many ? input->scalar_component : 0;
+  const mcor_array *a = &input->scalar, *b = is_dot ? &input->scalar_dot : a;
+  double x[MCOR_CHUNK], y[MCOR_CHUNK], *other = is_dot ? y : x;
+  if (!is_dot && !(has_many && component == MCOR_MAGNITUDE))
+  {
+    mcor_read_array(a, first, count, component, out);
+    return;
+  }
   memset(out, 0, (size_t)count * sizeof *out);
   for (int c = 0; c < mcor_components(a); ++c)
   {
-    mcor_read_array(a, first, count, c, x);
-    if (a != b)
-    {
-      mcor_read_array(b, first, count, c, y);
-    }
+    mcor_read_array(b, first, count, c, other);
+    mcor_read_array(a, first, is_dot ? count : 0, c, x);
     for (int i = 0; i < count; ++i)
     {
       out[i] += x[i] * other[i];
     }
   }
-}
-
-static void mcor_read_magnitude(const mcor_array* a, int64_t first, int count, double* out)
-{
-  mcor_sum_products(a, a, first, count, out);
   for (int i = 0; i < count; ++i)
   {
-    const bool good = out[i] > MCOR_SQUARE_MIN && out[i] < MCOR_SQUARE_MAX;
-    if (good)
+    if (is_dot ? isfinite(out[i]) : out[i] > MCOR_SQUARE_MIN && out[i] < MCOR_SQUARE_MAX)
     {
-      out[i] = sqrt(out[i]);
+      out[i] = is_dot ? out[i] : sqrt(out[i]);
     }
-    else if (out[i] != 0 || mcor_exponent_of(a, first + i) != 0)
+    else if (is_dot || out[i] != 0 || mcor_exponent_of(a, first + i) != 0)
     {
-      out[i] = mcor_scaled_product(a, a, first + i, true);
+      out[i] = mcor_scaled_product(a, b, first + i, !is_dot);
     }
-  }
-}
-
-static void mcor_read_dot(
-  const mcor_array* a, const mcor_array* b, int64_t first, int count, double* out)
-{
-  mcor_sum_products(a, b, first, count, out);
-  for (int i = 0; i < count; ++i)
-  {
-    out[i] = isfinite(out[i]) ? out[i] : mcor_scaled_product(a, b, first + i, false);
-  }
-}
-
-void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out)
-{
-  const mcor_array *a = &input->scalar, *b = &input->scalar_dot;
-  const int component = mcor_components(a) > 1 ? input->scalar_component : 0;
-  if (b->data)
-  {
-    mcor_read_dot(a, b, first, count, out);
-  }
-  else if (mcor_components(a) > 1 && component == MCOR_MAGNITUDE)
-  {
-    mcor_read_magnitude(a, first, count, out);
-  }
-  else
-  {
-    mcor_read_array(a, first, count, component, out);
   }
 }
 

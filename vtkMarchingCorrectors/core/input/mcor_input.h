@@ -110,8 +110,8 @@ static inline double mcor_largest_of(double low, double high)
 double mcor_largest(
   mcor_context* context, const mcor_input* input, const mcor_array* array, int component);
 
-/* mcor_far.c. Of a lattice that does not fit: marks particles as absent, in `far`, so that it does.
- * Ends with the status and sentence of before where too many are in the way. */
+/* mcor_far.c. Marks particles as absent, in `far`, so that a lattice that was too long fits. If too
+ * many are in the way, ends with the status and sentence of before. */
 typedef struct mcor_far mcor_far;
 struct mcor_far
 {
@@ -129,8 +129,8 @@ mcor_status mcor_leave_out_again(
  * used. */
 void mcor_cut_bounds(mcor_context* context, const double low[3], const double high[3]);
 
-/* Where what failed is for a lattice that is too large, and one smoothing length is far from the
- * others: adds which one to the sentence. */
+/* Adds to the sentence about a lattice that is too large which particle has a smoothing length far
+ * from the others, if one has. */
 void mcor_blame_outlier(mcor_context* context, const mcor_input* input);
 
 /* Finds the first particle, skipping marked ones unless `solid` is NULL, with a component that

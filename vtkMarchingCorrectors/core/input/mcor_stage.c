@@ -70,7 +70,7 @@ static void mcor_mark_near(const mcor_staging* staging, int64_t first, int count
   mcor_widen_lengths(staging->input, first, count, h, length);
   for (int i = 0; i < count; ++i)
   {
-    const int level = mcor_tree_level_of(h[i], reach->h_min, reach->top);
+    const int level = mcor_tree_level_of(h[i], staging->context->measure.h_min, reach->top);
     h[i] = mcor_reach_of(reach, length[i], level) * lattice->cube;
   }
   for (int a = 0; a < 3; ++a)
@@ -258,19 +258,6 @@ static void mcor_stage_particles(void* data, int number, int64_t first, int64_t 
   slice->changed = slice->changed || (slice->heavy < 0 && to != slice->to + slice->used);
 }
 
-static mcor_status mcor_refuse_heavy(mcor_staging* staging, int64_t i)
-{
-  mcor_stage_chunk chunk = { .count = 1 };
-  staging->reach = NULL;
-  mcor_read_stage_places(staging, i, &chunk);
-  mcor_read_stage_sizes(staging, i, &chunk);
-  return mcor_fail(staging->context, MCOR_INVALID_DATA,
-    "The volume of particle %lld is %.3g times the cube of its smoothing length, too large for %s "
-    "precision. Correct the volume, or remove such particles.",
-    (long long)i, mcor_stage_weight(staging->context, &chunk, 0),
-    staging->context->cl.real_size == sizeof(float) ? "single" : "double");
-}
-
 /* Reserves room for the particles that are staged. */
 static mcor_status mcor_make_stage_room(mcor_staging* staging)
 {
@@ -338,7 +325,15 @@ static mcor_status mcor_stage_all(mcor_staging* staging)
       options->globals ? ", or options.globals was measured over other particles" : "");
     if (slice->heavy >= 0)
     {
-      return mcor_refuse_heavy(staging, slice->heavy);
+      mcor_stage_chunk chunk = { .count = 1 };
+      staging->reach = NULL;
+      mcor_read_stage_places(staging, slice->heavy, &chunk);
+      mcor_read_stage_sizes(staging, slice->heavy, &chunk);
+      return mcor_fail(context, MCOR_INVALID_DATA,
+        "The volume of particle %lld is %.3g times the cube of its smoothing length, too large for "
+        "%s precision. Correct the volume, or remove such particles.",
+        (long long)slice->heavy, mcor_stage_weight(context, &chunk, 0),
+        context->cl.real_size == sizeof(float) ? "single" : "double");
     }
     context->largest_weight = fmax(context->largest_weight, slice->largest_weight);
   }
@@ -408,7 +403,7 @@ mcor_status mcor_stage(mcor_staging* staging)
   {
     staging->reach = &reach;
     mcor_widen_reach(staging);
-    staging->images = malloc((size_t)staging->input->count);
+    staging->images = malloc((size_t)staging->input->count + 1);
     MCOR_TRY(mcor_allocated(context, staging->images));
   }
   const mcor_status status = mcor_stage_all(staging);

@@ -345,7 +345,6 @@ bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach)
     (mcor_reach_box){ .support = (pairs ? fmax(support, MCOR_PAIR_REACH) : support) / lattice->cube,
       .fix_bits = lattice->fix_bits,
       .unit = ldexp(1, -lattice->fix_bits),
-      .h_min = context->measure.h_min,
       .top = lattice->levels - 1,
       .ring = box->ring,
       .is_empty = box->is_empty };

@@ -27,12 +27,11 @@ void mcor_place_box(mcor_context* context, const mcor_options* options);
  * lattice's origin. */
 typedef struct mcor_reach_box
 {
-  double low[3], high[3]; /* where the field is evaluated */
-  double support;         /* support radius / smoothing length */
-  double radius;          /* as if no support radius were less; set later */
-  double unit;            /* 2^-fix_bits */
-  double h_min;           /* with adaptive cubes, see mcor_reach_of; highest: their highest level */
-  int top, ring;
+  double low[3], high[3];     /* where the field is evaluated */
+  double support;             /* support radius / smoothing length */
+  double radius;              /* the least support radius to count with; set later */
+  double unit;                /* 2^-fix_bits */
+  int top, ring;              /* top: highest level of adaptive cubes */
   double period[3], first[3]; /* period: 0: open; the others: where one begins */
   int fix_bits;
   bool is_empty; /* no particle matters */

@@ -36,9 +36,8 @@ bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
 typedef struct mcor_point_job
 {
   const mcor_probe_run* run;
-  void *node, *offset; /* views */
-  int inside[MCOR_SLICES];
-  cl_int low[MCOR_SLICES][3], high[MCOR_SLICES][3]; /* lowest and highest node */
+  void *node, *offset;               /* views */
+  mcor_findings slices[MCOR_SLICES]; /* nodes of points that particles may reach, and how many */
 } mcor_point_job;
 
 /* Returns a coordinate within the period, whose upper side is included. It is rounded as
@@ -93,9 +92,8 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
   mcor_point_job* job = data;
   const mcor_context* context = job->run->context;
   const mcor_lattice* lattice = &context->lattice;
-  cl_int low[3] = { CL_INT_MAX, CL_INT_MAX, CL_INT_MAX }, high[3] = { 0 };
+  mcor_findings found = mcor_no_findings();
   double at[3][MCOR_CHUNK];
-  int inside = 0;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = mcor_chunk_of(last - begin);
@@ -108,42 +106,19 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
         const double x = at[a][i];
         located = located && x >= (double)lattice->first[a] && x <= (double)lattice->last[a];
       }
-      inside += located;
+      found.sums[0] += located;
       for (int a = 0; a < 3; ++a)
       {
         const double x = located ? at[a][i] : -1;
         const cl_int node = (cl_int)x;
         ((cl_int*)job->node)[4 * (begin + i) + a] = node;
         mcor_put_real(context, job->offset, 4 * (begin + i) + a, x - node);
-        low[a] = located && node < low[a] ? node : low[a];
-        high[a] = node > high[a] ? node : high[a];
+        found.least[a] = located ? fmin(found.least[a], node) : found.least[a];
+        found.most[a] = fmax(found.most[a], node);
       }
     }
   }
-  job->inside[slice] = inside;
-  memcpy(job->low[slice], low, sizeof low);
-  memcpy(job->high[slice], high, sizeof high);
-}
-
-/* Counts the points that particles may reach, and finds the box of their bricks. */
-static void mcor_bound_points(mcor_probe_run* run, const mcor_point_job* job, int slices)
-{
-  run->inside = 0;
-  for (int s = 0; s < slices; ++s)
-  {
-    run->inside += job->inside[s];
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    cl_int low = CL_INT_MAX, high = 0;
-    for (int s = 0; s < slices; ++s)
-    {
-      low = job->low[s][a] < low ? job->low[s][a] : low;
-      high = job->high[s][a] > high ? job->high[s][a] : high;
-    }
-    run->batch.first[a] = low >> 2;
-    run->batch.bricks[a] = (high >> 2) - (low >> 2) + 1;
-  }
+  job->slices[slice] = found;
 }
 
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
@@ -162,6 +137,12 @@ mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)
   MCOR_THEN(status, mcor_map(context, views[1].buffer, views[1].bytes, true, &job.offset));
   MCOR_THEN(status,
     mcor_parallel_run(context, run->count, MCOR_HEAVY_GRAIN, mcor_put_points, &job, &slices));
-  mcor_bound_points(run, &job, slices);
+  const mcor_findings found = mcor_merge_findings(job.slices, slices);
+  run->inside = (int)found.sums[0];
+  for (int a = 0; a < 3 && run->inside > 0; ++a) /* the box of their bricks */
+  {
+    run->batch.first[a] = (cl_int)found.least[a] >> 2;
+    run->batch.bricks[a] = ((cl_int)found.most[a] >> 2) - run->batch.first[a] + 1;
+  }
   return mcor_unmap_all(context, views, 2, status);
 }

@@ -77,19 +77,19 @@ static mcor_status mcor_choose_axes(mcor_project_job* job)
   return MCOR_OK;
 }
 
-/* Finds the range of the particles' positions and supports. */
+/* Finds the ranges that particles reach along the axes of the image (along the last one, that of
+ * their positions), those along x, y, z, and that of h. */
 static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_project_job* job = data;
-  double *low = job->low[slice], *high = job->high[slice], reach[7];
-  for (int k = 0; k < 7; ++k)
+  mcor_findings found = mcor_no_findings();
+  double reach[6];
+  for (int k = 0; k < 6; ++k)
   {
     const double unit[3] = { k == 3, k == 4, k == 5 };
     reach[k] = k == 2
       ? 0
       : mcor_column_reach(job->context->run.options->sph_kernel, k < 3 ? job->axes[k] : unit);
-    low[k] = DBL_MAX;
-    high[k] = -DBL_MAX;
   }
   mcor_project_chunk chunk;
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
@@ -101,12 +101,12 @@ static void mcor_range_slice(void* data, int slice, int64_t first, int64_t last)
       for (int k = 0; k < 6; ++k)
       {
         const double at = k < 3 ? mcor_dot(job->axes[k], x) : x[k - 3];
-        low[k] = fmin(low[k], at - reach[k] * chunk.h[i]);
-        high[k] = fmax(high[k], at + reach[k] * chunk.h[i]);
+        mcor_add_range(&found, k, at - reach[k] * chunk.h[i], at + reach[k] * chunk.h[i]);
       }
     }
-    mcor_widen_range(chunk.h, chunk.count, &low[6], &high[6]);
+    mcor_widen_range(chunk.h, chunk.count, &found.least[6], &found.most[6]);
   }
+  job->slices[slice] = found;
 }
 
 /* Finds the sides of the image: of the box or the period as it is seen, else of all that
@@ -119,23 +119,13 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
   const double* periodic = context->run.options->periodic;
   const int w = mcor_plane_axis(&context->plane, 2);
   const double support = mcor_support_factor(context->run.options->sph_kernel);
-  double low[7], high[7];
   bool is_bounded = false, is_given = false;
   int slices;
   MCOR_TRY(mcor_parallel_run(
     context, job->input->count, MCOR_HEAVY_GRAIN, mcor_range_slice, job, &slices));
-  for (int k = 0; k < 7; ++k)
-  {
-    low[k] = DBL_MAX;
-    high[k] = -DBL_MAX;
-    for (int i = 0; i < slices; ++i)
-    {
-      low[k] = fmin(low[k], job->low[i][k]);
-      high[k] = fmax(high[k], job->high[i][k]);
-    }
-  }
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, low, 7));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, high, 7));
+  mcor_findings found = mcor_merge_findings(job->slices, slices);
+  const double *low = found.least, *high = found.most;
+  MCOR_TRY(mcor_reduce_findings(context, &found));
   for (int i = 0; i < 6; ++i)
   {
     is_given = is_given || job->view->box[i] != 0;

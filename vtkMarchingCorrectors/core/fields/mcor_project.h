@@ -51,10 +51,7 @@ typedef struct mcor_project_job
   int64_t* listed; /* indices of the splats that reach each band */
   int64_t first_listed[MCOR_SLICES + 1];
   mcor_brush brushes[MCOR_SLICES];
-  /* Findings of each slice: ranges along the axes of the image, along x, y, z, and of h. */
-  double low[MCOR_SLICES][7], high[MCOR_SLICES][7];
-  double most[MCOR_SLICES][2];
-  int64_t wrong[MCOR_SLICES];
+  mcor_findings slices[MCOR_SLICES];
 } mcor_project_job;
 
 /* The particles of a chunk that count. */

@@ -148,8 +148,9 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
   const double area = job->out->pixel[0] * job->out->pixel[1];
   mcor_project_chunk chunk;
   mcor_splat splat = { 0 };
-  double most[2] = { 0, 0 };
-  job->wrong[slice] = -1;
+  mcor_findings found = mcor_no_findings();
+  mcor_add_range(&found, 0, 0, 0);
+  mcor_add_range(&found, 1, 0, 0);
   for (int64_t block = job->first_block + first; block < job->first_block + last; ++block)
   {
     int64_t count = 0;
@@ -169,9 +170,9 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
         for (int c = 0; c < job->channels; ++c)
         {
           splat.amount[c] = chunk.amount[c][i] / area;
-          if (!isfinite(splat.amount[c]) && job->wrong[slice] < 0)
+          if (!isfinite(splat.amount[c]) && chunk.source[i] < found.first)
           {
-            job->wrong[slice] = chunk.source[i];
+            found.first = chunk.source[i];
           }
         }
         const bool any = mcor_find_splats(job, x, chunk.h[i], from, until);
@@ -199,7 +200,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
         const double share = fmin(1.01 * job->column.highest * splat.pixel[0] * splat.pixel[1], 2);
         for (int c = 0; c < job->channels && reaches; ++c)
         {
-          most[c] = fmax(most[c], fabs(splat.amount[c]) * share);
+          mcor_add_range(&found, c, 0, fabs(splat.amount[c]) * share);
         }
       }
     }
@@ -208,7 +209,7 @@ static void mcor_splat_slice(void* data, int slice, int64_t first, int64_t last)
       job->splats_before[block + 1] = count;
     }
   }
-  memcpy(job->most[slice], most, sizeof most);
+  job->slices[slice] = found;
 }
 
 /* Returns 3/2 of a power of 2 that is at least four times the number. */
@@ -223,32 +224,25 @@ static double mcor_rounding_unit(double number)
 static mcor_status mcor_count_splats(mcor_project_job* job, int64_t blocks)
 {
   mcor_context* context = job->context;
-  double most[2] = { 0, 0 };
   int slices;
   job->splats_before[0] = 0;
   MCOR_TRY(mcor_parallel_run(context, blocks, 1, mcor_splat_slice, job, &slices));
-  for (int i = 0; i < slices; ++i)
-  {
-    MCOR_RETURN_IF(job->wrong[i] >= 0, context, MCOR_INVALID_DATA,
-      "Particle %lld would add a number that is not finite to the projection. Correct its values, "
-      "or leave it out.",
-      (long long)job->wrong[i]);
-    for (int c = 0; c < job->channels; ++c)
-    {
-      most[c] = fmax(most[c], job->most[i][c]);
-    }
-  }
+  mcor_findings found = mcor_merge_findings(job->slices, slices);
+  MCOR_RETURN_IF(found.first < INT64_MAX, context, MCOR_INVALID_DATA,
+    "Particle %lld would add a number that is not finite to the projection. Correct its values, or "
+    "leave it out.",
+    (long long)found.first);
   for (int64_t b = 0; b < blocks; ++b)
   {
     job->splats_before[b + 1] += job->splats_before[b];
   }
-  int64_t count = job->splats_before[blocks];
-  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &count));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, job->channels));
+  found.sums[0] = job->splats_before[blocks];
+  MCOR_TRY(mcor_reduce_findings(context, &found));
+  const double count = (double)found.sums[0];
   for (int c = 0; c < job->channels; ++c)
   {
-    job->unit[c][0] = mcor_rounding_unit(most[c] * (double)count);
-    job->unit[c][1] = mcor_rounding_unit(ldexp(job->unit[c][0], -53) * (double)count);
+    job->unit[c][0] = mcor_rounding_unit(found.most[c] * count);
+    job->unit[c][1] = mcor_rounding_unit(ldexp(job->unit[c][0], -53) * count);
     MCOR_RETURN_IF(!isfinite(job->unit[c][0]), context, MCOR_INVALID_DATA,
       "The values are too large to be added up. Scale the masses, or the array, down.");
   }

@@ -25,12 +25,14 @@
 /* Cubes of the grid around a region. */
 #define MCOR_REGION_MARGIN 16
 
-typedef struct mcor_far_tally
+/* Sums: particles in use; absent ones from now on; fluid that stays. The first absent one is the
+ * `first`, and the range is that of the reach of what stays. */
+enum
 {
-  int64_t used, absent, fluid; /* absent: from now on; fluid: that stays */
-  int64_t first;               /* absent one */
-  double farthest;             /* the largest reach of one that stays */
-} mcor_far_tally;
+  MCOR_USED,
+  MCOR_LEFT_OUT,
+  MCOR_STAYING
+};
 
 typedef struct mcor_far_job
 {
@@ -42,7 +44,7 @@ typedef struct mcor_far_job
   double radius;       /* the least distance at which a particle still counts */
   double centre[3],
     half; /* without a region: the grid's middle, and how far it may go from there */
-  mcor_far_tally slices[MCOR_SLICES], all; /* all: of all ranks, but for `first` */
+  mcor_findings slices[MCOR_SLICES], all; /* all: of all ranks, but for `first` */
 } mcor_far_job;
 
 static bool mcor_is_far(const mcor_far_job* job, const double x[3], double h)
@@ -65,7 +67,7 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
   mcor_far_job* job = data;
   const mcor_input* input = job->input;
   mcor_places p;
-  mcor_far_tally tally = { .first = INT64_MAX };
+  mcor_findings found = mcor_no_findings();
   for (; mcor_read_places(job->context, input, first, last, &p) > 0; first += p.count)
   {
     for (int i = 0; i < p.count; ++i)
@@ -76,15 +78,17 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
       const bool is_used = mcor_is_used(job->context, input, particle);
       const bool is_far = is_used && mcor_is_far(job, at, p.length[i]);
       job->far->solid[particle] = is_far ? MCOR_ABSENT : was;
-      tally.used += is_used;
-      tally.absent += is_far;
-      tally.fluid += !is_far && !was;
-      tally.first = is_far && particle < tally.first ? particle : tally.first;
-      tally.farthest =
-        is_used && !is_far ? fmax(tally.farthest, p.length[i] * job->reach) : tally.farthest;
+      found.sums[MCOR_USED] += is_used;
+      found.sums[MCOR_LEFT_OUT] += is_far;
+      found.sums[MCOR_STAYING] += !is_far && !was;
+      found.first = is_far && particle < found.first ? particle : found.first;
+      if (is_used && !is_far)
+      {
+        mcor_add_range(&found, 0, 0, p.length[i] * job->reach);
+      }
     }
   }
-  job->slices[slice] = tally;
+  job->slices[slice] = found;
 }
 
 static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
@@ -92,22 +96,9 @@ static mcor_status mcor_mark_far(mcor_context* context, mcor_far_job* job)
   int slices;
   MCOR_TRY(
     mcor_parallel_run(context, job->input->count, MCOR_HEAVY_GRAIN, mcor_far_slice, job, &slices));
-  mcor_far_tally* all = &job->all;
-  *all = (mcor_far_tally){ .first = INT64_MAX };
-  for (int s = 0; s < slices; ++s)
-  {
-    const mcor_far_tally* slice = &job->slices[s];
-    all->used += slice->used;
-    all->absent += slice->absent;
-    all->fluid += slice->fluid;
-    all->first = slice->first < all->first ? slice->first : all->first;
-    all->farthest = fmax(all->farthest, slice->farthest);
-  }
-  job->far->first = all->first;
-  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &all->used));
-  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &all->absent));
-  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &all->fluid));
-  return mcor_reduce_double(context, MCOR_GREATEST, &all->farthest);
+  job->all = mcor_merge_findings(job->slices, slices);
+  job->far->first = job->all.first;
+  return mcor_reduce_findings(context, &job->all);
 }
 
 /* Around a box or points: all that reaches them, and what volumes, pairs and nearest particles
@@ -116,9 +107,9 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 {
   const mcor_options* options = context->run.options;
   MCOR_TRY(mcor_mark_far(context, job));
-  if (job->all.fluid > 0)
+  if (job->all.sums[MCOR_STAYING] > 0)
   {
-    const double largest = job->all.farthest;
+    const double largest = job->all.most[0];
     const double volumes =
       mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
     const double around = (volumes + largest) * (1 + context->run.widest);
@@ -156,10 +147,10 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
     job->centre[a] = mcor_median_of(x, samples.count);
   }
   MCOR_TRY(mcor_mark_far(context, job));
-  const int64_t own = far->first, share = job->all.used / MCOR_FAR_SHARE;
-  far->count = job->all.absent;
+  const int64_t own = far->first, share = job->all.sums[MCOR_USED] / MCOR_FAR_SHARE;
+  far->count = job->all.sums[MCOR_LEFT_OUT];
   *good = far->count > 0 && far->count <= (share > MCOR_FAR_FEW ? share : MCOR_FAR_FEW) &&
-    2 * far->count < job->all.used && job->all.fluid > 0;
+    2 * far->count < job->all.sums[MCOR_USED] && job->all.sums[MCOR_STAYING] > 0;
   if (!*good)
   {
     return MCOR_OK;

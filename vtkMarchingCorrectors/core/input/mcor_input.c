@@ -5,6 +5,7 @@
 
 #include "mcor_input.h"
 #include "mcor_parallel.h"
+#include "mcor_ranks.h"
 
 #include <float.h>
 #include <math.h>
@@ -96,19 +97,56 @@ void mcor_widen_range(const double* x, int count, double* low, double* high)
   }
 }
 
+mcor_findings mcor_no_findings(void)
+{
+  mcor_findings found = { .first = INT64_MAX };
+  for (int k = 0; k < MCOR_RANGES; ++k)
+  {
+    found.least[k] = DBL_MAX;
+    found.most[k] = -DBL_MAX;
+  }
+  return found;
+}
+
+mcor_findings mcor_merge_findings(const mcor_findings* slices, int count)
+{
+  mcor_findings all = mcor_no_findings();
+  for (int s = 0; s < count; ++s)
+  {
+    for (int k = 0; k < MCOR_RANGES; ++k)
+    {
+      mcor_add_range(&all, k, slices[s].least[k], slices[s].most[k]);
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      all.sums[k] += slices[s].sums[k];
+    }
+    all.first = slices[s].first < all.first ? slices[s].first : all.first;
+  }
+  return all;
+}
+
+mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found)
+{
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, found->sums, 3));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, found->least, MCOR_RANGES));
+  return mcor_reduce_doubles(context, MCOR_GREATEST, found->most, MCOR_RANGES);
+}
+
 typedef struct mcor_range_job
 {
   const mcor_array* array;
   const uint8_t* solid;
   mcor_skip skip;
   int component;
-  double low[MCOR_SLICES], high[MCOR_SLICES];
+  mcor_findings slices[MCOR_SLICES];
 } mcor_range_job;
 
 static void mcor_component_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_range_job* job = data;
-  double x[MCOR_CHUNK], low = DBL_MAX, high = -DBL_MAX;
+  mcor_findings found = mcor_no_findings();
+  double x[MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
     const int count = mcor_chunk_of(last - begin);
@@ -119,10 +157,9 @@ static void mcor_component_slice(void* data, int slice, int64_t first, int64_t l
       x[kept] = x[i];
       kept += !mcor_is_skipped(job->solid, job->skip, begin + i) && isfinite(x[i]);
     }
-    mcor_widen_range(x, kept, &low, &high);
+    mcor_widen_range(x, kept, &found.least[0], &found.most[0]);
   }
-  job->low[slice] = low;
-  job->high[slice] = high;
+  job->slices[slice] = found;
 }
 
 void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8_t* solid,
@@ -131,13 +168,9 @@ void mcor_find_range(mcor_context* context, const mcor_array* array, const uint8
   mcor_range_job job = { .array = array, .solid = solid, .skip = skip, .component = component };
   const int slices =
     mcor_parallel_for(context, count, MCOR_MEMORY_GRAIN, mcor_component_slice, &job);
-  range[0] = DBL_MAX;
-  range[1] = -DBL_MAX;
-  for (int s = 0; s < slices; ++s)
-  {
-    range[0] = mcor_least(range[0], job.low[s]);
-    range[1] = mcor_most(range[1], job.high[s]);
-  }
+  const mcor_findings found = mcor_merge_findings(job.slices, slices);
+  range[0] = found.least[0];
+  range[1] = found.most[0];
 }
 
 double mcor_largest(

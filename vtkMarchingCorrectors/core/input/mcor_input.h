@@ -94,6 +94,26 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
  * finite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
+/* What a slice of a loop finds, or the loop: ranges (empty ones have least > most), sums of whole
+ * numbers, and the least of some indices. */
+#define MCOR_RANGES 13
+typedef struct mcor_findings
+{
+  double least[MCOR_RANGES], most[MCOR_RANGES];
+  int64_t sums[3];
+  int64_t first; /* INT64_MAX: none */
+} mcor_findings;
+
+mcor_findings mcor_no_findings(void);
+static inline void mcor_add_range(mcor_findings* found, int k, double low, double high)
+{
+  found->least[k] = mcor_least(found->least[k], low);
+  found->most[k] = mcor_most(found->most[k], high);
+}
+mcor_findings mcor_merge_findings(const mcor_findings* slices, int count);
+/* Merges ranges and sums of all ranks, but not `first`. */
+mcor_status mcor_reduce_findings(mcor_context* context, mcor_findings* found);
+
 /* Widens [*low, *high] to hold x. */
 void mcor_widen_range(const double* x, int count, double* low, double* high);
 /* Finds the least and greatest value of one component, skipping marked particles unless `solid`

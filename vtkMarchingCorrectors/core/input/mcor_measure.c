@@ -23,7 +23,7 @@
 #define MCOR_LEAST_CUBE 1e-100
 #define MCOR_MOST_CUBE 1e100
 
-/* Indices of the ranges over all particles; slices and ranks merge them alike. */
+/* Findings over all particles: the ranges, and the sums. */
 enum
 {
   MCOR_REACHES = 0, /* positions minus and plus support radii: x, y, z */
@@ -33,52 +33,19 @@ enum
   MCOR_SCALARS = 8,
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
-  MCOR_RANGES = 13
+
+  MCOR_FLUID = 0, /* particles */
+  MCOR_SOLIDS = 1,
+  MCOR_FACTOR_SUM = 2
 };
-
-typedef struct mcor_ranges
-{
-  double least[MCOR_RANGES], most[MCOR_RANGES];
-  int64_t counts[3]; /* fluid particles, solids; the sum of factors */
-  int64_t not_finite;
-} mcor_ranges;
-
-static mcor_ranges mcor_empty_ranges(void)
-{
-  mcor_ranges r = { .not_finite = INT64_MAX };
-  for (int k = 0; k < MCOR_RANGES; ++k)
-  {
-    r.least[k] = DBL_MAX;
-    r.most[k] = -DBL_MAX;
-  }
-  return r;
-}
-
-static void mcor_add_range(mcor_ranges* r, int k, double low, double high)
-{
-  r->least[k] = mcor_least(r->least[k], low);
-  r->most[k] = mcor_most(r->most[k], high);
-}
-
-static void mcor_add_ranges(mcor_ranges* r, const mcor_ranges* other)
-{
-  for (int k = 0; k < MCOR_RANGES; ++k)
-  {
-    mcor_add_range(r, k, other->least[k], other->most[k]);
-  }
-  for (int k = 0; k < 3; ++k)
-  {
-    r->counts[k] += other->counts[k];
-  }
-  r->not_finite = other->not_finite < r->not_finite ? other->not_finite : r->not_finite;
-}
 
 /* Greatest contribution of one factor to their sum. */
 #define MCOR_MOST_FACTOR 256.0
 
 /* Measures the places of a chunk's fluid, or of its solids. If all lengths are one, the extremes
  * may be taken first: rounding keeps the order of numbers. */
-static void mcor_measure_chunk(const mcor_places* chunk, bool solids, double reach, mcor_ranges* r)
+static void mcor_measure_chunk(
+  const mcor_places* chunk, bool solids, double reach, mcor_findings* r)
 {
   double h_min = DBL_MAX, h_max = -DBL_MAX, least = DBL_MAX, most = -DBL_MAX;
   mcor_widen_range(chunk->h, chunk->count, &h_min, &h_max);
@@ -137,7 +104,7 @@ typedef struct mcor_measuring
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
   mcor_watch* watch;
-  mcor_ranges ranges[MCOR_SLICES];
+  mcor_findings slices[MCOR_SLICES];
 } mcor_measuring;
 
 static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t last)
@@ -148,7 +115,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   const uint8_t* solid = input->solid;
   const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM,
              is_widened = mcor_is_given(&input->widening);
-  mcor_ranges r = mcor_empty_ranges();
+  mcor_findings r = mcor_no_findings();
   mcor_places chunk, solids;
   for (int64_t begin = first, count; begin < last; begin += count)
   {
@@ -163,7 +130,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
       if (!solid || !solid[begin + i])
       {
         mcor_add_range(&r, MCOR_SCALARS, value[i], value[i]);
-        r.not_finite = !isfinite(value[i]) && begin + i < r.not_finite ? begin + i : r.not_finite;
+        r.first = !isfinite(value[i]) && begin + i < r.first ? begin + i : r.first;
       }
     }
     for (int i = 0; i < chunk.count && is_widened; ++i)
@@ -172,7 +139,7 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
       {
         const double factor = mcor_array_at(&input->widening, begin + i, 0);
         mcor_add_range(&r, MCOR_FACTORS, factor, factor);
-        r.counts[2] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
+        r.sums[MCOR_FACTOR_SUM] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
       }
     }
     mcor_part_chunk(solid ? solid + begin : NULL, &chunk, &solids);
@@ -181,19 +148,19 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
     {
       mcor_watch_positions(job->watch, slice, solids.count, (const double(*)[MCOR_CHUNK])solids.x);
     }
-    r.counts[0] += chunk.count;
-    r.counts[1] += solids.count;
+    r.sums[MCOR_FLUID] += chunk.count;
+    r.sums[MCOR_SOLIDS] += solids.count;
     mcor_measure_chunk(&chunk, false, job->reach, &r);
     if (context->kept.uses_solids)
     {
       mcor_measure_chunk(&solids, true, job->reach, &r);
     }
   }
-  job->ranges[slice] = r;
+  job->slices[slice] = r;
 }
 
 static mcor_status mcor_measure_particles(
-  mcor_context* context, const mcor_input* input, double reach, mcor_ranges* ranges)
+  mcor_context* context, const mcor_input* input, double reach, mcor_findings* found)
 {
   mcor_measuring job = { .context = context, .input = input, .reach = reach };
   mcor_status status = mcor_begin_watch(context, input, &job.watch);
@@ -202,26 +169,21 @@ static mcor_status mcor_measure_particles(
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
   if (status == MCOR_OK)
   {
-    for (int s = 0; s < slices; ++s)
-    {
-      mcor_add_ranges(ranges, &job.ranges[s]);
-    }
+    *found = mcor_merge_findings(job.slices, slices);
     status = mcor_end_watch(context, job.watch, slices);
   }
   free(job.watch);
   return status;
 }
 
-/* Merges the ranges of all ranks. A particle that is not finite is reported by its own rank
+/* Merges the findings of all ranks. A particle that is not finite is reported by its own rank
  * alone. */
-static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
+static mcor_status mcor_keep_findings(mcor_context* context, mcor_findings* r)
 {
   mcor_measure* m = &context->measure;
-  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, r->counts, 3));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, r->least, MCOR_RANGES));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, r->most, MCOR_RANGES));
-  m->fluid_count = r->counts[0];
-  m->solid_count = r->counts[1];
+  MCOR_TRY(mcor_reduce_findings(context, r));
+  m->fluid_count = r->sums[MCOR_FLUID];
+  m->solid_count = r->sums[MCOR_SOLIDS];
   for (int a = 0; a < 3; ++a)
   {
     m->low[a] = r->least[MCOR_REACHES + a];
@@ -233,12 +195,12 @@ static mcor_status mcor_keep_ranges(mcor_context* context, mcor_ranges* r)
   m->h_max = r->most[MCOR_LENGTHS];
   m->support_min = r->least[MCOR_SUPPORTS];
   m->support_max = r->most[MCOR_SUPPORTS];
-  m->widening_min = r->counts[2] > 0 ? r->least[MCOR_FACTORS] : 0;
-  m->widening_max = r->counts[2] > 0 ? r->most[MCOR_FACTORS] : 0;
-  m->widening_sum = r->counts[2];
+  m->widening_sum = r->sums[MCOR_FACTOR_SUM];
+  m->widening_min = m->widening_sum > 0 ? r->least[MCOR_FACTORS] : 0;
+  m->widening_max = m->widening_sum > 0 ? r->most[MCOR_FACTORS] : 0;
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
-  m->not_finite = r->not_finite;
+  m->not_finite = r->first;
   return MCOR_OK;
 }
 
@@ -336,7 +298,7 @@ mcor_status mcor_measure_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
   mcor_measure* m = &context->measure;
-  mcor_ranges ranges = mcor_empty_ranges();
+  mcor_findings found;
   *m = (mcor_measure){ .plane = context->plane, .not_finite = INT64_MAX };
   if (options->globals)
   {
@@ -348,11 +310,11 @@ mcor_status mcor_measure_input(
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));
   }
   MCOR_TRY(mcor_measure_particles(
-    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale, &ranges));
-  MCOR_TRY(mcor_keep_ranges(context, &ranges));
+    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale, &found));
+  MCOR_TRY(mcor_keep_findings(context, &found));
   if (context->run.far)
   {
-    mcor_cut_bounds(context, ranges.least + MCOR_SPOTS, ranges.most + MCOR_SPOTS);
+    mcor_cut_bounds(context, found.least + MCOR_SPOTS, found.most + MCOR_SPOTS);
   }
   MCOR_RETURN_IF(m->fluid_count == 0, context, MCOR_INVALID_DATA,
     "None of the %lld particles is marked as fluid.", (long long)m->solid_count);

@@ -532,7 +532,7 @@ class Options(CommandLineTest):
             (["--smoothing-length", "0.26"], "neighbours.*smoothing length is 0.26.*support radius"),
             (["--support-radius"], "neighbours.*smoothing length is 0.065"),
             (["--scalar", "Radius", "--iso", "0.3,99"], "Iso value 99 is outside the range of Radius, 0.0"),
-            (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5.*the sum as the field .--field sum --node-threshold 0 "),
+            (["--vertex-threshold", "5"], "All .* triangles were trimmed.*vertex threshold 5.* use --field sum --node-threshold 0 --vertex-threshold 0[.]"),
             (["--density", "1e6"], "node threshold 0.1"),
         ]:
             with self.subTest(arguments):

@@ -16,7 +16,9 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <limits>
@@ -146,6 +148,19 @@ public:
     {
       Fail(this->File, std::string("it ends before ") + what);
     }
+  }
+
+  /// Where the next line begins.
+  struct Place
+  {
+    std::streamoff Offset;
+    std::size_t Number;
+  };
+  Place Here() { return { this->Stream.tellg(), this->Number }; }
+  void GoTo(const Place& place)
+  {
+    this->Stream.seekg(place.Offset);
+    this->Number = place.Number;
   }
 
   View Get() const { return this->Line; }
@@ -755,12 +770,28 @@ std::vector<std::size_t> PositionsOf(Table& table, const Step& step)
   return positions;
 }
 
+/// Where steps begin, as ListTimesInText() has found them in a file of this size: a film does not
+/// go through all steps before each.
+struct Steps
+{
+  std::uintmax_t Size = 0;
+  std::vector<Lines::Place> Places;
+};
+std::map<std::string, Steps> KnownSteps;
+
 vtkSmartPointer<vtkDataObject> ReadStep(
   const std::string& file, StepFinder find, std::size_t number)
 {
   Lines lines(file);
   Step step;
-  for (std::size_t k = 0; k <= number; ++k)
+  const Steps& known = KnownSteps[file];
+  const bool isKnown =
+    number < known.Places.size() && known.Size == std::filesystem::file_size(file);
+  if (isKnown)
+  {
+    lines.GoTo(known.Places[number]);
+  }
+  for (std::size_t k = isKnown ? number : 0; k <= number; ++k)
   {
     for (vtkTypeInt64 i = 0; i < step.Count; ++i)
     {
@@ -858,12 +889,16 @@ std::vector<double> ListTimesInText(const std::string& file)
   }
   Lines lines(file);
   Step step;
-  while (isDump ? FindDumpStep(lines, step) : FindXyzStep(lines, step))
+  Steps known = { std::filesystem::file_size(file), {} };
+  for (Lines::Place place = lines.Here();
+       isDump ? FindDumpStep(lines, step) : FindXyzStep(lines, step); place = lines.Here())
   {
+    known.Places.push_back(place);
     times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);
     for (vtkTypeInt64 i = 0; i < step.Count && lines.Next(); ++i)
     {
     }
   }
+  KnownSteps[file] = known;
   return times;
 }

@@ -15,6 +15,7 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 #if MCOR_HAS_RANKS
@@ -43,8 +44,6 @@ vtkMarchingCorrectors::vtkMarchingCorrectors()
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
-
-vtkMarchingCorrectors::~vtkMarchingCorrectors() = default;
 
 vtkMTimeType vtkMarchingCorrectors::GetMTime()
 {
@@ -211,7 +210,8 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 // Whether the particles have all that is needed, and fluid among them.
 bool vtkMarchingCorrectors::IsTaken(vtkRun& run, vtkMarchingCorrectorsInput& input)
 {
-  const bool isTaken = run.Accept(input, input.Collect(), "no surface") && run.HasFluid &&
+  const auto collect = [&input](vtkSPHParticles&) { return input.Collect(); };
+  const bool isTaken = run.Accept(input, collect, "no surface") && run.HasFluid &&
     (run.IsShared() || run.Measure(input, false));
   if (!isTaken)
   {
@@ -231,7 +231,7 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   choice.InterpolateAttributes = false;
   vtkMarchingCorrectorsInput input(choice, particles);
   std::vector<double> isoValues;
-  mcor_widening widening = {};
+  vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
   if (!this->IsTaken(run, input))
   {
     return false;
@@ -272,7 +272,6 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   {
     vtkSPHAddArray(output->GetPointData(), "WideningVolume", volumes);
   }
-  mcor_free_widening(&widening);
   return true;
 }
 
@@ -286,7 +285,7 @@ void vtkMarchingCorrectors::Extract(
   this->EstimatedCells =
     mcor_estimate_cells(&input.Core, &options, mcor_least_smoothing_length(&input.Core));
   this->WarnOfHugeRun();
-  mcor_surface surface = {};
+  vtkSPHOwned<mcor_surface, mcor_free_surface> surface;
   if (!run.Call(input,
         [&](mcor_context* context)
         { return mcor_extract(context, &input.Core, &options, &surface); }))
@@ -298,7 +297,6 @@ void vtkMarchingCorrectors::Extract(
   this->WarnOf(input, surface, input.Core, options, builder.FindLargestFloat(precision));
   builder.AddRun(this->RunStatistics);
   builder.BuildMesh(output, precision);
-  mcor_free_surface(&surface);
 }
 
 void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
@@ -428,53 +426,21 @@ void vtkMarchingCorrectors::Summarize(const vtkMarchingCorrectorsInput& input,
 void vtkMarchingCorrectors::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  this->ContourValues->PrintSelf(os, indent.GetNextIndent());
-  os << indent << "Scalar Component: " << this->ScalarComponent << "\n";
-  os << indent << "Shepard Normalization: " << this->ShepardNormalization << "\n";
-  os << indent << "Free Surface: " << this->FreeSurface << "\n";
-  this->FreeSurfaceValues->PrintSelf(os, indent.GetNextIndent());
-  os << indent << "Cube Size Factor: " << this->CubeSizeFactor << "\n";
-  os << indent << "Cube Size: " << this->CubeSize << "\n";
+  vtkSPHPrintMacro(ScalarComponent, ShepardNormalization, FreeSurface, CubeSizeFactor, CubeSize,
+    CubeLevelLimit, UseBox, Box, Capping, Filled, Preview, Compact, Smooth, Widening, Trim,
+    NodeThreshold, VertexThreshold, Solids, WallShare, ComputeNormals, ComputeGradients,
+    ComputeScalars, ComputeWeightSum, ComputeCurvature, ComputeBoundaryEigenvalue,
+    ComputeCorrectionLength, ComputeResidual, ComputeBoundaryFlag, InterpolateAttributes,
+    OutputPointsPrecision, Tolerance, IterationLimit, FluidScalarRange, UsedIsoValues,
+    UsedSmoothingLength, UsedCubeSize, SurfaceMeasures, EstimatedCells);
   os << indent << "Cube Size Mode: " << (this->CubeSizeMode == ADAPTIVE ? "adaptive" : "uniform")
-     << "\n";
-  os << indent << "Cube Level Limit: " << this->CubeLevelLimit << "\n";
-  os << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles")
-     << "\n";
-  os << indent << "Use Box: " << this->UseBox << "\n";
-  PrintNumbers(os, indent, "Box", this->Box, 6);
-  os << indent << "Capping: " << this->Capping << "\n";
-  os << indent << "Filled: " << this->Filled << "\n";
-  os << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n";
-  os << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n";
-  os << indent << "Preview: " << this->Preview << "\n";
-  os << indent << "Compact: " << this->Compact << "\n";
-  os << indent << "Smooth: " << this->Smooth << "\n";
-  os << indent << "Widening: " << this->Widening << "\n";
-  os << indent << "Trim: " << this->Trim << "\n";
-  os << indent << "Node Threshold: " << this->NodeThreshold << "\n";
-  os << indent << "Boundary Detection: "
+     << "\n"
+     << indent << "Partition: " << (this->Partition == BY_WORK ? "by work" : "by particles") << "\n"
+     << indent << "Seed Mode: " << (this->SeedMode == PAIRS ? "pairs" : "complete") << "\n"
+     << indent << "Topology: " << (this->Topology == TOPOLOGY_FIELD ? "field" : "table") << "\n"
+     << indent << "Boundary Detection: "
      << (this->BoundaryDetection == EIGENVALUE ? "eigenvalue" : "weight sum") << "\n";
-  os << indent << "Vertex Threshold: " << this->VertexThreshold << "\n";
-  os << indent << "Solids: " << this->GetSolids() << "\n";
-  os << indent << "Wall Share: " << this->WallShare << "\n";
-  os << indent << "Compute Normals: " << this->ComputeNormals << "\n";
-  os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
-  os << indent << "Compute Scalars: " << this->ComputeScalars << "\n";
-  os << indent << "Compute Weight Sum: " << this->ComputeWeightSum << "\n";
-  os << indent << "Compute Curvature: " << this->ComputeCurvature << "\n";
-  os << indent << "Compute Boundary Eigenvalue: " << this->ComputeBoundaryEigenvalue << "\n";
-  os << indent << "Compute Correction Length: " << this->ComputeCorrectionLength << "\n";
-  os << indent << "Compute Residual: " << this->ComputeResidual << "\n";
-  os << indent << "Compute Boundary Flag: " << this->ComputeBoundaryFlag << "\n";
-  os << indent << "Interpolate Attributes: " << this->InterpolateAttributes << "\n";
-  os << indent << "Output Points Precision: " << this->OutputPointsPrecision << "\n";
-  os << indent << "Tolerance: " << this->Tolerance << "\n";
-  os << indent << "Iteration Limit: " << this->IterationLimit << "\n";
-  PrintNumbers(os, indent, "Fluid Scalar Range", this->FluidScalarRange, 2);
-  os << indent << "Used Iso Values: " << this->UsedIsoValues << "\n";
-  os << indent << "Used Smoothing Length: " << this->UsedSmoothingLength << "\n";
-  os << indent << "Used Cube Size: " << this->UsedCubeSize << "\n";
-  os << indent << "Surface Measures: " << this->SurfaceMeasures << "\n";
-  os << indent << "Estimated Cells: " << this->EstimatedCells << "\n";
+  this->ContourValues->PrintSelf(os, indent.GetNextIndent());
+  this->FreeSurfaceValues->PrintSelf(os, indent.GetNextIndent());
 }
 VTK_ABI_NAMESPACE_END

@@ -520,7 +520,7 @@ public:
 
 protected:
   vtkMarchingCorrectors();
-  ~vtkMarchingCorrectors() override;
+  ~vtkMarchingCorrectors() override = default;
 
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;

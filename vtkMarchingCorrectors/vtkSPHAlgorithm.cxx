@@ -13,6 +13,7 @@
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkVersionMacros.h"
@@ -345,63 +346,25 @@ void vtkSPHAlgorithm::SetUsedNames(const vtkSPHParticles* particles, bool isUsab
   this->UsedFluid = particles ? particles->DescribeFluid() : "";
 }
 
-void vtkSPHAlgorithm::PrintNumbers(
-  ostream& os, vtkIndent indent, const char* name, const double* values, int count)
-{
-  os << indent << name << ":";
-  std::for_each(values, values + count, [&os](double value) { os << " " << value; });
-  os << "\n";
-}
-
 void vtkSPHAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const auto printName = [&](const char* label, const std::string& name)
-  { os << indent << label << ": " << (name.empty() ? "(none)" : name) << "\n"; };
-  printName("Smoothing Length Array Name", this->SmoothingLengthArrayName);
-  os << indent << "Smoothing Length: " << this->SmoothingLength << "\n";
-  os << indent << "Estimate Smoothing Length: " << this->EstimateSmoothingLength << "\n";
-  os << indent << "Smoothing Length Estimate: " << this->SmoothingLengthEstimate << "\n";
-  os << indent << "Neighbor Ratio: " << this->NeighborRatio << "\n";
-  os << indent << "Smoothing Length Is Support Radius: " << this->SmoothingLengthIsSupportRadius
-     << "\n";
-  printName("Volume Array Name", this->VolumeArrayName);
-  printName("Mass Array Name", this->MassArrayName);
-  printName("Density Array Name", this->DensityArrayName);
-  os << indent << "Mass: " << this->Mass << "\n";
-  os << indent << "Density: " << this->Density << "\n";
-  os << indent << "Particle Volume: " << this->ParticleVolume << "\n";
-  os << indent << "Detect Arrays: " << this->DetectArrays << "\n";
-  PrintNumbers(os, indent, "Periodic Bounds", this->PeriodicBounds, 6);
-  os << indent << "Detect Period: " << this->DetectPeriod << "\n";
-  printName("Used Smoothing Length Array Name", this->UsedSmoothingLengthArrayName);
-  os << indent << "Used Volume: " << this->UsedVolume << "\n";
-  printName("Used Volume Array Name", this->UsedVolumeArrayName);
-  printName("Used Mass Array Name", this->UsedMassArrayName);
-  printName("Used Density Array Name", this->UsedDensityArrayName);
-  os << indent << "Kernel: " << this->GetKernelName() << "\n";
-  os << indent << "H Scale Factor: " << this->HScaleFactor << "\n";
-  os << indent << "Dimension: " << this->Dimension << "\n";
-  printName("Fluid Array Name", this->FluidArrayName);
-  os << indent << "Fluid Value: " << this->FluidValue << "\n";
-  os << indent << "Detect Fluid: " << this->DetectFluid << "\n";
-  printName("Used Fluid", this->UsedFluid);
-  os << indent << "Blocks: " << (this->Blocks == APART ? "apart" : "together") << "\n";
-  os << indent << "Ignore Solids: " << this->IgnoreSolids << "\n";
-  PrintNumbers(os, indent, "Within", this->Within, 6);
+  vtkSPHPrintMacro(SmoothingLengthArrayName, SmoothingLength, EstimateSmoothingLength,
+    SmoothingLengthEstimate, NeighborRatio, SmoothingLengthIsSupportRadius, VolumeArrayName,
+    MassArrayName, DensityArrayName, Mass, Density, ParticleVolume, DetectArrays, PeriodicBounds,
+    DetectPeriod, UsedSmoothingLengthArrayName, UsedVolume, UsedVolumeArrayName, UsedMassArrayName,
+    UsedDensityArrayName, HScaleFactor, Dimension, FluidArrayName, FluidValue, DetectFluid,
+    UsedFluid, IgnoreSolids, Within, Precision, Device, DeviceMemoryLimit, KeepDeviceData,
+    Controller, ErrorMessage);
+  os << indent << "Kernel: " << this->GetKernelName() << "\n"
+     << indent << "Blocks: " << (this->Blocks == APART ? "apart" : "together") << "\n";
   for (const vtkSPHOnly& only : this->Only)
   {
     os << indent << "Only: " << only.Name << " " << only.Low << " " << only.High << "\n";
   }
   for (const std::string& name : this->ExcludedArrays)
   {
-    printName("Excluded Array", name);
+    os << indent << "Excluded Array: " << name << "\n";
   }
-  os << indent << "Precision: " << this->Precision << "\n";
-  printName("Device", this->Device);
-  os << indent << "Device Memory Limit: " << this->DeviceMemoryLimit << " MiB\n";
-  os << indent << "Keep Device Data: " << this->KeepDeviceData << "\n";
-  os << indent << "Controller: " << this->Controller << "\n";
-  printName("Error Message", this->ErrorMessage);
 }
 VTK_ABI_NAMESPACE_END

@@ -564,9 +564,6 @@ protected:
   void FillOptions(mcor_options& options) const;
 
   void SetUsedNames(const vtkSPHParticles* particles, bool isUsable = true);
-  /** A line "Name: 1 2 3" of PrintSelf(). */
-  static void PrintNumbers(
-    ostream& os, vtkIndent indent, const char* name, const double* values, int count);
   bool IsAborted();
 
   double NextBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

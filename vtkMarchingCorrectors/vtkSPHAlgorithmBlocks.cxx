@@ -9,6 +9,7 @@
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
+#include "vtkIdList.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -27,7 +28,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -175,21 +175,17 @@ vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakePresent(vtkPointSet* particles
   {
     return particles;
   }
-  auto taken = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  vtkPointData *from = particles->GetPointData(), *to = taken->GetPointData();
-  points->SetDataType(particles->GetPoints()->GetDataType());
-  to->CopyAllOn();
-  to->CopyAllocate(from);
+  vtkNew<vtkIdList> ids;
   for (std::size_t i = 0; i < present.size(); ++i)
   {
     if (present[i])
     {
-      const auto id = static_cast<vtkIdType>(i);
-      to->CopyData(from, id, points->InsertNextPoint(particles->GetPoint(id)));
+      ids->InsertNextId(static_cast<vtkIdType>(i));
     }
   }
-  taken->SetPoints(points);
+  auto taken = vtkSmartPointer<vtkPolyData>::New();
+  taken->SetPoints(vtkSPHTakePoints(particles->GetPoints(), ids));
+  vtkSPHTakeTuples(particles->GetPointData(), ids, taken->GetPointData());
   taken->SetFieldData(particles->GetFieldData());
   return taken;
 }

@@ -23,6 +23,7 @@
 #include "vtkSPHBlocks.h"
 #include "vtkSPHParticles.h"
 #include "vtkSPHPieces.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHVertices.h"
 #include "vtkTable.h"
 #if MCOR_HAS_RANKS
@@ -34,7 +35,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -52,17 +52,6 @@ vtkDataArray* FindArray(
 {
   return name.empty() ? vtkSPHDetect(particles, quantity, components)
                       : particles->GetPointData()->GetArray(name.c_str());
-}
-
-/** Returns the tuples with these numbers, in this order. */
-void CopyTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to)
-{
-  vtkNew<vtkIdList> places;
-  places->SetNumberOfIds(ids->GetNumberOfIds());
-  std::iota(places->GetPointer(0), places->GetPointer(0) + ids->GetNumberOfIds(), vtkIdType(0));
-  to->CopyAllOn(); // normals and ids, too
-  to->CopyAllocate(from, ids->GetNumberOfIds());
-  to->CopyData(from, ids, places);
 }
 
 /**
@@ -344,14 +333,10 @@ void vtkSPHComponents::Keep(vtkPolyData* mesh, const Numbers& numbers, vtkPolyDa
   }
   if (mesh->GetPoints())
   {
-    vtkNew<vtkPoints> where;
-    where->SetDataType(mesh->GetPoints()->GetDataType());
-    where->SetNumberOfPoints(points->GetNumberOfIds());
-    mesh->GetPoints()->GetPoints(points, where);
-    output->SetPoints(where);
+    output->SetPoints(vtkSPHTakePoints(mesh->GetPoints(), points));
     output->SetPolys(kept);
-    CopyTuples(mesh->GetPointData(), points, output->GetPointData());
-    CopyTuples(mesh->GetCellData(), cells, output->GetCellData());
+    vtkSPHTakeTuples(mesh->GetPointData(), points, output->GetPointData());
+    vtkSPHTakeTuples(mesh->GetCellData(), cells, output->GetCellData());
     output->GetFieldData()->PassData(mesh->GetFieldData());
   }
   AddIds(output->GetPointData(), numbers.OfPoint);
@@ -429,20 +414,7 @@ int vtkSPHComponents::RequestData(
 void vtkSPHComponents::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Periodic Bounds:";
-  for (const double side : this->PeriodicBounds)
-  {
-    os << " " << side;
-  }
-  os << "\n";
-  os << indent << "Least Volume: " << this->LeastVolume << "\n";
-  os << indent << "Least Particles: " << this->LeastParticles << "\n";
-  os << indent << "Mass Array Name: " << this->MassArrayName << "\n";
-  os << indent << "Mass: " << this->Mass << "\n";
-  os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
-  os << indent << "Fluid Array Name: " << this->FluidArrayName << "\n";
-  os << indent << "Fluid Value: " << this->FluidValue << "\n";
-  os << indent << "Detect Fluid: " << this->DetectFluid << "\n";
-  os << indent << "Controller: " << this->Controller << "\n";
+  vtkSPHPrintMacro(PeriodicBounds, LeastVolume, LeastParticles, MassArrayName, Mass,
+    VelocityArrayName, FluidArrayName, FluidValue, DetectFluid, Controller);
 }
 VTK_ABI_NAMESPACE_END

@@ -9,6 +9,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 
 #include <algorithm>
@@ -117,8 +118,6 @@ vtkSPHDerivatives::vtkSPHDerivatives()
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
 
-vtkSPHDerivatives::~vtkSPHDerivatives() = default;
-
 const char* vtkSPHDerivatives::GetOutputClassName(const char* inputClassName)
 {
   return inputClassName;
@@ -164,14 +163,14 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   vtkSPHParticles mine(run->Choose(), run->Own);
-  if (run->Particles > 0)
+  const auto find = [this, &run](vtkSPHParticles& own)
   {
-    const bool isUsable = mine.CollectArray(this->FindFirstRequest(run->Own, run->MergeRanges())) &&
-      mine.CollectParticles();
-    if (!run->Accept(mine, isUsable, "there are no derivatives"))
-    {
-      return;
-    }
+    return own.CollectArray(this->FindFirstRequest(run->Own, run->MergeRanges())) &&
+      own.CollectParticles();
+  };
+  if (!run->Accept(mine, find, "there are no derivatives"))
+  {
+    return;
   }
   if (!run->HasFluid)
   {
@@ -196,9 +195,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
     return near.CollectArray({ array, name, true }) && near.CollectParticles();
   };
   vtkSPHParticles* input = run->Share(mine, collect);
-  mcor_derivatives derivatives = {};
-  const std::unique_ptr<mcor_derivatives, decltype(&mcor_free_derivatives)> freeDerivatives(
-    &derivatives, mcor_free_derivatives);
+  vtkSPHOwned<mcor_derivatives, mcor_free_derivatives> derivatives;
   if (!input ||
     !run->Call(*input,
       [&](mcor_context* context)
@@ -245,14 +242,7 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
 void vtkSPHDerivatives::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Correct Gradients: " << this->CorrectGradients << "\n";
-  os << indent << "Compute Gradient: " << this->ComputeGradient << "\n";
-  os << indent << "Result Array Name: " << this->ResultArrayName << "\n";
-  os << indent << "Replace Arrays: " << this->ReplaceArrays << "\n";
-  os << indent << "Compute Divergence: " << this->ComputeDivergence << "\n";
-  os << indent << "Compute Vorticity: " << this->ComputeVorticity << "\n";
-  os << indent << "Compute Q Criterion: " << this->ComputeQCriterion << "\n";
-  os << indent << "Compute Lambda2: " << this->ComputeLambda2 << "\n";
-  os << indent << "Compute Strain Rate: " << this->ComputeStrainRate << "\n";
+  vtkSPHPrintMacro(CorrectGradients, ComputeGradient, ResultArrayName, ReplaceArrays,
+    ComputeDivergence, ComputeVorticity, ComputeQCriterion, ComputeLambda2, ComputeStrainRate);
 }
 VTK_ABI_NAMESPACE_END

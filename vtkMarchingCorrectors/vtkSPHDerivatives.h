@@ -100,7 +100,7 @@ public:
 
 protected:
   vtkSPHDerivatives();
-  ~vtkSPHDerivatives() override;
+  ~vtkSPHDerivatives() override = default;
 
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;

@@ -14,6 +14,7 @@
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHParticles.h"
+#include "vtkSPHPrint.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
@@ -75,10 +76,6 @@ std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
 }
 
 vtkStandardNewMacro(vtkSPHFlux);
-
-vtkSPHFlux::vtkSPHFlux() = default;
-
-vtkSPHFlux::~vtkSPHFlux() = default;
 
 void vtkSPHFlux::AddSection(const char* name, int shape, std::vector<double> numbers)
 {
@@ -173,77 +170,59 @@ bool vtkSPHFlux::Collect(vtkSPHParticles& particles)
   return this->Superclass::Collect(particles) && particles.CollectFlow(this->VelocityArrayName);
 }
 
-std::unique_ptr<vtkSPHMeter::Found> vtkSPHFlux::MakeFound() const
+int vtkSPHFlux::Measure(mcor_context* context, const mcor_input& particles,
+  const mcor_options& options, const std::vector<Place>& places, vtkTable* table,
+  std::vector<bool>& outside, mcor_statistics& statistics) const
 {
-  class Readings : public Found
+  std::vector<mcor_section> sections;
+  for (const Place& place : places)
   {
-  public:
-    ~Readings() override { mcor_free_fluxes(&this->Fluxes); }
-
-    const mcor_statistics& GetStatistics() const override { return this->Fluxes.statistics; }
-
-    bool IsOutside(vtkIdType place) const override
-    {
-      return this->Fluxes.readings[place].outside != 0;
-    }
-
-    int Call(mcor_context* context, const mcor_input& particles, const mcor_options& options,
-      const std::vector<Place>& places) override
-    {
-      std::vector<mcor_section> sections;
-      for (const Place& place : places)
-      {
-        mcor_section section = {};
-        section.shape = static_cast<mcor_section_shape>(place.Shape);
-        section.points = place.Numbers.data();
-        section.point_count = static_cast<int64_t>(place.Numbers.size() / 3);
-        section.radius = place.Shape == MCOR_SECTION_DISC ? place.Numbers.back() : 0.0;
-        section.name = place.Name.c_str();
-        sections.push_back(section);
-      }
-      mcor_input input = particles;
-      mcor_array still = {};
-      still.components = 3;
-      if (input.count == 0 && input.attribute_count == 0) // without particles, no array is needed
-      {
-        input.attributes = &still;
-        input.attribute_count = 1;
-      }
-      mcor_free_fluxes(&this->Fluxes);
-      return mcor_flux(context, &input, &options, sections.data(),
-        static_cast<int64_t>(sections.size()), &this->Fluxes);
-    }
-
-    void Fill(vtkTable* table) const override
-    {
-      const auto count = static_cast<vtkIdType>(this->Fluxes.count);
-      auto* area = vtkSPHAddColumn<vtkDoubleArray>(table, "area", count);
-      auto* volume = vtkSPHAddColumn<vtkDoubleArray>(table, "volume_flux", count);
-      auto* mass = vtkSPHAddColumn<vtkDoubleArray>(table, "mass_flux", count);
-      auto* velocity = vtkSPHAddColumn<vtkDoubleArray>(table, "velocity", count);
-      for (vtkIdType i = 0; i < count; ++i)
-      {
-        const mcor_flux_reading& reading = this->Fluxes.readings[i];
-        area->SetValue(i, reading.area);
-        volume->SetValue(i, reading.volume_flux);
-        mass->SetValue(i, reading.mass_flux);
-        velocity->SetValue(i, reading.velocity);
-      }
-    }
-
-  private:
-    mcor_fluxes Fluxes = {};
-  };
-  return std::unique_ptr<Found>(new Readings);
+    mcor_section section = {};
+    section.shape = static_cast<mcor_section_shape>(place.Shape);
+    section.points = place.Numbers.data();
+    section.point_count = static_cast<int64_t>(place.Numbers.size() / 3);
+    section.radius = place.Shape == MCOR_SECTION_DISC ? place.Numbers.back() : 0.0;
+    section.name = place.Name.c_str();
+    sections.push_back(section);
+  }
+  mcor_input input = particles;
+  mcor_array still = {};
+  still.components = 3;
+  if (input.count == 0 && input.attribute_count == 0) // without particles, no array is needed
+  {
+    input.attributes = &still;
+    input.attribute_count = 1;
+  }
+  mcor_fluxes fluxes = {};
+  const int status = mcor_flux(
+    context, &input, &options, sections.data(), static_cast<int64_t>(sections.size()), &fluxes);
+  if (status != MCOR_OK)
+  {
+    return status;
+  }
+  const auto count = static_cast<vtkIdType>(fluxes.count);
+  auto* area = vtkSPHAddColumn<vtkDoubleArray>(table, "area", count);
+  auto* volume = vtkSPHAddColumn<vtkDoubleArray>(table, "volume_flux", count);
+  auto* mass = vtkSPHAddColumn<vtkDoubleArray>(table, "mass_flux", count);
+  auto* velocity = vtkSPHAddColumn<vtkDoubleArray>(table, "velocity", count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const mcor_flux_reading& reading = fluxes.readings[i];
+    outside.push_back(reading.outside != 0);
+    area->SetValue(i, reading.area);
+    volume->SetValue(i, reading.volume_flux);
+    mass->SetValue(i, reading.mass_flux);
+    velocity->SetValue(i, reading.velocity);
+  }
+  statistics = fluxes.statistics;
+  mcor_free_fluxes(&fluxes);
+  return status;
 }
 
 void vtkSPHFlux::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  PrintNumbers(os, indent, "Origin", this->Origin, 3);
-  PrintNumbers(os, indent, "Normal", this->Normal, 3);
-  os << indent << "Radius: " << this->Radius << "\n";
-  os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
+  vtkSPHPrintMacro(Origin, Normal, Radius, VelocityArrayName);
   for (const Place& section : this->Sections)
   {
     os << indent << "Section " << section.Name << ": shape " << section.Shape << ", "

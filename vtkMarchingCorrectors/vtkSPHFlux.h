@@ -94,15 +94,17 @@ public:
   vtkSPHTextMacro(VelocityArrayName);
 
 protected:
-  vtkSPHFlux();
-  ~vtkSPHFlux() override;
+  vtkSPHFlux() = default;
+  ~vtkSPHFlux() override = default;
 
   const char* GetNoun() const override { return "section"; }
   const char* GetConsequence() const override { return "nothing flows"; }
   std::vector<Place> ListPlaces(vtkDataObject* more) override;
   void AddBounds(const Place& place, double low[3], double high[3]) const override;
   bool Collect(vtkSPHParticles& particles) override;
-  std::unique_ptr<Found> MakeFound() const override;
+  int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
+    const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
+    mcor_statistics& statistics) const override;
 
   double Origin[3] = { 0.0, 0.0, 0.0 };
   double Normal[3] = { 1.0, 0.0, 0.0 };

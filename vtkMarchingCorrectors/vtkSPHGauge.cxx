@@ -11,6 +11,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkObjectFactory.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHPrint.h"
 #include "vtkStringArray.h"
 #include "vtkVariant.h"
 
@@ -18,10 +19,6 @@
 
 VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSPHGauge);
-
-vtkSPHGauge::vtkSPHGauge() = default;
-
-vtkSPHGauge::~vtkSPHGauge() = default;
 
 void vtkSPHGauge::AddGauge(
   const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
@@ -88,77 +85,64 @@ void vtkSPHGauge::AddBounds(const Place& place, double low[3], double high[3]) c
   }
 }
 
-std::unique_ptr<vtkSPHMeter::Found> vtkSPHGauge::MakeFound() const
+int vtkSPHGauge::Measure(mcor_context* context, const mcor_input& input,
+  const mcor_options& options, const std::vector<Place>& places, vtkTable* table,
+  std::vector<bool>& outside, mcor_statistics& statistics) const
 {
-  class Readings : public Found
+  std::vector<mcor_gauge_line> lines;
+  for (const Place& place : places)
   {
-  public:
-    ~Readings() override { mcor_free_gauges(&this->Gauges); }
-
-    const mcor_statistics& GetStatistics() const override { return this->Gauges.statistics; }
-
-    bool IsOutside(vtkIdType place) const override
+    mcor_gauge_line line = {};
+    std::copy_n(place.Numbers.data(), 3, line.from);
+    std::copy_n(place.Numbers.data() + 3, 3, line.to);
+    line.name = place.Name.c_str();
+    lines.push_back(line);
+  }
+  mcor_gauges gauges = {};
+  const int status = mcor_gauge(
+    context, &input, &options, lines.data(), static_cast<int64_t>(lines.size()), &gauges);
+  if (status != MCOR_OK)
+  {
+    return status;
+  }
+  const auto count = static_cast<vtkIdType>(gauges.count);
+  auto* states = vtkSPHAddColumn<vtkStringArray>(table, "state", count);
+  auto* first = vtkSPHAddColumn<vtkDoubleArray>(table, "first", count);
+  auto* last = vtkSPHAddColumn<vtkDoubleArray>(table, "last", count);
+  auto* depth = vtkSPHAddColumn<vtkDoubleArray>(table, "depth", count);
+  auto* crossings = vtkSPHAddColumn<vtkIdTypeArray>(table, "crossings", count);
+  vtkDoubleArray* place[3] = { vtkSPHAddColumn<vtkDoubleArray>(table, "x", count),
+    vtkSPHAddColumn<vtkDoubleArray>(table, "y", count),
+    vtkSPHAddColumn<vtkDoubleArray>(table, "z", count) };
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const mcor_gauge_reading& reading = gauges.readings[i];
+    outside.push_back(reading.outside != 0);
+    states->SetValue(i, mcor_gauge_state_name(reading.state));
+    first->SetValue(i, reading.first);
+    last->SetValue(i, reading.last);
+    depth->SetValue(i, reading.depth);
+    crossings->SetValue(i, reading.crossing_count);
+    for (int a = 0; a < 3; ++a)
     {
-      return this->Gauges.readings[place].outside != 0;
+      place[a]->SetValue(i, reading.place[a]);
     }
-
-    int Call(mcor_context* context, const mcor_input& input, const mcor_options& options,
-      const std::vector<Place>& places) override
-    {
-      std::vector<mcor_gauge_line> lines;
-      for (const Place& place : places)
-      {
-        mcor_gauge_line line = {};
-        std::copy_n(place.Numbers.data(), 3, line.from);
-        std::copy_n(place.Numbers.data() + 3, 3, line.to);
-        line.name = place.Name.c_str();
-        lines.push_back(line);
-      }
-      mcor_free_gauges(&this->Gauges);
-      return mcor_gauge(
-        context, &input, &options, lines.data(), static_cast<int64_t>(lines.size()), &this->Gauges);
-    }
-
-    void Fill(vtkTable* table) const override
-    {
-      const auto count = static_cast<vtkIdType>(this->Gauges.count);
-      auto* states = vtkSPHAddColumn<vtkStringArray>(table, "state", count);
-      auto* first = vtkSPHAddColumn<vtkDoubleArray>(table, "first", count);
-      auto* last = vtkSPHAddColumn<vtkDoubleArray>(table, "last", count);
-      auto* depth = vtkSPHAddColumn<vtkDoubleArray>(table, "depth", count);
-      auto* crossings = vtkSPHAddColumn<vtkIdTypeArray>(table, "crossings", count);
-      vtkDoubleArray* place[3] = { vtkSPHAddColumn<vtkDoubleArray>(table, "x", count),
-        vtkSPHAddColumn<vtkDoubleArray>(table, "y", count),
-        vtkSPHAddColumn<vtkDoubleArray>(table, "z", count) };
-      for (vtkIdType i = 0; i < count; ++i)
-      {
-        const mcor_gauge_reading& reading = this->Gauges.readings[i];
-        states->SetValue(i, mcor_gauge_state_name(reading.state));
-        first->SetValue(i, reading.first);
-        last->SetValue(i, reading.last);
-        depth->SetValue(i, reading.depth);
-        crossings->SetValue(i, reading.crossing_count);
-        for (int a = 0; a < 3; ++a)
-        {
-          place[a]->SetValue(i, reading.place[a]);
-        }
-      }
-    }
-
-  private:
-    mcor_gauges Gauges = {};
-  };
-  return std::unique_ptr<Found>(new Readings);
+  }
+  statistics = gauges.statistics;
+  mcor_free_gauges(&gauges);
+  return status;
 }
 
 void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  PrintNumbers(os, indent, "Point1", this->Point1, 3);
-  PrintNumbers(os, indent, "Point2", this->Point2, 3);
+  vtkSPHPrintMacro(Point1, Point2);
   for (const Place& gauge : this->Gauges)
   {
-    PrintNumbers(os, indent, ("Gauge " + gauge.Name).c_str(), gauge.Numbers.data(), 6);
+    os << indent << "Gauge " << gauge.Name << ":";
+    std::for_each(
+      gauge.Numbers.begin(), gauge.Numbers.end(), [&os](double number) { os << " " << number; });
+    os << "\n";
   }
 }
 VTK_ABI_NAMESPACE_END

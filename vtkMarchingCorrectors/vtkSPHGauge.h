@@ -73,14 +73,16 @@ public:
   ///@}
 
 protected:
-  vtkSPHGauge();
-  ~vtkSPHGauge() override;
+  vtkSPHGauge() = default;
+  ~vtkSPHGauge() override = default;
 
   const char* GetNoun() const override { return "gauge"; }
   const char* GetConsequence() const override { return "all gauges are dry"; }
   std::vector<Place> ListPlaces(vtkDataObject* more) override;
   void AddBounds(const Place& place, double low[3], double high[3]) const override;
-  std::unique_ptr<Found> MakeFound() const override;
+  int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
+    const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
+    mcor_statistics& statistics) const override;
 
   double Point1[3] = { 0.0, 0.0, 0.0 };
   double Point2[3] = { 0.0, 0.0, 1.0 };

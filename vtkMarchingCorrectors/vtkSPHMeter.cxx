@@ -3,11 +3,13 @@
 #include "vtkSPHMeter.h"
 
 #include "mcor.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
@@ -23,8 +25,6 @@ vtkSPHMeter::vtkSPHMeter()
 {
   this->SetNumberOfInputPorts(2);
 }
-
-vtkSPHMeter::~vtkSPHMeter() = default;
 
 vtkTable* vtkSPHMeter::GetOutput()
 {
@@ -119,7 +119,8 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   vtkSPHParticles mine(run->Choose(), run->Own);
-  if (run->Particles > 0 && !run->Accept(mine, this->Collect(mine), this->GetConsequence()))
+  const auto collect = [this](vtkSPHParticles& near) { return this->Collect(near); };
+  if (!run->Accept(mine, collect, this->GetConsequence()))
   {
     return;
   }
@@ -146,19 +147,40 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
     this->AddBounds(place, low, high);
   }
   run->PlaceBox(low, high);
-  vtkSPHParticles* input =
-    run->Share(mine, [this](vtkSPHParticles& near) { return this->Collect(near); });
-  const std::unique_ptr<Found> found = this->MakeFound();
+  vtkSPHParticles* input = run->Share(mine, collect);
+  const auto count = static_cast<vtkIdType>(places.size());
+  auto* times = vtkSPHAddColumn<vtkDoubleArray>(table, "time", count);
+  auto* names = vtkSPHAddColumn<vtkStringArray>(table, this->GetNoun(), count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    times->SetValue(i, this->InputTime);
+    names->SetValue(i, places[static_cast<size_t>(i)].Name);
+  }
+  std::vector<bool> outside;
+  mcor_statistics statistics = {};
   if (!input ||
     !run->Call(*input,
-      [&](mcor_context* context)
-      { return found->Call(context, input->Core, run->Options, places); }))
+      [&](mcor_context* context) {
+        return this->Measure(
+          context, input->Core, run->Options, places, table, outside, statistics);
+      }))
   {
+    table->GetRowData()->Initialize();
     return;
   }
-  vtkSPHAddRunStatistics(this->RunStatistics, found->GetStatistics());
-  run->WarnOfParticles(input->Core, found->GetStatistics());
-  this->Fill(table, places, *found, isFirst && hasFluid);
+  vtkSPHAddRunStatistics(this->RunStatistics, statistics);
+  run->WarnOfParticles(input->Core, statistics);
+  for (size_t i = 0; isFirst && hasFluid && i < outside.size(); ++i)
+  {
+    if (outside[i])
+    {
+      std::string noun = this->GetNoun();
+      noun[0] = static_cast<char>(noun[0] - 'a' + 'A');
+      this->Warn(noun + " '" + places[i].Name +
+        "' is outside of all fluid: no particle reaches it. If this is so at all times, "
+        "check where it is.");
+    }
+  }
   if (!isFirst)
   {
     table->SetNumberOfRows(0);
@@ -195,33 +217,9 @@ std::vector<vtkSPHMeter::Place> vtkSPHMeter::Merge(vtkRun& run, const std::vecto
   return all;
 }
 
-void vtkSPHMeter::Fill(
-  vtkTable* output, const std::vector<Place>& places, const Found& found, bool hasFluid)
-{
-  const auto count = static_cast<vtkIdType>(places.size());
-  auto* times = vtkSPHAddColumn<vtkDoubleArray>(output, "time", count);
-  auto* names = vtkSPHAddColumn<vtkStringArray>(output, this->GetNoun(), count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    const std::string& name = places[static_cast<size_t>(i)].Name;
-    times->SetValue(i, this->InputTime);
-    names->SetValue(i, name);
-    if (hasFluid && found.IsOutside(i))
-    {
-      std::string noun = this->GetNoun();
-      noun[0] = static_cast<char>(noun[0] - 'a' + 'A');
-      this->Warn(noun + " '" + name +
-        "' is outside of all fluid: no particle reaches it. If this is so at all times, "
-        "check where it is.");
-    }
-  }
-  found.Fill(output);
-}
-
 void vtkSPHMeter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Level: " << this->Level << "\n";
-  os << indent << "Time: " << this->Time << "\n";
+  vtkSPHPrintMacro(Level, Time);
 }
 VTK_ABI_NAMESPACE_END

@@ -24,7 +24,6 @@
 #include "vtkMarchingCorrectorsModule.h" // For export macro
 #include "vtkSPHAlgorithm.h"
 
-#include <memory> // For what is found
 #include <string> // For places
 #include <vector> // For places
 
@@ -63,7 +62,7 @@ public:
 
 protected:
   vtkSPHMeter();
-  ~vtkSPHMeter() override;
+  ~vtkSPHMeter() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
@@ -96,21 +95,13 @@ protected:
   virtual bool Collect(vtkSPHParticles& particles);
   ///@}
 
-  /** Results of the core. They are deleted before the next run. */
-  class Found
-  {
-  public:
-    virtual ~Found() = default;
-    virtual const mcor_statistics& GetStatistics() const = 0;
-    /** Adds the columns after those of time and name. */
-    virtual void Fill(vtkTable* table) const = 0;
-    /** Whether no particle reaches the place. */
-    virtual bool IsOutside(vtkIdType place) const = 0;
-    /** A status of the core. */
-    virtual int Call(mcor_context* context, const mcor_input& input, const mcor_options& options,
-      const std::vector<Place>& places) = 0;
-  };
-  virtual std::unique_ptr<Found> MakeFound() const = 0;
+  /**
+   * Calls the core, whose status it returns, and adds the table's columns after those of time and
+   * name. outside: the places that no particle reaches.
+   */
+  virtual int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
+    const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
+    mcor_statistics& statistics) const = 0;
 
   double Level = 0.5;
   double Time = 0.0;
@@ -120,7 +111,6 @@ private:
   void operator=(const vtkSPHMeter&) = delete;
 
   bool CheckNames(const std::vector<Place>& places);
-  void Fill(vtkTable* output, const std::vector<Place>& places, const Found& found, bool hasFluid);
   static std::vector<Place> Merge(vtkRun& run, const std::vector<Place>& mine);
 
   vtkDataObject* More = nullptr; // the second input, while a run lasts

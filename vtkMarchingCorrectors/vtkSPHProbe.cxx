@@ -6,7 +6,6 @@
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -18,6 +17,7 @@
 #include "vtkPointSet.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 
@@ -338,8 +338,6 @@ vtkSPHProbe::vtkSPHProbe()
   this->SetNumberOfInputPorts(2);
 }
 
-vtkSPHProbe::~vtkSPHProbe() = default;
-
 vtkDataObject* vtkSPHProbe::GetSource()
 {
   return this->GetNumberOfInputConnections(1) > 0 ? this->GetInputDataObject(1, 0) : nullptr;
@@ -420,7 +418,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
     return isUsable;
   };
   vtkSPHParticles mine(run->Choose(), run->Own);
-  if (run->Particles > 0 && !run->Accept(mine, collect(mine), "no point is valid"))
+  if (!run->Accept(mine, collect, "no point is valid"))
   {
     return;
   }
@@ -510,12 +508,7 @@ void vtkSPHProbe::FinishOutput(vtkDataSet* output) const
 void vtkSPHProbe::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Shepard Normalization: " << this->ShepardNormalization << "\n";
-  os << indent << "Weight Threshold: " << this->WeightThreshold << "\n";
-  os << indent << "Interpolate Attributes: " << this->InterpolateAttributes << "\n";
-  os << indent << "Compute Gradients: " << this->ComputeGradients << "\n";
-  os << indent << "NaN Outside: " << this->NaNOutside << "\n";
-  os << indent << "Null Value: " << this->NullValue << "\n";
-  os << indent << "Valid Point Mask Array Name: " << this->ValidPointMaskArrayName << "\n";
+  vtkSPHPrintMacro(ShepardNormalization, WeightThreshold, InterpolateAttributes, ComputeGradients,
+    NaNOutside, NullValue, ValidPointMaskArrayName);
 }
 VTK_ABI_NAMESPACE_END

@@ -110,7 +110,7 @@ public:
 
 protected:
   vtkSPHProbe();
-  ~vtkSPHProbe() override;
+  ~vtkSPHProbe() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,

@@ -10,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -42,9 +43,6 @@ void FindExtent(const mcor_projection& found, int extent[6])
 }
 
 vtkStandardNewMacro(vtkSPHProjection);
-
-vtkSPHProjection::vtkSPHProjection() = default;
-vtkSPHProjection::~vtkSPHProjection() = default;
 
 vtkImageData* vtkSPHProjection::GetImage()
 {
@@ -149,7 +147,8 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   vtkSPHParticles mine(run->Choose(), run->Own);
   mcor_view view = this->MakeView();
   this->FillOptions(run->Options);
-  if (!run->Accept(mine, this->Collect(mine, view), "nothing is seen"))
+  const auto collect = [this, &view](vtkSPHParticles& near) { return this->Collect(near, view); };
+  if (!run->Accept(mine, collect, "nothing is seen"))
   {
     return;
   }
@@ -165,13 +164,10 @@ void vtkSPHProjection::Process(vtkDataObject* data, vtkDataObject* output)
   vtkSPHParticles* input = &mine;
   if (computes)
   {
-    input =
-      run->Share(mine, [this, &view](vtkSPHParticles& near) { return this->Collect(near, view); });
+    input = run->Share(mine, collect);
     view.counted = run->MarkOwned();
   }
-  mcor_projection found = {};
-  const std::unique_ptr<mcor_projection, decltype(&mcor_free_projection)> freeFound(
-    &found, mcor_free_projection);
+  vtkSPHOwned<mcor_projection, mcor_free_projection> found;
   if (input &&
     run->Call(*input,
       [&](mcor_context* context)
@@ -224,12 +220,7 @@ void vtkSPHProjection::Fill(vtkImageData* image, const std::string& name, mcor_p
 void vtkSPHProjection::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  PrintNumbers(os, indent, "Direction", this->Direction, 3);
-  os << indent << "Resolution: " << this->Resolution << "\n";
-  os << indent << "Use Box: " << this->UseBox << "\n";
-  PrintNumbers(os, indent, "Box", this->Box, 6);
-  os << indent << "Weight Array Name: " << this->WeightArrayName << "\n";
-  os << indent << "Scalar Array Name: " << this->ScalarArrayName << "\n";
-  os << indent << "Scalar Component: " << this->ScalarComponent << "\n";
+  vtkSPHPrintMacro(
+    Direction, Resolution, UseBox, Box, WeightArrayName, ScalarArrayName, ScalarComponent);
 }
 VTK_ABI_NAMESPACE_END

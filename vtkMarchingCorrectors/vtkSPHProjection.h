@@ -105,8 +105,8 @@ public:
   vtkImageData* GetImage();
 
 protected:
-  vtkSPHProjection();
-  ~vtkSPHProjection() override;
+  vtkSPHProjection() = default;
+  ~vtkSPHProjection() override = default;
 
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;

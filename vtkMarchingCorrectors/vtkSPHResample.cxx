@@ -16,6 +16,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHPrint.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -49,10 +50,7 @@ int FindFlatAxis(const double bounds[6])
   return count == 1 ? axis : -1;
 }
 
-/**
- * Finds the range of the plane in the box, along its axes u and v. Returns false if the plane
- * misses the box.
- */
+/** The range of a plane in a box, along the plane's axes u and v; empty if it misses the box. */
 struct Rectangle
 {
   double U[3], V[3];
@@ -235,8 +233,6 @@ vtkSPHResample::vtkSPHResample()
   this->NaNOutside = 1;
 }
 
-vtkSPHResample::~vtkSPHResample() = default;
-
 const char* vtkSPHResample::GetOutputClassName(const char*)
 {
   return this->Shape == VOLUME ? "vtkImageData" : "vtkPolyData";
@@ -409,17 +405,9 @@ void vtkSPHResample::Process(vtkDataObject* data, vtkDataObject* output)
 void vtkSPHResample::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  vtkSPHPrintMacro(
+    FitBounds, Origin, Normal, Point1, Point2, Bounds, Resolution, Dimensions, OnlyFluid);
   const char* const shapes[] = { "slice", "line", "volume" };
   os << indent << "Shape: " << shapes[this->Shape] << "\n";
-  os << indent << "Fit Bounds: " << this->FitBounds << "\n";
-  PrintNumbers(os, indent, "Origin", this->Origin, 3);
-  PrintNumbers(os, indent, "Normal", this->Normal, 3);
-  PrintNumbers(os, indent, "Point1", this->Point1, 3);
-  PrintNumbers(os, indent, "Point2", this->Point2, 3);
-  PrintNumbers(os, indent, "Bounds", this->Bounds, 6);
-  os << indent << "Resolution: " << this->Resolution << "\n";
-  os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
-     << this->Dimensions[2] << "\n";
-  os << indent << "Only Fluid: " << this->OnlyFluid << "\n";
 }
 VTK_ABI_NAMESPACE_END

@@ -108,7 +108,7 @@ public:
 
 protected:
   vtkSPHResample();
-  ~vtkSPHResample() override;
+  ~vtkSPHResample() override = default;
 
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;

@@ -138,8 +138,13 @@ vtkSPHParticlesChoice vtkSPHAlgorithm::vtkRun::Choose()
 }
 
 bool vtkSPHAlgorithm::vtkRun::Accept(
-  vtkSPHParticles& particles, bool isUsable, const std::string& consequence)
+  vtkSPHParticles& particles, const Collect& collect, const std::string& consequence)
 {
+  if (this->Particles == 0)
+  {
+    return true;
+  }
+  const bool isUsable = collect(particles);
   this->Filter->SetUsedNames(&particles, isUsable);
   if (!this->Agree(isUsable ? "" : particles.Error))
   {
@@ -160,34 +165,32 @@ bool vtkSPHAlgorithm::vtkRun::Accept(
   return true;
 }
 
-bool vtkSPHAlgorithm::vtkRun::CheckPeriod(const vtkSPHPeriod& found, const std::string& problem)
-{
-  const std::string sentence = !problem.empty() ? problem
-    : !found.Period.empty()
-    ? ""
-    : "The field data of the particles give no period: there is no array PeriodicBounds, "
-      "BoxSize, or box with boundaryType.";
-  if (!sentence.empty())
-  {
-    this->Fail(sentence + " Set the periodic bounds, and turn their detection off.");
-  }
-  return sentence.empty();
-}
-
-bool vtkSPHAlgorithm::vtkRun::Measure(vtkSPHParticles&, bool)
+bool vtkSPHAlgorithm::vtkRun::SetPeriod()
 {
   if (!this->Filter->DetectPeriod)
   {
     return true;
   }
-  const vtkSPHPeriod found = vtkSPHFindPeriod(this->Own->GetFieldData());
-  if (!this->CheckPeriod(found, ""))
+  std::string problem;
+  const std::vector<double> period = this->FindPeriod(problem);
+  if (period.empty() && problem.empty())
   {
+    problem = "The field data of the particles give no period: there is no array PeriodicBounds, "
+              "BoxSize, or box with boundaryType.";
+  }
+  if (!problem.empty())
+  {
+    this->Fail(problem + " Set the periodic bounds, and turn their detection off.");
     return false;
   }
-  const std::vector<double> bounds = vtkSPHBoundsOfPeriod(found.Period, this->Own->GetBounds());
-  std::copy(bounds.begin(), bounds.end(), this->Options.periodic);
+  std::copy(period.begin(), period.end(), this->Options.periodic);
   return true;
+}
+
+std::vector<double> vtkSPHAlgorithm::vtkRun::FindPeriod(std::string&)
+{
+  return vtkSPHBoundsOfPeriod(
+    vtkSPHFindPeriod(this->Own->GetFieldData()).Period, this->Own->GetBounds());
 }
 
 bool vtkSPHAlgorithm::vtkRun::Call(

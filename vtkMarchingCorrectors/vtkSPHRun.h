@@ -86,6 +86,19 @@ inline bool vtkSPHComputesVolumes(const mcor_input& input)
     !(mcor_is_given(&input.mass) && mcor_is_given(&input.density));
 }
 
+/** A result of the core, which is freed at the end. */
+template <typename ResultT, void (*Free)(ResultT*)>
+struct vtkSPHOwned : ResultT
+{
+  vtkSPHOwned()
+    : ResultT()
+  {
+  }
+  ~vtkSPHOwned() { Free(this); }
+  vtkSPHOwned(const vtkSPHOwned&) = delete;
+  void operator=(const vtkSPHOwned&) = delete;
+};
+
 class vtkSPHAlgorithm::vtkRun
 {
 public:
@@ -124,13 +137,14 @@ public:
   virtual bool Begin(vtkPointSet* particles);
   /** Returns the filter's description of the particles, with the fluid that is detected. */
   vtkSPHParticlesChoice Choose();
-  /** Notes which arrays were found, and warns about the fluid. */
-  virtual bool Accept(vtkSPHParticles& particles, bool isUsable, const std::string& consequence);
+  /** Collects the particles, if there are any, notes which arrays were found, and warns about the
+   * fluid. */
+  bool Accept(vtkSPHParticles& particles, const Collect& collect, const std::string& consequence);
   /**
    * Finds the period and, for many processes, everything global: for a surface, or for mcor_probe
    * and mcor_derive.
    */
-  virtual bool Measure(vtkSPHParticles& particles, bool forSamples);
+  virtual bool Measure(vtkSPHParticles&, bool /*forSamples*/) { return this->SetPeriod(); }
   /**
    * Finds the period alone, and, from all particles, the smoothing length if it is estimated.
    */
@@ -171,7 +185,10 @@ public:
 
 protected:
   void Fail(const std::string& message);
-  bool CheckPeriod(const vtkSPHPeriod& found, const std::string& problem);
+  /** Finds the period where the filter wants that. Returns false, after an error, if there is none. */
+  bool SetPeriod();
+  /** Returns the bounds of the period that field data tell; empty if they tell none. */
+  virtual std::vector<double> FindPeriod(std::string& problem);
   /**
    * Calls the core, as number `place` of `count` processes of this machine. Returns its status;
    * `message` says why it failed, unless it was cancelled.

@@ -13,6 +13,7 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHBlocks.h"
+#include "vtkSPHPrint.h"
 #include "vtkSPHTemporalPair.h"
 #include "vtkSPHVertices.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -358,13 +359,7 @@ void vtkSPHTemporalInterpolator::Fill(
 void vtkSPHTemporalInterpolator::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Id Array Name: " << this->IdArrayName << "\n";
-  os << indent << "Velocity Array Name: " << this->VelocityArrayName << "\n";
-  os << indent << "Use Velocities: " << this->UseVelocities << "\n";
-  os << indent << "Used Id Array Name: " << this->UsedIdArrayName << "\n";
-  os << indent << "Used Velocity Array Name: " << this->UsedVelocityArrayName << "\n";
-  os << indent << "Time Scale: " << this->TimeScale << "\n";
-  os << indent << "Resample Factor: " << this->ResampleFactor << "\n";
-  os << indent << "Error Message: " << this->ErrorMessage << "\n";
+  vtkSPHPrintMacro(IdArrayName, VelocityArrayName, UseVelocities, UsedIdArrayName,
+    UsedVelocityArrayName, TimeScale, ResampleFactor, ErrorMessage);
 }
 VTK_ABI_NAMESPACE_END

@@ -330,6 +330,11 @@ def take(pointer, shape):
     return np.frombuffer((pointer._type_ * size).from_address(address), pointer._type_).reshape(shape).copy()
 
 
+def take_rows(pointer, count):
+    """A copy of the core's structures, with a column for each member."""
+    return take(pointer, (count,)) if count else np.empty(0, pointer._type_)
+
+
 def take_all(struct, result, sizes):
     """The arrays of a result that stand by themselves, by name."""
     arrays = {}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Dict, List
 import numpy as np
 
 from . import _structs as c
-from ._arrays import as_bytes, contiguous, statistics
+from ._arrays import as_bytes, contiguous, statistics, take_rows
 from ._call import called, of_particles, prepare
 from ._library import InvalidArgument, lib
 from ._options import GAUGE
@@ -126,8 +126,6 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
     names, array, _kept = _as_sections(sections, units)
     arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
     with called(lib.mcor_flux, c.mcor_fluxes, arguments, array, len(names)) as found:
-        readings = [found.readings[i] for i in range(found.count)]
-        columns = {name: np.array([getattr(reading, name) for reading in readings], np.float64)
-                   for name in ("area", "volume_flux", "mass_flux", "velocity")}
-        return Fluxes(names=names, outside=np.array([reading.outside for reading in readings], bool), **columns,
-                      statistics=statistics(found.statistics))
+        rows = take_rows(found.readings, found.count)
+        columns = {name: rows[name].copy() for name in ("area", "volume_flux", "mass_flux", "velocity")}
+        return Fluxes(names=names, outside=rows["outside"].astype(bool), **columns, statistics=statistics(found.statistics))

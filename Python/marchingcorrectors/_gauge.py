@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Dict, List
 import numpy as np
 
 from . import _structs as c
-from ._arrays import as_bytes, contiguous, statistics
+from ._arrays import as_bytes, contiguous, statistics, take_rows
 from ._call import called, of_particles, prepare
 from ._library import InvalidArgument, lib
 from ._options import GAUGE
@@ -58,30 +58,6 @@ def _as_lines(lines, units):
     return names or [str(i) for i in range(len(array))], array
 
 
-def _structures(names, array):
-    made = (c.mcor_gauge_line * max(len(array), 1))()
-    for line, name, ends in zip(made, names, array):
-        getattr(line, "from")[:], line.to[:] = ends[0], ends[1]
-        line.name = as_bytes(name)
-    return made
-
-
-def _gauges(found, names):
-    readings = [found.readings[i] for i in range(found.count)]
-    all_crossings = np.array([found.crossings[i] for i in range(found.crossing_count)], np.float64)
-
-    def column(name, kind=np.float64):
-        return np.array([getattr(reading, name) for reading in readings], kind)
-
-    return Gauges(
-        names=names, state=STATES[column("state", int)], first=column("first"), last=column("last"),
-        depth=column("depth"), outside=column("outside", bool),
-        place=np.array([list(reading.place) for reading in readings]).reshape(len(readings), 3),
-        crossings={name: all_crossings[r.first_crossing:r.first_crossing + r.crossing_count]
-                   for name, r in zip(names, readings)},
-        statistics=statistics(found.statistics))
-
-
 @of_particles(GAUGE)
 def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Keywords]) -> Gauges:
     """Water levels: where straight lines cross the free surface, every crossing.
@@ -101,5 +77,13 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
     arguments = prepare(units, words)
     names, array = _as_lines(lines, units)
     arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
-    with called(lib.mcor_gauge, c.mcor_gauges, arguments, _structures(names, array), len(array)) as found:
-        return _gauges(found, names)
+    structures = (c.mcor_gauge_line * max(len(array), 1))()
+    for line, name, ends in zip(structures, names, array):
+        getattr(line, "from")[:], line.to[:], line.name = ends[0], ends[1], as_bytes(name)
+    with called(lib.mcor_gauge, c.mcor_gauges, arguments, structures, len(array)) as found:
+        rows, crossings = take_rows(found.readings, found.count), take_rows(found.crossings, found.crossing_count)
+        columns = {name: rows[name].copy() for name in ("first", "last", "depth", "place")}
+        return Gauges(
+            names=names, state=STATES[rows["state"]], outside=rows["outside"].astype(bool), **columns,
+            crossings={name: crossings[row["first_crossing"]:][:row["crossing_count"]].copy() for name, row in zip(names, rows)},
+            statistics=statistics(found.statistics))

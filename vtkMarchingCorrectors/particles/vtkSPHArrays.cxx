@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHArrays.h"
 
+#include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkSPHReals.h"
 #include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
@@ -14,6 +18,7 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <sstream>
 #include <vector>
 
@@ -104,6 +109,37 @@ vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdT
   made->CopyComponentNames(array);
   made->SetNumberOfTuples(count);
   return made;
+}
+
+void vtkSPHTakeTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to)
+{
+  vtkNew<vtkIdList> places;
+  places->SetNumberOfIds(ids->GetNumberOfIds());
+  std::iota(places->GetPointer(0), places->GetPointer(0) + ids->GetNumberOfIds(), vtkIdType(0));
+  to->CopyAllOn();
+  to->CopyAllocate(from, ids->GetNumberOfIds());
+  to->CopyData(from, ids, places);
+}
+
+vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(from->GetDataType());
+  points->SetNumberOfPoints(ids->GetNumberOfIds());
+  from->GetPoints(ids, points);
+  return points;
+}
+
+vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count)
+{
+  vtkNew<vtkIdTypeArray> points, offsets;
+  points->SetNumberOfValues(count);
+  offsets->SetNumberOfValues(count + 1);
+  std::iota(points->GetPointer(0), points->GetPointer(0) + count, vtkIdType(0));
+  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType(0));
+  auto vertices = vtkSmartPointer<vtkCellArray>::New();
+  vertices->SetData(offsets, points);
+  return vertices;
 }
 
 std::string vtkSPHTakeText(char* text)

@@ -22,6 +22,10 @@
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
+class vtkCellArray;
+class vtkDataSetAttributes;
+class vtkIdList;
+class vtkPoints;
 class vtkPointSet;
 
 /** Returns the array's name, empty for none. */
@@ -39,6 +43,15 @@ void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 
 /** Makes an array of this name, type and components for so many tuples. */
 vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);
+
+/** Copies the tuples with these numbers, in this order, of all arrays, normals and ids, too. */
+void vtkSPHTakeTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
+
+/** Returns the points with these numbers, in this order. */
+vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids);
+
+/** Makes a vertex of each of so many points. */
+vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);
 
 /** Takes over a text of the core, which it frees; empty for null. */
 std::string vtkSPHTakeText(char* text);

@@ -7,11 +7,9 @@
 #include "vtkSPHReals.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -34,33 +32,25 @@ std::string NameOf(vtkDataArray* array)
  */
 bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
 {
-  numbers.resize(static_cast<size_t>(array->GetNumberOfTuples()));
-  const bool isReal = vtkSPHIsReal(array);
-  std::atomic<vtkIdType> first(std::numeric_limits<vtkIdType>::max());
-  vtkSPHForValues(array,
-    [&](auto values, vtkIdType i)
+  const vtkIdType count = array->GetNumberOfTuples();
+  for (bad = 0; vtkSPHIsReal(array) && bad < count; ++bad)
+  {
+    // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have become
+    // equal.
+    const double real = array->GetComponent(bad, 0);
+    if (!(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
     {
-      for (const auto value : values)
-      {
-        // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have
-        // become equal.
-        const double real = static_cast<double>(value);
-        if (isReal && !(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
-        {
-          vtkIdType known = first;
-          while (i < known && !first.compare_exchange_weak(known, i))
-          {
-          }
-        }
-        else
-        {
-          numbers[static_cast<size_t>(i)] = static_cast<std::int64_t>(value);
-        }
-        ++i;
-      }
+      return false;
+    }
+  }
+  numbers.resize(static_cast<size_t>(count));
+  vtkSPHForValues(array,
+    [&numbers](auto values, vtkIdType first)
+    {
+      std::transform(values.begin(), values.end(), numbers.begin() + first,
+        [](auto value) { return static_cast<std::int64_t>(value); });
     });
-  bad = first;
-  return bad == std::numeric_limits<vtkIdType>::max();
+  return true;
 }
 
 /** Whether both steps have the same numbers in the same ascending order. */

@@ -281,10 +281,7 @@ bool vtkSPHParticles::CollectVolume()
   {
     return true;
   }
-  if (!this->CollectQuantity(
-        "mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass, this->Core.mass) ||
-    !this->CollectQuantity(
-      "density", f.DensityArrayName, f.Density, MCOR_DENSITY, this->Density, this->Core.density))
+  if (!this->CollectMass() || !this->CollectDensity(f.Density, this->Core.density))
   {
     return false;
   }
@@ -309,6 +306,18 @@ bool vtkSPHParticles::CollectVolume()
   return true;
 }
 
+bool vtkSPHParticles::CollectMass()
+{
+  return this->CollectQuantity("mass", this->Description.MassArrayName, this->Description.Mass,
+    MCOR_MASS, this->Mass, this->Core.mass);
+}
+
+bool vtkSPHParticles::CollectDensity(double constant, mcor_array& core)
+{
+  return this->CollectQuantity(
+    "density", this->Description.DensityArrayName, constant, MCOR_DENSITY, this->Density, core);
+}
+
 // A constant goes before a name, a name before the usual names.
 // `core` stays empty if there is nothing.
 bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string& setName,
@@ -320,23 +329,12 @@ bool vtkSPHParticles::CollectQuantity(const std::string& role, const std::string
     core.constant = constant;
     return true;
   }
-  if (!name.empty())
+  if (!name.empty() || this->Description.DetectArrays)
   {
-    array = this->Find(role, name);
-    if (!array)
-    {
-      return false;
-    }
+    array = name.empty() ? vtkSPHDetect(this->Points, quantity, 1) : this->Find(role, name);
   }
-  else if (this->Description.DetectArrays)
-  {
-    array = vtkSPHDetect(this->Points, quantity, 1);
-  }
-  if (array)
-  {
-    core = this->View(array);
-  }
-  return true;
+  core = array ? this->View(array) : core;
+  return name.empty() || array;
 }
 
 // Ghost marks would hide triangles.
@@ -440,9 +438,7 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
   }
   this->Interpolate(velocity);
   mcor_array density = this->Core.density;
-  if (!this->Density && this->Description.Density == 0.0 &&
-    !this->CollectQuantity(
-      "density", this->Description.DensityArrayName, 0.0, MCOR_DENSITY, this->Density, density))
+  if (!this->Density && this->Description.Density == 0.0 && !this->CollectDensity(0.0, density))
   {
     return false;
   }
@@ -455,9 +451,7 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
     density.constant = this->Description.Density;
     this->Attributes.push_back(density);
   }
-  else if (mcor_is_given(&this->Core.volume) &&
-    this->CollectQuantity("mass", this->Description.MassArrayName, this->Description.Mass,
-      MCOR_MASS, this->Mass, this->Core.mass) &&
+  else if (mcor_is_given(&this->Core.volume) && this->CollectMass() &&
     mcor_is_given(&this->Core.mass))
   {
     vtkNew<vtkDoubleArray> divided;
@@ -479,15 +473,11 @@ bool vtkSPHParticles::CollectFlow(const std::string& velocityName)
 bool vtkSPHParticles::CollectProjection(
   const vtkSPHRequest& scalar, int component, const std::string& weight, mcor_array& weightView)
 {
-  const vtkSPHParticlesChoice& f = this->Description;
   const bool hasScalar = !vtkSPHRealName(scalar.Name).empty() || scalar.Array;
   if ((hasScalar && !this->CollectArray(scalar, "projection")) || !this->CollectParticles() ||
+    (!mcor_is_given(&this->Core.mass) && !this->CollectMass()) ||
     (!mcor_is_given(&this->Core.mass) &&
-      !this->CollectQuantity(
-        "mass", f.MassArrayName, f.Mass, MCOR_MASS, this->Mass, this->Core.mass)) ||
-    (!mcor_is_given(&this->Core.mass) &&
-      !this->CollectQuantity(
-        "density", f.DensityArrayName, f.Density, MCOR_DENSITY, this->Density, this->Core.density)))
+      !this->CollectDensity(this->Description.Density, this->Core.density)))
   {
     return false;
   }

@@ -198,6 +198,8 @@ private:
 
   /** The point array of that name and one component; null if there is none. Error then says why. */
   vtkDataArray* Find(const std::string& role, const std::string& name);
+  bool CollectMass();
+  bool CollectDensity(double constant, mcor_array& core);
   bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
     mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core);
   void Interpolate(vtkDataArray* array);

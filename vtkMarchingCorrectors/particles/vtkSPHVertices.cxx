@@ -129,19 +129,11 @@ vtkSmartPointer<vtkDataObject> TakeOfSet(vtkPointSet* data, bool haveVertices)
     return data;
   }
   auto particles = vtkSmartPointer<vtkPointSet>::Take(data->NewInstance());
-  vtkNew<vtkPoints> places;
-  places->SetDataType(data->GetPoints()->GetDataType());
-  places->SetNumberOfPoints(taken->GetNumberOfIds());
-  data->GetPoints()->GetPoints(taken, places);
-  particles->SetPoints(places);
+  particles->SetPoints(vtkSPHTakePoints(data->GetPoints(), taken));
   AddValues(data->GetPointData(), count, taken, particles->GetPointData());
   AddValues(data->GetCellData(), data->GetNumberOfCells(), from, particles->GetPointData());
   particles->SetFieldData(data->GetFieldData());
-  vtkNew<vtkCellArray> vertices;
-  for (vtkIdType i = 0; i < taken->GetNumberOfIds(); ++i)
-  {
-    vertices->InsertNextCell(1, &i);
-  }
+  const vtkSmartPointer<vtkCellArray> vertices = vtkSPHMakeVertices(taken->GetNumberOfIds());
   if (auto* poly = vtkPolyData::SafeDownCast(particles))
   {
     poly->SetVerts(vertices);

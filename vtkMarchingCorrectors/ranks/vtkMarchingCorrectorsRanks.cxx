@@ -79,9 +79,7 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   {
     return;
   }
-  mcor_surface surface = {};
-  const std::unique_ptr<mcor_surface, decltype(&mcor_free_surface)> freeSurface(
-    &surface, mcor_free_surface);
+  vtkSPHOwned<mcor_surface, mcor_free_surface> surface;
   if (run.Call(input,
         [&](mcor_context* context)
         { return mcor_extract(context, &input.Core, &options, &surface); }))
@@ -107,9 +105,7 @@ bool vtkMarchingCorrectors::WidenDistributed(
   }
   vtkSPHParticles* input =
     sums.Share(mine, [](vtkSPHParticles& near) { return near.CollectParticles(); });
-  mcor_widening widening = {};
-  const std::unique_ptr<mcor_widening, decltype(&mcor_free_widening)> freeWidening(
-    &widening, mcor_free_widening);
+  vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
   if (!input ||
     !sums.Call(*input,
       [&](mcor_context* context)

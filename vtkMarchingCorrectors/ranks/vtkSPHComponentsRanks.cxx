@@ -19,8 +19,6 @@
 #include "vtkSPHRanksSurface.h"
 #include "vtkTable.h"
 
-#include <array>
-#include <utility>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -35,30 +33,23 @@ using Ids = std::vector<vtkIdType>;
 Ids Return(
   vtkSPHRanks& ranks, const vtkSPHRanksLists& sent, const Ids& pieces, vtkIdTypeArray* numbers)
 {
-  using Answer = std::array<vtkIdType, 2>;
-  std::vector<Answer> whole;
+  vtkNew<vtkIdTypeArray> whole;
+  whole->SetNumberOfComponents(2);
   vtkIdType next = 0;
   for (const vtkIdType piece : pieces)
   {
-    whole.push_back({ piece, piece >= 0 ? next++ : -1 });
+    whole->InsertNextValue(piece);
+    whole->InsertNextValue(piece >= 0 ? next++ : -1);
   }
-  std::vector<std::vector<Answer>> answers;
-  for (const Ids& theirs : sent)
-  {
-    answers.emplace_back();
-    for (const vtkIdType number : theirs)
-    {
-      answers.back().push_back(whole[static_cast<std::size_t>(number)]);
-    }
-  }
-  answers = ranks.Exchange(std::move(answers));
+  const vtkSPHRanksArrays came = vtkSPHSendTuples(ranks, { whole.Get() }, sent);
+  auto* answers = vtkIdTypeArray::SafeDownCast(came[0]);
   Ids own;
-  for (const Answer& answer : answers[0])
+  for (vtkIdType i = 0; i < answers->GetNumberOfTuples(); ++i)
   {
-    own.push_back(answer[0]);
-    if (answer[0] >= 0)
+    own.push_back(answers->GetValue(2 * i));
+    if (own.back() >= 0)
     {
-      numbers->InsertNextValue(answer[1]);
+      numbers->InsertNextValue(answers->GetValue(2 * i + 1));
     }
   }
   return own;

@@ -143,27 +143,6 @@ private:
   std::int64_t BytesSent = 0;
 };
 
-/**
- * Moves the values of all ranks, the same number of values for each of `numbers`, to the first
- * rank, and there to the places that `numbers` (of GatherOnFirst()) say. `to` may be null.
- * Collective.
- */
-template <typename T>
-void vtkSPHPlaceOnFirst(
-  vtkSPHRanks& ranks, const vtkSPHRanksLists& numbers, std::vector<T> values, T* to)
-{
-  const std::vector<std::vector<T>> all = ranks.GatherOnFirst(std::move(values));
-  for (std::size_t rank = 0; to && rank < all.size(); ++rank)
-  {
-    const std::size_t width = all[rank].empty() ? 0 : all[rank].size() / numbers[rank].size();
-    const T* from = all[rank].data();
-    for (const vtkIdType number : numbers[rank])
-    {
-      std::copy_n(from, width, to + static_cast<std::size_t>(number) * width);
-      from += width;
-    }
-  }
-}
 /** The ranks' callbacks for the core. A rank that fails does not leave the others waiting. */
 class vtkSPHRanksCalls
 {

@@ -18,7 +18,6 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -27,76 +26,54 @@
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-std::size_t TupleSize(vtkAbstractArray* array)
-{
-  return static_cast<std::size_t>(array->GetDataTypeSize()) *
-    static_cast<std::size_t>(array->GetNumberOfComponents());
-}
-
-/** Whether the values lie side by side, as bytes. */
+/** Whether the values, as VTK makes them, lie side by side as bytes. */
 bool IsPlain(vtkAbstractArray* array)
 {
-  return array->GetDataType() != VTK_STRING && array->GetDataType() != VTK_BIT;
+  return vtkArrayDownCast<vtkDataArray>(array) && array->GetDataType() != VTK_BIT;
 }
 
-/** Copies tuples of a size that the compiler knows, which is several times as fast. */
-template <std::size_t Size>
-void CopyTuples(const char* values, const std::vector<vtkIdType>& ids, char* to)
+/** The bytes of so many tuples. */
+std::size_t SizeOf(vtkAbstractArray* array, vtkIdType tuples)
 {
-  for (const vtkIdType id : ids)
-  {
-    std::memcpy(to, values + static_cast<std::size_t>(id) * Size, Size);
-    to += Size;
-  }
+  return static_cast<std::size_t>(tuples * array->GetNumberOfComponents()) *
+    static_cast<std::size_t>(array->GetDataTypeSize());
 }
 
-void PutPlain(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
+/** Packs the message for a rank: the number of tuples, then the tuples; empty if there are none. */
+std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdType>& ids)
 {
-  const std::size_t size = TupleSize(array);
-  bytes.buffer.resize(bytes.position + ids.size() * size);
-  char* to = bytes.buffer.data() + bytes.position;
-  bytes.position = bytes.buffer.size();
-  const auto* values = static_cast<const char*>(array->GetVoidPointer(0));
-  switch (size)
+  diy::MemoryBuffer bytes;
+  const auto count = static_cast<vtkIdType>(ids.size());
+  vtkNew<vtkIdList> list;
+  list->SetNumberOfIds(count);
+  std::copy(ids.begin(), ids.end(), list->GetPointer(0));
+  if (count > 0)
   {
-    case 4:
-      return CopyTuples<4>(values, ids, to);
-    case 8:
-      return CopyTuples<8>(values, ids, to);
-    case 12:
-      return CopyTuples<12>(values, ids, to);
-    default:
-      break;
+    diy::save(bytes, count);
   }
-  for (const vtkIdType id : ids)
+  for (std::size_t a = 0; count > 0 && a < arrays.size(); ++a)
   {
-    std::memcpy(to, values + static_cast<std::size_t>(id) * size, size);
-    to += size;
-  }
-}
-
-/** Writes values that are not plain as texts. */
-void PutTexts(diy::MemoryBuffer& bytes, vtkAbstractArray* array, const std::vector<vtkIdType>& ids)
-{
-  const int components = array->GetNumberOfComponents();
-  for (const vtkIdType id : ids)
-  {
-    for (int c = 0; c < components; ++c)
+    const vtkSmartPointer<vtkAbstractArray> part = vtkSPHMakeLike(arrays[a], count);
+    arrays[a]->GetTuples(list, part);
+    if (IsPlain(part))
     {
-      diy::save(
-        bytes, static_cast<std::string>(array->GetVariantValue(id * components + c).ToString()));
+      bytes.save_binary(static_cast<char*>(part->GetVoidPointer(0)), SizeOf(part, count));
+      continue;
+    }
+    for (vtkIdType i = 0; i < part->GetNumberOfValues(); ++i)
+    {
+      diy::save(bytes, static_cast<std::string>(part->GetVariantValue(i).ToString()));
     }
   }
+  return std::move(bytes.buffer);
 }
 
-void GetTuples(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
+void Unpack(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType first, vtkIdType count)
 {
   if (IsPlain(array))
   {
-    const std::size_t size = TupleSize(array);
     bytes.load_binary(
-      static_cast<char*>(array->GetVoidPointer(0)) + static_cast<std::size_t>(first) * size,
-      static_cast<std::size_t>(count) * size);
+      static_cast<char*>(array->GetVoidPointer(0)) + SizeOf(array, first), SizeOf(array, count));
     return;
   }
   const int components = array->GetNumberOfComponents();
@@ -107,40 +84,6 @@ void GetTuples(diy::MemoryBuffer& bytes, vtkAbstractArray* array, vtkIdType firs
     array->SetVariantValue(i, vtkVariant(text));
   }
 }
-
-/** Packs the message for a rank: the number of tuples, then the tuples; empty if there are none. */
-std::vector<char> Pack(const vtkSPHRanksArrays& arrays, const std::vector<vtkIdType>& ids)
-{
-  diy::MemoryBuffer bytes;
-  if (ids.empty())
-  {
-    return bytes.buffer;
-  }
-  std::size_t size = sizeof(vtkIdType); // at least
-  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
-  {
-    size += IsPlain(array) ? ids.size() * TupleSize(array) : 0;
-  }
-  bytes.reserve(size);
-  diy::save(bytes, static_cast<vtkIdType>(ids.size()));
-  for (const vtkSmartPointer<vtkAbstractArray>& array : arrays)
-  {
-    IsPlain(array) ? PutPlain(bytes, array, ids) : PutTexts(bytes, array, ids);
-  }
-  return std::move(bytes.buffer);
-}
-
-/** Returns the array, or a copy whose values lie side by side. */
-vtkSmartPointer<vtkAbstractArray> AsPlain(vtkAbstractArray* array)
-{
-  if (array->HasStandardMemoryLayout())
-  {
-    return array;
-  }
-  vtkSmartPointer<vtkAbstractArray> copy = vtkSPHMakeLike(array, 0);
-  copy->DeepCopy(array);
-  return copy;
-}
 }
 
 vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data)
@@ -148,7 +91,7 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data)
   vtkSPHRanksArrays arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
-    arrays.push_back(AsPlain(data->GetAbstractArray(i)));
+    arrays.emplace_back(data->GetAbstractArray(i));
   }
   return arrays;
 }
@@ -156,7 +99,7 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkDataSetAttributes* data)
 vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points)
 {
   vtkSPHRanksArrays arrays = vtkSPHListArrays(points->GetPointData());
-  arrays.insert(arrays.begin(), AsPlain(points->GetPoints()->GetData()));
+  arrays.insert(arrays.begin(), points->GetPoints()->GetData());
   return arrays;
 }
 
@@ -207,7 +150,7 @@ vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& 
     {
       if (counts[rank] > 0)
       {
-        GetTuples(received[rank], came.back(), first, counts[rank]);
+        Unpack(received[rank], came.back(), first, counts[rank]);
       }
     }
   }
@@ -364,10 +307,8 @@ Layout AgreeOnLayout(vtkSPHRanks& ranks, const Layout& mine)
 vtkSmartPointer<vtkAbstractArray> TakeTuples(
   vtkAbstractArray* array, const Form& form, vtkIdList* ids)
 {
-  auto* numbers = vtkArrayDownCast<vtkDataArray>(array);
   if (array && array->GetNumberOfTuples() == ids->GetNumberOfIds() &&
-    array->GetDataType() == form.Type && LabelsOf(array) == form.Labels &&
-    (!numbers || numbers->HasStandardMemoryLayout()))
+    array->GetDataType() == form.Type && LabelsOf(array) == form.Labels)
   {
     return array;
   }

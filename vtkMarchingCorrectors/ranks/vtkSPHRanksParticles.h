@@ -32,9 +32,9 @@ vtkSPHRanksArrays vtkSPHListArrays(vtkPointSet* points);
 vtkSmartPointer<vtkPolyData> vtkSPHMakePoints(const vtkSPHRanksArrays& arrays, vtkPointSet* like);
 
 /**
- * Sends to each rank the tuples listed for it. The arrays must have the same forms on all ranks,
- * and values that lie side by side. Returns arrays of what has arrived, in the order of ranks;
- * from: how many tuples from each. Collective.
+ * Sends to each rank the tuples listed for it. The arrays must have the same forms on all ranks.
+ * Returns arrays of what has arrived, in the order of ranks; from: how many tuples from each.
+ * Collective.
  */
 vtkSPHRanksArrays vtkSPHSendTuples(vtkSPHRanks& ranks, const vtkSPHRanksArrays& arrays,
   const vtkSPHRanksLists& to, std::vector<vtkIdType>* from = nullptr);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksSurface.h"
 
-#include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -63,63 +62,8 @@ Keys FindEnds(vtkSPHRanks& ranks, const Keys& keys)
   return ends;
 }
 
-using Place = Keys::const_iterator;
-
-/** std::lower_bound() for a key that is probably near the beginning. */
-Place FindAfter(Place begin, Place end, const Key& key)
-{
-  std::ptrdiff_t step = 1;
-  while (step < end - begin && begin[step - 1] < key)
-  {
-    begin += step;
-    step *= 2;
-  }
-  return std::lower_bound(begin, begin + std::min(step, end - begin), key);
-}
-
-/** Merges ascending lists; each key remains once. */
-Keys Merge(const std::vector<Keys>& lists)
-{
-  Keys keys;
-  std::vector<std::ptrdiff_t> ends(1, 0);
-  for (const Keys& list : lists)
-  {
-    keys.insert(keys.end(), list.begin(), list.end());
-    ends.push_back(static_cast<std::ptrdiff_t>(keys.size()));
-  }
-  for (std::size_t step = 1; step < lists.size(); step *= 2)
-  {
-    for (std::size_t i = 0; i + step < lists.size(); i += 2 * step)
-    {
-      const std::size_t end = std::min(i + 2 * step, lists.size());
-      std::inplace_merge(
-        keys.begin() + ends[i], keys.begin() + ends[i + step], keys.begin() + ends[end]);
-    }
-  }
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  return keys;
-}
-
 /** Returns how many numbers a key takes. */
 using Weight = std::int64_t (*)(const Key& key);
-
-/** Replaces the keys that each rank has sent by their numbers. */
-std::vector<Numbers> Number(
-  const std::vector<Keys>& sent, const Keys& distinct, const Numbers& numbers)
-{
-  std::vector<Numbers> answers;
-  for (const Keys& keys : sent)
-  {
-    answers.emplace_back();
-    auto from = distinct.begin();
-    for (const Key& key : keys)
-    {
-      from = FindAfter(from, distinct.end(), key);
-      answers.back().push_back(numbers[static_cast<std::size_t>(from - distinct.begin())]);
-    }
-  }
-  return answers;
-}
 
 /**
  * Numbers the distinct keys of all ranks in order, and returns the numbers of this rank's keys,
@@ -139,7 +83,13 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
     from = to;
   }
   sent = ranks.Exchange(std::move(sent));
-  const Keys distinct = Merge(sent);
+  Keys distinct;
+  for (const Keys& theirs : sent)
+  {
+    distinct.insert(distinct.end(), theirs.begin(), theirs.end());
+  }
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   Numbers first(1, 0); // and, last, the number behind them
   for (const Key& key : distinct)
   {
@@ -149,14 +99,21 @@ vtkSmartPointer<vtkIdTypeArray> NumberKeys(
   const std::int64_t before =
     std::accumulate(all.begin(), all.begin() + ranks.GetRank(), std::int64_t(0));
   total = static_cast<vtkIdType>(std::accumulate(all.begin(), all.end(), std::int64_t(0)));
-  for (std::int64_t& number : first)
+  std::vector<Numbers> answers;
+  for (const Keys& theirs : sent)
   {
-    number += before;
+    answers.emplace_back();
+    auto at = distinct.begin();
+    for (const Key& key : theirs) // which ascend
+    {
+      at = std::lower_bound(at, distinct.end(), key);
+      answers.back().push_back(before + first[static_cast<std::size_t>(at - distinct.begin())]);
+    }
   }
   auto numbers = vtkSmartPointer<vtkIdTypeArray>::New();
   numbers->SetName(name);
   auto key = keys.begin();
-  for (const Numbers& found : ranks.Exchange(Number(sent, distinct, first)))
+  for (const Numbers& found : ranks.Exchange(std::move(answers)))
   {
     for (const std::int64_t number : found)
     {
@@ -257,19 +214,17 @@ vtkSmartPointer<vtkPolyData> vtkSPHGatherSurface(
   const std::vector<vtkIdType> numbers = NumbersOf(part->GetPointData(), pointCount);
   points = ranks.GatherOnFirst(numbers);
   triangles = ranks.GatherOnFirst(NumbersOf(part->GetCellData(), triangleCount));
-  std::vector<vtkIdType> corners;
+  vtkNew<vtkIdTypeArray> corners;
   vtkNew<vtkIdList> triangle;
+  corners->SetNumberOfComponents(3);
   for (vtkIdType t = 0; t < triangleCount; ++t)
   {
     part->GetPolys()->GetCellAtId(t, triangle);
     for (const vtkIdType corner : *triangle)
     {
-      corners.push_back(numbers[static_cast<std::size_t>(corner)]);
+      corners->InsertNextValue(numbers[static_cast<std::size_t>(corner)]);
     }
   }
-  vtkNew<vtkIdTypeArray> wholeCorners;
-  wholeCorners->SetNumberOfValues(3 * CountOf(triangles));
-  vtkSPHPlaceOnFirst(ranks, triangles, std::move(corners), wholeCorners->GetPointer(0));
   vtkNew<vtkPolyData> own;
   own->ShallowCopy(part);
   for (vtkDataSetAttributes* data : { static_cast<vtkDataSetAttributes*>(own->GetPointData()),
@@ -285,14 +240,20 @@ vtkSmartPointer<vtkPolyData> vtkSPHGatherSurface(
     vtkSPHMakePoints(vtkSPHReturnTuples(ranks, vtkSPHListArrays(own),
                        vtkSPHAllToFirst(ranks, pointCount), points, CountOf(points)),
       own);
-  for (const auto& array : vtkSPHReturnTuples(ranks, vtkSPHListArrays(own->GetCellData()),
-         vtkSPHAllToFirst(ranks, triangleCount), triangles, CountOf(triangles)))
-  {
-    whole->GetCellData()->AddArray(array);
-  }
+  vtkSPHRanksArrays arrays = vtkSPHListArrays(own->GetCellData());
+  arrays.emplace_back(corners);
+  arrays = vtkSPHReturnTuples(
+    ranks, arrays, vtkSPHAllToFirst(ranks, triangleCount), triangles, CountOf(triangles));
+  auto* wholeCorners = vtkDataArray::SafeDownCast(arrays.back());
+  wholeCorners->SetNumberOfComponents(1); // one after the other
   vtkNew<vtkCellArray> cells;
   cells->SetData(3, wholeCorners);
   whole->SetPolys(cells);
+  arrays.pop_back();
+  for (const auto& array : arrays)
+  {
+    whole->GetCellData()->AddArray(array);
+  }
   whole->GetFieldData()->ShallowCopy(part->GetFieldData());
   return ranks.GetRank() == 0 ? whole : nullptr;
 }
@@ -330,6 +291,27 @@ bool Allocate(T*& array, vtkIdType count)
 {
   array = static_cast<T*>(std::malloc(static_cast<std::size_t>(count) * sizeof(T) + 1));
   return array != nullptr;
+}
+
+/**
+ * Moves the values of all ranks, the same number of values for each of `numbers`, to the first
+ * rank, and there to the places that `numbers` (of GatherOnFirst()) say. `to` may be null.
+ * Collective.
+ */
+template <typename T>
+void PlaceOnFirst(vtkSPHRanks& ranks, const vtkSPHRanksLists& numbers, std::vector<T> values, T* to)
+{
+  const std::vector<std::vector<T>> all = ranks.GatherOnFirst(std::move(values));
+  for (std::size_t rank = 0; to && rank < all.size(); ++rank)
+  {
+    const std::size_t width = all[rank].empty() ? 0 : all[rank].size() / numbers[rank].size();
+    const T* from = all[rank].data();
+    for (const vtkIdType number : numbers[rank])
+    {
+      std::copy_n(from, width, to + static_cast<std::size_t>(number) * width);
+      from += width;
+    }
+  }
 }
 
 /** Returns the whole numbers from 0 on. */
@@ -386,15 +368,14 @@ std::vector<vtkSPHRanksLines::Piece> vtkSPHRanksLines::Gather(
   const auto numberOf = [number](std::int32_t point)
   { return static_cast<std::int32_t>(number[point]); };
   this->Numbers = ranks.GatherOnFirst(List(number, points));
-  vtkSPHPlaceOnFirst(ranks, this->Numbers, List(surface.points, 3 * points), this->Whole.points);
-  vtkSPHPlaceOnFirst(ranks, this->Numbers, List(surface.iso_value, points), this->Whole.iso_value);
+  PlaceOnFirst(ranks, this->Numbers, List(surface.points, 3 * points), this->Whole.points);
+  PlaceOnFirst(ranks, this->Numbers, List(surface.iso_value, points), this->Whole.iso_value);
   const vtkSPHRanksLists ofTriangles =
     ranks.GatherOnFirst(List(numbers.OfTriangles->GetPointer(0), triangles));
   std::vector<std::int32_t> corners = List(surface.triangles, 3 * triangles);
   std::transform(corners.begin(), corners.end(), corners.begin(), numberOf);
-  vtkSPHPlaceOnFirst(ranks, ofTriangles, std::move(corners), this->Whole.triangles);
-  vtkSPHPlaceOnFirst(
-    ranks, ofTriangles, List(surface.band_value, triangles), this->Whole.band_value);
+  PlaceOnFirst(ranks, ofTriangles, std::move(corners), this->Whole.triangles);
+  PlaceOnFirst(ranks, ofTriangles, List(surface.band_value, triangles), this->Whole.band_value);
   std::vector<Piece> own, all;
   for (std::int64_t line = 0; line < surface.line_count; ++line)
   {

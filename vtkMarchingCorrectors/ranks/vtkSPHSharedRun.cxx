@@ -107,23 +107,11 @@ bool vtkSPHAlgorithm::vtkSharedRun::Begin(vtkPointSet* particles)
   return counts[1] == 0;
 }
 
-bool vtkSPHAlgorithm::vtkSharedRun::SetPeriod()
+std::vector<double> vtkSPHAlgorithm::vtkSharedRun::FindPeriod(std::string& problem)
 {
-  if (!this->Filter->DetectPeriod)
-  {
-    return true;
-  }
-  std::string problem;
-  const vtkSPHPeriod found =
-    vtkSPHFindPeriodDistributed(this->Filter->Controller, this->Own->GetFieldData(), problem);
-  if (!this->CheckPeriod(found, problem))
-  {
-    return false;
-  }
-  const std::vector<double> bounds =
-    vtkSPHBoundsOfPeriodDistributed(this->Filter->Controller, found.Period, this->Own);
-  std::copy(bounds.begin(), bounds.end(), this->Options.periodic);
-  return true;
+  vtkMultiProcessController* controller = this->Filter->Controller;
+  return vtkSPHBoundsOfPeriodDistributed(controller,
+    vtkSPHFindPeriodDistributed(controller, this->Own->GetFieldData(), problem).Period, this->Own);
 }
 
 bool vtkSPHAlgorithm::vtkSharedRun::Measure(vtkSPHParticles& particles, bool forSamples)

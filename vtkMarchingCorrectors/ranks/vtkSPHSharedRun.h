@@ -67,9 +67,10 @@ public:
   vtkSPHRanksRoute Route;
   vtkSmartPointer<vtkPolyData> Near; ///< the particles that its box needs
 
-private:
-  bool SetPeriod();
+protected:
+  std::vector<double> FindPeriod(std::string& problem) override;
 
+private:
   std::vector<vtkIdType> Numbers; ///< of its particles among those that it was given
   std::vector<vtkIdType> From;    ///< how many particles came from each rank
   std::unique_ptr<vtkSPHParticles> Input;

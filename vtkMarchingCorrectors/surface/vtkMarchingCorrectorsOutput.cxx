@@ -17,7 +17,6 @@
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
 #include "vtkSmartPointer.h"
-#include "vtkTypeInt64Array.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,6 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -86,19 +85,7 @@ void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output)
   output->GetFieldData()->PassData(particles->GetFieldData());
   if (particles->GetNumberOfCells() > 0)
   {
-    const vtkIdType count = particles->GetNumberOfPoints();
-    vtkNew<vtkIdTypeArray> points, offsets;
-    points->SetNumberOfValues(count);
-    offsets->SetNumberOfValues(count + 1);
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      points->SetValue(i, i);
-      offsets->SetValue(i, i);
-    }
-    offsets->SetValue(count, count);
-    vtkNew<vtkCellArray> vertices;
-    vertices->SetData(offsets, points);
-    output->SetVerts(vertices);
+    output->SetVerts(vtkSPHMakeVertices(particles->GetNumberOfPoints()));
   }
 }
 

@@ -245,11 +245,45 @@ static void test_no_density(void** state)
   core_free_set(&set);
 }
 
+/* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: of a lattice of 10^12 cells, a closed surface
+ * with all vertices on it. */
+static void test_wide_range(void** state)
+{
+  const particle_set_entry* entry = particle_set_find("variable_1024");
+  particle_set made = { 0 };
+  assert_true(entry && entry->make(&made));
+  const core_set set = { made.count, made.position, made.smoothing_length, made.volume, made.scalar,
+    made.solid, 0 };
+  const mcor_input input = core_input(&set);
+  mcor_options options = core_options(&entry->iso);
+  options.node_threshold = options.vertex_threshold = 0; /* closed */
+  mcor_surface surface = core_extract(*state, &input, &options);
+  mesh_report report = core_check_mesh(&surface);
+  assert_true(surface.triangle_count > 5000 && surface.statistics.virtual_cells > 1000000000000);
+  assert_true(report.boundary_edges == 0 && report.components == 1 && report.euler == 2);
+  const oracle_particles particles = core_oracle(&set);
+  oracle_field field;
+  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  const double range = oracle_scalar_range(&particles);
+  for (int64_t v = 0; v < surface.point_count; ++v)
+  {
+    oracle_sample sample;
+    oracle_evaluate(&field, NULL, surface.points + 3 * v, &sample);
+    CORE_CHECK(fabs(sample.value - entry->iso) <= 5e-6 * range, "vertex %lld is off by %g of %g",
+      (long long)v, sample.value - entry->iso, range);
+  }
+  oracle_free_field(&field);
+  mesh_free_report(&report);
+  mcor_free_surface(&surface);
+  particle_set_free(&made);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_apart),
     cmocka_unit_test(test_far_reach), cmocka_unit_test(test_magnitude),
     cmocka_unit_test(test_exact_threshold), cmocka_unit_test(test_coincident),
-    cmocka_unit_test(test_plateau), cmocka_unit_test(test_no_density) };
+    cmocka_unit_test(test_plateau), cmocka_unit_test(test_no_density),
+    cmocka_unit_test(test_wide_range) };
   return cmocka_run_group_tests_name("extremes", tests, core_set_up, core_tear_down);
 }

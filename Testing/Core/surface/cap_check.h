@@ -9,9 +9,9 @@
 
 /* Fails unless the surface without caps is the beginning of the one with caps, which are the rest of it. */
 void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed);
-/* Fails unless the volume is that between `planes` where the weight sum of fluid is the iso value, and solids
- * have no more than `share` of all weight (1: whatever they have): the oracle's, at random places. */
-void cap_check_volume(const mcor_surface* closed, const core_set* set, const double planes[6],
-  double iso, double share);
+/* Fails unless the volume is that between `planes` where the field is above the iso value, and solids have no more than
+ * the wall share, if there is one, of all weight: the oracle's, at random places. */
+void cap_check_volume(const mcor_surface* closed, const core_set* set, const mcor_options* options,
+  const double planes[6]);
 
 #endif

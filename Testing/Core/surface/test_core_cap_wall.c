@@ -73,7 +73,7 @@ static void check_tank(mcor_context* context, double share, mcor_topology topolo
   mesh_report report = core_check_pinched_mesh(&closed);
   assert_int_equal(report.boundary_edges, 0);
   mesh_free_report(&report);
-  cap_check_volume(&closed, &set, tank, iso, share);
+  cap_check_volume(&closed, &set, &options, tank);
   for (int64_t p = open.point_count; p < closed.point_count; ++p)
   {
     const float* n = closed.normals + 3 * p;
@@ -152,7 +152,7 @@ static void test_full(void** state)
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
   assert_true(surface.statistics.is_closed);
   assert_int_equal(surface.triangle_count, surface.statistics.cap_triangles);
-  cap_check_volume(&surface, &set, tank, iso, 0.4);
+  cap_check_volume(&surface, &set, &options, tank);
   mcor_free_surface(&surface);
   core_free_set(&set);
 }

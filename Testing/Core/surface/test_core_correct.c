@@ -85,6 +85,9 @@ static void test_reported_numbers(void** state)
   mcor_surface corrected = core_extract(*state, &input, &options);
   options.preview = 1;
   mcor_surface preview = core_extract(*state, &input, &options);
+  assert_int_equal(preview.triangle_count, corrected.triangle_count);
+  assert_memory_equal(preview.triangles, corrected.triangles,
+    3 * (size_t)corrected.triangle_count * sizeof *corrected.triangles);
   const mcor_statistics* s = &corrected.statistics;
   double sum = 0, most = 0, worst = 0;
   for (int64_t i = 0; i < corrected.point_count; ++i)

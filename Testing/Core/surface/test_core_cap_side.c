@@ -1,0 +1,241 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Caps at the sides of periods and boxes: they close what these cut, and leave the surface's own points and triangles
+ * as they are. */
+
+#include "cap_check.h"
+#include "core_period.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct cap_case
+{
+  mcor_sph_kernel kernel;
+  mcor_field field;
+  double iso;
+  int open;                     /* bits: axes that have no period */
+  double threshold, eigenvalue; /* of vertices */
+  mcor_topology topology;
+  mcor_type precision;
+} cap_case;
+
+/* Where caps are: sides of the cells of a box, else of a period, else infinite. */
+static void find_planes(const mcor_options* options, const mcor_surface* s, double planes[6])
+{
+  for (int i = 0; i < 6; ++i)
+  {
+    const double edge = s->statistics.cube_edges[i / 2], *period = options->periodic + i / 2 * 2;
+    const double begin = ceil(period[0] / edge - 0.5) * edge, box = options->box[i];
+    const bool has_box = box != 0 && !isinf(box);
+    planes[i] = has_box       ? ceil(box / edge - 0.5) * edge
+      : period[0] < period[1] ? begin + i % 2 * (period[1] - period[0])
+                              : (i % 2 ? INFINITY : -INFINITY);
+  }
+}
+
+/* Points of caps alone are on planes, with the oracle's values; their normals point out. */
+static void check_points(const core_set* all, const mcor_options* options, const mcor_surface* open,
+  const mcor_surface* closed, const double planes[6])
+{
+  const oracle_particles particles = core_oracle(all);
+  oracle_field field;
+  assert_true(
+    oracle_create_field(&field, &particles, (oracle_kernel)options->sph_kernel, ORACLE_SHEPARD, 1));
+  for (int64_t p = open->point_count; p < closed->point_count; ++p)
+  {
+    const double* x = closed->points + 3 * p;
+    double out = 0;
+    oracle_sample sample;
+    for (int i = 0; i < 6; ++i)
+    {
+      out +=
+        fabs(x[i / 2] - planes[i]) < 1e-6 ? (i % 2 ? 1 : -1) * closed->normals[3 * p + i / 2] : 0;
+    }
+    oracle_evaluate(&field, NULL, x, &sample);
+    CORE_CHECK(out > 0.7, "point %lld at %g %g %g: its normal points out by %g", (long long)p, x[0],
+      x[1], x[2], out);
+    assert_true(closed->boundary_flag[p] == 8 || closed->boundary_flag[p] == 2);
+    CORE_CHECK(fabs(closed->weight_sum[p] - sample.weight) < 1e-5 * (1 + sample.weight) &&
+        (options->field == MCOR_WEIGHT_SUM || fabs(closed->attributes[0][p] - sample.value) < 1e-5),
+      "point %lld: weight %g, not %g", (long long)p, closed->weight_sum[p], sample.weight);
+  }
+  oracle_free_field(&field);
+}
+
+/* Along each axis as many triangles, and as large ones, face up as down: caps of a period are alike. */
+static void check_alike(const mcor_surface* open, const mcor_surface* s)
+{
+  double area[3][2] = { { 0 } };
+  int64_t count[3][2] = { { 0 } };
+  for (int64_t t = open->triangle_count; t < s->triangle_count; ++t)
+  {
+    const int32_t* c = s->triangles + 3 * t;
+    const double *p = s->points + 3 * (int64_t)c[0], *q = s->points + 3 * (int64_t)c[1],
+                 *r = s->points + 3 * (int64_t)c[2];
+    double n[3];
+    int most = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int b = (a + 1) % 3, d = (a + 2) % 3;
+      n[a] = (q[b] - p[b]) * (r[d] - p[d]) - (q[d] - p[d]) * (r[b] - p[b]);
+      most = fabs(n[a]) > fabs(n[most]) ? a : most;
+    }
+    area[most][n[most] > 0] += 0.5 * fabs(n[most]);
+    ++count[most][n[most] > 0];
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    CORE_CHECK(count[a][0] == count[a][1] && fabs(area[a][0] - area[a][1]) <= 1e-9 * area[a][0],
+      "axis %d: %lld triangles face one way, %lld the other; areas %g and %g", a,
+      (long long)count[a][0], (long long)count[a][1], area[a][0], area[a][1]);
+  }
+}
+
+static int ends_at(const mcor_surface* s, int32_t p)
+{
+  return s->boundary_flag[p] % 8 != 0 || s->weight_sum[p] < 0.5f;
+}
+
+/* Edges are open only where trimming, or a lack of weight, ends the surface. */
+static void check_open_edges(const mcor_surface* s, int is_closed)
+{
+  mesh_report report = core_check_mesh(s);
+  for (int64_t i = 0; i < report.side_count; ++i)
+  {
+    const mesh_edge* side = report.side + i;
+    CORE_CHECK(mesh_count_sides(&report, side->a, side->b) == 2 ||
+        (ends_at(s, side->a) && ends_at(s, side->b)),
+      "the edge from point %d to %d is open", side->a, side->b);
+  }
+  CORE_CHECK(
+    !is_closed || (s->statistics.is_closed == (report.edges > 0) && report.boundary_edges == 0),
+    "%lld of %lld edges are open", (long long)report.boundary_edges, (long long)report.edges);
+  mesh_free_report(&report);
+}
+
+/* is_closed: nothing is trimmed. */
+static void check_caps(
+  mcor_context* context, const core_set* set, mcor_options options, int is_closed)
+{
+  mcor_input input = core_input(set);
+  const mcor_array attribute = input.scalar;
+  double planes[6];
+  input.attributes = &attribute;
+  input.attribute_count = 1;
+  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_WEIGHT_SUM;
+  const int capping = options.capping;
+  options.capping = MCOR_CAP_NONE;
+  mcor_surface open = core_extract(context, &input, &options);
+  options.capping = capping;
+  mcor_surface closed = core_extract(context, &input, &options);
+  core_set all = core_add_images(set, options.periodic);
+  find_planes(&options, &closed, planes);
+  cap_check_prefix(&open, &closed);
+  check_points(&all, &options, &open, &closed, planes);
+  check_open_edges(&closed, is_closed);
+  if (is_closed)
+  {
+    for (int i = 0; i < 6; ++i) /* beyond that there is nothing */
+    {
+      planes[i] = isinf(planes[i]) ? (i % 2 ? 13 : -10) : planes[i];
+    }
+    cap_check_volume(&closed, &all, &options, planes);
+  }
+  if (is_closed && capping == MCOR_CAP_PERIOD)
+  {
+    check_alike(&open, &closed);
+  }
+  mcor_free_surface(&open);
+  mcor_free_surface(&closed);
+  core_free_set(&all);
+}
+
+/* Cubes of one edge, and with an edge for each axis. */
+static void test_periods(void** state)
+{
+  static const cap_case cases[] = {
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 0.9, 0, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, -0.4, 0, 0.5, 0, MCOR_TOPOLOGY_FIELD, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 0.2, 0, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT64 },
+    { MCOR_QUARTIC_SPLINE, MCOR_SHEPARD, -0.2, 0, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SUM, 0.3, 0, 0.5, 0, MCOR_TOPOLOGY_FIELD, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, -9, 0, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 9, 0, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, 0.5, 4, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_WENDLAND_C2, MCOR_WEIGHT_SUM, 0.4, 6, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT64 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 0.2, 4, 0.5, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, -0.4, 3, 0.7, 0, MCOR_TOPOLOGY_FIELD, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, -0.4, 4, 0.3, 0.3, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+    { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 0.2, 4, 0, 0, MCOR_TOPOLOGY_TABLE, MCOR_FLOAT32 },
+  };
+  const int length[3] = { 12, 10, 10 };
+  for (size_t i = 0; i < 2 * sizeof cases / sizeof cases[0]; ++i)
+  {
+    const cap_case* at = cases + i / 2;
+    double period[6] = { 0, 12, 0, 10, 0, 10 };
+    core_set set = core_make_period(length, 3);
+    i % 2 ? core_stretch_period(&set, period) : (void)0;
+    for (int side = 0; side < 6; ++side)
+    {
+      period[side] = at->open >> side / 2 & 1 ? 0 : period[side];
+    }
+    mcor_options options = core_period_options(&at->iso, period);
+    options.sph_kernel = at->kernel;
+    options.field = at->field;
+    options.cube_size_factor = 0.6;
+    options.vertex_threshold = at->threshold;
+    options.topology = at->topology;
+    options.precision = at->precision;
+    options.boundary_detection =
+      at->eigenvalue > 0 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
+    options.capping = MCOR_CAP_PERIOD;
+    check_caps(*state, &set, options, at->open == 0 || at->field == MCOR_WEIGHT_SUM);
+    core_free_set(&set);
+  }
+}
+
+/* Fluid of a lattice, and holes in it; in boxes, alone and in a period. A box within fluid alone has the volume of its
+ * cells. */
+static void test_boxes(void** state)
+{
+  static const double iso = 0.5, period[6] = { -8, 8, 0, 0, 0, 0 };
+  static const double boxes[][6] = { { -3.3, 4.1, -5.2, 3.7, -6.6, 2.9 },
+    { -INFINITY, 1.3, -INFINITY, INFINITY, -INFINITY, INFINITY },
+    { 0.4, INFINITY, -2.2, INFINITY, -INFINITY, 5.05 }, { -3, 3.2, -2, 2, -1, 4 } };
+  core_set set = core_make_block(16, 0, 1, core_slope);
+  int64_t n = 0;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    const double* x = set.position + 3 * i;
+    if (sin(0.7 * x[0]) + sin(0.8 * x[1]) + sin(0.6 * x[2] + 1) > -0.8)
+    {
+      memmove(set.position + 3 * n, x, 3 * sizeof *x);
+      set.scalar[n++] = set.scalar[i];
+    }
+  }
+  set.count = n;
+  for (int i = 0; i < 8; ++i)
+  {
+    mcor_options options = core_options(&iso);
+    options.field = MCOR_WEIGHT_SUM;
+    options.capping = MCOR_CAP_BOX;
+    memcpy(options.box, boxes[i / 2], sizeof options.box);
+    memcpy(options.periodic, period, i % 2 ? sizeof period : 0);
+    for (int64_t j = 0; j < set.count; ++j)
+    {
+      set.volume[j] = i < 6 ? 1 : 1000; /* holes, too, are fluid */
+    }
+    check_caps(*state, &set, options, 1);
+  }
+  core_free_set(&set);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_periods),
+    cmocka_unit_test(test_boxes) };
+  return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
+}

@@ -193,11 +193,6 @@ extern "C"
   /* The four cells of an edge as lowest nodes (i,j,k), some possibly outside the lattice. */
   void oracle_edge_cells(const oracle_lattice* lattice, int64_t edge, int64_t cells[4][3]);
   void oracle_edge_ends(const oracle_lattice* lattice, int64_t edge, int64_t nodes[2]);
-
-  /* A point of the edge where the field is iso, in double precision; sets *sample there. */
-  void oracle_edge_root(const oracle_lattice* lattice, const oracle_field* field, double iso,
-    int64_t edge, double point[3], oracle_sample* sample);
-
 #ifdef __cplusplus
 }
 #endif

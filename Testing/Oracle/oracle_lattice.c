@@ -277,38 +277,3 @@ void oracle_edge_cells(const oracle_lattice* lattice, int64_t edge, int64_t cell
     cells[c][(axis + 2) % 3] -= c >> 1;
   }
 }
-
-void oracle_edge_root(const oracle_lattice* lattice, const oracle_field* field, double iso,
-  int64_t edge, double point[3], oracle_sample* sample)
-{
-  const int axis = (int)(edge % 3);
-  int64_t nodes[2];
-  double end[3];
-  oracle_edge_ends(lattice, edge, nodes);
-  oracle_node_position(lattice, nodes[0], point);
-  oracle_node_position(lattice, nodes[1], end);
-  double x[2] = { point[axis], end[axis] };
-  double f[2] = { lattice->value[nodes[0]] - iso, lattice->value[nodes[1]] - iso };
-  const int low_above = f[0] >= 0.0;
-  double previous = INFINITY;
-  /* Regula falsi, halving the value of the end that stays (Illinois), and every third step a true
-   * bisection, so that nothing depends on how smooth the field is. */
-  for (int step = 0; step < 120; ++step)
-  {
-    const double t = f[0] / (f[0] - f[1]);
-    const int bisect = step % 3 == 2 || !(t > 0.0 && t < 1.0);
-    point[axis] = bisect ? 0.5 * (x[0] + x[1]) : x[0] + t * (x[1] - x[0]);
-    oracle_evaluate(field, NULL, point, sample);
-    const double value = oracle_side(field, sample, iso);
-    const int side = (value >= 0.0) == low_above ? 0 : 1;
-    x[side] = point[axis];
-    f[side] = value;
-    f[1 - side] *= bisect ? 1.0 : 0.5;
-    if (value == 0.0 || fabs(x[1] - x[0]) < 1e-13 * lattice->cube ||
-      fabs(point[axis] - previous) < 1e-13 * lattice->cube)
-    {
-      return;
-    }
-    previous = point[axis];
-  }
-}

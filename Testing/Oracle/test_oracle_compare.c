@@ -197,7 +197,7 @@ static double damage(fixture* f, int kind)
         f->surface.triangles[3 * t + 1] = first;
       }
       c = compare(f, 0);
-      return c.inverted_components == c.components ? (double)c.inverted_triangles : 0.0;
+      return c.inverted_components == c.components;
     case 8:
       f->surface.weight_sum[7] += 1e-3F;
       return compare(f, 0).weight_error > 5e-4;

@@ -158,18 +158,22 @@ static int64_t mesh_first_side(const mesh_report* report, int32_t a, int32_t b)
   return low;
 }
 
-int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b)
+int64_t mesh_count_directed(const mesh_report* report, int32_t from, int32_t to)
 {
-  const int32_t low = a < b ? a : b;
-  const int32_t high = a < b ? b : a;
-  const int64_t first = mesh_first_side(report, low, high);
+  const int32_t low = from < to ? from : to;
+  const int32_t high = from < to ? to : from;
   int64_t count = 0;
-  while (first + count < report->side_count && report->side[first + count].a == low &&
-    report->side[first + count].b == high)
+  for (int64_t n = mesh_first_side(report, low, high);
+       n < report->side_count && report->side[n].a == low && report->side[n].b == high; ++n)
   {
-    ++count;
+    count += (from < to) == report->side[n].forward;
   }
   return count;
+}
+
+int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b)
+{
+  return mesh_count_directed(report, a, b) + mesh_count_directed(report, b, a);
 }
 
 /* ---- union of corners (fans) and triangles (components) ---- */

@@ -58,8 +58,9 @@ extern "C"
     int64_t triangle_count, mesh_report* report);
   void mesh_free_report(mesh_report* report);
 
-  /* Number of triangles that have the edge. */
+  /* Number of triangles that have the edge; that have it in this direction. */
   int64_t mesh_count_sides(const mesh_report* report, int32_t a, int32_t b);
+  int64_t mesh_count_directed(const mesh_report* report, int32_t from, int32_t to);
 
   const char* mesh_fault_name(mesh_fault fault);
 

@@ -63,8 +63,7 @@ extern "C"
     double distance; /* max distance to the surface f = iso, in cubes */
     double normal_degrees; /* max angle between normal and -gradient */
     int64_t flat_vertices; /* gradient too small for a meaningful normal; not in normal_degrees */
-    int64_t inverted_triangles;  /* go round a lattice face the wrong way, judged by its nodes */
-    int64_t inverted_components; /* of the mesh, judged by -gradient and area */
+    int64_t inverted_components; /* of the mesh, judged by the nodes and area */
 
     int64_t segments_missing; /* faces whose crossings the mesh does not connect as it must */
     int64_t holes; /* boundary edges that neither trimming nor an invalid cell explains */

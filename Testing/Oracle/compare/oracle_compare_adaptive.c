@@ -217,41 +217,6 @@ static void adaptive_point(
   }
 }
 
-/* Whether any of the places where the field passes iso on an edge is trimmed away. */
-static int adaptive_rightly_trimmed(const compare_state* state, const adaptive_edge* edge)
-{
-  const oracle_reference* reference = state->reference;
-  const int pieces = 32;
-  double previous = 0.0;
-  for (int piece = 0; piece <= pieces; ++piece)
-  {
-    oracle_sample sample;
-    double p[3];
-    adaptive_point(state, edge, (double)piece / pieces, p);
-    oracle_evaluate(&reference->field, NULL, p, &sample);
-    const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
-    if (piece > 0 && (difference >= 0.0) != (previous >= 0.0))
-    {
-      double low = (piece - 1.0) / pieces;
-      double high = (double)piece / pieces;
-      for (int step = 0; step < 50; ++step)
-      {
-        adaptive_point(state, edge, 0.5 * (low + high), p);
-        oracle_evaluate(&reference->field, NULL, p, &sample);
-        const int as_high = (oracle_side(&reference->field, &sample, reference->limits.iso) >=
-                              0.0) == (difference >= 0.0);
-        *(as_high ? &high : &low) = 0.5 * (low + high);
-      }
-      if (compare_trim_margin(state, p, &sample) < 1e-5)
-      {
-        return 1;
-      }
-    }
-    previous = difference;
-  }
-  return 0;
-}
-
 static int adaptive_within_rounding(const compare_state* state, const adaptive_edge* edge)
 {
   const oracle_reference* reference = state->reference;
@@ -275,16 +240,19 @@ static void adaptive_missing(compare_state* state, int64_t* present, int64_t* ab
   for (int64_t e = 0; e < adaptive->edge_count; ++e)
   {
     const adaptive_edge* edge = &adaptive->edges[e];
+    double start[3];
     if (!edge->used)
     {
       continue;
     }
     ++result->edges;
+    adaptive_point(state, edge, 0.0, start);
     if (state->edge_vertex[e] >= 0)
     {
       present[edge->component] += !adaptive_pinched(edge);
     }
-    else if (state->trimmed && adaptive_rightly_trimmed(state, edge))
+    else if (state->trimmed &&
+      compare_rightly_trimmed(state, start, edge->axis, (double)edge->length * adaptive->cube))
     {
       ++result->trimmed;
     }
@@ -429,7 +397,8 @@ static void adaptive_totals(compare_state* state)
   }
   /* A tunnel of loops of a and b sides has a + b triangles; the loops alone, a - 2 and b - 2. */
   const int64_t triangles = adaptive->triangle_count + 4 * state->surface->statistics.tunnels;
-  if (!state->trimmed && result->unsettled == 0 && result->rounding == 0 && state->surface->triangle_count != triangles)
+  if (!state->trimmed && result->unsettled == 0 && result->rounding == 0 &&
+    state->surface->triangle_count != triangles)
   {
     ++result->segments_missing;
     compare_note(state, "%lld triangles, not %lld", (long long)state->surface->triangle_count,

@@ -202,36 +202,12 @@ static int compare_within_rounding(const oracle_reference* reference, int64_t ed
   return 0;
 }
 
-/* 1 if the surface crosses the edge at a place that trimming removes. */
-static int compare_rightly_trimmed(const compare_state* state, int64_t edge)
+static int compare_edge_trimmed(const compare_state* state, int64_t edge)
 {
-  const oracle_reference* reference = state->reference;
-  const double limit = 1e-5;
-  const int pieces = 32;
-  double p[3];
-  double previous = 0.0;
-  oracle_sample sample;
-  oracle_edge_root(&reference->lattice, &reference->field, reference->limits.iso, edge, p, &sample);
-  if (compare_trim_margin(state, p, &sample) < limit)
-  {
-    return 1;
-  }
-  /* The edge may be crossed several times; the surface may have any of the crossings. */
-  oracle_node_position(&reference->lattice, edge / 3, p);
-  const double start = p[edge % 3];
-  for (int piece = 0; piece <= pieces; ++piece)
-  {
-    p[edge % 3] = start + reference->lattice.edge[edge % 3] * piece / pieces;
-    oracle_evaluate(&reference->field, NULL, p, &sample);
-    const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
-    if (piece > 0 && (difference >= 0.0) != (previous >= 0.0) &&
-      compare_trim_margin(state, p, &sample) < limit)
-    {
-      return 1;
-    }
-    previous = difference;
-  }
-  return 0;
+  const oracle_lattice* lattice = &state->reference->lattice;
+  double start[3];
+  oracle_node_position(lattice, edge / 3, start);
+  return compare_rightly_trimmed(state, start, (int)(edge % 3), lattice->edge[edge % 3]);
 }
 
 void compare_missing(compare_state* state, int64_t* present, int64_t* absent)
@@ -250,7 +226,7 @@ void compare_missing(compare_state* state, int64_t* present, int64_t* absent)
     {
       ++present[component];
     }
-    else if (state->trimmed && compare_rightly_trimmed(state, edge))
+    else if (state->trimmed && compare_edge_trimmed(state, edge))
     {
       ++result->trimmed;
     }

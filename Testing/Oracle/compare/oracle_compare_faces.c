@@ -5,125 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- orientation ---- */
-
-/* Corner of a cell (0..7) at the lower or upper end of an edge; -1 if it is none of the cell's. */
-static int compare_corner(
-  const oracle_lattice* lattice, const int64_t ijk[3], int64_t edge, int upper)
-{
-  int64_t nodes[2];
-  oracle_edge_ends(lattice, edge, nodes);
-  for (int c = 0; c < 8; ++c)
-  {
-    if (oracle_node_index(lattice, ijk[0] + (c & 1), ijk[1] + (c >> 1 & 1), ijk[2] + (c >> 2)) ==
-      nodes[upper])
-    {
-      return c;
-    }
-  }
-  return -1;
-}
-
-/* On a face that both edges belong to and that has no other crossing, seen from outside the cell,
- * the surface goes from where a counter-clockwise walk enters "above" to where it leaves it. 1: the
- * side from one edge to the other goes that way, -1: the other way, 0: there is no such face. */
-static int compare_side_direction(
-  const oracle_lattice* lattice, const int64_t ijk[3], int64_t from, int64_t to)
-{
-  const int corner[4] = { compare_corner(lattice, ijk, from, 0),
-    compare_corner(lattice, ijk, from, 1), compare_corner(lattice, ijk, to, 0),
-    compare_corner(lattice, ijk, to, 1) };
-  for (int face = 0; face < 6; ++face)
-  {
-    const int axis = face / 2;
-    const int side = face % 2;
-    const int u = 1 << (axis + 1) % 3;
-    const int v = 1 << (axis + 2) % 3;
-    /* Counter-clockwise seen from outside. */
-    const int walk[4] = { side << axis, side << axis | (side ? u : v), side << axis | u | v,
-      side << axis | (side ? v : u) };
-    int above[4];
-    int crossings = 0;
-    int inside = 1;
-    for (int n = 0; n < 4; ++n)
-    {
-      inside = inside && corner[n] >= 0 && (corner[n] >> axis & 1) == side;
-      above[n] = lattice->flags[oracle_node_index(lattice, ijk[0] + (walk[n] & 1),
-                   ijk[1] + (walk[n] >> 1 & 1), ijk[2] + (walk[n] >> 2))] &
-        ORACLE_NODE_ABOVE;
-    }
-    for (int n = 0; n < 4; ++n)
-    {
-      crossings += above[n] != above[(n + 1) % 4];
-    }
-    for (int n = 0; inside && crossings == 2 && n < 4; ++n)
-    {
-      const int next = walk[(n + 1) % 4];
-      if ((walk[n] == corner[0] && next == corner[1]) ||
-        (walk[n] == corner[1] && next == corner[0]))
-      {
-        return !above[n] && above[(n + 1) % 4] ? 1 : -1;
-      }
-    }
-  }
-  return 0;
-}
-
-/* The one cell that has all three edges; 0 if there is none, or more than one. */
-static int compare_common_cell(
-  const oracle_lattice* lattice, const int64_t edges[3], int64_t ijk[3])
-{
-  int64_t cells[4][3];
-  int found = 0;
-  oracle_edge_cells(lattice, edges[0], cells);
-  for (int c = 0; c < 4; ++c)
-  {
-    if (oracle_cell_valid(lattice, cells[c][0], cells[c][1], cells[c][2]) &&
-      compare_corner(lattice, cells[c], edges[1], 0) >= 0 &&
-      compare_corner(lattice, cells[c], edges[1], 1) >= 0 &&
-      compare_corner(lattice, cells[c], edges[2], 0) >= 0 &&
-      compare_corner(lattice, cells[c], edges[2], 1) >= 0)
-    {
-      memcpy(ijk, cells[c], sizeof(cells[c]));
-      ++found;
-    }
-  }
-  return found == 1;
-}
-
-/* Exact, by the signs of the nodes, for all triangles that trimming left whole. */
-void compare_inverted(compare_state* state)
-{
-  const oracle_lattice* lattice = &state->reference->lattice;
-  for (int64_t t = 0; t < state->surface->triangle_count; ++t)
-  {
-    int64_t edges[3];
-    int64_t ijk[3];
-    int inverted = 0;
-    int close = 0;
-    for (int c = 0; c < 3; ++c)
-    {
-      edges[c] = state->vertex_edge[state->surface->triangles[3 * t + c]];
-      close = close || edges[c] < 0 || compare_end_flag(lattice, edges[c], ORACLE_NODE_CLOSE);
-    }
-    if (close || !compare_common_cell(lattice, edges, ijk))
-    {
-      continue;
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-      inverted = inverted || compare_side_direction(lattice, ijk, edges[c], edges[(c + 1) % 3]) < 0;
-    }
-    state->result->inverted_triangles += inverted;
-    if (inverted)
-    {
-      compare_note(state, "triangle %lld is inside out", (long long)t);
-    }
-  }
-}
-
-/* ---- faces ---- */
-
 /* The 4 edges of the face of `cell` towards -axis, in cyclic order. */
 static void compare_face_edges(
   const oracle_lattice* lattice, int64_t node, int axis, int64_t edges[4])
@@ -157,17 +38,17 @@ static int compare_face_crossings(
   return count;
 }
 
-/* Triangles with a side between the vertices of two crossed edges. */
-static int64_t compare_count_sides(const compare_state* state, int64_t e0, int64_t e1)
+/* Sides of triangles from a vertex of one crossed edge to one of another. */
+static int64_t compare_count_sides(const compare_state* state, int64_t from, int64_t to)
 {
-  const int64_t a[2] = { state->edge_vertex[e0], state->second_vertex[e0] };
-  const int64_t b[2] = { state->edge_vertex[e1], state->second_vertex[e1] };
+  const int64_t a[2] = { state->edge_vertex[from], state->second_vertex[from] };
+  const int64_t b[2] = { state->edge_vertex[to], state->second_vertex[to] };
   int64_t count = 0;
   for (int n = 0; n < 4; ++n)
   {
     if (a[n & 1] >= 0 && b[n >> 1] >= 0)
     {
-      count += mesh_count_sides(state->mesh, (int32_t)a[n & 1], (int32_t)b[n >> 1]);
+      count += mesh_count_directed(state->mesh, (int32_t)a[n & 1], (int32_t)b[n >> 1]);
     }
   }
   return count;
@@ -195,27 +76,33 @@ static int compare_face_joined(const compare_state* state, int64_t node, int axi
   return oracle_decide_face(&decider, value, point, lattice->edge, u, v);
 }
 
-/* Two crossings: connected, once for each valid cell at the face. Four: in one of two ways. */
+/* Seen from the upper cell, the walk around the face through its edges 0 to 3 enters what is above on one crossed edge
+ * and leaves it on another. The lower cell, if it is valid, has a triangle's side from the former to the latter, the
+ * upper one a side back. On a face with four crossings the way goes around each node above, or, where these are joined,
+ * around each node below. */
 static int compare_face_connected(const compare_state* state, const int64_t crossings[4], int count,
-  int64_t cells, int64_t node, int axis)
+  const int valid[2], const int64_t edges[4], int joined)
 {
-  if (count == 2)
+  for (int n = 0; n < count; ++n)
   {
-    return compare_count_sides(state, crossings[0], crossings[1]) == cells;
-  }
-  const int joined = compare_face_joined(state, node, axis);
-  const int lowest_above = (state->reference->lattice.flags[node] & ORACLE_NODE_ABOVE) != 0;
-  for (int way = 0; way < 2; ++way)
-  {
-    /* Way 1 goes around the lowest node. */
-    if ((joined < 0 || way == (joined != lowest_above)) &&
-      compare_count_sides(state, crossings[way], crossings[way + 1]) == cells &&
-      compare_count_sides(state, crossings[way + 2], crossings[(way + 3) % 4]) == cells)
+    const int64_t e = crossings[n];
+    const int64_t* nth = edges;
+    while (*nth != state->reference->surface.edge[e])
     {
-      return 1;
+      ++nth;
+    }
+    int64_t ends[2];
+    oracle_edge_ends(&state->reference->lattice, *nth, ends);
+    const int64_t first = nth - edges < 2 ? ends[0] : ends[1]; /* on the walk */
+    const int64_t other = crossings[(n + (joined ? count - 1 : 1)) % count];
+    if (!(state->reference->lattice.flags[first] & ORACLE_NODE_ABOVE) &&
+      (compare_count_sides(state, e, other) != valid[0] ||
+        compare_count_sides(state, other, e) != valid[1]))
+    {
+      return 0;
     }
   }
-  return 0;
+  return 1;
 }
 
 /* With the paper's seeds a component may be missing though the crossings of a face have vertices:
@@ -235,8 +122,8 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
 {
   const oracle_lattice* lattice = &state->reference->lattice;
   const int64_t other[3] = { ijk[0] - (axis == 0), ijk[1] - (axis == 1), ijk[2] - (axis == 2) };
-  const int valid = oracle_cell_valid(lattice, ijk[0], ijk[1], ijk[2]) +
-    oracle_cell_valid(lattice, other[0], other[1], other[2]);
+  const int valid[2] = { oracle_cell_valid(lattice, other[0], other[1], other[2]),
+    oracle_cell_valid(lattice, ijk[0], ijk[1], ijk[2]) };
   const int possible = oracle_cell_possible(lattice, ijk[0], ijk[1], ijk[2]) +
     oracle_cell_possible(lattice, other[0], other[1], other[2]);
   const int certain = oracle_cell_certain(lattice, ijk[0], ijk[1], ijk[2]) +
@@ -256,9 +143,11 @@ static void compare_face(compare_state* state, const int64_t ijk[3], int axis)
   {
     return;
   }
-  if (valid > 0 && possible == certain && count >= 2 &&
-    !compare_face_connected(
-      state, crossings, count, valid, oracle_node_index(lattice, ijk[0], ijk[1], ijk[2]), axis))
+  const int64_t node = oracle_node_index(lattice, ijk[0], ijk[1], ijk[2]);
+  const int joined = count == 4 ? compare_face_joined(state, node, axis) : 0;
+  if (valid[0] + valid[1] > 0 && possible == certain && count >= 2 &&
+    !compare_face_connected(state, crossings, count, valid, edges, joined == 1) &&
+    !(joined < 0 && compare_face_connected(state, crossings, count, valid, edges, 1)))
   {
     ++state->result->segments_missing;
     compare_note_edge(state, "not connected on the face of", edges[0]);

@@ -29,7 +29,6 @@ typedef struct compare_state
   /* [edge_count] of the oracle's surface, a point or -1. A pinched edge has a second vertex, as
    * each of its two cells has a fan of its own. */
   int64_t *edge_vertex, *second_vertex;
-  double* gradient;    /* [point_count][3], by the oracle */
   double* vertex_cube; /* [point_count], length of the vertex's edge */
 } compare_state;
 
@@ -43,6 +42,9 @@ double compare_wall_margin(const compare_state* state, const oracle_sample* samp
 double compare_fluid_margin(const compare_state* state, const oracle_sample* sample);
 double compare_trim_margin(
   const compare_state* state, const double point[3], const oracle_sample* sample);
+/* Whether any of the places where the field passes iso on an edge is trimmed away. */
+int compare_rightly_trimmed(
+  const compare_state* state, const double start[3], int axis, double length);
 /* The first fault is kept in words. */
 void compare_note(compare_state* state, const char* format, ...);
 void compare_note_edge(compare_state* state, const char* what, int64_t edge);
@@ -69,7 +71,6 @@ int compare_orientation(compare_state* state); /* 0 if memory ran out */
 
 /* ---- oracle_compare_faces.c ---- */
 
-void compare_inverted(compare_state* state);
 void compare_faces(compare_state* state);
 void compare_boundary(compare_state* state);
 void compare_count_pinched(compare_state* state);

@@ -56,6 +56,41 @@ double compare_trim_margin(
     compare_fluid_margin(state, sample));
 }
 
+int compare_rightly_trimmed(
+  const compare_state* state, const double start[3], int axis, double length)
+{
+  const oracle_reference* reference = state->reference;
+  const int pieces = 32;
+  double previous = 0.0;
+  for (int piece = 0; piece <= pieces; ++piece)
+  {
+    oracle_sample sample;
+    double p[3] = { start[0], start[1], start[2] };
+    p[axis] = start[axis] + length * piece / pieces;
+    oracle_evaluate(&reference->field, NULL, p, &sample);
+    const double difference = oracle_side(&reference->field, &sample, reference->limits.iso);
+    if (piece > 0 && (difference >= 0.0) != (previous >= 0.0))
+    {
+      double low = (piece - 1.0) / pieces;
+      double high = (double)piece / pieces;
+      for (int step = 0; step < 50; ++step)
+      {
+        p[axis] = start[axis] + length * 0.5 * (low + high);
+        oracle_evaluate(&reference->field, NULL, p, &sample);
+        const int as_high = (oracle_side(&reference->field, &sample, reference->limits.iso) >=
+                              0.0) == (difference >= 0.0);
+        *(as_high ? &high : &low) = 0.5 * (low + high);
+      }
+      if (compare_trim_margin(state, p, &sample) < 1e-5)
+      {
+        return 1;
+      }
+    }
+    previous = difference;
+  }
+  return 0;
+}
+
 /* Least trimming weight at the nodes of a cell; NaN outside the lattice. */
 static double compare_least_weight(const oracle_lattice* lattice, const int64_t ijk[3])
 {

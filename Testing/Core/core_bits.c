@@ -9,7 +9,7 @@
 
 #include "core_fixture.h"
 #include "core_keep.h"
-#include "mcor_cl_call.h"
+#include "mcor_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ typedef struct bits_case
   double iso;
   mcor_topology topology;
   double wall_share;
-  int mixed; /* smoothing lengths 1 : 64 */
+  int mixed;  /* smoothing lengths 1 : 64 */
   int smooth; /* 1: compact, 2: widened, 3: both */
 } bits_case;
 
@@ -130,19 +130,16 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   const mcor_statistics* statistics = &surface.statistics;
   const int trimmed = statistics->trim_vertices > statistics->trim_vertices_linear;
   const int resolved = statistics->joined_faces > 0 && statistics->ambiguous_cells > 0;
-  /* Not in a second attempt, with the driver's declarations. */
-  const int built_at_once = context->cl.declares_builtins == mcor_is_pocl(&context->cl);
   /* Without a driver, the built-in device may lack double precision and SPH kernels. */
   const int left_out =
     status == MCOR_DEVICE_ERROR && (at->precision == MCOR_FLOAT64 || at->kernel > MCOR_WENDLAND_C2);
   const int good = left_out ||
-    (status == MCOR_OK && surface.triangle_count > 0 && built_at_once &&
+    (status == MCOR_OK && surface.triangle_count > 0 &&
       (trimmed || !(eigenvalue || at->wall_share > 0)) && (resolved || !noise));
   if (!good)
   {
-    fprintf(stderr, "%s: %lld triangles, %lld cut.%s %s\n", at->name,
+    fprintf(stderr, "%s: %lld triangles, %lld cut. %s\n", at->name,
       (long long)surface.triangle_count, (long long)statistics->trim_vertices,
-      built_at_once ? "" : " A declaration is missing in mcor_builtin.cl.",
       mcor_last_error(context));
   }
   *hash = core_hash(&surface);

@@ -88,7 +88,7 @@ void mcor_release_memory(mcor_context* context)
 void mcor_release_all_data(mcor_context* context)
 {
   mcor_release_memory(context);
-  MCOR_RELEASE(context, &context->case_table, &context->topology.cases, &context->topology.rows);
+  MCOR_RELEASE(context, &context->topology.cases, &context->topology.rows);
   mcor_drop_kept(context, 0);
   context->kept.grid = context->kept.value = context->kept.nodes = false;
 }

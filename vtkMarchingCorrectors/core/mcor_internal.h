@@ -360,24 +360,21 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface);
 /* mcor_area.c. Measures the surface into its statistics. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface);
 
-/* Fills 256 rows of 16: up to 15 edges, 3 for each triangle, see mcor_cell_row; then the number
- * of triangles. */
-void mcor_make_case_table(uint8_t table[256][16]);
-/* Uploads the table unless it is on the device. */
-mcor_status mcor_upload_case_table(mcor_context* context);
-
-#define MCOR_TOPOLOGY_ROWS 1200
-typedef struct mcor_topology_table
+/* The cases of Marching Cubes, with all decisions on their ambiguous faces. */
+#define MCOR_CASE_ROWS 1200
+typedef struct mcor_case_table
 {
   /* First row << 6 | ambiguous faces, bit axis * 2 + side. Bit i of a row's number from there:
-   * whether the corners above are joined on the i-th ambiguous face. Rows with tunnels come
-   * last. */
+   * whether the corners above are joined on the i-th ambiguous face; so none are in the first
+   * row. Rows with tunnels come last. */
   cl_int cases[256];
   int row_count;
-  mcor_cell_row rows[MCOR_TOPOLOGY_ROWS];
-} mcor_topology_table;
+  mcor_cell_row rows[MCOR_CASE_ROWS];
+} mcor_case_table;
 
-void mcor_make_topology_table(mcor_topology_table* table);
+void mcor_make_case_table(mcor_case_table* table);
+/* Uploads the table unless it is on the device. */
+mcor_status mcor_upload_case_table(mcor_context* context);
 
 /* Arguments of MCOR_ATTRIBUTE_PARAMS. */
 #define MCOR_ATTRIBUTE_ARGS(c, means)                                                              \
@@ -426,8 +423,8 @@ static inline bool mcor_is_resolved(const mcor_context* context)
 
 /* Kernel arguments of MCOR_CUT_PARAMS. */
 #define MCOR_CUT_ARGS(c)                                                                           \
-  MCOR_BUFFER(&(c)->case_table), MCOR_INT(mcor_is_resolved(c)),                                    \
-    MCOR_BUFFER(&(c)->bricks.neighbours), MCOR_BUFFER(&(c)->topology.decisions),                   \
-    MCOR_BUFFER(&(c)->topology.cases), MCOR_BUFFER(&(c)->topology.rows)
+  MCOR_INT(mcor_is_resolved(c)), MCOR_BUFFER(&(c)->bricks.neighbours),                             \
+    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->topology.cases),                      \
+    MCOR_BUFFER(&(c)->topology.rows)
 
 #endif

@@ -88,10 +88,9 @@ typedef struct mcor_level
 #define MCOR_EDGE_MASKS 9
 #define MCOR_DECISION_MASKS 5
 
-/* A way to triangulate a cell. An edge is axis << 3
- *
- * lower corner; corner and axis bits 1 x, 2 y, 4 z. tunnel: the row of the same case, counted
- * from its first, in which a tunnel joins two regions below or above; 0: there is none. */
+/* A way to triangulate a cell. An edge is axis << 3 | its lower corner, a corner bits 1 x, 2 y,
+ * 4 z. tunnel: the row of the same case, counted from its first, in which a tunnel joins two
+ * regions below or above; 0: there is none. */
 typedef struct mcor_cell_row
 {
   MCOR_TYPE(uchar) edges[36]; /* 3 a triangle */

@@ -42,7 +42,7 @@ typedef struct mcor_space
   int brick_nodes;  /* in a plane, those of the lowest layer */
   int region_depth; /* of mcor_seed_regions */
   double ball;      /* volume of a ball of radius 1, or area of a disc */
-  const char *evaluate, *emit; /* the kernels for nodes, and for triangles or lines */
+  const char* evaluate; /* the kernel for nodes */
 } mcor_space;
 
 /* Particles on their way to the search grid. */
@@ -168,10 +168,10 @@ typedef struct mcor_pairs
   mcor_buffer found;  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
-/* Decisions of MCOR_TOPOLOGY_FIELD. */
+/* How cells are cut, and decisions of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
 {
-  mcor_buffer cases, rows; /* mcor_topology_table; empty until first used */
+  mcor_buffer cases, rows; /* mcor_case_table */
   mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
   mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
 } mcor_topology_data;
@@ -309,7 +309,6 @@ struct mcor_context
 
   /* The device, and what it holds for any particles. */
   mcor_cl cl;
-  mcor_buffer case_table;
   mcor_sort_data sort;
   double report_interval; /* seconds between progress reports, at least */
   int probe_batch;        /* points; 0 before the first probe */

@@ -4,7 +4,6 @@
 set(mcor_programs LATTICE FIELD PROBE)
 set(mcor_program_sources
   "core/mcor_shared.h                  LATTICE FIELD PROBE"
-  "kernels/device/mcor_builtin.cl      LATTICE FIELD PROBE"
   "kernels/device/mcor_prelude.cl      LATTICE FIELD PROBE"
   "kernels/device/mcor_intrinsic.cl    LATTICE FIELD PROBE"
   "core/grid/mcor_sph_kernel.h         FIELD PROBE"

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Triangles of cells: those of the topology table with any decisions, and those of cells beside finer ones. Cells with
+/* Triangles of cells: those of the case table with any decisions, and those of cells beside finer ones. Cells with
  * nodes on either side at random, side by side, make a closed surface. */
 
 #include "core_fixture.h"
@@ -88,14 +88,14 @@ static void check_closed(lattice* l, double volume_above)
   free(l->triangles);
 }
 
-/* ---- the topology table ---- */
+/* ---- the case table ---- */
 
-static mcor_topology_table table;
+static mcor_case_table table;
 
 static int set_up(void** state)
 {
   (void)state;
-  mcor_make_topology_table(&table);
+  mcor_make_case_table(&table);
   return 0;
 }
 
@@ -164,7 +164,7 @@ static const mcor_cell_row* choose_row(int cube_case, int joined, uint64_t* seed
 }
 
 /* Decisions on faces and in cells as chance has them. */
-static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_TOPOLOGY_ROWS])
+static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_CASE_ROWS])
 {
   const int n = l->ends;
   const uint64_t of_round = seed << 40;
@@ -204,7 +204,7 @@ static void fill_by_table(lattice* l, uint64_t seed, uint8_t used[MCOR_TOPOLOGY_
 /* All rows of the table are used. */
 static void test_whole_table(void** state)
 {
-  static uint8_t used[MCOR_TOPOLOGY_ROWS];
+  static uint8_t used[MCOR_CASE_ROWS];
   for (int round = 0; round < 2; ++round)
   {
     lattice l = make_lattice(64, 1, (uint64_t)round);
@@ -217,28 +217,25 @@ static void test_whole_table(void** state)
   (void)state;
 }
 
-/* Where nothing is joined, cells without a tunnel are those of the case table, and so are cells without finer ones
- * around them. Opposite corners alone have the tunnel that joins them. */
+/* Cells without finer ones around them are those of the case table where nothing is joined, without a tunnel. Opposite
+ * corners alone have the tunnel that joins them. */
 static void test_first_rows(void** state)
 {
-  uint8_t cases[256][16];
-  mcor_make_case_table(cases);
   for (int c = 0; c < 256; ++c)
   {
     const mcor_cell_row* row = table.rows + (table.cases[c] >> 6);
     uint8_t triangles[3 * MCOR_ADAPTIVE_TRIANGLES];
     uint32_t above = 0x2aaaaaa; /* at nodes that are not there */
-    assert_int_equal(row->triangles, cases[c][15]);
-    assert_memory_equal(row->edges, cases[c], 3 * (size_t)row->triangles);
+    int flat = 0;
     for (int k = 0; k < 8; ++k)
     {
       const int node = 2 * (k & 1) + 6 * (k >> 1 & 1) + 18 * (k >> 2);
       above = (above & ~(1u << node)) | (uint32_t)(c >> k & 1) << node;
     }
-    assert_int_equal(mcor_adaptive_triangulate(0, above, triangles), cases[c][15]);
-    for (int i = 0; i < 3 * cases[c][15]; ++i)
+    assert_int_equal(mcor_adaptive_triangulate(0, above, triangles, &flat), row->triangles);
+    for (int i = 0; i < 3 * row->triangles; ++i)
     {
-      const int k = cases[c][i] & 7, axis = cases[c][i] >> 3;
+      const int k = row->edges[i] & 7, axis = row->edges[i] >> 3;
       assert_int_equal(triangles[i], axis << 5 | (2 * (k & 1) + 6 * (k >> 1 & 1) + 18 * (k >> 2)));
     }
   }
@@ -263,8 +260,7 @@ static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
       node_at(l, at[0] + n % 3 * step / 2, at[1] + n / 3 % 3 * step / 2, at[2] + n / 9 * step / 2);
     above |= (uint32_t)l->above[node[n]] << n; /* bits of what is no node do not matter */
   }
-  const int count = mcor_adaptive_triangulate(split, above, triangles);
-  assert_int_equal(mcor_adaptive_count(split, above, &flat), count);
+  const int count = mcor_adaptive_triangulate(split, above, triangles, &flat);
   assert_in_range(count, 0, MCOR_ADAPTIVE_TRIANGLES);
   for (int i = 0; i < 3 * count; ++i)
   {

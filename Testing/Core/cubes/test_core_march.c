@@ -165,8 +165,8 @@ static void count_edge(node_pattern* p, const int node[3], int axis)
 
 static void make_pattern(node_pattern* p, uint64_t seed)
 {
-  uint8_t table[256][16];
-  mcor_make_case_table(table);
+  static mcor_case_table table;
+  mcor_make_case_table(&table);
   *p = (node_pattern){ 0 };
   for (int n = 0; n < NODES * NODES * NODES; ++n)
   {
@@ -176,7 +176,7 @@ static void make_pattern(node_pattern* p, uint64_t seed)
   {
     const int at[3] = { n % NODES, n / NODES % NODES, n / NODES / NODES };
     const int cube_case = pattern_case(p, at);
-    p->triangles += cube_case >= 0 ? table[cube_case][15] : 0;
+    p->triangles += cube_case >= 0 ? table.rows[table.cases[cube_case] >> 6].triangles : 0;
     for (int axis = 0; axis < 3; ++axis)
     {
       count_edge(p, at, axis);

@@ -14,12 +14,11 @@ static inline bool mcor_is_adaptive(const mcor_lattice* lattice)
   return lattice->levels > 1;
 }
 
-/* Kernel arguments of MCOR_LEAF_PARAMS and MCOR_PLAIN_PARAMS. */
+/* Kernel arguments of MCOR_LEAF_PARAMS. */
 #define MCOR_LEAF_ARGS(c)                                                                          \
   MCOR_INT((c)->adaptive.count), MCOR_INT((c)->space.flat), MCOR_BUFFER(&(c)->adaptive.finer),    \
     MCOR_BUFFER(&(c)->adaptive.tables), MCOR_BUFFER(&(c)->bricks.now.above),                       \
     MCOR_BUFFER(&(c)->bricks.now.valid)
-#define MCOR_PLAIN_ARGS(c) MCOR_BUFFER(&(c)->bricks.plain), MCOR_BUFFER(&(c)->bricks.leaf_of)
 
 /* Vertices on lattice edges, on the trim boundary, or both. */
 enum

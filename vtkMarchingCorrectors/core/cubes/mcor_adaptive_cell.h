@@ -56,6 +56,12 @@ typedef struct mcor_adaptive_loop
   MCOR_TYPE(uint) facets[MCOR_ADAPTIVE_VERTICES];
 } mcor_adaptive_loop;
 
+/* Returns how far apart the numbers of nodes are that follow each other along an axis. */
+MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_step(int axis)
+{
+  return axis == 0 ? 1 : axis == 1 ? 3 : 9;
+}
+
 /* Returns the slot between two neighbouring nodes, half an edge or an edge apart. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_slot(int a, int b)
 {
@@ -91,15 +97,15 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_link_ring(
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_face_node(int face, int i)
 {
   const int axis = face >> 1, side = face & 1;
-  const int step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
-  const int step_u = axis == 0 ? 3 : axis == 1 ? 9 : 1, step_v = 13 - step - step_u;
+  const int step = mcor_adaptive_step(axis), step_u = mcor_adaptive_step((axis + 1) % 3),
+            step_v = mcor_adaptive_step((axis + 2) % 3);
   const int u = 0x06a4 >> 2 * (i & 7) & 3, v = 0x06a4 >> 2 * ((i + 6) & 7) & 3;
   return 2 * side * step + (side ? u : v) * step_u + (side ? v : u) * step_v;
 }
 
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_face_middle(int face)
 {
-  const int axis = face >> 1, step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
+  const int step = mcor_adaptive_step(face >> 1);
   return face & 1 ? 13 + step : 13 - step;
 }
 
@@ -154,7 +160,7 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_take_loop(
 MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_place(
   MCOR_TYPE(uint) split, int slot, MCOR_TYPE(uchar) place[3])
 {
-  const int axis = slot >> 5, node = slot & 31, step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
+  const int axis = slot >> 5, node = slot & 31, step = mcor_adaptive_step(axis);
   place[0] = (MCOR_TYPE(uchar))(2 * (node % 3));
   place[1] = (MCOR_TYPE(uchar))(2 * (node / 3 % 3));
   place[2] = (MCOR_TYPE(uchar))(2 * (node / 9));
@@ -272,9 +278,8 @@ MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_fill_costs(
   }
 }
 
-/* Writes a loop's triangles, each before the triangles of the parts beside it. Returns their
- * number. */
-MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
+/* Writes a loop's triangles, each before the triangles of the parts beside it. */
+MCOR_ADAPTIVE_FUNCTION void mcor_adaptive_cut_loop(
   MCOR_TYPE(uint) split, const mcor_adaptive_loop* loop, MCOR_TYPE(uchar) * triangles)
 {
   MCOR_TYPE(ushort) costs[MCOR_ADAPTIVE_VERTICES * (MCOR_ADAPTIVE_VERTICES - 1) / 2];
@@ -301,35 +306,13 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_cut_loop(
     from[waiting] = (MCOR_TYPE(uchar))a;
     to[waiting++] = (MCOR_TYPE(uchar))apex;
   }
-  return count;
 }
 
-/* Returns the number of a cell's triangles, and adds its loops that lie in one face to
- * flat_loops. */
-MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_count(
-  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, int* flat_loops)
-{
-  mcor_adaptive_links links;
-  mcor_adaptive_loop loop;
-  int count = 0;
-  mcor_adaptive_link(split, above, &links);
-  for (int slot = 0; slot < MCOR_ADAPTIVE_SLOTS; ++slot)
-  {
-    mcor_adaptive_take_loop(slot, &links, &loop);
-    if (loop.length > 2)
-    {
-      mcor_adaptive_locate(split, &loop);
-      count += loop.length - 2;
-      *flat_loops += mcor_adaptive_is_flat(&loop);
-    }
-  }
-  return count;
-}
-
-/* Writes a cell's triangles, three slots each. Returns their number. Without split edges they
- * are the case table's. */
+/* Cuts a cell into triangles. Writes them, three slots each, unless `triangles` is NULL; returns
+ * their number. Adds its loops that lie in one face to *flat_loops. Without split edges they are
+ * those of the case table. */
 MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
-  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, MCOR_TYPE(uchar) * triangles)
+  MCOR_TYPE(uint) split, MCOR_TYPE(uint) above, MCOR_TYPE(uchar) * triangles, int* flat_loops)
 {
   mcor_adaptive_links links;
   mcor_adaptive_loop loop;
@@ -341,7 +324,12 @@ MCOR_ADAPTIVE_FUNCTION int mcor_adaptive_triangulate(
     if (loop.length > 2)
     {
       mcor_adaptive_locate(split, &loop);
-      count += mcor_adaptive_cut_loop(split, &loop, triangles + 3 * count);
+      *flat_loops += mcor_adaptive_is_flat(&loop);
+      if (triangles)
+      {
+        mcor_adaptive_cut_loop(split, &loop, triangles + 3 * count);
+      }
+      count += loop.length - 2;
     }
   }
   return count;

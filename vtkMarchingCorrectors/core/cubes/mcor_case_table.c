@@ -1,12 +1,12 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The 256 cases of Marching Cubes, derived rather than listed. On each face, every run of corners
+/* The cases of Marching Cubes, derived rather than listed. On each face, every run of corners
  * above the iso value is cut off by one segment; this depends on the face's corners alone, so two
  * cells agree on their common face. Segments join to loops, loops are cut into triangles. A
  * diagonal within a face would meet the neighbour's in an edge of four triangles; none is used.
  *
- * The topology table has these cases for all decisions on ambiguous faces, whose corners are
+ * Each of the 256 cases has a row for all decisions on its ambiguous faces, whose corners are
  * above and below in turn: they are cut off as before, or joined, and then those below are cut
  * off. Two loops around the same region may become a tunnel. Not all of this can be triangulated
  * without a diagonal within a face; see mcor_allow_side. */
@@ -14,6 +14,7 @@
 #include "mcor_internal.h"
 
 #include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define MCOR_CELL_EDGES 24 /* axis << 3 | lower corner; not all numbers are edges */
@@ -188,23 +189,6 @@ static void mcor_fill_loop(const mcor_loops* loops, int i, mcor_cell_row* row)
     mcor_cut_loop(loops->edge[i], 0, last, loops->cube_case, row);
   assert(cut);
   (void)cut;
-}
-
-void mcor_make_case_table(uint8_t table[256][16])
-{
-  memset(table, 0, 256 * 16);
-  for (int cube_case = 0; cube_case < 256; ++cube_case)
-  {
-    mcor_loops loops;
-    mcor_cell_row row = { 0 };
-    mcor_trace_loops(cube_case, 0, &loops);
-    for (int i = 0; i < loops.count; ++i)
-    {
-      mcor_fill_loop(&loops, i, &row);
-    }
-    memcpy(table[cube_case], row.edges, 15);
-    table[cube_case][15] = row.triangles;
-  }
 }
 
 /* ---- tunnels ---- */
@@ -388,7 +372,7 @@ static int mcor_fill_rows(
   return count;
 }
 
-void mcor_make_topology_table(mcor_topology_table* table)
+void mcor_make_case_table(mcor_case_table* table)
 {
   memset(table, 0, sizeof *table);
   for (int cube_case = 0; cube_case < 256; ++cube_case)
@@ -416,17 +400,23 @@ void mcor_make_topology_table(mcor_topology_table* table)
     }
     assert(rows < 256);
     table->row_count += rows;
-    assert(table->row_count <= MCOR_TOPOLOGY_ROWS);
+    assert(table->row_count <= MCOR_CASE_ROWS);
   }
 }
 
 mcor_status mcor_upload_case_table(mcor_context* context)
 {
-  uint8_t table[256][16];
-  if (context->case_table.mem)
+  mcor_topology_data* topology = &context->topology;
+  if (topology->rows.mem)
   {
     return MCOR_OK;
   }
+  mcor_case_table* table = malloc(sizeof *table);
+  MCOR_TRY(mcor_allocated(context, table));
   mcor_make_case_table(table);
-  return mcor_write(context, &context->case_table, table, sizeof table);
+  const size_t bytes = (size_t)table->row_count * sizeof table->rows[0];
+  mcor_status status = mcor_write(context, &topology->cases, table->cases, sizeof table->cases);
+  status = status == MCOR_OK ? mcor_write(context, &topology->rows, table->rows, bytes) : status;
+  free(table);
+  return status;
 }

@@ -128,12 +128,12 @@ static mcor_status mcor_emit_triangles(
   const bool follows = mcor_follows_cells(context);
   const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
   MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
-  return MCOR_LAUNCH(context, context->space.emit, MCOR_MEDIUM, now->count, MCOR_INT(now->count),
-    MCOR_LEAF_ARGS(context), MCOR_PLAIN_ARGS(context), MCOR_CUT_ARGS(context),
-    MCOR_SIDES_ARGS(sides), MCOR_INT(follows), MCOR_BUFFER(&context->bricks.rungs),
-    MCOR_BUFFER(&now->bricks), MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges),
-    MCOR_BUFFER(&mesh->vertex_base), MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells),
-    MCOR_BUFFER(&mesh->triangles));
+  return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
+    MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain),
+    MCOR_BUFFER(&context->bricks.leaf_of), MCOR_CUT_ARGS(context), MCOR_SIDES_ARGS(sides),
+    MCOR_INT(follows), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&now->bricks),
+    MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
 }
 
 /* Counts the triangles of each level; with a box, the owned ones. */

@@ -5,26 +5,6 @@
 
 #include "mcor_adaptive.h"
 
-#include <stdlib.h>
-
-static mcor_status mcor_upload_topology_table(mcor_context* context)
-{
-  mcor_topology_data* topology = &context->topology;
-  if (topology->rows.mem)
-  {
-    return MCOR_OK;
-  }
-  mcor_topology_table* table = malloc(sizeof *table);
-  MCOR_TRY(mcor_allocated(context, table));
-  mcor_make_topology_table(table);
-  mcor_status status = mcor_write(context, &topology->cases, table->cases, sizeof table->cases);
-  status = status == MCOR_OK ? mcor_write(context, &topology->rows, table->rows,
-                                 (size_t)table->row_count * sizeof table->rows[0])
-                             : status;
-  free(table);
-  return status;
-}
-
 /* Evaluates the samples, level by level, as slots are sorted. */
 static mcor_status mcor_find_sides(mcor_context* context)
 {
@@ -108,7 +88,6 @@ mcor_status mcor_resolve_topology(mcor_context* context)
   const mcor_bricks* bricks = &context->bricks;
   const int count = bricks->now.count;
   const size_t n = (size_t)count;
-  MCOR_TRY(mcor_upload_topology_table(context));
   MCOR_TRY(mcor_reserve(context, &topology->decisions, n * MCOR_DECISION_MASKS * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, &topology->sample_base, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_faces", MCOR_MEDIUM, count, MCOR_INT(count),

@@ -69,7 +69,6 @@ typedef struct mcor_cl
   bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
   bool has_fp64, rounds_division; /* divisions and roots can be exact to the last bit */
-  bool declares_builtins; /* programs declare built-in functions themselves, see mcor_builtin.cl */
   int lanes;              /* evaluation points that a work-item treats at once */
   int segments;           /* segments into which scans and sorts cut their arrays */
   size_t real_size, fix_size;

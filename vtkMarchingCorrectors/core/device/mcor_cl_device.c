@@ -185,7 +185,6 @@ static void mcor_query_device(mcor_cl* cl)
   cl->is_cpu = mcor_has_cpu_form(cl);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-  cl->declares_builtins = mcor_is_pocl(cl);
   cl->units = (int)units;
 }
 

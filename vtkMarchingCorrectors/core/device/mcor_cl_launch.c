@@ -32,11 +32,22 @@ static bool mcor_has_kernel(cl_program program, const char* name)
   return has;
 }
 
-/* Makes a kernel of the first program that has it. */
-static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mcor_kernel* kernel)
+/* Finds a kernel among those made so far, or makes it of the first program that has it. */
+static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** found)
 {
   mcor_cl* cl = &context->cl;
+  for (int i = 0; i < cl->kernel_count; ++i)
+  {
+    if (strcmp(cl->kernels[i].name, name) == 0)
+    {
+      *found = &cl->kernels[i];
+      return MCOR_OK;
+    }
+  }
+  MCOR_TRY(mcor_make_room(
+    context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
   cl_int error = CL_INVALID_KERNEL_NAME;
+  mcor_kernel* kernel = *found = &cl->kernels[cl->kernel_count];
   *kernel = (mcor_kernel){ 0 };
   snprintf(kernel->name, sizeof kernel->name, "%s", name);
   for (int p = 0; p < MCOR_PROGRAM_COUNT && !kernel->kernel; ++p)
@@ -54,26 +65,8 @@ static mcor_status mcor_make_kernel(mcor_context* context, const char* name, mco
     }
   }
   MCOR_CL_TRY(context, error, name);
+  ++cl->kernel_count;
   return MCOR_OK;
-}
-
-static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mcor_kernel** kernel)
-{
-  mcor_cl* cl = &context->cl;
-  for (int i = 0; i < cl->kernel_count; ++i)
-  {
-    if (strcmp(cl->kernels[i].name, name) == 0)
-    {
-      *kernel = &cl->kernels[i];
-      return MCOR_OK;
-    }
-  }
-  MCOR_TRY(mcor_make_room(
-    context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
-  *kernel = &cl->kernels[cl->kernel_count];
-  const mcor_status status = mcor_make_kernel(context, name, *kernel);
-  cl->kernel_count += status == MCOR_OK;
-  return status;
 }
 
 static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const mcor_arg* arg)
@@ -155,31 +148,23 @@ static bool mcor_is_cut(const mcor_context* context, mcor_load load)
                             : watched && mcor_is_native(&context->cl);
 }
 
-/* Returns the work-items that a part may have. An item's work goes with the particles that reach
- * a point. */
-static double mcor_part_limit(const mcor_context* context)
-{
-  const int limit =
-    context->cl.real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
-  return context->cl.is_cpu ? (double)limit * context->cl.units / fmax(context->cl.terms, 1)
-                            : INFINITY;
-}
-
-/* Chooses the sizes of parts. On the built-in device parts cost nothing, so each launch begins
- * with small ones, and none becomes large. A driver may compile a kernel once more for
- * work-items that do not begin at 0. */
+/* Chooses the sizes of parts. An item's work goes with the particles that reach a point. On the
+ * built-in device parts cost nothing, so each launch begins with small ones, and none becomes
+ * large. A driver may compile a kernel once more for work-items that do not begin at 0. */
 static mcor_parts mcor_parts_of(
   const mcor_context* context, const mcor_kernel* kernel, mcor_load load)
 {
-  const double limit = mcor_part_limit(context);
-  if (mcor_is_native(&context->cl))
+  const mcor_cl* cl = &context->cl;
+  const double units = cl->units,
+               terms = cl->real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
+  const double limit = cl->is_cpu ? terms * units / fmax(cl->terms, 1) : INFINITY;
+  if (mcor_is_native(cl))
   {
-    const double units = context->cl.units;
     return load == MCOR_HEAVY ? (mcor_parts){ 32 * units, fmin(2048 * units, limit) }
       : load == MCOR_MEDIUM   ? (mcor_parts){ 1024 * units, 16384 * units }
                               : (mcor_parts){ (1 << 17) * units, (1 << 20) * units };
   }
-  const double first = context->cl.is_cpu ? limit / MCOR_FIRST_SHARE : MCOR_FIRST_PART;
+  const double first = cl->is_cpu ? limit / MCOR_FIRST_SHARE : MCOR_FIRST_PART;
   return (mcor_parts){ kernel->part > 0 ? kernel->part : first, limit };
 }
 

@@ -60,12 +60,13 @@ static mcor_status mcor_fail_build(
   return status;
 }
 
-static mcor_status mcor_build_with_options(
-  mcor_context* context, mcor_program number, const char* options)
+static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
 {
   mcor_cl* cl = &context->cl;
+  char options[512];
   const char* sources[MCOR_SOURCE_LIMIT];
   const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
+  mcor_program_options(cl, number, options, sizeof options);
   cl_int error;
   cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
   MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
@@ -80,32 +81,17 @@ static mcor_status mcor_build_with_options(
   return MCOR_OK;
 }
 
-static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
-{
-  mcor_cl* cl = &context->cl;
-  char options[512];
-  mcor_program_options(cl, number, options, sizeof options);
-  mcor_status status = mcor_build_with_options(context, number, options);
-  if (status != MCOR_OK && cl->declares_builtins)
-  {
-    cl->declares_builtins = false; /* which this compiler does not like */
-    context->error[0] = '\0';
-    mcor_program_options(cl, number, options, sizeof options);
-    status = mcor_build_with_options(context, number, options);
-  }
-  return status;
-}
-
 mcor_status mcor_need_program(mcor_context* context, mcor_program number)
 {
-  if (context->cl.programs[number])
+  mcor_cl* cl = &context->cl;
+  if (cl->programs[number])
   {
     return MCOR_OK;
   }
   MCOR_TRY(mcor_ask(context, true));
   const double begin = mcor_seconds();
   const mcor_status status = mcor_build_program(context, number);
-  context->cl.build_seconds += mcor_seconds() - begin;
+  cl->build_seconds += mcor_seconds() - begin;
   return status;
 }
 
@@ -131,13 +117,7 @@ bool mcor_has_ahead(const mcor_cl* cl, const mcor_build* build)
   tried.build = *build;
   tried.lanes = mcor_choose_lanes(cl, build->precision);
   mcor_program_options(&tried, MCOR_PROGRAM_FIELD, options, sizeof options);
-  return mcor_native_has(options);
-}
-
-static bool mcor_same_build(const mcor_build* a, const mcor_build* b)
-{
-  return a->sph_kernel == b->sph_kernel && a->field == b->field && a->precision == b->precision &&
-    a->solids == b->solids;
+  return mcor_find_program(options) != NULL;
 }
 
 mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
@@ -147,10 +127,13 @@ mcor_status mcor_choose_build(mcor_context* context, const mcor_build* build)
   MCOR_RETURN_IF(is_double && !cl->has_fp64, context, MCOR_DEVICE_ERROR,
     "OpenCL device %s has no double precision; choose another device or single precision.",
     cl->device_name);
+  const mcor_build* now = &cl->build;
   const int lanes = mcor_choose_lanes(cl, build->precision);
-  if (cl->lanes != lanes || !mcor_same_build(&cl->build, build))
+  const bool all = cl->lanes != lanes || now->precision != build->precision;
+  if (all || now->sph_kernel != build->sph_kernel || now->field != build->field ||
+    now->solids != build->solids)
   {
-    mcor_drop_programs(cl, cl->lanes != lanes || cl->build.precision != build->precision);
+    mcor_drop_programs(cl, all);
     cl->lanes = lanes;
     cl->build = *build;
     cl->real_size = is_double ? sizeof(cl_double) : sizeof(cl_float);

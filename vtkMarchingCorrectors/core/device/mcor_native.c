@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* OpenCL's functions have many parameters that do not matter to this device. */
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+
 #define MCOR_ARGUMENT_LIMIT 64
 #define MCOR_BUFFER_ALIGNMENT 128
 /* Below this number of light work-items (groups of 64, some nanoseconds each) a launch is not
@@ -114,7 +117,6 @@ static cl_int mcor_answer_text(const char* text, size_t room, void* to, size_t* 
 static cl_int mcor_platform_info(
   cl_platform_id platform, cl_platform_info what, size_t room, void* to, size_t* needed)
 {
-  (void)platform;
   return what == CL_PLATFORM_NAME ? mcor_answer_text("built in", room, to, needed)
                                   : CL_INVALID_VALUE;
 }
@@ -122,7 +124,6 @@ static cl_int mcor_platform_info(
 static cl_int mcor_device_ids(
   cl_platform_id platform, cl_device_type type, cl_uint room, cl_device_id* devices, cl_uint* count)
 {
-  (void)platform, (void)type, (void)room;
   devices[0] = &mcor_device;
   *count = 1;
   return CL_SUCCESS;
@@ -131,7 +132,6 @@ static cl_int mcor_device_ids(
 static cl_int mcor_device_info(
   cl_device_id device, cl_device_info what, size_t room, void* to, size_t* needed)
 {
-  (void)device;
   static const char* const names[] = { "built in: this CPU", "built in: this CPU, AVX2",
     "built in: this CPU, AVX-512" };
   const int best = mcor_best_instructions();
@@ -191,7 +191,6 @@ static cl_context mcor_make_context(const cl_context_properties* properties, cl_
   const cl_device_id* devices, void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*),
   void* user, cl_int* error)
 {
-  (void)properties, (void)count, (void)devices, (void)notify, (void)user;
   cl_context context = mcor_make_object(sizeof *context, error);
   if (context)
   {
@@ -210,7 +209,6 @@ static cl_int mcor_release_context(cl_context context)
 static cl_command_queue mcor_make_queue(
   cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* error)
 {
-  (void)device, (void)properties;
   cl_command_queue queue = mcor_make_object(sizeof *queue, error);
   if (queue)
   {
@@ -221,7 +219,6 @@ static cl_command_queue mcor_make_queue(
 
 static cl_int mcor_finish_queue(cl_command_queue queue)
 {
-  (void)queue;
   return CL_SUCCESS;
 }
 
@@ -230,7 +227,6 @@ static cl_int mcor_finish_queue(cl_command_queue queue)
 static cl_mem mcor_make_buffer(
   cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error)
 {
-  (void)context, (void)flags, (void)host;
   cl_mem buffer = mcor_system_allocate(MCOR_BUFFER_ALIGNMENT, MCOR_BUFFER_ALIGNMENT + size);
   if (buffer)
   {
@@ -249,7 +245,6 @@ static cl_int mcor_release_buffer(cl_mem buffer)
 static cl_int mcor_read_buffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
   size_t offset, size_t size, void* to, cl_uint count, const cl_event* wait, cl_event* event)
 {
-  (void)queue, (void)blocking, (void)count, (void)wait, (void)event;
   memcpy(to, buffer->data + offset, size);
   return CL_SUCCESS;
 }
@@ -258,7 +253,6 @@ static cl_int mcor_write_buffer(cl_command_queue queue, cl_mem buffer, cl_bool b
   size_t offset, size_t size, const void* from, cl_uint count, const cl_event* wait,
   cl_event* event)
 {
-  (void)queue, (void)blocking, (void)count, (void)wait, (void)event;
   memcpy(buffer->data + offset, from, size);
   return CL_SUCCESS;
 }
@@ -266,7 +260,6 @@ static cl_int mcor_write_buffer(cl_command_queue queue, cl_mem buffer, cl_bool b
 static cl_int mcor_copy_buffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
   size_t to_offset, size_t size, cl_uint count, const cl_event* wait, cl_event* event)
 {
-  (void)queue, (void)count, (void)wait, (void)event;
   memcpy(to->data + to_offset, from->data + from_offset, size);
   return CL_SUCCESS;
 }
@@ -276,7 +269,6 @@ static cl_int mcor_fill_buffer(cl_command_queue queue, cl_mem buffer, const void
   size_t pattern_size, size_t offset, size_t size, cl_uint count, const cl_event* wait,
   cl_event* event)
 {
-  (void)queue, (void)pattern_size, (void)count, (void)wait, (void)event;
   memset(buffer->data + offset, *(const unsigned char*)pattern, size);
   return CL_SUCCESS;
 }
@@ -285,7 +277,6 @@ static void* mcor_map_buffer(cl_command_queue queue, cl_mem buffer, cl_bool bloc
   cl_map_flags flags, size_t offset, size_t size, cl_uint count, const cl_event* wait,
   cl_event* event, cl_int* error)
 {
-  (void)queue, (void)blocking, (void)flags, (void)size, (void)count, (void)wait, (void)event;
   *error = CL_SUCCESS;
   return buffer->data + offset;
 }
@@ -293,7 +284,6 @@ static void* mcor_map_buffer(cl_command_queue queue, cl_mem buffer, cl_bool bloc
 static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* mapped, cl_uint count,
   const cl_event* wait, cl_event* event)
 {
-  (void)queue, (void)buffer, (void)mapped, (void)count, (void)wait, (void)event;
   return CL_SUCCESS;
 }
 
@@ -303,14 +293,12 @@ static cl_int mcor_unmap_buffer(cl_command_queue queue, cl_mem buffer, void* map
 static cl_program mcor_make_program(
   cl_context context, cl_uint count, const char** texts, const size_t* lengths, cl_int* error)
 {
-  (void)context, (void)count, (void)texts, (void)lengths;
   return mcor_make_object(sizeof(struct _cl_program), error);
 }
 
 static cl_int mcor_build_program(cl_program program, cl_uint count, const cl_device_id* devices,
   const char* options, void(CL_CALLBACK* notify)(cl_program, void*), void* user)
 {
-  (void)count, (void)devices, (void)notify, (void)user;
   program->program = mcor_find_program(options);
   return program->program ? CL_SUCCESS : CL_BUILD_PROGRAM_FAILURE;
 }
@@ -409,7 +397,6 @@ static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_ui
   const size_t* offset, const size_t* items, const size_t* group, cl_uint count,
   const cl_event* wait, cl_event* event)
 {
-  (void)dimensions, (void)count, (void)wait, (void)event;
   const size_t first = offset ? *offset : 0;
   mcor_pool* pool = &queue->context->pool;
   mcor_pool_run(pool, NULL, first, first + *items, mcor_launch_step(pool->threads, *items, *group),

@@ -41,13 +41,12 @@ extern const mcor_native_program mcor_native_programs[];
 /* mcor_native_program.c. Returns the best instruction set of this processor and system for which
  * the library has programs; -1: none. */
 int mcor_best_instructions(void);
-/* Finds the program with these options for this processor; NULL: none. */
+/* Finds the program with these options, as given to clBuildProgram, for this processor; NULL:
+ * none. */
 const mcor_native_program* mcor_find_program(const char* options);
 
 /* Returns NULL where this processor has none of the instruction sets. */
 cl_platform_id mcor_native_platform(void);
-/* Whether there is a program for these options, as given to clBuildProgram. */
-bool mcor_native_has(const char* options);
 /* Returns the threads of a context; these may be fewer than the device's units. */
 mcor_pool* mcor_native_pool(cl_context context);
 

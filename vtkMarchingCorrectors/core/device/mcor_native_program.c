@@ -84,8 +84,3 @@ const mcor_native_program* mcor_find_program(const char* options)
   }
   return found;
 }
-
-bool mcor_native_has(const char* options)
-{
-  return mcor_find_program(options) != NULL;
-}

@@ -150,14 +150,12 @@ static mcor_status mcor_place_cuts(mcor_context* context, int cut_count)
     }
     mesh->level_first[1][l + 1] = mesh->march_count + low;
   }
-  const char* solve =
-    mcor_trims_by_eigenvalue(context) ? "mcor_trim_solve_eigenvalue" : "mcor_trim_solve_weight";
-  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, solve,
+  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ON_BOUNDARY, "mcor_trim_solve",
     MCOR_REAL(context->run.iso.relative), MCOR_REAL(options->tolerance * range),
     MCOR_REAL(mcor_vertex_threshold(context)), MCOR_REAL(mcor_fluid_share(context)),
-    MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS), MCOR_INT(context->space.flat),
-    MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
-    MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
+    MCOR_INT(mcor_trims_by_eigenvalue(context)), MCOR_INT(options->preview ? 0 : MCOR_TRIM_STEPS),
+    MCOR_INT(context->space.flat), MCOR_BUFFER(&mesh->offset), MCOR_BUFFER(&mesh->field_value),
+    MCOR_BUFFER(&mesh->gradient), MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->flag),
     MCOR_ATTRIBUTE_ARGS(context, &mesh->means));
 }
 

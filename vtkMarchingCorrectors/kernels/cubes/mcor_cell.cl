@@ -63,15 +63,18 @@ ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
   return cells;
 }
 
-/* Returns the cells that are valid at all nodes and have nodes on both sides. above: masks of
- * their corners. */
-ulong mcor_cell_crossed(
-  const ulong* above, __global const int* neighbours, __global const ulong* valid, int slot)
+/* Returns the cells that are valid at all corners and have corners on both sides. */
+ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
 {
-  ulong m[8];
-  mcor_brick_masks(valid, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(m);
+  return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(valid);
+}
+
+/* Makes masks of the corners of a brick's cells. */
+void mcor_corners_of(
+  __global const ulong* masks, __global const int* neighbours, int slot, ulong* corners)
+{
+  mcor_brick_masks(masks, neighbours, slot, 0, corners);
+  mcor_cell_corners(corners);
 }
 
 /* Finds, for each edge along an axis of a brick, the cells around it: q[0] above in both other
@@ -131,8 +134,7 @@ void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
       continue;
     }
     __global const ulong* e = edges + (long)owner * MCOR_EDGE_MASKS;
-    const ulong border =
-      (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) & (d & 4 ? MCOR_LOW_Z : ~0UL);
+    const ulong border = mcor_on_sides(~d & 1, ~d >> 1 & 1, ~d >> 2 & 1);
     for (ulong rest = (e[0] | e[1] | e[2]) & border; rest; rest &= rest - 1)
     {
       const int n = mcor_ctz(rest);
@@ -152,19 +154,17 @@ void mcor_edge_numbers(__global const int* upper, __global const ulong* edges,
   }
 }
 
-/* Writes the triangles of a cell, given by a row of the case table; returns where the next ones
- * go. */
-__global int* mcor_cell_emit(__global const uchar* row, int count,
-  const int numbers[3][MCOR_CELL_NODES], int cell, __global int* to)
+/* Writes the triangles of a cell that is cut as in a row. Returns their number. */
+int mcor_cell_emit(__global const mcor_cell_row* row, const int numbers[3][MCOR_CELL_NODES],
+  int cell, __global int* to)
 {
   const int first = (cell & 3) + 5 * (cell >> 2 & 3) + 25 * (cell >> 4);
-  for (int i = 0; i < 3 * count; ++i)
+  for (int i = 0; i < 3 * row->triangles; ++i)
   {
-    /* An edge is its axis and its lower corner within the cell, bits x, y, z. */
-    const int axis = row[i] >> 3, x = row[i] & 1, y = row[i] >> 1 & 1, z = row[i] >> 2 & 1;
-    const int number = numbers[axis][first + x + 5 * y + 25 * z];
+    const int edge = row->edges[i], axis = edge >> 3, x = edge & 1, y = edge >> 1 & 1;
+    const int number = numbers[axis][first + x + 5 * y + 25 * (edge >> 2 & 1)];
     /* The second fan is the one of cells below in the first other axis. */
-    *to++ = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
+    to[i] = number >= 0 ? number : -1 - number + (axis == 0 ? y : x);
   }
-  return to;
+  return row->triangles;
 }

@@ -115,7 +115,7 @@ int mcor_seed_proof(
   for (int first = 0; first < 64 && state != MCOR_EXAMINE; first += MCOR_ITEM_NODES)
   {
     mcor_query query = mcor_node_query(grid, brick, first, beside, MCOR_INSIDE_SHARE);
-    mcor_node_sums sums;
+    mcor_node_sums sums[MCOR_NODE_GROUPS];
     mcor_tile tile;
     mcor_tile_init(&tile);
     if (wide->complete)
@@ -131,10 +131,10 @@ int mcor_seed_proof(
     {
       return MCOR_EXAMINE;
     }
-    mcor_node_sum(grid, &query, &tile, &sums);
+    mcor_node_sum(grid, &query, &tile, sums);
     for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
     {
-      state = MCOR_ALL(sums.w[g] > iso * (real)1.0001f) ? state : MCOR_EXAMINE;
+      state = MCOR_ALL(sums[g].w > iso * (real)1.0001f) ? state : MCOR_EXAMINE;
     }
     if (state == MCOR_ABOVE && beside &&
       !(tile.complete && mcor_sides_are_inside(grid, &query, &tile, iso)))
@@ -152,11 +152,8 @@ __kernel void mcor_seed_prove(MCOR_GRID_PARAMS, const int first, const int count
   __global const int4* bricks, __global const ulong* known, const real iso, __global uchar* proofs,
   __global ulong* above, __global ulong* valid)
 {
-  const int slot = first + get_global_id(0);
-  if (slot >= first + count || known[slot] || proofs[slot] != MCOR_UNTRIED)
-  {
-    return;
-  }
+  MCOR_ITEM(i, i < count && !known[first + i] && proofs[first + i] == MCOR_UNTRIED);
+  const int slot = first + i;
   const mcor_grid grid = MCOR_GRID;
   mcor_tile none;
   mcor_tile_init(&none);

@@ -16,21 +16,23 @@ typedef struct
   ulong corners_above[8], corners_valid[8]; /* masks of cells, see mcor_cell_corners */
 } mcor_leaf;
 
+/* Returns slot and number of the node at (x, y, z), in a slot of the finer or of the leaf's own
+ * level. */
+int2 mcor_leaf_place(const mcor_leaf* leaf, int x, int y, int z, bool finer)
+{
+  return finer ? (int2)(leaf->slots[8 + MCOR_DIRECTION(x >> 2, y >> 2, z >> 2)],
+                   (x & 3) + 4 * (y & 3) + 16 * (z & 3))
+               : (int2)(leaf->slots[(x >> 3) | (y >> 3) << 1 | (z >> 3) << 2],
+                   (x >> 1 & 3) + 4 * (y >> 1 & 3) + 16 * (z >> 1 & 3));
+}
+
 /* Returns slot and number of the node at (x, y, z): in a slot of the leaf's level if there is
  * one. */
 int2 mcor_leaf_node(const mcor_leaf* leaf, int x, int y, int z)
 {
   z = leaf->plane ? 0 : z;
-  if (((x | y | z) & 1) == 0)
-  {
-    const int slot = leaf->slots[(x >> 3) | (y >> 3) << 1 | (z >> 3) << 2];
-    if (slot >= 0)
-    {
-      return (int2)(slot, (x >> 1 & 3) + 4 * (y >> 1 & 3) + 16 * (z >> 1 & 3));
-    }
-  }
-  const int slot = leaf->slots[8 + MCOR_DIRECTION(x >> 2, y >> 2, z >> 2)];
-  return (int2)(slot, (x & 3) + 4 * (y & 3) + 16 * (z & 3));
+  const int2 own = mcor_leaf_place(leaf, x, y, z, false);
+  return ((x | y | z) & 1) == 0 && own.x >= 0 ? own : mcor_leaf_place(leaf, x, y, z, true);
 }
 
 /* Returns where a leaf has finer nodes: an edge or a face has one in its middle if any leaf that
@@ -96,10 +98,7 @@ ulong mcor_leaf_hanging_cells(uint hanging)
   for (int at = 0; at < 27 && hanging; ++at)
   {
     const int x = at % 3, y = at / 3 % 3, z = at / 9;
-    const ulong beside = (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
-      (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
-      (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
-    cells |= hanging >> at & 1 ? beside : 0;
+    cells |= hanging >> at & 1 ? mcor_on_sides(x, y, z) : 0;
   }
   return cells;
 }
@@ -157,19 +156,9 @@ mcor_leaf_edge mcor_leaf_edge_of(const mcor_leaf* leaf, int cell, uint split, in
 {
   const int p[3] = { lower % 3, lower / 3 % 3, lower / 9 };
   const int u[3] = { 2 * (cell & 3) + p[0], 2 * (cell >> 2 & 3) + p[1], 2 * (cell >> 4) + p[2] };
-  const int step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
-  mcor_leaf_edge edge;
-  edge.axis = axis;
-  if (p[axis] == 0 && !(split >> (lower + step) & 1))
-  {
-    edge.slot = leaf->slots[(u[0] >> 3) | (u[1] >> 3) << 1 | (u[2] >> 3) << 2];
-    edge.node = (u[0] >> 1 & 3) + 4 * (u[1] >> 1 & 3) + 16 * (u[2] >> 1 & 3);
-  }
-  else
-  {
-    edge.slot = leaf->slots[8 + MCOR_DIRECTION(u[0] >> 2, u[1] >> 2, u[2] >> 2)];
-    edge.node = (u[0] & 3) + 4 * (u[1] & 3) + 16 * (u[2] & 3);
-  }
+  const bool is_half = p[axis] > 0 || (split >> (lower + mcor_adaptive_step(axis)) & 1);
+  const int2 at = mcor_leaf_place(leaf, u[0], u[1], u[2], is_half);
+  mcor_leaf_edge edge = { at.x, at.y, axis, 0 };
   const int b = axis == 0 ? p[1] : p[0], c = axis == 2 ? p[1] : p[2];
   const uint along_b = b == 0 ? 5 : b == 2 ? 10 : 15, along_c = c == 0 ? 3 : c == 2 ? 12 : 15;
   edge.quadrants = along_b & along_c;
@@ -187,6 +176,16 @@ uint mcor_leaf_corner_nodes(int corners)
   return above;
 }
 
+/* Marks an edge as used in some of the quadrants around it. */
+void mcor_leaf_mark_edge(const mcor_leaf_edge* edge, uint around, __global uint* quadrants)
+{
+  __global uint* words = quadrants + edge->slot * (long)MCOR_QUADRANT_WORDS + 8 * edge->axis;
+  for (; around; around &= around - 1)
+  {
+    atomic_or(words + 2 * mcor_ctz(around) + (edge->node >> 5), 1u << (edge->node & 31));
+  }
+}
+
 /* Marks the edges that a cell beside finer leaves uses. */
 void mcor_leaf_mark(
   const mcor_leaf* leaf, int cell, uint split, uint above, __global uint* quadrants)
@@ -197,24 +196,17 @@ void mcor_leaf_mark(
     const int p[3] = { lower % 3, lower / 3 % 3, lower / 9 };
     for (int axis = 0; axis < 3 && (nodes >> lower & 1); ++axis)
     {
-      const int step = axis == 0 ? 1 : axis == 1 ? 3 : 9;
+      const int step = mcor_adaptive_step(axis), middle = lower + step;
       if (p[axis] == 2)
       {
         continue;
       }
-      const int middle = lower + step;
       const bool whole = !(nodes >> middle & 1);
       const int upper = whole ? middle + step : middle;
-      if ((whole && !(corners >> lower & 1)) || !((above >> lower ^ above >> upper) & 1))
+      if ((!whole || (corners >> lower & 1)) && ((above >> lower ^ above >> upper) & 1))
       {
-        continue;
-      }
-      const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, split, axis, lower);
-      __global uint* words = quadrants + edge.slot * (long)MCOR_QUADRANT_WORDS + 8 * axis;
-      for (uint rest = edge.quadrants; rest; rest &= rest - 1)
-      {
-        const int q = mcor_ctz(rest);
-        atomic_or(words + 2 * q + (edge.node >> 5), 1u << (edge.node & 31));
+        const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, split, axis, lower);
+        mcor_leaf_mark_edge(&edge, edge.quadrants, quadrants);
       }
     }
   }
@@ -225,29 +217,11 @@ void mcor_leaf_mark(
   const int count, const int plane, __global const uint *finer, __global const int *tables,        \
     __global const ulong *above, __global const ulong *valid
 
-/* Tables by slot: which cells are plain, and, for other cells, which leaf the brick is. */
-#define MCOR_PLAIN_PARAMS __global const ulong *plain, __global const int *leaf_of
-
-/* Parameters of mcor_march_triangles and mcor_plane_lines, which are launched alike. */
-#define MCOR_EMIT_PARAMS                                                                           \
-  const int brick_count, MCOR_LEAF_PARAMS, MCOR_PLAIN_PARAMS, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,  \
-    const int follows, __global const mcor_rung *rungs, __global const int4 *bricks,               \
-    __global const ulong *used, __global const ulong *edges, __global const int *vertex_base,      \
-    __global const int *triangle_base, __global ulong *triangle_cells, __global int *triangles
-
-/* Returns the cells without finer nodes that are valid at all nodes and have nodes on both
- * sides. */
-ulong mcor_leaf_crossed(const mcor_leaf* leaf, ulong hanging)
-{
-  return mcor_cell_some(leaf->corners_above) & ~mcor_cell_all(leaf->corners_above) &
-    mcor_cell_all(leaf->corners_valid) & ~hanging;
-}
-
 /* One work-item = one leaf. Reads its nodes' masks where it may be mixed. Writes to its slot which
  * of its cells are plain, which leaf it is, and whether its cells may be used: whether any of them
  * is valid at all nodes and has nodes on both sides. */
-__kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
-  __global ulong* cells, __global ulong* plain, __global int* leaf_of)
+__kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed, __global ulong* cells,
+  __global ulong* plain, __global int* leaf_of)
 {
   MCOR_ITEM(i, i < count);
   const int slot = tables[i * (long)MCOR_LEAF_SLOTS];
@@ -259,7 +233,7 @@ __kernel void mcor_leaf_cells(MCOR_LEAF_PARAMS, __global const uchar* mixed,
     return;
   }
   const mcor_leaf leaf = mcor_leaf_load(i, plane, finer, tables, above, valid);
-  bool some = mcor_leaf_crossed(&leaf, hanging) != 0;
+  bool some = (mcor_cells_crossed(leaf.corners_above, leaf.corners_valid) & ~hanging) != 0;
   for (ulong rest = hanging; rest && !some; rest &= rest - 1)
   {
     some = mcor_leaf_cell(&leaf, mcor_ctz(rest)).used;
@@ -289,7 +263,8 @@ int mcor_leaf_emit(const mcor_leaf* leaf, int cell, __global const ulong* edges,
 {
   const mcor_adaptive_nodes_of nodes = mcor_leaf_cell(leaf, cell);
   uchar slots[3 * MCOR_ADAPTIVE_TRIANGLES];
-  const int made = mcor_adaptive_triangulate(nodes.split, nodes.above, slots);
+  int flat = 0;
+  const int made = mcor_adaptive_triangulate(nodes.split, nodes.above, slots, &flat);
   for (int k = 0; k < 3 * made; ++k)
   {
     to[k] =

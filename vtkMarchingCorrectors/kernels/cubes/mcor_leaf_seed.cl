@@ -81,8 +81,7 @@ int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
   {
     return states[m] & MCOR_EXAMINE;
   }
-  const ulong its = valid[slot] & (d & 1 ? MCOR_LOW_X : ~0UL) & (d & 2 ? MCOR_LOW_Y : ~0UL) &
-    (d & 4 ? MCOR_LOW_Z : ~0UL);
+  const ulong its = valid[slot] & mcor_on_sides(~d & 1, ~d >> 1 & 1, ~d >> 2 & 1);
   return (its & above[slot] ? MCOR_ABOVE : 0) | (its & ~above[slot] ? MCOR_BELOW : 0);
 }
 
@@ -106,8 +105,8 @@ __kernel void mcor_leaf_choose(
     const int slot = mcor_slot_of_number(brick_bits, brick_base, at);
     const bool evaluated = slot >= 0 && known[slot], is_beside = mcor_has_brick(beside, at);
     /* Nothing is known of nodes that cells of other levels have on its sides. */
-    const bool open = evaluated || states[at] == MCOR_EXAMINE ? is_beside
-                                                              : (states[at] & MCOR_OPEN_SIDES) != 0;
+    const bool open =
+      evaluated || states[at] == MCOR_EXAMINE ? is_beside : (states[at] & MCOR_OPEN_SIDES) != 0;
     int sides = mcor_leaf_sides(MCOR_KNOWN_ARGS, at, 0);
     for (int d = 1; d < (plane ? 4 : 8) && !is_beside && sides != MCOR_EXAMINE; ++d)
     {

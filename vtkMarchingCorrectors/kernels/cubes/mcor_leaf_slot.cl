@@ -100,7 +100,7 @@ bool mcor_leaf_need_plain(__global const int* slots, __global const ulong* above
   }
   mcor_cell_corners(a);
   mcor_cell_corners(v);
-  const ulong crossed = mcor_cell_some(a) & ~mcor_cell_all(a) & mcor_cell_all(v);
+  const ulong crossed = mcor_cells_crossed(a, v);
   for (int d = 0; d < 8 && crossed; ++d)
   {
     if (mcor_cells_reach(crossed, d))

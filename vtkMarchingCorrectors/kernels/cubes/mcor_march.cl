@@ -41,7 +41,7 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
     }
     else
     {
-      made += mcor_adaptive_count(nodes.split, nodes.above, &caps);
+      made += mcor_adaptive_triangulate(nodes.split, nodes.above, 0, &caps);
       mcor_leaf_mark(&leaf, cell, nodes.split, nodes.above, quadrants);
     }
     flat += within >> cell & 1 ? caps : 0;
@@ -57,14 +57,15 @@ __kernel void mcor_march_hanging(MCOR_LEAF_PARAMS, __global const ulong* plain,
 /* One work-item = one brick. Reads the node masks. Leaves in `used` its plain cells that are
  * valid at all nodes and have nodes on both sides; writes these to plain_used, too. */
 __kernel void mcor_march_classify(const int brick_count, __global const int* neighbours,
-  __global const ulong* plain, __global const ulong* above, __global const ulong* valid, __global ulong* used, __global ulong* plain_used)
+  __global const ulong* plain, __global const ulong* above, __global const ulong* valid,
+  __global ulong* used, __global ulong* plain_used)
 {
   MCOR_ITEM(slot, slot < brick_count);
   const ulong own = plain[slot], others = used[slot] & ~own;
-  ulong m[8];
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  const ulong now = used[slot] & own & mcor_cell_crossed(m, neighbours, valid, slot);
+  ulong m[8], v[8];
+  mcor_corners_of(above, neighbours, slot, m);
+  mcor_corners_of(valid, neighbours, slot, v);
+  const ulong now = used[slot] & own & mcor_cells_crossed(m, v);
   used[slot] = now | others;
   plain_used[slot] = now;
 }
@@ -95,8 +96,8 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
     for (int k = 0; k < 4; ++k)
     {
       const long at = slot * (long)MCOR_QUADRANT_WORDS + 8 * a + 2 * k;
-      q[k] = (q[k] & changes) |
-        (leaf_count > 0 ? (ulong)quadrants[at + 1] << 32 | quadrants[at] : 0);
+      q[k] =
+        (q[k] & changes) | (leaf_count > 0 ? (ulong)quadrants[at + 1] << 32 | quadrants[at] : 0);
     }
     vertices += mcor_cell_edges(q, a, to);
   }
@@ -170,17 +171,23 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
 }
 
 /* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes
- * triangles and, if wanted, the keys of their cells. */
-__kernel void mcor_march_triangles(MCOR_EMIT_PARAMS)
+ * triangles, or lines, and, if wanted, the keys of their cells. */
+__kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
+  __global const ulong* plain, __global const int* leaf_of, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,
+  const int follows, __global const mcor_rung* rungs, __global const int4* bricks,
+  __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
+  __global const int* triangle_base, __global ulong* triangle_cells, __global int* triangles)
 {
   MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
   const ulong own = plain[slot];
   ulong m[8];
   int numbers[3][MCOR_CELL_NODES];
   mcor_leaf leaf;
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  mcor_edge_numbers(neighbours + slot * 14L, edges, vertex_base, slot, numbers);
+  mcor_corners_of(above, neighbours, slot, m);
+  if (!plane)
+  {
+    mcor_edge_numbers(neighbours + slot * 14L, edges, vertex_base, slot, numbers);
+  }
   if (used[slot] & ~own)
   {
     leaf = mcor_leaf_load(leaf_of[slot], plane, finer, tables, above, valid);
@@ -188,21 +195,20 @@ __kernel void mcor_march_triangles(MCOR_EMIT_PARAMS)
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
   const ulong key =
     mcor_brick_key(rungs, bricks[slot].w, bricks[slot].x, bricks[slot].y, bricks[slot].z) << 6;
+  const ulong joined =
+    plane && resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] & own : 0;
   long to = triangle_base[slot];
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     const int cell = mcor_ctz(rest);
-    int made;
-    if (own >> cell & 1)
-    {
-      const mcor_cell_cut cut = mcor_cell_cut_of(m, MCOR_CUT_ARGS, slot, cell);
-      mcor_cell_emit(cut.edges, cut.triangles, numbers, cell, triangles + 3 * to);
-      made = cut.triangles;
-    }
-    else
-    {
-      made = mcor_leaf_emit(&leaf, cell, edges, vertex_base, triangles + 3 * to);
-    }
+    const bool is_plain = own >> cell & 1;
+    __global int* next = triangles + 3 * to;
+    int tunnels = 0;
+    const int made = plane ? mcor_plane_emit(m, is_plain, &leaf, cell, joined >> cell & 1,
+                               neighbours + slot * 14L, edges, vertex_base, slot, next)
+      : is_plain
+      ? mcor_cell_emit(mcor_cell_cut(m, MCOR_CUT_ARGS, slot, cell, &tunnels), numbers, cell, next)
+      : mcor_leaf_emit(&leaf, cell, edges, vertex_base, next);
     for (int i = 0; i < made && follows;
          ++i) /* Intel's compiler (2026.2) crashes on another form */
     {

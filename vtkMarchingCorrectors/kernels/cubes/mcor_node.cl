@@ -9,21 +9,47 @@
 #define MCOR_ITEM_NODES (MCOR_LANES == 1 ? 1 : 64)
 #define MCOR_NODE_GROUPS (MCOR_ITEM_NODES / MCOR_LANES)
 
-/* Sums at the nodes of a work-item: S = sum V (A - A0) W, w = sum V W, and the trimming weight. */
+/* Sums at a group of nodes: s = sum V (A - A0) W, w = sum V W, and, with solids, the trimming
+ * weight t. */
 typedef struct
 {
-  realv s[MCOR_NODE_GROUPS], w[MCOR_NODE_GROUPS];
-#if MCOR_SOLIDS
-  realv t[MCOR_NODE_GROUPS];
-#endif
+  realv s, w, t;
 } mcor_node_sums;
 
-/* Place of a work-item's n-th node in these sums. */
+/* The group of a work-item's n-th node, and its lane there. */
 int mcor_group_of(int n);
 int mcor_lane_of(int n);
 
-/* Sums at the nodes of a query of mcor_node_query. The tile may already hold its particles. */
+/* Sums at the groups of a query of mcor_node_query. The tile may already hold its particles. */
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums);
+
+/* Adds all particles of a tile to the sums at MCOR_LANES nodes. x, y, z: the nodes from the
+ * query's origin. */
+void mcor_sums_add(const mcor_tile* tile, realv x, realv y, realv z, mcor_node_sums* sums)
+{
+  for (int from = 0; from < tile->count; from += MCOR_STEP)
+  {
+    realv distance[MCOR_STEP];
+    const int end = min(from + MCOR_STEP, tile->count);
+    for (int i = from; i < end; ++i)
+    {
+      distance[i - from] = mcor_distance(MCOR_EACH(tile, x, i) - x, MCOR_EACH(tile, y, i) - y,
+        MCOR_EACH(tile, z, i) - z, MCOR_EACH(tile, inv_h, i));
+    }
+    for (int i = from; i < end; ++i)
+    {
+      const real weight = MCOR_EACH(tile, weight, i);
+      const realv v = mcor_weight(distance[i - from], MCOR_EACH(tile, inv_h, i));
+#if MCOR_FIELD != 2
+      sums->s = MCOR_FMA(weight * MCOR_EACH(tile, value, i), v, sums->s);
+#endif
+      sums->w = MCOR_FMA(weight, v, sums->w);
+#if MCOR_SOLIDS
+      sums->t = MCOR_FMA(MCOR_EACH(tile, trim_weight, i), v, sums->t);
+#endif
+    }
+  }
+}
 
 /* Completes the query for nodes of a brick. All bricks of a region count positions from its
  * first node, so a node's value is the same whichever tile of the region it is made from. */
@@ -54,27 +80,24 @@ MCOR_ONE_COPY mcor_query mcor_node_query(
   return query;
 }
 
-/* Writes the field's values and the trimming weights (-1: no valid value) at the nodes of a
- * work-item, from its first on. */
+/* Writes the field's value and the trimming weight (-1: no valid value) of a node, whose sums are
+ * in a lane. */
+void mcor_sums_store(
+  const mcor_node_sums* sums, int lane, __global real* value, __global real* weight)
+{
+  const real s = MCOR_GET(sums->s, lane), w = MCOR_GET(sums->w, lane);
+  const real t = MCOR_SOLIDS ? MCOR_GET(sums->t, lane) : w;
+  const bool defined = MCOR_FIELD != 0 || w >= (real)MCOR_LEAST_NODE_WEIGHT;
+  *value = MCOR_FIELD == 2 ? w : MCOR_FIELD == 1 ? s : defined ? s / w : (real)0;
+  *weight = defined ? t : (real)-1;
+}
+
+/* Writes those of a work-item's nodes, from its first on. */
 void mcor_node_store(const mcor_node_sums* sums, __global real* value, __global real* weight)
 {
   for (int n = 0; n < MCOR_ITEM_NODES; ++n)
   {
-    const int g = mcor_group_of(n), lane = mcor_lane_of(n);
-    const real s = MCOR_GET(sums->s[g], lane), w = MCOR_GET(sums->w[g], lane);
-#if MCOR_SOLIDS
-    const real t = MCOR_GET(sums->t[g], lane);
-#else
-    const real t = w;
-#endif
-#if MCOR_FIELD == 0
-    const bool defined = w >= (real)MCOR_LEAST_NODE_WEIGHT;
-    value[n] = defined ? s / w : (real)0;
-    weight[n] = defined ? t : (real)-1;
-#else
-    value[n] = MCOR_FIELD == 1 ? s : w;
-    weight[n] = t;
-#endif
+    mcor_sums_store(sums + mcor_group_of(n), mcor_lane_of(n), value + n, weight + n);
   }
 }
 
@@ -106,11 +129,11 @@ __kernel void mcor_node_values(MCOR_GRID_PARAMS, const int first, const int coun
   }
   const mcor_grid grid = MCOR_GRID;
   mcor_query query = mcor_node_query(&grid, bricks[slot], (int)(first_node % 64), 0, 1);
-  mcor_node_sums sums;
+  mcor_node_sums sums[MCOR_NODE_GROUPS];
   mcor_tile tile;
   mcor_tile_init(&tile);
-  mcor_node_sum(&grid, &query, &tile, &sums);
-  mcor_node_store(&sums, node_value + first_node, node_weight + first_node);
+  mcor_node_sum(&grid, &query, &tile, sums);
+  mcor_node_store(sums, node_value + first_node, node_weight + first_node);
 }
 
 /* One work-item = one brick. Reads the values of its nodes if these were `evaluated`, and marks

@@ -103,18 +103,15 @@ realv mcor_group_distance(const mcor_group_nodes* nodes, real x, real y, real z,
 #define mcor_group_weight mcor_weight
 #endif
 
-/* Adds the tile's particles to group g, whose first node is (x, y, z) from the query's origin.
- * term: their weights times values. */
-void mcor_node_add(const mcor_tile* tile, const real* term, int g, const real edge[3], real x,
-  real y, real z, real share, mcor_node_sums* sums)
+/* Adds the tile's particles to a group whose first node is (x, y, z) from the query's origin. term:
+ * their weights times values. */
+void mcor_node_add(const mcor_tile* tile, const real* term, const real edge[3], real x, real y,
+  real z, real share, mcor_node_sums* sums)
 {
   const mcor_group_nodes nodes = mcor_group_place(edge, x, y, z);
   int list[MCOR_TILE_SIZE + 16];
   const int count = mcor_node_list(tile, edge, x, y, z, share, list);
-  realv s = sums->s[g], w = sums->w[g];
-#if MCOR_SOLIDS
-  realv t = sums->t[g];
-#endif
+  realv s = sums->s, w = sums->w, t = sums->t;
   for (int begin = 0; begin < count; begin += MCOR_STEP)
   {
     realv distance[MCOR_STEP];
@@ -138,11 +135,9 @@ void mcor_node_add(const mcor_tile* tile, const real* term, int g, const real ed
 #endif
     }
   }
-  sums->s[g] = s;
-  sums->w[g] = w;
-#if MCOR_SOLIDS
-  sums->t[g] = t;
-#endif
+  sums->s = s;
+  sums->w = w;
+  sums->t = t;
 }
 
 void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mcor_node_sums* sums)
@@ -155,10 +150,7 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
   }
   for (int g = 0; g < MCOR_NODE_GROUPS; ++g)
   {
-    sums->s[g] = sums->w[g] = 0;
-#if MCOR_SOLIDS
-    sums->t[g] = 0;
-#endif
+    sums[g].s = sums[g].w = sums[g].t = 0;
   }
   for (bool begin = true; mcor_tile_next(grid, query, tile, begin); begin = false)
   {
@@ -173,8 +165,8 @@ void mcor_node_sum(const mcor_grid* grid, mcor_query* query, mcor_tile* tile, mc
     {
       const int4 node = mcor_group_node(g);
       const real* edge = grid->edge;
-      mcor_node_add(tile, term, g, edge, first[0] + (real)node.x * edge[0],
-        first[1] + (real)node.y * edge[1], first[2] + (real)node.z * edge[2], share, sums);
+      mcor_node_add(tile, term, edge, first[0] + (real)node.x * edge[0],
+        first[1] + (real)node.y * edge[1], first[2] + (real)node.z * edge[2], share, sums + g);
     }
   }
 }

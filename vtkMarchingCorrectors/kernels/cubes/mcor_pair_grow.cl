@@ -37,10 +37,10 @@ __kernel void mcor_pair_grow(const int brick_count, __global const int* neighbou
   {
     return;
   }
-  ulong m[8], lower[3], upper[3];
-  mcor_brick_masks(above, neighbours, i, 0, m);
-  mcor_cell_corners(m);
-  const ulong used = mcor_cell_crossed(m, neighbours, valid, i);
+  ulong m[8], v[8], lower[3], upper[3];
+  mcor_corners_of(above, neighbours, i, m);
+  mcor_corners_of(valid, neighbours, i, v);
+  const ulong used = mcor_cells_crossed(m, v);
   for (int a = 0; a < 3; ++a)
   {
     lower[a] = mcor_cell_faces(m, a, 0);

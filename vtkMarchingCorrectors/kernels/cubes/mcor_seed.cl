@@ -42,11 +42,8 @@ typedef struct
 __kernel void mcor_seed_side_flags(const int particle_count, __global const real* weight,
   __global const real* value, const real side_margin, const real iso, __global uchar* side_flags)
 {
-  const int begin = get_global_id(0) * MCOR_SIDE_PARTICLES;
-  if (begin >= particle_count)
-  {
-    return;
-  }
+  MCOR_ITEM(run, run * (long)MCOR_SIDE_PARTICLES < particle_count);
+  const int begin = run * MCOR_SIDE_PARTICLES;
   int seen = 0;
   for (int j = begin; j < min(begin + MCOR_SIDE_PARTICLES, particle_count); ++j)
   {
@@ -54,7 +51,7 @@ __kernel void mcor_seed_side_flags(const int particle_count, __global const real
     const int side = (value[j] - margin >= iso ? 0 : 2) | (value[j] + margin < iso ? 0 : 1);
     seen |= (MCOR_SOLIDS && weight[j] == 0) ? 0 : side;
   }
-  side_flags[get_global_id(0)] = (uchar)seen;
+  side_flags[run] = (uchar)seen;
 }
 #endif
 
@@ -187,11 +184,8 @@ __kernel void mcor_seed_regions(MCOR_GRID_PARAMS, const int first, const int cou
   __global const uchar* block_states, MCOR_TREE_PARAMS, MCOR_SEED_PARAMS, __global uchar* states,
   __global uint* brick_bits, __global int* list, __global int* list_count)
 {
-  const int region = first + get_global_id(0), number = mcor_region_number(region);
-  if (region >= first + count)
-  {
-    return;
-  }
+  MCOR_ITEM(item, item < count);
+  const int region = first + item, number = mcor_region_number(region);
   const int4 brick = mcor_brick_of_number(rungs, block_keys, number);
   const uint layers = depth > 0 ? 0xff : brick.z == 0 ? 0x0f : 0;
   const uint own = layers & mcor_region_leaves(MCOR_TREE_ARGS, number);
@@ -275,9 +269,9 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor
   {
     return 0;
   }
-  mcor_node_sums sums;
-  mcor_node_sum(grid, &query, &tile, &sums);
-  mcor_node_store(&sums, value, weight);
+  mcor_node_sums sums[MCOR_NODE_GROUPS];
+  mcor_node_sum(grid, &query, &tile, sums);
+  mcor_node_store(sums, value, weight);
   return ~0UL;
 }
 
@@ -288,27 +282,25 @@ ulong mcor_seed_brick(const mcor_grid* grid, int4 brick, bool beside, const mcor
  * Reads the particles that reach it. Writes the states of bricks that are not known yet, and the
  * values and signs of nodes that it evaluates. */
 __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int count,
-  MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS, __global const int* list, MCOR_SEED_PARAMS, __global uchar* states, __global ulong* known,
-  __global real* node_value, __global real* node_weight, __global ulong* above,
-  __global ulong* valid)
+  MCOR_BRICK_PARAMS, MCOR_TREE_PARAMS, __global const int* list, MCOR_SEED_PARAMS,
+  __global uchar* states, __global ulong* known, __global real* node_value,
+  __global real* node_weight, __global ulong* above, __global ulong* valid)
 {
-  const int i = get_global_id(0) / (8 / MCOR_ITEM_BRICKS);
-  if (i >= count)
-  {
-    return;
-  }
+  MCOR_ITEM(item, item / (8 / MCOR_ITEM_BRICKS) < count);
+  const int i = item / (8 / MCOR_ITEM_BRICKS);
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int number = mcor_region_number(list[first + i]);
   const int4 region = mcor_brick_of_number(rungs, block_keys, number);
-  mcor_query query = mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves, MCOR_REGION_CUBES);
+  mcor_query query =
+    mcor_seed_query(&grid, region, MCOR_REGION_CUBES - 1 + has_leaves, MCOR_REGION_CUBES);
   mcor_tile wide;
   mcor_tile_init(&wide);
   if (MCOR_ITEM_BRICKS > 1)
   {
     mcor_tile_next(&grid, &query, &wide, true);
   }
-  const int own = get_global_id(0) % (8 / MCOR_ITEM_BRICKS) * MCOR_ITEM_BRICKS;
+  const int own = item % (8 / MCOR_ITEM_BRICKS) * MCOR_ITEM_BRICKS;
   for (int b = own; b < own + MCOR_ITEM_BRICKS; ++b)
   {
     const int m = number + mcor_region_offset(b);
@@ -317,8 +309,8 @@ __kernel void mcor_seed_bricks(MCOR_GRID_PARAMS, const int first, const int coun
     {
       const int4 brick = region + (int4)(b & 1, b >> 1 & 1, b >> 2, 0);
       __global real *value = node_value + slot * 64L, *weight = node_weight + slot * 64L;
-      known[slot] = mcor_seed_brick(
-        &grid, brick, has_leaves && mcor_has_brick(beside, m), &wide, &limits, states + m, value, weight);
+      known[slot] = mcor_seed_brick(&grid, brick, has_leaves && mcor_has_brick(beside, m), &wide,
+        &limits, states + m, value, weight);
       if (known[slot])
       {
         const ulong2 signs = mcor_node_signs(value, weight, iso, node_threshold);
@@ -358,11 +350,9 @@ uint mcor_seed_row(int3 blocks, int row, __global const uchar* states)
 __kernel void mcor_seed_request(MCOR_BLOCK_PARAMS, __global const uchar* inactive,
   __global const uchar* states, __global uint* brick_bits)
 {
-  const int m = get_global_id(0) * 8;
-  if (m >= block_count * MCOR_BLOCK_BRICKS || inactive[m / MCOR_BLOCK_BRICKS])
-  {
-    return;
-  }
+  MCOR_ITEM(
+    row, row < block_count * MCOR_BLOCK_BRICKS / 8 && !inactive[row / (MCOR_BLOCK_BRICKS / 8)]);
+  const int m = row * 8;
   int seen = 0;
   for (int x = 0; x < 8; ++x)
   {
@@ -400,11 +390,7 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
   __global const ulong* fresh, __global const ulong* above, __global const ulong* valid,
   __global const uchar* states, __global uint* brick_bits, __global int* grown)
 {
-  const int slot = get_global_id(0);
-  if (slot >= brick_count || fresh[slot] == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(slot, slot < brick_count && fresh[slot] != 0);
   const int4 brick = bricks[slot];
   const int own = mcor_brick_number(MCOR_BLOCK_ARGS, brick.w, brick.x, brick.y, brick.z);
   for (int d = 0; d < 27; ++d)
@@ -416,10 +402,8 @@ __kernel void mcor_seed_grow(MCOR_BLOCK_PARAMS, const int brick_count, __global 
     {
       continue;
     }
-    const ulong beside = (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
-      (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
-      (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
-    if ((beside & valid[slot] & (state == MCOR_ABOVE ? ~above[slot] : above[slot])) &&
+    if ((mcor_on_sides(x, y, z) & valid[slot] &
+          (state == MCOR_ABOVE ? ~above[slot] : above[slot])) &&
       mcor_request_brick(brick_bits, m))
     {
       atomic_or(grown, 1);

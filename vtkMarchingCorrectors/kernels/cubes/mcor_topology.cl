@@ -27,8 +27,7 @@ __kernel void mcor_topology_faces(const int brick_count, __global const int* nei
   MCOR_ITEM(slot, slot < brick_count);
   ulong m[8], p[8], u[8];
   mcor_brick_masks(used, neighbours, slot, 7, u);
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
+  mcor_corners_of(above, neighbours, slot, m);
   if (leaf_count > 0)
   {
     mcor_brick_masks(plain, neighbours, slot, 7, p);
@@ -162,8 +161,7 @@ __kernel void mcor_topology_cells(const int brick_count, __global const int* nei
 {
   MCOR_ITEM(slot, slot < brick_count);
   ulong m[8], cells = 0;
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
+  mcor_corners_of(above, neighbours, slot, m);
   for (ulong rest = used[slot]; rest; rest &= rest - 1)
   {
     __global const mcor_cell_row* row =

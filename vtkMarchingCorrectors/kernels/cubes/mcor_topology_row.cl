@@ -45,49 +45,29 @@ int mcor_topology_row(const ulong* corners, __global const int* neighbours,
   return row;
 }
 
-/* Returns the row of a cell after all decisions. *tunnel: whether it has a tunnel. */
-__global const mcor_cell_row* mcor_topology_cell(const ulong* corners,
-  __global const int* neighbours, __global const ulong* decisions, __global const int* cases,
-  __global const mcor_cell_row* rows, int slot, int cell, int* tunnel)
+/* Data by which cells are cut: the rows of all cases, and, if the topology is resolved, the
+ * decisions on faces and cells. */
+#define MCOR_CUT_PARAMS                                                                            \
+  const int resolved, __global const int *neighbours, __global const ulong *decisions,             \
+    __global const int *cases, __global const mcor_cell_row *rows
+#define MCOR_CUT_ARGS resolved, neighbours, decisions, cases, rows
+
+/* Returns how a cell without finer nodes is cut: as the field decided, or else as if it had joined
+ * nothing. Adds 1 to *tunnels if the cell has one. */
+__global const mcor_cell_row* mcor_cell_cut(
+  const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell, int* tunnels)
 {
-  __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
   const int first = cases[mcor_march_case(corners, cell)] >> 6;
+  if (!resolved)
+  {
+    return rows + first;
+  }
+  __global const ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
   const int row = mcor_topology_row(corners, neighbours, decisions, cases, slot, cell);
   __global const uchar* choice = rows[row].tunnel;
   const int other = cells[0] >> cell & 1 ? choice[0] : cells[1] >> cell & 1 ? choice[1] : 0;
-  *tunnel = other != 0;
+  *tunnels += other != 0;
   return rows + (other ? first + other : row);
-}
-
-/* Data by which cells are cut: the case table, and the decisions on faces and cells if the
- * topology is resolved. */
-#define MCOR_CUT_PARAMS                                                                            \
-  __global const uchar *case_table, const int resolved, __global const int *neighbours,            \
-    __global const ulong *decisions, __global const int *cases, __global const mcor_cell_row *rows
-#define MCOR_CUT_ARGS case_table, resolved, neighbours, decisions, cases, rows
-
-/* Returns how a cell without finer nodes is cut: as the field decided, or by the case table. */
-typedef struct
-{
-  __global const uchar* edges; /* see mcor_cell_row */
-  int triangles, tunnel;
-} mcor_cell_cut;
-
-mcor_cell_cut mcor_cell_cut_of(const ulong* corners, MCOR_CUT_PARAMS, int slot, int cell)
-{
-  mcor_cell_cut cut;
-  if (resolved)
-  {
-    __global const mcor_cell_row* row =
-      mcor_topology_cell(corners, neighbours, decisions, cases, rows, slot, cell, &cut.tunnel);
-    cut.edges = row->edges;
-    cut.triangles = row->triangles;
-    return cut;
-  }
-  cut.edges = case_table + mcor_march_case(corners, cell) * 16;
-  cut.triangles = cut.edges[15];
-  cut.tunnel = 0;
-  return cut;
 }
 
 /* Returns the number of triangles of these cells of a brick, and adds to the number of tunnels. */
@@ -96,9 +76,7 @@ int mcor_cells_count(const ulong* corners, MCOR_CUT_PARAMS, int slot, ulong cell
   int triangles = 0;
   for (ulong rest = cells; rest; rest &= rest - 1)
   {
-    const mcor_cell_cut cut = mcor_cell_cut_of(corners, MCOR_CUT_ARGS, slot, mcor_ctz(rest));
-    triangles += cut.triangles;
-    *tunnels += cut.tunnel;
+    triangles += mcor_cell_cut(corners, MCOR_CUT_ARGS, slot, mcor_ctz(rest), tunnels)->triangles;
   }
   return triangles;
 }

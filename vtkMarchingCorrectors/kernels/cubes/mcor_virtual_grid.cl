@@ -260,11 +260,18 @@ MCOR_ONE_COPY void mcor_brick_masks(
   }
 }
 
+/* Returns the nodes or cells of a brick on some of its sides. x, y, z: 0 the first layer along the
+ * axis, 2 the last one, 1 all. */
+ulong mcor_on_sides(int x, int y, int z)
+{
+  return (x == 1 ? ~0UL : MCOR_LOW_X << (x == 0 ? 0 : 3)) &
+    (y == 1 ? ~0UL : MCOR_LOW_Y << (y == 0 ? 0 : 12)) &
+    (z == 1 ? ~0UL : MCOR_LOW_Z << (z == 0 ? 0 : 48));
+}
+
 /* Whether any of these cells of a brick has nodes in its upper neighbour d (bits x, y, z; 0 is
  * itself). */
 bool mcor_cells_reach(ulong cells, int d)
 {
-  const ulong beside = (d & 1 ? MCOR_LOW_X << 3 : ~0UL) & (d & 2 ? MCOR_LOW_Y << 12 : ~0UL) &
-    (d & 4 ? MCOR_LOW_Z << 48 : ~0UL);
-  return (cells & beside) != 0;
+  return (cells & mcor_on_sides(1 + (d & 1), 1 + (d >> 1 & 1), 1 + (d >> 2))) != 0;
 }

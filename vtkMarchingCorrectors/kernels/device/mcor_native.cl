@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The built-in functions of mcor_builtin.cl, defined for the built-in device by Clang's own
+/* OpenCL's built-in functions that kernels use, defined for the built-in device by Clang's own
  * operations: the results are those of OpenCL drivers, bit by bit (test_core_native.c). */
 
 #define MCOR_DEFINE __attribute__((overloadable, always_inline)) static inline

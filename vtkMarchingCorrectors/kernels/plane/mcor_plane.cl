@@ -16,12 +16,9 @@
  * next layer of these is valid, which leaves one layer of cells. */
 __kernel void mcor_plane_spread(const int brick_count, __global ulong* above, __global ulong* valid)
 {
-  const int slot = get_global_id(0);
-  if (slot < brick_count)
-  {
-    above[slot] = (above[slot] & MCOR_PLANE_MASK) * 0x0001000100010001UL;
-    valid[slot] = (valid[slot] & MCOR_PLANE_MASK) * 0x0000000000010001UL;
-  }
+  MCOR_ITEM(slot, slot < brick_count);
+  above[slot] = (above[slot] & MCOR_PLANE_MASK) * 0x0001000100010001UL;
+  valid[slot] = (valid[slot] & MCOR_PLANE_MASK) * 0x0000000000010001UL;
 }
 
 /* One work-item = one brick. Keeps the cells that are squares. */
@@ -97,12 +94,6 @@ bool mcor_plane_crosses(const mcor_plane_ring* ring, uint above, int i)
   return ((above >> ring->node[i] ^ above >> ring->node[(i + 1) % ring->count]) & 1) != 0;
 }
 
-/* Finds the nodes of a plain square. corners: masks of its brick's cells. */
-uint mcor_plane_corner_nodes(const ulong* corners, int cell)
-{
-  return mcor_leaf_corner_nodes(mcor_plane_case(corners, cell));
-}
-
 /* Returns axis and lower node of side i, as a slot of mcor_adaptive_cell.h. */
 int mcor_plane_side(const mcor_plane_ring* ring, int i)
 {
@@ -125,12 +116,8 @@ int mcor_plane_mark(
     lines += mcor_plane_falls(&ring, nodes.above, s);
     const int side = mcor_plane_side(&ring, s), axis = side >> 5, lower = side & 31;
     const mcor_leaf_edge edge = mcor_leaf_edge_of(leaf, cell, nodes.split, axis, lower);
-    __global uint* words = quadrants + edge.slot * (long)MCOR_QUADRANT_WORDS + 8 * axis;
     const int across = axis == 0 ? lower / 3 : lower % 3;
-    for (int q = across > 0; q < 4; q += 2) /* on the side where the square is */
-    {
-      atomic_or(words + 2 * q + (edge.node >> 5), 1u << (edge.node & 31));
-    }
+    mcor_leaf_mark_edge(&edge, across > 0 ? 10 : 5, quadrants); /* the side where the square is */
   }
   return lines;
 }
@@ -146,64 +133,48 @@ int mcor_plane_vertex(__global const int* upper, __global const ulong* edges,
   return vertex_base[owner] + mcor_edge_rank(e, n) + (axis == 1 && (e[0] >> n & 1) ? 1 : 0);
 }
 
-/* One work-item = one brick. Reads used squares, node masks, decisions and edge numbering.
- * Writes lines, with above on their left, as triangles whose last two corners are the same; and,
- * if wanted, the keys of their cells. A line begins where the border of the square goes from
- * above to below, run through with the square on the left. On an ambiguous square it ends at the
- * crossing before that, or at the one after it if the nodes above are joined. */
-__kernel void mcor_plane_lines(MCOR_EMIT_PARAMS)
+/* Writes the lines of a square, with above on their left, as triangles whose last two corners are
+ * the same. A line begins where the border of the square goes from above to below, run through
+ * with the square on the left. On an ambiguous square it ends at the crossing before that, or at
+ * the one after it if the nodes above are joined. leaf: its leaf, unless it is plain. upper: see
+ * mcor_plane_vertex. Returns the number of lines. */
+MCOR_ONE_COPY int mcor_plane_emit(const ulong* corners, bool is_plain, const mcor_leaf* leaf,
+  int cell, bool joined, __global const int* upper, __global const ulong* edges,
+  __global const int* vertex_base, int slot, __global int* to)
 {
-  MCOR_ITEM(slot, slot < brick_count && used[slot] != 0);
-  const ulong own = plain[slot];
-  ulong m[8];
-  mcor_leaf leaf;
-  mcor_brick_masks(above, neighbours, slot, 0, m);
-  mcor_cell_corners(m);
-  if (used[slot] & ~own)
+  mcor_adaptive_nodes_of nodes = { 0, 0, true };
+  if (is_plain)
   {
-    leaf = mcor_leaf_load(leaf_of[slot], plane, finer, tables, above, valid);
+    nodes.above = mcor_leaf_corner_nodes(mcor_plane_case(corners, cell));
   }
-  const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
-  const ulong key =
-    mcor_brick_key(rungs, bricks[slot].w, bricks[slot].x, bricks[slot].y, bricks[slot].z) << 6;
-  const ulong joined = resolved ? decisions[slot * (long)MCOR_DECISION_MASKS + 2] & own : 0;
-  long to = triangle_base[slot];
-  for (ulong rest = used[slot]; rest; rest &= rest - 1)
+  else
   {
-    const int cell = mcor_ctz(rest);
-    const bool is_plain = own >> cell & 1;
-    mcor_adaptive_nodes_of nodes = { 0, mcor_plane_corner_nodes(m, cell), true };
-    if (!is_plain)
-    {
-      nodes = mcor_leaf_cell(&leaf, cell);
-    }
-    const mcor_plane_ring ring = mcor_plane_ring_of(nodes.split);
-    for (int s = 0; s < ring.count; ++s)
-    {
-      if (!mcor_plane_falls(&ring, nodes.above, s))
-      {
-        continue;
-      }
-      const int step = joined >> cell & 1 ? 1 : ring.count - 1;
-      int end = (s + step) % ring.count;
-      while (!mcor_plane_crosses(&ring, nodes.above, end))
-      {
-        end = (end + step) % ring.count;
-      }
-      for (int k = 0; k < 2; ++k)
-      {
-        const int side = mcor_plane_side(&ring, k ? end : s), axis = side >> 5, lower = side & 31;
-        triangles[3 * to + k] = is_plain
-          ? mcor_plane_vertex(neighbours + slot * 14L, edges, vertex_base, slot,
-              (cell & 3) + lower % 3 / 2, (cell >> 2) + lower / 6, axis)
-          : mcor_leaf_vertex(&leaf, cell, nodes.split, axis, lower, edges, vertex_base);
-      }
-      triangles[3 * to + 2] = triangles[3 * to + 1];
-      if (follows)
-      {
-        triangle_cells[to] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
-      }
-      ++to;
-    }
+    nodes = mcor_leaf_cell(leaf, cell);
   }
+  const mcor_plane_ring ring = mcor_plane_ring_of(nodes.split);
+  int made = 0;
+  for (int s = 0; s < ring.count; ++s)
+  {
+    if (!mcor_plane_falls(&ring, nodes.above, s))
+    {
+      continue;
+    }
+    const int step = joined ? 1 : ring.count - 1;
+    int end = (s + step) % ring.count;
+    while (!mcor_plane_crosses(&ring, nodes.above, end))
+    {
+      end = (end + step) % ring.count;
+    }
+    for (int k = 0; k < 2; ++k)
+    {
+      const int side = mcor_plane_side(&ring, k ? end : s), axis = side >> 5, lower = side & 31;
+      to[3 * made + k] = is_plain
+        ? mcor_plane_vertex(upper, edges, vertex_base, slot, (cell & 3) + lower % 3 / 2,
+            (cell >> 2) + lower / 6, axis)
+        : mcor_leaf_vertex(leaf, cell, nodes.split, axis, lower, edges, vertex_base);
+    }
+    to[3 * made + 2] = to[3 * made + 1];
+    ++made;
+  }
+  return made;
 }

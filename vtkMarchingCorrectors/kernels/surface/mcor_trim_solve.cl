@@ -328,31 +328,25 @@ fixv mcor_trim_group(const mcor_grid* grid, mcor_query* query, real iso, real to
   return linear;
 }
 
-#define MCOR_TRIM_SOLVE_PARAMS                                                                     \
-  const int group_count, __global const int *groups, __global const int4 *node, const real iso,    \
-    const real tolerance, const real threshold, const real fluid_share, const int steps,           \
-    const int plane, __global real4 *offset, __global real *value, __global real4 *gradient,       \
-    __global real *weight, __global uchar *flag, MCOR_ATTRIBUTE_PARAMS
-
-#define MCOR_TRIM_SOLVE_ARGS                                                                       \
-  group_count, groups, node, iso, tolerance, threshold, fluid_share, steps, plane, offset, value,  \
-    gradient, weight, flag, MCOR_ATTRIBUTE_ARGS
-
-/* Moves the cut points of one group; the body of the next two kernels. */
-void mcor_trim_solve_group(
-  const mcor_grid* grid, int group, bool by_eigenvalue, MCOR_TRIM_SOLVE_PARAMS)
+/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
+ * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 2
+ * instead of 1 if the linear cut stays, because the two surfaces are tangent or too far away, or
+ * the boundary eigenvalue has no gradient. */
+__kernel void mcor_trim_solve(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
+  __global const int4* node, const real iso, const real tolerance, const real threshold,
+  const real fluid_share, const int by_eigenvalue, const int steps, const int plane,
+  __global real4* offset, __global real* value, __global real4* gradient, __global real* weight,
+  __global uchar* flag, MCOR_ATTRIBUTE_PARAMS)
 {
-  if (group >= group_count)
-  {
-    return;
-  }
+  MCOR_ITEM(group, group < group_count);
+  const mcor_grid grid = MCOR_GRID;
   mcor_points points;
   mcor_query query;
   mcor_reach reach;
   mcor_field_at at;
   realv lacks = 0;
   mcor_group_load(
-    grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
+    &grid, groups[group], groups[group + 1], node, offset, MCOR_TRIM_REACH, &points, &query);
   mcor_trim_limits limits;
   limits.threshold = threshold;
   limits.fluid_share = fluid_share;
@@ -362,41 +356,25 @@ void mcor_trim_solve_group(
   {
     const int v = points.index[lane];
     const real4 along = v >= 0 ? gradient[v] : (real4)(0, 0, 0, 0);
-    MCOR_SET(limits.inside[0], lane) = along.x * grid->edge[0];
-    MCOR_SET(limits.inside[1], lane) = along.y * grid->edge[1];
-    MCOR_SET(limits.inside[2], lane) = along.z * grid->edge[2];
+    MCOR_SET(limits.inside[0], lane) = along.x * grid.edge[0];
+    MCOR_SET(limits.inside[1], lane) = along.y * grid.edge[1];
+    MCOR_SET(limits.inside[2], lane) = along.z * grid.edge[2];
     MCOR_SET(lacks, lane) = along.w;
   }
   limits.lacking = lacks != 0;
   const fixv linear =
-    mcor_trim_group(grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
+    mcor_trim_group(&grid, &query, iso, tolerance, &limits, steps, &points, &reach, &at);
   if (attribute_count > 0)
   {
-    mcor_attribute_group(grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
+    mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
   }
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = points.index[lane];
     if (v >= 0)
     {
-      mcor_points_store(grid, &points, &at, lane, v, offset, value, gradient, weight);
+      mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
       flag[v] = MCOR_GET_FIX(linear, lane) ? 2 : 1;
     }
   }
-}
-
-/* One work-item = one group of cut vertices at their linear cuts. Moves them to where both
- * equations hold. Writes position, value, gradient, weight and attributes. Writes the flag 2
- * instead of 1 if the linear cut stays, because the two surfaces are tangent or too far away. */
-__kernel void mcor_trim_solve_weight(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
-{
-  const mcor_grid grid = MCOR_GRID;
-  mcor_trim_solve_group(&grid, get_global_id(0), false, MCOR_TRIM_SOLVE_ARGS);
-}
-
-/* Trimming by the boundary eigenvalue; the linear cut also stays where it has no gradient. */
-__kernel void mcor_trim_solve_eigenvalue(MCOR_GRID_PARAMS, MCOR_TRIM_SOLVE_PARAMS)
-{
-  const mcor_grid grid = MCOR_GRID;
-  mcor_trim_solve_group(&grid, get_global_id(0), true, MCOR_TRIM_SOLVE_ARGS);
 }

@@ -55,13 +55,15 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
 #endif
   ;
 double mcor_seconds(void);
-/* Returns the norm of an SPH kernel W = norm / h^3 w(q). */
-double mcor_kernel_norm(mcor_sph_kernel kernel);
-/* Returns its norm in two dimensions over that in three. */
-double mcor_plane_factor(mcor_sph_kernel kernel);
-double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane);
-const char* mcor_usual_neighbours(mcor_sph_kernel kernel, bool is_plane);
-bool mcor_is_tensor(mcor_sph_kernel kernel); /* a product of three, along the axes */
+/* An SPH kernel W = norm / h^3 w(q), see mcor_sph_kernel.h. Arrays: in space, in a plane. */
+typedef struct mcor_kernel_row
+{
+  const char *name, *norm_text, *support_text, *neighbours[2];
+  double support, norm, variance[2];
+  double plane_factor; /* its norm in two dimensions over that in three */
+  bool is_tensor;      /* a product of three, along the axes */
+} mcor_kernel_row;
+const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel);
 
 /* mcor_memory.c. Fails where memory of the host could not be allocated. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);

@@ -28,13 +28,9 @@ const char* mcor_phase_name(mcor_phase phase)
 }
 
 #define MCOR_ENTRY(id, name, support, norm, tensor, variance, plane, c, usual, usual_in_plane)     \
-  { #name, { usual, usual_in_plane }, support, norm, { variance, plane }, c, tensor },
-static const struct
-{
-  const char *name, *neighbours[2];
-  double support, norm, variance[2], plane_factor;
-  bool is_tensor;
-} mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
+  { #name, #norm, #support, { usual, usual_in_plane }, support, norm, { variance, plane }, c,      \
+    tensor },
+static const mcor_kernel_row mcor_kernel_table[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
 #undef MCOR_ENTRY
 _Static_assert(sizeof mcor_kernel_table / sizeof mcor_kernel_table[0] == MCOR_SPH_KERNEL_COUNT,
   "a row for each kernel");
@@ -61,29 +57,9 @@ double mcor_support_factor(mcor_sph_kernel kernel)
   return (unsigned)kernel < MCOR_SPH_KERNEL_COUNT ? mcor_kernel_table[kernel].support : 0;
 }
 
-double mcor_kernel_norm(mcor_sph_kernel kernel)
+const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel)
 {
-  return mcor_kernel_table[kernel].norm;
-}
-
-double mcor_kernel_variance(mcor_sph_kernel kernel, bool is_plane)
-{
-  return mcor_kernel_table[kernel].variance[is_plane];
-}
-
-double mcor_plane_factor(mcor_sph_kernel kernel)
-{
-  return mcor_kernel_table[kernel].plane_factor;
-}
-
-const char* mcor_usual_neighbours(mcor_sph_kernel kernel, bool is_plane)
-{
-  return mcor_kernel_table[kernel].neighbours[is_plane];
-}
-
-bool mcor_is_tensor(mcor_sph_kernel kernel)
-{
-  return mcor_kernel_table[kernel].is_tensor;
+  return &mcor_kernel_table[kernel];
 }
 
 mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* format, ...)

@@ -61,7 +61,7 @@ static double density_at(const column* c, double x, double y)
   {
     const double at[3] = { x, y, 0 };
     return oracle_kernel_value(c->kernel, 1, at, NULL) *
-      mcor_plane_factor((mcor_sph_kernel)c->kernel);
+      mcor_kernel_of((mcor_sph_kernel)c->kernel)->plane_factor;
   }
   if (c->kernel == ORACLE_M_PRIME_4)
   {

@@ -15,7 +15,8 @@ static double sum_of_all(const core_set* set, const mcor_options* options, int d
   const double* mass, int64_t i, double h)
 {
   double sum = 0;
-  const double scale = h * h * h * (dimension == 2 ? mcor_plane_factor(options->sph_kernel) : 1);
+  const double scale =
+    h * h * h * (dimension == 2 ? mcor_kernel_of(options->sph_kernel)->plane_factor : 1);
   int64_t images[3];
   for (int a = 0; a < 3; ++a)
   {

@@ -18,10 +18,10 @@
  * in the case table, and the same from both sides. Segments join to loops. A loop is cut into
  * triangles such that no diagonal has both ends in one sub-face, in one whole face or on one edge
  * of the cell: there another cell could use the same side. That such a way always exists, but for
- * loops that lie in one whole face altogether, whose diagonals no other cell can have, is shown by
- * trying all cases (Testing/Core/cubes/test_core_adaptive_cell.c). Of the ways that there are, that
- * with the shortest diagonals is taken, vertices being in the middle of their edges; what lies flat
- * in a face counts as long.
+ * loops that lie in one whole face altogether, whose diagonals no other cell can have, was shown by
+ * trying all cases; test_core_cell.c has cells side by side. Of the ways that there are, that with
+ * the shortest diagonals is taken, vertices being in the middle of their edges; what lies flat in a
+ * face counts as long.
  *
  * A loop of two vertices has no triangles: its segments are one line, where two faces that other
  * cells see meet without this one. */

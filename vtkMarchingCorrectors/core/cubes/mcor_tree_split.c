@@ -259,7 +259,7 @@ static mcor_status mcor_split_by_particles(
   MCOR_TRY(mcor_allocated(context, job));
   *job = (mcor_tree_job){ .context = context, .input = input, .tree = tree, .homes = homes };
   job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale / context->lattice.cube;
-  job->is_cube = mcor_is_tensor(options->sph_kernel);
+  job->is_cube = mcor_kernel_of(options->sph_kernel)->is_tensor;
   for (int i = 0; i < 3 * (tree->top + 2); ++i)
   {
     job->edge[i / 3][i % 3] = ldexp(MCOR_BRICK * mcor_edge_of(&context->lattice, i % 3), i / 3);

@@ -6,7 +6,6 @@
 
 #include "mcor_program.h"
 #include "mcor_internal.h"
-#include "mcor_sph_kernel.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -37,30 +36,21 @@ bool mcor_program_may_have(mcor_program program, const char* kernel)
 void mcor_name_build(const mcor_build* build, char* text, size_t size)
 {
   const bool is_double = build->precision == MCOR_FLOAT64;
-  const char* kernel = mcor_sph_kernel_name(build->sph_kernel);
+  const char* kernel = mcor_kernel_of(build->sph_kernel)->name;
   snprintf(text, size, "the SPH kernel %s%s", kernel, is_double ? " in double precision" : "");
 }
 
 void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, size_t size)
 {
-#define MCOR_ENTRY(id, name, support, norm, tensor, ...)                                           \
-  { #name, #norm, #support, tensor },
-  static const struct
-  {
-    const char *name, *norm, *support;
-    int tensor;
-  } kernels[] = { MCOR_SPH_KERNEL_TABLE(MCOR_ENTRY) };
-#undef MCOR_ENTRY
   const mcor_build* build = &cl->build;
-  const int k = (int)build->sph_kernel;
+  const mcor_kernel_row* kernel = mcor_kernel_of(build->sph_kernel);
   const bool is_double = build->precision == MCOR_FLOAT64;
   /* Probes sum any arrays, not the scalar to contour, so their program is compiled for one
    * field. */
   const mcor_field field = program == MCOR_PROGRAM_PROBE ? MCOR_WEIGHT_SUM : build->field;
   const char* f = is_double ? "" : "f";
-  int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s%s -DMCOR_PROGRAM=%d",
-    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "",
-    cl->declares_builtins ? " -D_OPENCL_H_ -DMCOR_DECLARES_BUILTINS=1" : "", (int)program);
+  int length = snprintf(text, size, "-w -cl-std=CL1.2 -cl-kernel-arg-info%s -DMCOR_PROGRAM=%d",
+    cl->rounds_division ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", (int)program);
   if (program == MCOR_PROGRAM_LATTICE)
   {
     snprintf(text + length, size - (size_t)length, " -DMCOR_LANES=%d -DMCOR_DOUBLE=%d", cl->lanes,
@@ -71,6 +61,6 @@ void mcor_program_options(const mcor_cl* cl, mcor_program program, char* text, s
     " -DMCOR_LANES=%d -DMCOR_DOUBLE=%d -DMCOR_W=mcor_w_%s -DMCOR_DW=mcor_dw_%s "
     "-DMCOR_DDW=mcor_ddw_%s -DMCOR_NORM=%s%s -DMCOR_SUPPORT=%s%s -DMCOR_TENSOR=%d "
     "-DMCOR_FIELD=%d -DMCOR_SOLIDS=%d",
-    cl->lanes, is_double, kernels[k].name, kernels[k].name, kernels[k].name, kernels[k].norm, f,
-    kernels[k].support, f, kernels[k].tensor, (int)field, build->solids);
+    cl->lanes, is_double, kernel->name, kernel->name, kernel->name, kernel->norm_text, f,
+    kernel->support_text, f, kernel->is_tensor, (int)field, build->solids);
 }

@@ -49,8 +49,9 @@ typedef struct mcor_column_job
 double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])
 {
   const double support = mcor_support_factor(kernel);
-  return mcor_is_tensor(kernel) ? support * (fabs(along[0]) + fabs(along[1]) + fabs(along[2]))
-                                : support;
+  return mcor_kernel_of(kernel)->is_tensor
+    ? support * (fabs(along[0]) + fabs(along[1]) + fabs(along[2]))
+    : support;
 }
 
 /* Returns the integral of w(sqrt(r^2 + z^2)) over z > 0. Its pieces grow with z, and end where w
@@ -234,7 +235,7 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
 {
   mcor_column_job job = { .kernel = kernel,
     .is_plane = is_plane,
-    .is_tensor = mcor_is_tensor(kernel),
+    .is_tensor = mcor_kernel_of(kernel)->is_tensor,
     .is_aligned = true,
     .axes = axes,
     .support = mcor_support_factor(kernel),

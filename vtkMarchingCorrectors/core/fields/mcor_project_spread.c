@@ -274,7 +274,8 @@ static void mcor_spread_splat(
   const int64_t pixels = (int64_t)size[0] * size[1];
   const int first = s->first[0], count = s->last[0] - first + 1;
   /* Rounding must not make a share negative, unless the kernel is. */
-  const double lowest = mcor_is_tensor(job->context->run.options->sph_kernel) ? -DBL_MAX : 0;
+  const double lowest =
+    mcor_kernel_of(job->context->run.options->sph_kernel)->is_tensor ? -DBL_MAX : 0;
   for (int i = 0; i <= count; ++i)
   {
     brush->sides[i] = mcor_side_of(&job->column, 0, (first + i - s->at[0]) * s->pixel[0]);

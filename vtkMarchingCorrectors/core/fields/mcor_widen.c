@@ -131,7 +131,8 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
   const mcor_sph_kernel kernel = context->run.options->sph_kernel;
   const bool plane = mcor_is_plane(context);
   const double cube = context->lattice.cube,
-               norm = mcor_kernel_norm(kernel) * (plane ? mcor_plane_factor(kernel) : 1);
+               norm =
+                 mcor_kernel_of(kernel)->norm * (plane ? mcor_kernel_of(kernel)->plane_factor : 1);
   for (int64_t i = first; i < last; ++i)
   {
     const int64_t to = mcor_source_of(context, ((const cl_int*)job->order)[i]);

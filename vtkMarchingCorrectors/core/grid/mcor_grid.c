@@ -275,8 +275,8 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_density", MCOR_HEAVY,
     (count + context->cl.lanes - 1) / context->cl.lanes, MCOR_GRID_ARGS(context),
     MCOR_REAL(context->run.options->h_scale), MCOR_INT(context->space.flat),
-    MCOR_REAL(
-      MCOR_ONE_SIDED * mcor_kernel_variance(context->run.options->sph_kernel, context->space.flat)),
+    MCOR_REAL(MCOR_ONE_SIDED *
+      mcor_kernel_of(context->run.options->sph_kernel)->variance[context->space.flat]),
     MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(density)));
   double low[3], high[3];
   cl_int first = INT32_MAX;
@@ -310,7 +310,7 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
     : mcor_needs_density(input)
     ? mcor_compute_volumes(context, input)
     : MCOR_LAUNCH(context, "mcor_grid_weigh", MCOR_LIGHT, grid->count, MCOR_INT(grid->count),
-        MCOR_REAL(mcor_kernel_norm(context->cl.build.sph_kernel)), MCOR_BUFFER(&grid->inv_h),
+        MCOR_REAL(mcor_kernel_of(context->cl.build.sph_kernel)->norm), MCOR_BUFFER(&grid->inv_h),
         MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight));
 }
 

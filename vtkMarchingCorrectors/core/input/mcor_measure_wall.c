@@ -72,7 +72,7 @@ static void mcor_wall_add(
       break;
     }
     const double w = !near ? 0
-      : mcor_is_tensor(kernel)
+      : mcor_kernel_of(kernel)->is_tensor
       ? mcor_w_of(kernel, fabs(d[0]) * inv_h) * mcor_w_of(kernel, fabs(d[1]) * inv_h) *
         mcor_w_of(kernel, fabs(d[2]) * inv_h)
       : mcor_w_of(kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
@@ -88,7 +88,7 @@ static void mcor_wall_add(
       {
         weight *= h;
       }
-      weight *= mcor_kernel_norm(kernel);
+      weight *= mcor_kernel_of(kernel)->norm;
       weight /= mcor_power(scaled, axes);
     }
     if (w != 0)

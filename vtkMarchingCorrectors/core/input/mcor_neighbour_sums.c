@@ -383,7 +383,8 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
   }
   job->axes = mcor_find_dimension(input, NULL, job->options->dimension);
   job->support = mcor_support_factor(kernel);
-  job->norm = mcor_kernel_norm(kernel) * (job->axes == 2 ? mcor_plane_factor(kernel) : 1);
+  job->norm =
+    mcor_kernel_of(kernel)->norm * (job->axes == 2 ? mcor_kernel_of(kernel)->plane_factor : 1);
   if (job->eta > 0)
   {
     job->eta = mcor_power(eta, job->axes);

@@ -22,8 +22,9 @@ double mcor_size_scale(mcor_context* context, const mcor_input* input)
   if (!mcor_needs_density(input))
   {
     /* An area becomes a volume by this factor times the smoothing length, see mcor_plane.h. */
-    const double lift =
-      context->space.flat ? mcor_plane_factor(options->sph_kernel) * options->h_scale : 1;
+    const double lift = context->space.flat
+      ? mcor_kernel_of(options->sph_kernel)->plane_factor * options->h_scale
+      : 1;
     return lift / (cube * cube * cube);
   }
   if (!mcor_is_given(&input->mass))

@@ -103,7 +103,7 @@ static char* mcor_warn_neighbours(const mcor_suspicion* s)
                    "support radius; its smoothing length is %.4g, %s (medians). With the %s "
                    "kernel, %s neighbours and 1 to %g times are usual. %s%s%s%s",
     n->neighbours_median, h, times, mcor_sph_kernel_name(kernel),
-    mcor_usual_neighbours(kernel, plane), wendland ? 2.2 : 1.7, why,
+    mcor_kernel_of(kernel)->neighbours[plane], wendland ? 2.2 : 1.7, why,
     *likely ? " Or the kernel is " : "", likely, *likely ? "." : "");
 }
 

@@ -57,7 +57,7 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
   bool everywhere = false;
   for (int64_t begin = first; begin < last && !everywhere; begin += MCOR_CHUNK)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    const int count = mcor_chunk_of(last - begin);
     double x[MCOR_CHUNK];
     everywhere = true;
     for (int a = 0; a < 3; ++a)
@@ -227,9 +227,8 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
 static void mcor_set_plane(mcor_context* context, mcor_plane plane)
 {
   static const mcor_space spaces[] = { { 3, 0, MCOR_BRICK_NODES, MCOR_REGION_BRICKS * MCOR_BRICK,
-                                         4.0 / 3 * MCOR_PI, "mcor_node_values",
-                                         "mcor_march_triangles" },
-    { 2, 1, MCOR_BRICK * MCOR_BRICK, 0, MCOR_PI, "mcor_plane_nodes", "mcor_plane_lines" } };
+                                         4.0 / 3 * MCOR_PI, "mcor_node_values" },
+    { 2, 1, MCOR_BRICK * MCOR_BRICK, 0, MCOR_PI, "mcor_plane_nodes" } };
   context->plane = plane;
   context->space = spaces[plane.axis > 0];
 }
@@ -272,40 +271,31 @@ typedef struct mcor_flatten_job
 {
   const mcor_plane* plane;
   mcor_array positions;
-  void* to;        /* of the positions' type, points as doubles */
+  float* floats;   /* where they go if they are in single precision, else NULL */
+  double* doubles; /* where they go otherwise; points always do */
   bool are_points; /* which may lie off the plane */
 } mcor_flatten_job;
 
-/* Turns positions in single precision, without converting them. */
-static void mcor_flatten_floats(void* data, int slice, int64_t first, int64_t last)
+static void mcor_flatten_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_flatten_job* job = data;
-  const int u = mcor_plane_axis(job->plane, 0), v = mcor_plane_axis(job->plane, 1);
-  const float* from = job->positions.data;
-  float* to = job->to;
-  for (int64_t i = 3 * first; i < 3 * last; i += 3)
-  {
-    to[i] = from[i + u];
-    to[i + 1] = from[i + v];
-    to[i + 2] = 0;
-  }
-  (void)slice;
-}
-
-static void mcor_flatten_doubles(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_flatten_job* job = data;
-  double x[MCOR_CHUNK], *to = job->to;
+  double x[MCOR_CHUNK];
   for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
   {
-    const int count = last - begin < MCOR_CHUNK ? (int)(last - begin) : MCOR_CHUNK;
+    const int count = mcor_chunk_of(last - begin);
     for (int a = 0; a < 3; ++a)
     {
       mcor_read_array(&job->positions, begin, count, mcor_plane_axis(job->plane, a), x);
       for (int i = 0; i < count; ++i)
       {
+        const int64_t to = 3 * (begin + i) + a;
         const bool off = a == 2 && job->are_points && x[i] != job->plane->at;
-        to[3 * (begin + i) + a] = a < 2 ? x[i] : off ? NAN : 0;
+        if (job->floats)
+        {
+          job->floats[to] = a < 2 ? (float)x[i] : 0;
+          continue;
+        }
+        job->doubles[to] = a < 2 ? x[i] : off ? NAN : 0;
       }
     }
   }
@@ -337,9 +327,9 @@ mcor_status mcor_flatten_points(
   *flat = malloc((size_t)count * 3 * sizeof(double) + 1);
   MCOR_RETURN_IF(!*flat, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for %lld points could not be allocated.", (long long)count);
-  mcor_flatten_job job = { &context->plane, *points, *flat, true };
+  mcor_flatten_job job = { &context->plane, *points, NULL, *flat, true };
   job.positions.components = 3;
-  mcor_parallel_for(context, count, MCOR_LIGHT_GRAIN, mcor_flatten_doubles, &job);
+  mcor_parallel_for(context, count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job);
   *turned = (mcor_array){ .data = *flat, .type = MCOR_FLOAT64, .components = 3 };
   return MCOR_OK;
 }
@@ -396,10 +386,10 @@ mcor_status mcor_flatten(
   flat->positions = malloc((size_t)input->count * width + 1);
   MCOR_RETURN_IF(!flat->positions, context, MCOR_OUT_OF_CAPACITY,
     "Host memory for %lld particles could not be allocated.", (long long)input->count);
-  mcor_flatten_job job = { plane, flat->input.positions, flat->positions, false };
+  mcor_flatten_job job = { plane, flat->input.positions, floats ? flat->positions : NULL,
+    flat->positions, false };
   flat->input.positions.data = flat->positions;
-  return mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN,
-    floats ? mcor_flatten_floats : mcor_flatten_doubles, &job, NULL);
+  return mcor_parallel_run(context, input->count, MCOR_LIGHT_GRAIN, mcor_flatten_slice, &job, NULL);
 }
 
 void mcor_turn_back(const mcor_plane* plane, void* numbers, size_t width)

@@ -6,7 +6,7 @@
 /* Two dimensions. Particles that share one coordinate lie in the plane z = 0 for all phases. At
  * the border the caller's coordinates are turned to (u, v, w), w being the constant one; results
  * are turned back. In between, sums of three dimensions are those of two because each particle's
- * weight is multiplied by c h (c: mcor_plane_factor). The lattice is one layer of cells above
+ * weight is multiplied by c h (c: plane_factor). The lattice is one layer of cells above
  * the plane, and its upper nodes copy the lower ones, so that lines lie where the surface of
  * three dimensions would cross the plane. Until the output, a line is a triangle whose last two
  * corners are one. */

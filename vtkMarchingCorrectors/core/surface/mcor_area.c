@@ -7,8 +7,7 @@
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"
-
-#include <math.h>
+#include "mcor_vector.h"
 
 /* Hashes an edge. A closed surface runs through each edge once each way, so the sum of the
  * signed hashes is 0. Of a surface with a hole it is 0 by chance once in 2^64. Multiples of the
@@ -25,7 +24,7 @@ static inline uint64_t mcor_edge_number(int64_t low, int64_t high)
 static inline void mcor_measure_triangle(
   const mcor_surface* surface, const double origin[3], int64_t t, double* area, double* volume)
 {
-  double c[3][3], u[3], v[3];
+  double c[3][3], u[3], v[3], n[3];
   for (int i = 0; i < 3; ++i)
   {
     const double* point = surface->points + 3 * (int64_t)surface->triangles[3 * t + i];
@@ -39,10 +38,9 @@ static inline void mcor_measure_triangle(
     u[d] = c[1][d] - c[0][d];
     v[d] = c[2][d] - c[0][d];
   }
-  const double n[3] = { u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-    u[0] * v[1] - u[1] * v[0] };
-  *area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  *volume = (c[0][0] * n[0] + c[0][1] * n[1] + c[0][2] * n[2]) / 6;
+  mcor_cross(u, v, n);
+  *area = 0.5 * sqrt(mcor_dot(n, n));
+  *volume = mcor_dot(c[0], n) / 6;
 }
 
 /* Finds a power of two that leaves 53 bits for the sum of so many terms. */

@@ -12,8 +12,8 @@
 
 #include "mcor_box.h"
 #include "mcor_cap_job.h"
+#include "mcor_vector.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@
 /* A brick of nodes near both fluid and solids. */
 typedef struct mcor_wall_brick
 {
-  cl_ulong key; /* of its first cell */
+  cl_ulong key; /* the first member: of its first cell */
   cl_int at[3]; /* in bricks */
   bool has_fluid, is_known;
   /* Masks of nodes, and of the cells and faces whose lowest node is here. */
@@ -127,12 +127,6 @@ static mcor_status mcor_reach_wall(
   return MCOR_OK;
 }
 
-static int mcor_compare_wall_bricks(const void* x, const void* y)
-{
-  const mcor_wall_brick *a = x, *b = y;
-  return (a->key > b->key) - (a->key < b->key);
-}
-
 static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
 {
   const mcor_wall* wall = data;
@@ -181,7 +175,7 @@ static mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points
   wall->count = count;
   if (count > 0)
   {
-    qsort(wall->bricks, (size_t)count, sizeof *wall->bricks, mcor_compare_wall_bricks);
+    qsort(wall->bricks, (size_t)count, sizeof *wall->bricks, mcor_compare_keys);
   }
   mcor_table_free(&wall->index);
   for (int64_t i = 0; i < count; ++i)
@@ -373,15 +367,14 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
     double area = 0;
     for (int k = 1; k + 1 < count; ++k)
     {
-      const double *p = at[i], *q = at[(i + k) % count], *r = at[(i + k + 1) % count];
-      double square = 0;
+      double u[3], v[3], n[3];
       for (int a = 0; a < 3; ++a)
       {
-        const int b = (a + 1) % 3, c = (a + 2) % 3;
-        const double n = (q[b] - p[b]) * (r[c] - p[c]) - (q[c] - p[c]) * (r[b] - p[b]);
-        square += n * n;
+        u[a] = at[(i + k) % count][a] - at[i][a];
+        v[a] = at[(i + k + 1) % count][a] - at[i][a];
       }
-      area += sqrt(square);
+      mcor_cross(u, v, n);
+      area += sqrt(mcor_dot(n, n));
     }
     best = area < least ? i : best;
     least = fmin(area, least);

@@ -6,8 +6,8 @@
 
 #include "mcor_internal.h"
 #include "mcor_parallel.h"
+#include "mcor_vector.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 typedef struct mcor_normals
@@ -25,7 +25,7 @@ static void mcor_store_sums(void* data, int slice, int64_t first, int64_t last)
   {
     float* n = job->surface->normals + 3 * i;
     const double* s = job->sums + 3 * i;
-    const double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    const double length = sqrt(mcor_dot(s, s));
     const bool wanted = job->all || mcor_lacks_normal(n);
     for (int a = 0; a < 3 && wanted; ++a)
     {
@@ -63,10 +63,7 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
       u[a] = (surface->points[3 * (int64_t)t[1] + a] - corner) * job.scale;
       v[a] = (surface->points[3 * (int64_t)t[2] + a] - corner) * job.scale;
     }
-    for (int a = 0; a < 3; ++a)
-    {
-      n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
-    }
+    mcor_cross(u, v, n);
     for (int c = 0; c < 9; ++c)
     {
       job.sums[3 * (int64_t)t[c / 3] + c % 3] += n[c % 3];

@@ -52,7 +52,7 @@ mcor_status mcor_create_shared_context(
     ? mcor_open_device(*context, device, place, count)
     : mcor_fail(
         *context, MCOR_INVALID_ARGUMENT, "place is %d; it must be from 0 to %d.", place, count - 1);
-  status = status == MCOR_OK ? mcor_upload_case_table(*context) : status;
+  MCOR_THEN(status, mcor_upload_case_table(*context));
   (*context)->created = status == MCOR_OK;
   return status;
 }
@@ -67,14 +67,14 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_sort(context);
   mcor_release_grid(context);
   mcor_release_bricks(context);
-  mcor_release_points(context);
   mcor_release_mesh(context);
-  mcor_release_topology(context);
-  mcor_release_trim(context);
   mcor_release_attributes(context);
   mcor_release_box(context);
   mcor_release_adaptive(context);
-  mcor_release_pairs(context);
+  MCOR_RELEASE_EACH(context, &context->points);
+  MCOR_RELEASE_EACH(context, &context->topology);
+  MCOR_RELEASE_EACH(context, &context->trim);
+  MCOR_RELEASE_EACH(context, &context->pairs);
   mcor_release_widening(context);
   mcor_release(context, &context->sort.sums);
   mcor_drop_kept(context, 0);
@@ -88,7 +88,7 @@ void mcor_release_memory(mcor_context* context)
 void mcor_release_all_data(mcor_context* context)
 {
   mcor_release_memory(context);
-  MCOR_RELEASE(context, &context->topology.cases, &context->topology.rows);
+  MCOR_RELEASE(context, &context->cases, &context->case_rows);
   mcor_drop_kept(context, 0);
   context->kept.grid = context->kept.value = context->kept.nodes = false;
 }
@@ -174,13 +174,13 @@ static mcor_status mcor_try_call(mcor_context* context, const mcor_input* input,
     status = mcor_leave_out_again(context, &flat.input, &flat.options, &far);
     flat.input.solid = far.solid;
   }
-  status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
+  MCOR_THEN(status, body(context, &flat.input, &flat.options, result));
   if (status == MCOR_OUT_OF_CAPACITY && context->run.is_too_long && !options->globals)
   {
     status = mcor_leave_out_far(context, &flat.input, &far);
     flat.input.solid = status == MCOR_OK ? far.solid : flat.input.solid;
     context->run.far = status == MCOR_OK ? &far : NULL;
-    status = status == MCOR_OK ? body(context, &flat.input, &flat.options, result) : status;
+    MCOR_THEN(status, body(context, &flat.input, &flat.options, result));
   }
   if (status == MCOR_OUT_OF_CAPACITY)
   {

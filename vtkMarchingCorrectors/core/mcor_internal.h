@@ -203,6 +203,10 @@ mcor_status mcor_prepare(
   mcor_release_all(context, (mcor_buffer* const[]){ __VA_ARGS__ },                                 \
     sizeof((mcor_buffer* const[]){ __VA_ARGS__ }) / sizeof(mcor_buffer*))
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count);
+/* Frees all buffers of a struct that consists of buffers. */
+#define MCOR_RELEASE_EACH(context, s)                                                              \
+  mcor_release_each(context, (mcor_buffer*)(s), sizeof *(s) / sizeof(mcor_buffer))
+void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count);
 
 /* mcor_statistics.c. Reports what runs from one fraction of the call to another; the report may
  * cancel it. */
@@ -262,17 +266,13 @@ void mcor_release_grid(mcor_context* context);
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);
 void mcor_release_bricks(mcor_context* context);
 void mcor_release_nodes(mcor_context* context);
-void mcor_release_points(mcor_context* context);
 void mcor_release_mesh(mcor_context* context);
-void mcor_release_topology(mcor_context* context);
-void mcor_release_trim(mcor_context* context);
 void mcor_release_attributes(mcor_context* context);
 mcor_status mcor_make_blocks(mcor_context* context);
 mcor_status mcor_select_seeds(mcor_context* context, const mcor_input* input);
 /* Ends with the cells that pairs reach in bricks.cells, all of whose nodes are evaluated;
  * bricks.seeds: those that pairs mark. */
 mcor_status mcor_find_reached(mcor_context* context);
-void mcor_release_pairs(mcor_context* context);
 double mcor_side_margin(const mcor_context* context);
 mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
@@ -426,7 +426,6 @@ static inline bool mcor_is_resolved(const mcor_context* context)
 /* Kernel arguments of MCOR_CUT_PARAMS. */
 #define MCOR_CUT_ARGS(c)                                                                           \
   MCOR_INT(mcor_is_resolved(c)), MCOR_BUFFER(&(c)->bricks.neighbours),                             \
-    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->topology.cases),                      \
-    MCOR_BUFFER(&(c)->topology.rows)
+    MCOR_BUFFER(&(c)->topology.decisions), MCOR_BUFFER(&(c)->cases), MCOR_BUFFER(&(c)->case_rows)
 
 #endif

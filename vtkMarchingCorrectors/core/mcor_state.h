@@ -168,10 +168,9 @@ typedef struct mcor_pairs
   mcor_buffer found;  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
-/* How cells are cut, and decisions of MCOR_TOPOLOGY_FIELD. */
+/* Decisions of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
 {
-  mcor_buffer cases, rows; /* mcor_case_table */
   mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
   mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
 } mcor_topology_data;
@@ -309,6 +308,7 @@ struct mcor_context
 
   /* The device, and what it holds for any particles. */
   mcor_cl cl;
+  mcor_buffer cases, case_rows; /* mcor_case_table */
   mcor_sort_data sort;
   double report_interval; /* seconds between progress reports, at least */
   int probe_batch;        /* points; 0 before the first probe */

@@ -43,10 +43,8 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
   uint8_t* states = malloc(count + 1);
   bool* divided = calloc(count + 1, sizeof *divided);
   mcor_status status = mcor_allocated(context, index && states && divided);
-  status = status == MCOR_OK
-    ? mcor_read(context, &bricks->child_index, 0, index, keys * sizeof *index)
-    : status;
-  status = status == MCOR_OK ? mcor_read(context, &bricks->block_states, 0, states, count) : status;
+  MCOR_THEN(status, mcor_read(context, &bricks->child_index, 0, index, keys * sizeof *index));
+  MCOR_THEN(status, mcor_read(context, &bricks->block_states, 0, states, count));
   for (size_t i = 0; status == MCOR_OK && i < keys; ++i)
   {
     divided[index[i]] = true;
@@ -55,8 +53,7 @@ static mcor_status mcor_void_kept(mcor_context* context, int children)
   {
     states[i] = divided[i] ? states[i] : MCOR_VOID;
   }
-  status =
-    status == MCOR_OK ? mcor_write(context, &context->bricks.block_states, states, count) : status;
+  MCOR_THEN(status, mcor_write(context, &context->bricks.block_states, states, count));
   free(index);
   free(states);
   free(divided);
@@ -147,17 +144,15 @@ mcor_status mcor_make_blocks(mcor_context* context)
   bricks->block_count = (int)(rungs[level + 1].base - rungs[level].base);
   mcor_status status =
     mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
-  status = status == MCOR_OK
-    ? MCOR_LAUNCH(context, "mcor_block_all", MCOR_MEDIUM, bricks->block_count,
-        MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs), MCOR_INT(level),
-        MCOR_BUFFER(&bricks->block_keys))
-    : status;
+  MCOR_THEN(status,
+    MCOR_LAUNCH(context, "mcor_block_all", MCOR_MEDIUM, bricks->block_count,
+      MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs), MCOR_INT(level),
+      MCOR_BUFFER(&bricks->block_keys)));
   for (; level > 0 && status == MCOR_OK; --level)
   {
     status = mcor_test_cubes(context, level, 0);
-    status = status == MCOR_OK
-      ? mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &children)
-      : status;
+    MCOR_THEN(
+      status, mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &children));
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);

@@ -406,8 +406,7 @@ void mcor_make_case_table(mcor_case_table* table)
 
 mcor_status mcor_upload_case_table(mcor_context* context)
 {
-  mcor_topology_data* topology = &context->topology;
-  if (topology->rows.mem)
+  if (context->case_rows.mem)
   {
     return MCOR_OK;
   }
@@ -415,8 +414,8 @@ mcor_status mcor_upload_case_table(mcor_context* context)
   MCOR_TRY(mcor_allocated(context, table));
   mcor_make_case_table(table);
   const size_t bytes = (size_t)table->row_count * sizeof table->rows[0];
-  mcor_status status = mcor_write(context, &topology->cases, table->cases, sizeof table->cases);
-  status = status == MCOR_OK ? mcor_write(context, &topology->rows, table->rows, bytes) : status;
+  mcor_status status = mcor_write(context, &context->cases, table->cases, sizeof table->cases);
+  MCOR_THEN(status, mcor_write(context, &context->case_rows, table->rows, bytes));
   free(table);
   return status;
 }

@@ -134,9 +134,3 @@ mcor_status mcor_find_reached(mcor_context* context)
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&pairs->reached),
     MCOR_BUFFER(&pairs->marked), MCOR_BUFFER(&bricks->cells), MCOR_BUFFER(&bricks->seeds));
 }
-
-void mcor_release_pairs(mcor_context* context)
-{
-  mcor_pairs* p = &context->pairs;
-  MCOR_RELEASE(context, &p->reached, &p->marked, &p->domain, &p->grown, &p->found);
-}

@@ -70,8 +70,8 @@ static mcor_status mcor_resolve_cells(mcor_context* context)
   int samples;
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_cells", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&context->bricks.neighbours), MCOR_BUFFER(&context->mesh.plain_used),
-    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&topology->cases),
-    MCOR_BUFFER(&topology->rows), MCOR_BUFFER(&topology->decisions),
+    MCOR_BUFFER(&context->bricks.now.above), MCOR_BUFFER(&context->cases),
+    MCOR_BUFFER(&context->case_rows), MCOR_BUFFER(&topology->decisions),
     MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", &samples));
   context->run.statistics->ambiguous_cells += samples / 2;
@@ -97,12 +97,4 @@ mcor_status mcor_resolve_topology(mcor_context* context)
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&topology->sample_base)));
   MCOR_TRY(mcor_resolve_faces(context));
   return mcor_resolve_cells(context);
-}
-
-/* Keeps the tables. */
-void mcor_release_topology(mcor_context* context)
-{
-  mcor_topology_data* t = &context->topology;
-  MCOR_RELEASE(context, &t->decisions, &t->counts, &t->sample_base, &t->sample_node,
-    &t->sample_offset, &t->sample_side);
 }

@@ -97,8 +97,8 @@ mcor_status mcor_join_splits(mcor_context* context, mcor_tree* tree)
   const void* all;
   int64_t count;
   mcor_status status = mcor_list_splits(context, tree, &own, &count);
-  status = status == MCOR_OK ? mcor_gather(context, own, count, sizeof *own, &all, &count) : status;
-  status = status == MCOR_OK ? mcor_take_splits(context, tree, all, count) : status;
+  MCOR_THEN(status, mcor_gather(context, own, count, sizeof *own, &all, &count));
+  MCOR_THEN(status, mcor_take_splits(context, tree, all, count));
   free(own);
   return status;
 }

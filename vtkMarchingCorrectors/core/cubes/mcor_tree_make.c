@@ -211,7 +211,7 @@ mcor_status mcor_make_tree(mcor_context* context, const mcor_input* input)
   {
     status = mcor_add_parts(context, tree, l, &blocks);
   }
-  status = status == MCOR_OK ? mcor_list_blocks(context, tree, &blocks) : status;
+  MCOR_THEN(status, mcor_list_blocks(context, tree, &blocks));
   mcor_table_free(&blocks);
   return status;
 }
@@ -225,9 +225,7 @@ mcor_status mcor_measure_splits(
     return MCOR_OK;
   }
   mcor_status status = mcor_split_bricks(context, input, &tree);
-  status = status == MCOR_OK
-    ? mcor_list_splits(context, &tree, &globals->splits, &globals->split_count)
-    : status;
+  MCOR_THEN(status, mcor_list_splits(context, &tree, &globals->splits, &globals->split_count));
   mcor_release_tree(&tree);
   return status;
 }

@@ -93,6 +93,14 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
   }
 }
 
+void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count)
+{
+  for (size_t i = 0; i < count; ++i)
+  {
+    mcor_release(context, buffers + i);
+  }
+}
+
 /* Asks for large pages on a CPU, where buffers are memory of the host. */
 static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* buffer)
 {
@@ -218,7 +226,7 @@ mcor_status mcor_unmap_all(
   for (int i = 0; i < count; ++i)
   {
     const mcor_status unmapped = mcor_unmap(context, mappings[i].buffer, mappings[i].data);
-    status = status == MCOR_OK ? unmapped : status;
+    MCOR_THEN(status, unmapped);
   }
   return status;
 }
@@ -282,7 +290,7 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
   }
   mcor_buffer bigger = { 0 };
   mcor_status status = mcor_reserve(context, &bigger, bytes);
-  status = status == MCOR_OK ? mcor_copy(context, buffer, &bigger, 0, old) : status;
+  MCOR_THEN(status, mcor_copy(context, buffer, &bigger, 0, old));
   mcor_release(context, status == MCOR_OK ? buffer : &bigger);
   if (status == MCOR_OK)
   {

@@ -48,8 +48,3 @@ void mcor_release_batch(mcor_context* context, mcor_point_batch* batch)
   MCOR_RELEASE(context, &batch->keys, &batch->order, &batch->in_node, &batch->in_offset,
     &batch->node, &batch->offset);
 }
-
-void mcor_release_points(mcor_context* context)
-{
-  MCOR_RELEASE(context, &context->points.flags, &context->points.groups);
-}

@@ -52,10 +52,8 @@ typedef struct mcor_filling
   int32_t* band;   /* [face.node_count]: number of levels that the node reaches */
   int32_t* number; /* points of the surface, of nodes, then of cuts; -1: none */
   mcor_table cut_of;
-  mcor_fill_cut* cuts;
-  int64_t cut_count, cut_room;
-  mcor_fill_triangle* triangles;
-  int64_t triangle_count, triangle_room;
+  MCOR_LIST(mcor_fill_cut) cuts;
+  MCOR_LIST(mcor_fill_triangle) triangles;
 } mcor_filling;
 
 /* Before all else, if lines are to be filled: checks that they can be, and evaluates the nodes. */

@@ -186,8 +186,8 @@ void mcor_end_fill(mcor_context* context)
     free(fill->value);
     free(fill->band);
     free(fill->number);
-    free(fill->cuts);
-    free(fill->triangles);
+    free(fill->cuts.of);
+    free(fill->triangles.of);
   }
   free(fill);
   context->run.fill = NULL;

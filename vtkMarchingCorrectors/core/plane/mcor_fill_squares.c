@@ -120,16 +120,11 @@ static mcor_status mcor_add_fill_fan(
   void* data, const mcor_cap_corner* corners, int count, bool is_cut)
 {
   mcor_fill_job* job = data;
-  mcor_filling* fill = job->fill;
   for (int i = 1; i + 1 < count; ++i)
   {
-    MCOR_TRY(mcor_make_room(job->context, (void**)&fill->triangles, fill->triangle_count,
-      &fill->triangle_room, sizeof *fill->triangles));
-    fill->triangles[fill->triangle_count++] = (mcor_fill_triangle){
-      .corner = { corners[0].vertex, corners[i].vertex, corners[i + 1].vertex },
-      .band = job->band,
-      .square = job->square
-    };
+    MCOR_APPEND(job->context, &job->fill->triangles,
+      (mcor_fill_triangle){
+        { corners[0].vertex, corners[i].vertex, corners[i + 1].vertex }, job->band, job->square });
   }
   (void)is_cut;
   return MCOR_OK;
@@ -151,15 +146,13 @@ static mcor_status mcor_cut_fill_side(
     return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
   }
   const int32_t index =
-    mcor_table_number(&fill->cut_of, mcor_edge_part(p, p->part), (int32_t)fill->cut_count);
+    mcor_table_number(&fill->cut_of, mcor_edge_part(p, p->part), (int32_t)fill->cuts.count);
   MCOR_TRY(mcor_allocated(job->context, index >= 0));
-  MCOR_TRY(mcor_make_room(
-    job->context, (void**)&fill->cuts, fill->cut_count, &fill->cut_room, sizeof *fill->cuts));
   cut->vertex = (int32_t)(fill->face.node_count + index);
-  if (index == fill->cut_count)
+  if (index == fill->cuts.count)
   {
     const bool inside = from->margin > 0;
-    fill->cuts[fill->cut_count++] =
+    MCOR_APPEND(job->context, &fill->cuts,
       (mcor_fill_cut){ .vertex = { .node = { p->node[0], p->node[1], 0 },
                          .band = p->band,
                          .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
@@ -168,7 +161,7 @@ static mcor_status mcor_cut_fill_side(
         .bracket = { { inside ? p->from : p->to, inside ? p->to : p->from },
           { inside ? from->margin : to->margin, inside ? to->margin : from->margin }, -1 },
         .margin = INFINITY,
-        .index = index };
+        .index = index });
   }
   return MCOR_OK;
 }
@@ -246,7 +239,7 @@ static double mcor_next_place(const mcor_bracket* bracket, bool halve)
 static void mcor_narrow_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
-  mcor_fill_cut* cut = &((mcor_filling*)data)->cuts[points->to[i]];
+  mcor_fill_cut* cut = &((mcor_filling*)data)->cuts.of[points->to[i]];
   const double at = mcor_get_real(context, points->offset, 4 * i + cut->axis);
   const double margin = mcor_cap_margin(context, points, i);
   if (fabs(margin) < fabs(cut->margin))
@@ -270,25 +263,25 @@ static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fil
 {
   mcor_cap_points points = { .take = mcor_narrow_cut, .data = fill };
   mcor_status status = MCOR_OK;
-  if (fill->cut_count > 0)
+  if (fill->cuts.count > 0)
   {
-    qsort(fill->cuts, (size_t)fill->cut_count, sizeof *fill->cuts, mcor_compare_cuts);
+    qsort(fill->cuts.of, (size_t)fill->cuts.count, sizeof *fill->cuts.of, mcor_compare_cuts);
   }
-  for (int64_t i = 0; i < fill->cut_count; ++i)
+  for (int64_t i = 0; i < fill->cuts.count; ++i)
   {
-    fill->cuts[i].at = mcor_next_place(&fill->cuts[i].bracket, false);
+    fill->cuts.of[i].at = mcor_next_place(&fill->cuts.of[i].bracket, false);
   }
   const int steps = context->run.options->preview ? 0 : MCOR_FILL_STEPS;
   for (int step = 0; step < steps && status == MCOR_OK; ++step)
   {
-    for (int64_t i = 0; i < fill->cut_count && status == MCOR_OK; ++i)
+    for (int64_t i = 0; i < fill->cuts.count && status == MCOR_OK; ++i)
     {
-      const mcor_fill_cut* cut = &fill->cuts[i];
+      const mcor_fill_cut* cut = &fill->cuts.of[i];
       double offset[3] = { 0, 0, 0 };
       offset[cut->axis] = mcor_next_place(&cut->bracket, step == 4);
       status = mcor_add_cap_point(context, &points, cut->vertex.node, offset, i);
     }
-    status = status == MCOR_OK ? mcor_take_cap_points(context, &points) : status;
+    MCOR_THEN(status, mcor_take_cap_points(context, &points));
   }
   mcor_free_cap_points(context, &points);
   return status;
@@ -331,22 +324,22 @@ static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_ver
 static mcor_status mcor_make_fill_points(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const size_t refs = (size_t)(fill->face.node_count + fill->cut_count);
+  const size_t refs = (size_t)(fill->face.node_count + fill->cuts.count);
   fill->number = malloc(refs * sizeof *fill->number);
   MCOR_TRY(mcor_allocated(context, fill->number));
   memset(fill->number, 0xff, refs * sizeof *fill->number);
   const int64_t base = surface->point_count;
   int64_t nodes = 0;
-  for (int64_t i = 0; i < 3 * fill->triangle_count; ++i)
+  for (int64_t i = 0; i < 3 * fill->triangles.count; ++i)
   {
-    const int32_t ref = fill->triangles[i / 3].corner[i % 3];
+    const int32_t ref = fill->triangles.of[i / 3].corner[i % 3];
     if (ref >= 0 && ref < fill->face.node_count && fill->number[ref] < 0)
     {
       fill->number[ref] = 0;
       ++nodes;
     }
   }
-  const int64_t count = nodes + fill->cut_count;
+  const int64_t count = nodes + fill->cuts.count;
   MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The filled region would have %lld points; the limit is %d. Use a larger cube size.",
     (long long)count, MCOR_COUNT_LIMIT);
@@ -357,9 +350,9 @@ static mcor_status mcor_make_fill_points(
   mcor_cap_vertex* vertices = malloc((size_t)count * sizeof *vertices);
   MCOR_TRY(mcor_allocated(context, vertices));
   mcor_list_nodes(fill, base, vertices);
-  for (int64_t i = 0; i < fill->cut_count; ++i)
+  for (int64_t i = 0; i < fill->cuts.count; ++i)
   {
-    const mcor_fill_cut* cut = &fill->cuts[i];
+    const mcor_fill_cut* cut = &fill->cuts.of[i];
     mcor_cap_vertex* vertex = &vertices[nodes + i];
     *vertex = cut->vertex;
     vertex->flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2;
@@ -370,10 +363,10 @@ static mcor_status mcor_make_fill_points(
   mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
   context->run.iso = (mcor_iso){ .number = context->run.options->iso_count };
   mcor_status status = mcor_load_attributes(context, input, 0);
-  status = status == MCOR_OK ? mcor_reserve_vertices(context, (int)count) : status;
-  status = status == MCOR_OK ? mcor_append_cap_vertices(context, vertices, count) : status;
+  MCOR_THEN(status, mcor_reserve_vertices(context, (int)count));
+  MCOR_THEN(status, mcor_append_cap_vertices(context, vertices, count));
   mcor_release(context, &context->attributes.sorted);
-  status = status == MCOR_OK ? mcor_append_output(context, input, true, surface) : status;
+  MCOR_THEN(status, mcor_append_output(context, input, true, surface));
   for (int64_t i = base; i < surface->point_count && status == MCOR_OK; ++i)
   {
     const mcor_fill_line* line = &fill->lines[vertices[i - base].band - 1];
@@ -395,13 +388,13 @@ static mcor_status mcor_make_fill_points(
 static mcor_status mcor_append_fill_triangles(
   mcor_context* context, const mcor_filling* fill, mcor_surface* surface)
 {
-  const int64_t first = surface->triangle_count, count = fill->triangle_count;
+  const int64_t first = surface->triangle_count, count = fill->triangles.count;
   MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));
   MCOR_TRY(mcor_grow(context, (void**)&surface->band_value, 0, count, sizeof(double)));
   MCOR_TRY(mcor_extend_kept(context, count, surface));
   for (int64_t t = 0; t < count; ++t)
   {
-    const mcor_fill_triangle* from = &fill->triangles[t];
+    const mcor_fill_triangle* from = &fill->triangles.of[t];
     for (int c = 0; c < 3; ++c)
     {
       const int32_t ref = from->corner[c];

@@ -185,7 +185,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   const mcor_plane* plane = &context->plane;
   mcor_joining joining;
   mcor_status status = mcor_read_joining(context, surface, &joining);
-  status = status == MCOR_OK ? mcor_allocated(context, mcor_join(&joining, surface)) : status;
+  MCOR_THEN(status, mcor_allocated(context, mcor_join(&joining, surface)));
   mcor_free_joining(&joining);
   MCOR_TRY(status);
   const bool filled = surface->band_value != NULL;

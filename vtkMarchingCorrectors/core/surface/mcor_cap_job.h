@@ -28,6 +28,11 @@ typedef struct mcor_cap_border
   int32_t ends[MCOR_CAP_BORDER][2];
 } mcor_cap_border;
 
+typedef struct mcor_cap_triangle
+{
+  cl_int corner[3];
+} mcor_cap_triangle;
+
 typedef struct mcor_cap_job
 {
   mcor_context* context;
@@ -36,13 +41,13 @@ typedef struct mcor_cap_job
    * first one. */
   mcor_table edges[3];
   mcor_table nodes, cuts;
-  mcor_cap_vertex* vertices;
-  int64_t vertex_count, vertex_room;
-  mcor_cap_line* lines; /* of cuts that are placed exactly: at walls, or in two dimensions */
-  int64_t line_count, line_room;
-  cl_int* triangles;
-  cl_ulong* cells; /* squares of triangles, numbered behind all cells, see mcor_triangle_cell.c */
-  int64_t triangle_count, triangle_room, cell_room, owned_count;
+  MCOR_LIST(mcor_cap_vertex) vertices;
+  MCOR_LIST(mcor_cap_line) lines; /* of cuts that are placed exactly: at walls, or in a plane */
+  MCOR_LIST(mcor_cap_triangle) triangles;
+  MCOR_LIST(cl_ulong)
+  cells; /* squares of triangles, numbered behind all cells, see
+                                mcor_triangle_cell.c */
+  int64_t owned_count;
   const struct mcor_cap_square* square; /* the square that is being cut */
   cl_ulong number;                      /* its number, or that of a cell of a cap at a wall */
   uint64_t lookups;                     /* how often it has looked up a vertex */
@@ -68,7 +73,7 @@ typedef struct mcor_cap_square
 void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node[3], int across);
 /* Adds what trimming leaves of a square to the cap. */
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square);
-mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3]);
+mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32_t c);
 mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
 /* Moves the cuts to where the trim margin is 0. */
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job);

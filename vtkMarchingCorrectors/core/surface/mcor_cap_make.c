@@ -90,9 +90,7 @@ static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
       mcor_cap_face* face = &faces[upper];
       status = mcor_load_cap_face(
         job->context, axis, upper, upper && are_one ? &faces[0] : NULL, &job->points, face);
-      status = status == MCOR_OK
-        ? mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job)
-        : status;
+      MCOR_THEN(status, mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job));
     }
   }
   mcor_free_cap_face(&faces[0]);
@@ -105,7 +103,7 @@ static mcor_status mcor_append_caps(mcor_cap_job* job)
 {
   mcor_context* context = job->context;
   mcor_mesh* mesh = &context->mesh;
-  const size_t old = (size_t)mesh->triangle_count, more = (size_t)job->triangle_count;
+  const size_t old = (size_t)mesh->triangle_count, more = (size_t)job->triangles.count;
   const size_t width = 3 * sizeof(cl_int), cell = sizeof(cl_ulong);
   if (more == 0)
   {
@@ -114,11 +112,12 @@ static mcor_status mcor_append_caps(mcor_cap_job* job)
   MCOR_RETURN_IF(old + more > MCOR_COUNT_LIMIT / 3, context, MCOR_OUT_OF_CAPACITY,
     "The surface with its caps would have %zu triangles; the limit is %d. Use a larger cube size.",
     old + more, MCOR_COUNT_LIMIT / 3);
-  MCOR_TRY(mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles, more * width));
-  MCOR_TRY(mcor_append_bytes(context, &context->box.cells, old * cell, job->cells, more * cell));
+  MCOR_TRY(
+    mcor_append_bytes(context, &mesh->triangles, old * width, job->triangles.of, more * width));
+  MCOR_TRY(mcor_append_bytes(context, &context->box.cells, old * cell, job->cells.of, more * cell));
   mesh->triangle_count += (int)more;
   context->run.statistics->cap_triangles += job->owned_count;
-  return mcor_append_cap_vertices(context, job->vertices, job->vertex_count);
+  return mcor_append_cap_vertices(context, job->vertices.of, job->vertices.count);
 }
 
 mcor_status mcor_cap(mcor_context* context)
@@ -142,7 +141,7 @@ mcor_status mcor_cap(mcor_context* context)
   /* A mesh that is not trimmed has no cuts. */
   const int mapped = n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, views, mapped);
-  status = status == MCOR_OK ? mcor_index_cap_edges(&job) : status;
+  MCOR_THEN(status, mcor_index_cap_edges(&job));
   for (int axis = 0; axis < 3 && status == MCOR_OK; ++axis)
   {
     status = mcor_cap_sides(&job, axis);
@@ -152,16 +151,16 @@ mcor_status mcor_cap(mcor_context* context)
   status = status == MCOR_OK && mcor_caps_walls(context) ? mcor_cap_walls(&job) : status;
   status = mcor_unmap_all(context, views, mapped, status);
   mcor_free_cap_points(context, &job.points);
-  status = status == MCOR_OK ? mcor_append_caps(&job) : status;
+  MCOR_THEN(status, mcor_append_caps(&job));
   for (int a = 0; a < 3; ++a)
   {
     mcor_table_free(&job.edges[a]);
   }
   mcor_table_free(&job.nodes);
   mcor_table_free(&job.cuts);
-  free(job.vertices);
-  free(job.lines);
-  free(job.triangles);
-  free(job.cells);
+  free(job.vertices.of);
+  free(job.lines.of);
+  free(job.triangles.of);
+  free(job.cells.of);
   return status;
 }

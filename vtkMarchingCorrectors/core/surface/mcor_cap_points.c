@@ -168,7 +168,7 @@ mcor_status mcor_append_bytes(
   }
   MCOR_TRY(mcor_extend(context, to, old, old + bytes));
   mcor_status status = mcor_write(context, &more, data, bytes);
-  status = status == MCOR_OK ? mcor_copy(context, &more, to, old, bytes) : status;
+  MCOR_THEN(status, mcor_copy(context, &more, to, old, bytes));
   mcor_release(context, &more);
   return status;
 }
@@ -212,7 +212,7 @@ mcor_status mcor_append_cap_vertices(
     size_t width;
   } arrays[] = { { &mesh->node, node, 4 * sizeof *node }, { &mesh->offset, offset, width },
     { &mesh->flag, flag, 1 } };
-  status = status == MCOR_OK ? mcor_extend_vertices(context, (int)old, (int)(old + n)) : status;
+  MCOR_THEN(status, mcor_extend_vertices(context, (int)old, (int)(old + n)));
   for (int i = 0; i < 3 && status == MCOR_OK; ++i)
   {
     const size_t bytes = arrays[i].width;

@@ -27,7 +27,7 @@ static mcor_status mcor_find_cap_vertex(
   mcor_cap_job* job, mcor_table* map, uint64_t key, const double at[3], uint8_t flag, int32_t* v)
 {
   mcor_context* context = job->context;
-  const int32_t next = (int32_t)(job->context->mesh.vertex_count + job->vertex_count);
+  const int32_t next = (int32_t)(job->context->mesh.vertex_count + job->vertices.count);
   ++job->lookups;
   *v = mcor_table_number(map, key, next);
   MCOR_TRY(mcor_allocated(context, *v >= 0));
@@ -37,11 +37,9 @@ static mcor_status mcor_find_cap_vertex(
   }
   MCOR_RETURN_IF(next >= MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The caps have too many vertices. Use a larger cube size.");
-  MCOR_TRY(mcor_make_room(
-    context, (void**)&job->vertices, job->vertex_count, &job->vertex_room, sizeof *job->vertices));
-  mcor_cap_vertex* vertex = &job->vertices[job->vertex_count++];
-  *vertex = (mcor_cap_vertex){ .flag = flag, .key = { job->number, job->lookups } };
-  mcor_put_cap_vertex(vertex, at);
+  mcor_cap_vertex vertex = { .flag = flag, .key = { job->number, job->lookups } };
+  mcor_put_cap_vertex(&vertex, at);
+  MCOR_APPEND(context, &job->vertices, vertex);
   return MCOR_OK;
 }
 
@@ -123,35 +121,28 @@ static mcor_status mcor_cap_cut(
   {
     cut->at[a] = low->at[a] + s * (high->at[a] - low->at[a]);
   }
-  const int64_t before = job->vertex_count;
+  const int64_t before = job->vertices.count;
   const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
   MCOR_TRY(mcor_find_cap_vertex(
     job, &job->cuts, key, cut->at, job->border ? MCOR_CAP_FLAG : 2, &cut->vertex));
-  if ((!job->border && job->context->space.axes == 3) || job->vertex_count == before)
+  if ((!job->border && job->context->space.axes == 3) || job->vertices.count == before)
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_make_room(
-    job->context, (void**)&job->lines, job->line_count, &job->line_room, sizeof *job->lines));
-  mcor_cap_line* line = &job->lines[job->line_count++];
-  *line = (mcor_cap_line){ .vertex = before, .at = s, .bracket = bracket };
-  memcpy(line->from, low->at, sizeof low->at);
-  memcpy(line->to, high->at, sizeof high->at);
+  mcor_cap_line line = { .vertex = before, .at = s, .bracket = bracket };
+  memcpy(line.from, low->at, sizeof low->at);
+  memcpy(line.to, high->at, sizeof high->at);
+  MCOR_APPEND(job->context, &job->lines, line);
   return MCOR_OK;
 }
 
 /* ---- Polygons ---- */
 
-mcor_status mcor_add_cap_triangle(mcor_cap_job* job, const int32_t corners[3])
+mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32_t c)
 {
-  const int64_t next = job->triangle_count + 1;
-  MCOR_TRY(mcor_make_room(
-    job->context, (void**)&job->triangles, next, &job->triangle_room, 3 * sizeof *job->triangles));
-  MCOR_TRY(
-    mcor_make_room(job->context, (void**)&job->cells, next, &job->cell_room, sizeof *job->cells));
-  job->cells[job->triangle_count] = job->number;
+  MCOR_APPEND(job->context, &job->triangles, (mcor_cap_triangle){ { a, b, c } });
+  MCOR_APPEND(job->context, &job->cells, job->number);
   job->owned_count += !(job->number & MCOR_RING_CELL);
-  memcpy(job->triangles + 3 * job->triangle_count++, corners, 3 * sizeof *corners);
   return MCOR_OK;
 }
 
@@ -191,14 +182,13 @@ static mcor_status mcor_add_cap_fan(
     const int along = 1 - square->axis, forward = square->upper == along;
     const bool rises = corners[other].at[along] > corners[0].at[along];
     const int from = rises == forward ? 0 : other, to = other - from;
-    return mcor_add_cap_triangle(
-      job, (int32_t[3]){ corners[from].vertex, corners[to].vertex, corners[to].vertex });
+    return mcor_add_cap_triangle(job, corners[from].vertex, corners[to].vertex, corners[to].vertex);
   }
   for (int i = 1; i + 1 < count; ++i)
   {
-    const int32_t triangle[3] = { corners[0].vertex, corners[square->upper ? i : i + 1].vertex,
-      corners[square->upper ? i + 1 : i].vertex };
-    MCOR_TRY(mcor_add_cap_triangle(job, triangle));
+    const int next = square->upper ? i : i + 1, last = 2 * i + 1 - next;
+    MCOR_TRY(
+      mcor_add_cap_triangle(job, corners[0].vertex, corners[next].vertex, corners[last].vertex));
   }
   return MCOR_OK;
 }
@@ -303,8 +293,8 @@ static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
   mcor_cap_job* job = data;
-  mcor_cap_line* line = &job->lines[points->to[i]];
-  mcor_cap_vertex* vertex = &job->vertices[line->vertex];
+  mcor_cap_line* line = &job->lines.of[points->to[i]];
+  mcor_cap_vertex* vertex = &job->vertices.of[line->vertex];
   const double margin = mcor_cap_margin(context, points, i), before = line->at;
   const bool found = fabs(margin) < MCOR_CAP_ROOT, is_cap = vertex->flag & MCOR_CAP_FLAG;
   vertex->flag = (uint8_t)((is_cap ? MCOR_CAP_FLAG : 0) | (found ? !is_cap : 2));
@@ -332,17 +322,17 @@ mcor_status mcor_place_cap_cuts(mcor_cap_job* job)
   mcor_cap_points* points = &job->points;
   points->take = mcor_move_cut;
   points->data = job;
-  int64_t left = job->line_count;
+  int64_t left = job->lines.count;
   for (int step = 0; step < MCOR_PLACE_STEPS && left > 0; ++step)
   {
     left = 0;
-    for (int64_t i = 0; i < job->line_count; ++i)
+    for (int64_t i = 0; i < job->lines.count; ++i)
     {
-      const mcor_cap_vertex* vertex = &job->vertices[job->lines[i].vertex];
-      MCOR_TRY(job->lines[i].done
+      const mcor_cap_vertex* vertex = &job->vertices.of[job->lines.of[i].vertex];
+      MCOR_TRY(job->lines.of[i].done
           ? MCOR_OK
           : mcor_add_cap_point(job->context, points, vertex->node, vertex->offset, i));
-      left += !job->lines[i].done;
+      left += !job->lines.of[i].done;
     }
     MCOR_TRY(mcor_take_cap_points(job->context, points));
   }

@@ -36,8 +36,7 @@ typedef struct mcor_wall_brick
 typedef struct mcor_wall
 {
   mcor_table index; /* numbers of bricks by place */
-  mcor_wall_brick* bricks;
-  int64_t count, room;
+  MCOR_LIST(mcor_wall_brick) bricks;
   bool has_bricks; /* all that solids reach are listed */
   int range[3][2]; /* first and last node along each axis: of the box and its ring */
 } mcor_wall;
@@ -74,7 +73,7 @@ typedef struct mcor_wall_cell
 
 static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
 {
-  const int32_t next = (int32_t)wall->count;
+  const int32_t next = (int32_t)wall->bricks.count;
   const int32_t number = mcor_table_number(&wall->index, mcor_cap_key(at), next);
   if (number != next)
   {
@@ -84,12 +83,10 @@ static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, c
     "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. Use "
     "a larger cube size, or turn capping off.",
     MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
-  MCOR_TRY(
-    mcor_make_room(context, (void**)&wall->bricks, wall->count, &wall->room, sizeof *wall->bricks));
-  mcor_wall_brick* brick = &wall->bricks[wall->count++];
-  *brick = (mcor_wall_brick){ .at = { at[0], at[1], at[2] } };
   const cl_int node[4] = { at[0] * MCOR_BRICK, at[1] * MCOR_BRICK, at[2] * MCOR_BRICK, 0 };
-  brick->key = mcor_node_key(&context->lattice, node);
+  const uint64_t key = mcor_node_key(&context->lattice, node);
+  MCOR_APPEND(
+    context, &wall->bricks, (mcor_wall_brick){ .key = key, .at = { at[0], at[1], at[2] } });
   return MCOR_OK;
 }
 
@@ -119,7 +116,7 @@ static mcor_status mcor_reach_wall(
         MCOR_TRY(is_solid ? mcor_add_wall_brick(context, wall, at) : MCOR_OK);
         if (found >= 0)
         {
-          wall->bricks[found].has_fluid = true;
+          wall->bricks.of[found].has_fluid = true;
         }
       }
     }
@@ -133,7 +130,7 @@ static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
   const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(seen->at));
   if (number >= 0)
   {
-    mcor_wall_brick* brick = &wall->bricks[number];
+    mcor_wall_brick* brick = &wall->bricks.of[number];
     brick->is_known = seen->known != 0;
     brick->above = seen->above;
     brick->used = seen->used;
@@ -146,7 +143,7 @@ static void mcor_take_wall_node(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
   const mcor_wall* wall = data;
-  mcor_wall_brick* brick = &wall->bricks[points->to[i] / MCOR_BRICK_NODES];
+  mcor_wall_brick* brick = &wall->bricks.of[points->to[i] / MCOR_BRICK_NODES];
   const int n = (int)(points->to[i] % MCOR_BRICK_NODES);
   const bool is_above = brick->is_known || mcor_get_real(context, points->value, i) >= 0;
   brick->above |= (cl_ulong)is_above << n;
@@ -165,22 +162,22 @@ static mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points
   wall->has_bricks = true;
   MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
   int64_t count = 0;
-  for (int64_t i = 0; i < wall->count; ++i)
+  for (int64_t i = 0; i < wall->bricks.count; ++i)
   {
-    if (wall->bricks[i].has_fluid)
+    if (wall->bricks.of[i].has_fluid)
     {
-      wall->bricks[count++] = wall->bricks[i];
+      wall->bricks.of[count++] = wall->bricks.of[i];
     }
   }
-  wall->count = count;
+  wall->bricks.count = count;
   if (count > 0)
   {
-    qsort(wall->bricks, (size_t)count, sizeof *wall->bricks, mcor_compare_keys);
+    qsort(wall->bricks.of, (size_t)count, sizeof *wall->bricks.of, mcor_compare_keys);
   }
   mcor_table_free(&wall->index);
   for (int64_t i = 0; i < count; ++i)
   {
-    const uint64_t key = mcor_cap_key(wall->bricks[i].at);
+    const uint64_t key = mcor_cap_key(wall->bricks.of[i].at);
     MCOR_TRY(mcor_allocated(context, mcor_table_number(&wall->index, key, (int32_t)i) >= 0));
   }
   MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
@@ -188,7 +185,7 @@ static mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points
   points->data = wall;
   for (int64_t i = 0; i < count * MCOR_BRICK_NODES; ++i)
   {
-    const mcor_wall_brick* brick = &wall->bricks[i / MCOR_BRICK_NODES];
+    const mcor_wall_brick* brick = &wall->bricks.of[i / MCOR_BRICK_NODES];
     const int n = (int)(i % MCOR_BRICK_NODES);
     if (!brick->is_known || (brick->above >> n & 1))
     {
@@ -275,7 +272,7 @@ static bool mcor_load_wall_cell(
     if (!near[which])
     {
       const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(at));
-      near[which] = !which ? brick : number < 0 ? NULL : &wall->bricks[number];
+      near[which] = !which ? brick : number < 0 ? NULL : &wall->bricks.of[number];
     }
     if (!near[which])
     {
@@ -359,7 +356,7 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
     const int64_t v = 4 * (int64_t)loop[i / 3] + i % 3,
                   own = loop[i / 3] - context->mesh.vertex_count;
     at[i / 3][i % 3] = own >= 0
-      ? job->vertices[own].node[i % 3] + job->vertices[own].offset[i % 3]
+      ? job->vertices.of[own].node[i % 3] + job->vertices.of[own].offset[i % 3]
       : ((const cl_int*)job->node)[v] + mcor_get_real(context, job->offset, v);
   }
   for (int i = 0; i < count; ++i)
@@ -381,9 +378,8 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
   }
   for (int i = 1; i + 1 < count; ++i)
   {
-    const int32_t corners[3] = { loop[best], loop[(best + i) % count],
-      loop[(best + i + 1) % count] };
-    MCOR_TRY(mcor_add_cap_triangle(job, corners));
+    MCOR_TRY(mcor_add_cap_triangle(
+      job, loop[best], loop[(best + i) % count], loop[(best + i + 1) % count]));
   }
   return MCOR_OK;
 }
@@ -431,11 +427,11 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap)
   mcor_wall_job job = { .cap = cap };
   mcor_cap_border border = { .count = 0 };
   mcor_status status = mcor_load_wall(cap->context, &cap->points, &job.wall);
-  status = status == MCOR_OK ? mcor_load_wall_edges(&job) : status;
+  MCOR_THEN(status, mcor_load_wall_edges(&job));
   cap->border = &border;
-  for (int64_t i = 0; i < job.wall.count * MCOR_BRICK_NODES && status == MCOR_OK; ++i)
+  for (int64_t i = 0; i < job.wall.bricks.count * MCOR_BRICK_NODES && status == MCOR_OK; ++i)
   {
-    const mcor_wall_brick* brick = &job.wall.bricks[i / MCOR_BRICK_NODES];
+    const mcor_wall_brick* brick = &job.wall.bricks.of[i / MCOR_BRICK_NODES];
     const int inner = (int)(i % MCOR_BRICK_NODES);
     mcor_wall_cell cell;
     if (mcor_load_wall_cell(&job, brick, inner, &cell) && mcor_is_wall_cell(&job, &cell))
@@ -446,10 +442,10 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap)
       ? mcor_report_launch(cap->context)
       : status;
   }
-  status = status == MCOR_OK ? mcor_place_cap_cuts(cap) : status;
+  MCOR_THEN(status, mcor_place_cap_cuts(cap));
   cap->border = NULL;
   mcor_table_free(&job.wall.index);
-  free(job.wall.bricks);
+  free(job.wall.bricks.of);
   free(job.edges);
   return status;
 }

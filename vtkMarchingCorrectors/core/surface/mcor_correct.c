@@ -54,7 +54,7 @@ mcor_status mcor_correct(mcor_context* context)
   uint8_t* owners = NULL; /* see mcor_find_counted */
   void* view = NULL;
   mcor_status status = mcor_find_counted(context, &owners);
-  status = status == MCOR_OK ? mcor_map(context, buffer, n, false, &view) : status;
+  MCOR_THEN(status, mcor_map(context, buffer, n, false, &view));
   const uint8_t* evaluations = view;
   int most = 0;
   for (size_t i = 0; i < n && status == MCOR_OK; ++i)

@@ -70,9 +70,9 @@ mcor_status mcor_finish_normals(mcor_context* context, mcor_surface* surface)
     }
     status = i % MCOR_NORMAL_STEP == 0 ? mcor_report_launch(context) : MCOR_OK;
   }
-  status = status == MCOR_OK ? mcor_parallel_run(context, surface->point_count, MCOR_LIGHT_GRAIN,
-                                 mcor_store_sums, &job, NULL)
-                             : status;
+  MCOR_THEN(status,
+    mcor_parallel_run(
+      context, surface->point_count, MCOR_LIGHT_GRAIN, mcor_store_sums, &job, NULL));
   free(job.sums);
   return status;
 }

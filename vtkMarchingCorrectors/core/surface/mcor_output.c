@@ -401,7 +401,7 @@ mcor_status mcor_append_output(
   mcor_mesh* m = &context->mesh;
   /* Frees what only the mesh needed, so that the output finds room; then what the output did, for
    * what the caller makes of the surface. */
-  mcor_release_trim(context);
+  MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE(context, &m->edges, &m->ends, &m->evaluations, &context->bricks.need);
   mcor_status status = mcor_append_mesh(context, input, all, &download);
   status = mcor_unmap_all(context, download.mappings, download.mapped, status);

@@ -31,7 +31,7 @@ mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit)
   }
   mcor_buffer shared = { 0 };
   mcor_status status = emit(context, box->whole_halves, &shared);
-  status = status == MCOR_OK ? mcor_mark_others(context, &shared) : status;
+  MCOR_THEN(status, mcor_mark_others(context, &shared));
   mcor_release(context, &shared);
   return status;
 }

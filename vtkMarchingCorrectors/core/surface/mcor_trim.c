@@ -200,10 +200,3 @@ mcor_status mcor_trim(mcor_context* context)
   mesh->triangle_count = remaining;
   return cut_count > 0 ? mcor_place_cuts(context, cut_count) : MCOR_OK;
 }
-
-void mcor_release_trim(mcor_context* context)
-{
-  mcor_trim_data* t = &context->trim;
-  MCOR_RELEASE(context, &t->eigenvalue, &t->margin, &t->remaining, &t->cuts, &t->keys, &t->index,
-    &t->triangles, &t->cells);
-}

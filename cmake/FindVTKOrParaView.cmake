@@ -5,7 +5,7 @@
 # Components by name: a bare find_package(VTK) asks for every optional dependency of VTK.
 set(mcor_vtk_components CommonCore CommonDataModel CommonExecutionModel CommonMisc ParallelCore)
 set(mcor_vtk_optional WrappingPythonCore Python FiltersCore FiltersSources IOXML IOXMLParser IOLegacy IOImage
-  IOGeometry IOPLY   IOHDF hdf5 RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 ParallelMPI ParallelDIY IOParallelXML)
+  IOGeometry IOPLY IOHDF hdf5 RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 TestingRendering ParallelMPI ParallelDIY IOParallelXML)
 
 # VTK 9.3 passes empty arguments on, which CMake 3.31 warns of unless told what to do.
 set(CMAKE_POLICY_DEFAULT_CMP0174 NEW)

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The command line program: particles from a file, surface to a file. See --help.
-#include "ArrayList.h"
 #include "ColorScale.h"
-#include "DataSetFile.h"
+#include "DataFile.h"
 #include "Ending.h"
 #include "Extra.h"
 #include "Job.h"
@@ -14,12 +13,9 @@
 #include "ParticleFile.h"
 #include "Picture.h"
 #include "RunStatistics.h"
-#include "RunTables.h"
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "SurfaceFile.h"
-#include "SurfaceRun.h"
 #if MCOR_HAS_RANKS
 #include "RankSession.h"
 #endif
@@ -213,8 +209,8 @@ bool Execute(int argc, char* argv[])
 {
   Job job;
   ParseCommandLine(argc, argv, job);
-  const bool isQuestion = job.Has("--help") || job.Has("--version") || job.Has("--list-devices") ||
-    job.ListArrays;
+  const bool isQuestion =
+    job.Has("--help") || job.Has("--version") || job.Has("--list-devices") || job.ListArrays;
   if (isQuestion && LaunchedRank() > 0)
   {
     return true;
@@ -226,8 +222,8 @@ bool Execute(int argc, char* argv[])
   }
   if (job.Has("--version"))
   {
-    std::cout << "marching-correctors " MCOR_PROGRAM_VERSION " (VTK "
-              << vtkVersion::GetVTKVersion() << ")\n";
+    std::cout << "marching-correctors " MCOR_PROGRAM_VERSION " (VTK " << vtkVersion::GetVTKVersion()
+              << ")\n";
     return true;
   }
   const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));

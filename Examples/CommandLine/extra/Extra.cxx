@@ -5,9 +5,7 @@
 #include "FileName.h"
 #include "Picture.h"
 #ifdef MCOR_HAS_VTKHDF
-#include "HdfLinks.h"
-#include "HdfSteps.h"
-#include "vtkHDFReader.h"
+#include "HdfFile.h"
 #endif
 
 #include "vtkNew.h"
@@ -21,36 +19,13 @@
 namespace
 {
 
-#ifdef MCOR_HAS_VTKHDF
-vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step)
-{
-  RefuseHdfLinks(file);
-  if (const vtkSmartPointer<vtkDataObject> points = ReadHdfPoints(file, step))
-  {
-    return points;
-  }
-  vtkNew<vtkHDFReader> reader;
-  reader->SetFileName(file.c_str());
-  if (!reader->CanReadFile(file.c_str()))
-  {
-    throw std::runtime_error(file + " cannot be read: its reader does not know what it holds");
-  }
-  reader->Update();
-  return reader->GetOutputDataObject(0);
-}
-
-std::vector<double> ListTimes(const std::string& file)
-{
-  RefuseHdfLinks(file);
-  return ListHdfTimes(file);
-}
-#else
+#ifndef MCOR_HAS_VTKHDF
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t)
 {
   throw std::runtime_error(file + " cannot be read: this VTK was built without its reader");
 }
 
-std::vector<double> ListTimes(const std::string&)
+std::vector<double> ListHdfTimes(const std::string&)
 {
   return {};
 }
@@ -74,4 +49,4 @@ vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file)
 
 }
 
-const Extra MarchingCorrectorsExtra = { Picture::New, ReadHdf, ListTimes, ReadSurface };
+const Extra MarchingCorrectorsExtra = { Picture::New, ReadHdf, ListHdfTimes, ReadSurface };

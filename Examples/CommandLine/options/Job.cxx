@@ -3,11 +3,11 @@
 #include "Job.h"
 
 #include "CollectionFile.h"
+#include "DataFile.h"
 #include "FileName.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
 #include "Sharing.h"
-#include "SurfaceFile.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -86,8 +86,7 @@ const std::vector<Rule> OfOthers = {
   { IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
     "a film has a picture of each step: --screenshot frame_%04d.png, not '{--screenshot}'" },
   { IF(!(j.Surface->GetWidening() > 1.0 || j.Surface->GetSmooth())),
-    "without --widen there are no factors",
-    { "--widening" } },
+    "without --widen there are no factors", { "--widening" } },
   { IF(j.Has("--widening") && !EndsWith(j.WideningFile, ".vtp")),
     "--widening writes a .vtp file, not '{--widening}'" },
   { IF(j.IsFilm() || LaunchedCount() > 1), "--widening is for one surface of one process",

@@ -4,9 +4,7 @@
 
 #include "Job.h"
 #include "ParticleFile.h"
-#include "ParticleParts.h"
 #include "ParticleTimes.h"
-#include "PeriodOfData.h"
 #include "SafeText.h"
 
 #include "vtkMPIController.h"

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "FileTime.h"
+#include "Formats.h"
 
-#include "DeclaredSizes.h"
 #include "Ending.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"

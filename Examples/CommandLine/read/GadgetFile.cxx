@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "GadgetFile.h"
+#include "Formats.h"
 
 #include "vtkByteSwap.h"
 #include "vtkDoubleArray.h"

@@ -3,15 +3,11 @@
 #include "ParticleFile.h"
 
 #include "CollectionFile.h"
-#include "DeclaredSizes.h"
 #include "Ending.h"
 #include "Extra.h"
 #include "FileName.h"
-#include "GadgetFile.h"
+#include "Formats.h"
 #include "MessageCapture.h"
-#include "ParticleParts.h"
-#include "ParticleTable.h"
-#include "PeriodOfData.h"
 #include "SafeText.h"
 
 #include "vtkAbstractArray.h"

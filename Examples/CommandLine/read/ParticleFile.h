@@ -9,8 +9,10 @@
 #include <vector>
 
 class MessageCapture;
+class vtkDataObject;
 class vtkDataSet;
 class vtkPointSet;
+struct vtkSPHPeriod;
 
 /// ".vtp, .vtu, ... or .vtk": the endings of the files that ReadParticles knows.
 std::string ParticleFileEndings();
@@ -57,5 +59,36 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
 /// Reads a data set of any class, with the same care; as it is, but for names.
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages);
+
+/// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles
+/// that a part marks as copies of another part's ("vtkGhostType").
+vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPointSet>>& parts);
+
+/// The array that AddWalls() makes: 0 for fluid, 1 for walls.
+extern const char* const WallArrayName;
+
+/// The fluid, followed by the walls; the fluid itself where `walls` is null. It keeps the fluid's
+/// arrays of numbers. One that walls lack has the fluid's median there: solids take part in no
+/// field, so only the smoothing length, and what volumes are made of, count. Throws
+/// std::runtime_error.
+vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
+
+// The period that particles' field data tell of.
+
+/// Gives the field data that may tell of a period, and no other.
+void PassPeriod(vtkDataObject* from, vtkDataObject* to);
+
+/// The period that was found, if there is no problem. Throws std::runtime_error where nothing was.
+std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
+
+/// The period for "--periodic auto". Throws std::runtime_error where there is none.
+std::vector<double> DetectPeriod(vtkDataObject* particles);
+
+/// A hint where --periodic is not given and there is a period; else "".
+std::string HintOfPeriod(vtkDataObject* particles);
+
+/// The text of --list-arrays: a line for each array of the particles, and for what a run would
+/// find.
+std::string DescribeArrays(vtkPointSet& particles);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ParticleParts.h"
+#include "ParticleFile.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkAppendPolyData.h"

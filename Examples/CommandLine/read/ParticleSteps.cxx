@@ -3,10 +3,10 @@
 #include "ParticleSteps.h"
 
 #include "CollectionFile.h"
-#include "FileTime.h"
+#include "FileName.h"
+#include "Formats.h"
 #include "Job.h"
 #include "ParticleFile.h"
-#include "FileName.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "PeriodOfData.h"
+#include "ParticleFile.h"
 #include "SafeText.h"
 
 #include "vtkDataArray.h"

@@ -3,7 +3,7 @@
 
 // The field in place of a surface: at points, and along lines of sight.
 #include "ColorScale.h"
-#include "DataSetFile.h"
+#include "DataFile.h"
 #include "Extra.h"
 #include "Job.h"
 #include "MessageCapture.h"
@@ -13,7 +13,6 @@
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "SurfaceRun.h"
 
 #include "vtkCellArray.h"
 #include "vtkCharArray.h"
@@ -246,8 +245,8 @@ void ProjectParticles(const Job& job, MessageCapture* messages, Sharing& sharing
     [&] {
       CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
     });
-  const double seconds = Project(
-    job, sharing.Read(job.Inputs.front(), job.Walls, messages), messages, sharing, "");
+  const double seconds =
+    Project(job, sharing.Read(job.Inputs.front(), job.Walls, messages), messages, sharing, "");
   sharing.OnFirst(
     [&]
     {

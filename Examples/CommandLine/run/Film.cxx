@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollectionFile.h"
 #include "ColorScale.h"
-#include "DataSetFile.h"
+#include "DataFile.h"
 #include "Ending.h"
 #include "Extra.h"
 #include "FileName.h"
@@ -14,12 +14,9 @@
 #include "ParticleTimes.h"
 #include "Picture.h"
 #include "RunStatistics.h"
-#include "RunTables.h"
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "SurfaceFile.h"
-#include "SurfaceRun.h"
 
 #include "vtkImageData.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "DataSetFile.h"
+#include "DataFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OutputFile.h"
@@ -9,8 +9,6 @@
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "SurfaceRun.h"
-#include "TableText.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"

@@ -7,7 +7,6 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
-#include "ParticleParts.h"
 #include "SafeText.h"
 #include "Sharing.h"
 

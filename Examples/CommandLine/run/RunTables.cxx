@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RunTables.h"
+#include "Runs.h"
 
+#include "DataFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
-#include "Runs.h"
-#include "SurfaceRun.h"
-#include "TableText.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"

@@ -3,7 +3,6 @@
 #include "Sharing.h"
 
 #include "ParticleFile.h"
-#include "ParticleParts.h"
 #include "ParticleTimes.h"
 
 #include <cstdlib>

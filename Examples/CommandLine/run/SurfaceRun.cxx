@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurfaceRun.h"
+#include "Runs.h"
 
+#include "DataFile.h"
 #include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
-#include "ParticleParts.h"
-#include "PeriodOfData.h"
+#include "ParticleFile.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#include "SurfaceFile.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"

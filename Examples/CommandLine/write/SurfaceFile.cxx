@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurfaceFile.h"
+#include "DataFile.h"
 
 #include "ColorScale.h"
-#include "DataSetFile.h"
 #include "Ending.h"
 #include "FileName.h"
 #include "Job.h"
 #include "SafeText.h"
-#include "TableText.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"

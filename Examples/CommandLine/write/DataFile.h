@@ -1,14 +1,29 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef SurfaceFile_h
-#define SurfaceFile_h
+#ifndef DataFile_h
+#define DataFile_h
+
+#include "vtkType.h"
 
 #include <string>
 #include <vector>
 
 class ColorScale;
 class MessageCapture;
+class vtkAbstractArray;
+class vtkDataSet;
 class vtkPolyData;
+class vtkTable;
+
+/// Throws std::runtime_error with one sentence if the ending of the name is not that of a format
+/// which holds data sets of this class.
+void CheckDataSetFile(const std::string& file, vtkDataSet* data);
+
+/// The bytes of a data set in the format of the file's ending. Throws std::runtime_error.
+std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCapture* messages);
+
+/// Writes a data set, completely or not at all. Throws std::runtime_error with one sentence.
+void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages);
 
 /// Whether the ending of the name is that of a format which WriteSurface knows.
 bool IsSurfaceFile(const std::string& file);
@@ -44,5 +59,17 @@ std::string PieceName(const std::string& file, int rank);
 
 /// The text of the .pvtp file; `piece` is one of the pieces, which have the same arrays.
 std::string ListPieces(const std::string& file, int count, vtkPolyData* piece);
+
+/// A text between two commas of CSV (RFC 4180). No spreadsheet takes it for a formula.
+std::string TableField(const std::string& text);
+
+/// Reads back as the same number; NaN is an empty place.
+std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component = 0);
+
+/// The names of the columns, one line.
+std::string TableHeader(vtkTable* table);
+
+/// A line for each row.
+std::string TableRows(vtkTable* table);
 
 #endif

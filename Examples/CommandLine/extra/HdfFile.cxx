@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HdfSteps.h"
+#include "HdfFile.h"
 
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkHDFReader.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -13,11 +14,74 @@
 #include "vtk_hdf5.h"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
 namespace
 {
+
+const herr_t IsFound = 1;     ///< ends a visit
+const long DeepestGroup = 64; ///< a damaged file may hold a circle of groups
+
+/// Whether values of a data set lie in other files.
+bool LiesElsewhere(hid_t group, const char* name)
+{
+  const hid_t data = H5Oopen(group, name, H5P_DEFAULT);
+  bool isElsewhere = false;
+  if (data >= 0 && H5Iget_type(data) == H5I_DATASET)
+  {
+    const hid_t list = H5Dget_create_plist(data);
+    isElsewhere = H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
+    H5Pclose(list);
+  }
+  if (data >= 0)
+  {
+    H5Oclose(data);
+  }
+  return isElsewhere;
+}
+
+herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* found)
+{
+  const bool isInFile = link->type == H5L_TYPE_HARD || link->type == H5L_TYPE_SOFT;
+  if (!isInFile || (link->type == H5L_TYPE_HARD && LiesElsewhere(root, name)))
+  {
+    *static_cast<std::string*>(found) = std::string("its '") + name +
+      "' lies in another file, which is not opened; give a file that holds all of its data";
+    return IsFound;
+  }
+  if (std::count(name, name + std::strlen(name), '/') > DeepestGroup)
+  {
+    *static_cast<std::string*>(found) = "its groups lie too deep in each other; it may be damaged";
+    return IsFound;
+  }
+  return 0;
+}
+
+/// Refuses files that lead to others: nobody has named these. Throws std::runtime_error.
+void RefuseLinks(const std::string& file)
+{
+  H5open();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (opened < 0)
+  {
+    return;
+  }
+  std::string found;
+  const herr_t result =
+    H5Lvisit(opened, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, static_cast<void*>(&found));
+  H5Fclose(opened);
+  if (result < 0)
+  {
+    found = "its groups cannot be listed; it may be damaged";
+  }
+  if (!found.empty())
+  {
+    throw std::runtime_error(file + " cannot be read: " + found);
+  }
+}
 
 /// Closes an object of HDF5.
 class Handle
@@ -210,20 +274,28 @@ private:
 
 std::vector<double> ListHdfTimes(const std::string& name)
 {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  RefuseLinks(name);
   const HdfFile file(name);
   return file.IsGood() && file.Has("Steps/Values") ? file.Times() : std::vector<double>();
 }
 
-vtkSmartPointer<vtkDataObject> ReadHdfPoints(const std::string& name, std::size_t step)
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step)
 {
+  RefuseLinks(name);
   const HdfFile file(name);
   const std::string type = file.IsGood() ? file.Type() : "";
   const bool hasSteps = file.IsGood() && file.Has("Steps");
   if ((type != "PolyData" && type != "UnstructuredGrid") ||
     (type == "UnstructuredGrid" && !hasSteps))
   {
-    return nullptr;
+    vtkNew<vtkHDFReader> reader; // which reads cells, too
+    reader->SetFileName(name.c_str());
+    if (!reader->CanReadFile(name.c_str()))
+    {
+      file.Fail("its reader does not know what it holds");
+    }
+    reader->Update();
+    return reader->GetOutputDataObject(0);
   }
   std::vector<long long> parts = file.Numbers("NumberOfPoints");
   long long offset = 0;

@@ -305,7 +305,6 @@ mcor_status mcor_extend_vertices(mcor_context* context, int old, int count);
 mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite);
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
-bool mcor_attributes_remain(const mcor_context* context);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
 mcor_status mcor_find_curvature(mcor_context* context); /* likewise */
 mcor_status mcor_find_nearest(mcor_context* context); /* of all vertices */

@@ -86,15 +86,6 @@ static mcor_status mcor_test_cubes(mcor_context* context, int level, int childre
  * be. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
-/* Returns the least number of blocks that these cubes will become. A surface is nearly flat in
- * cubes that are small against the particles' supports: dividing them makes fewer than four
- * times as many, but more than three times. */
-static double mcor_foresee_blocks(const mcor_context* context, int64_t count, int doublings)
-{
-  const double edge = ldexp(context->lattice.cube, doublings) * MCOR_BLOCK_CUBES;
-  return (double)count * (edge < 0.25 * context->measure.h_median ? pow(3, doublings) : 1);
-}
-
 /* Replaces the cubes by the parts of the active ones, *children in number, and adds the blocks
  * `kept` when the parts are blocks. */
 static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
@@ -110,7 +101,12 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
     MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->inactive),
     MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, children));
-  const double foreseen = mcor_foresee_blocks(context, *children + added, level - 1);
+  /* The least number of blocks that these cubes will become. A surface is nearly flat in cubes that
+   * are small against the particles' supports: dividing them makes fewer than four times as many,
+   * but more than three times. */
+  const double edge = ldexp(context->lattice.cube, level - 1) * MCOR_BLOCK_CUBES;
+  const bool is_flat = edge < 0.25 * context->measure.h_median;
+  const double foreseen = (double)(*children + added) * (is_flat ? pow(3, level - 1) : 1);
   MCOR_RETURN_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: with cube size %g there may be surface in %s %.3g blocks of "
     "%d^3 cells; the limit is %d. Use a larger cube size.",

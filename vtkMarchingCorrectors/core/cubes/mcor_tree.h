@@ -83,7 +83,6 @@ mcor_status mcor_split_bricks(mcor_context* context, const mcor_input* input, mc
 /* mcor_tree_key.c. Lists the keys of all split bricks, ascending. Free them with free(). */
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count);
-void mcor_sort_keys(uint64_t* keys, size_t count);
 /* Finds the position of the brick with a key. */
 void mcor_brick_of_key(const mcor_rung* rung, uint64_t key, int brick[3]);
 /* Splits the bricks with these keys. */

@@ -9,33 +9,6 @@
 
 #include <stdlib.h>
 
-void mcor_sort_keys(uint64_t* keys, size_t count)
-{
-  qsort(keys, count, sizeof *keys, mcor_compare_keys);
-}
-
-/* Writes the keys of a level's split bricks. Returns their number. */
-static size_t mcor_write_keys(const mcor_tree* tree, int level, uint64_t* keys)
-{
-  const mcor_brick_set* set = &tree->split[level];
-  const mcor_rung* rung = &tree->lattice->rungs[level];
-  size_t count = 0;
-  for (size_t i = 0; i < set->clusters.capacity; ++i)
-  {
-    int first[3];
-    mcor_first_of_cluster(rung, set->clusters.entries[i].key, first);
-    for (int bit = 0; bit < 64 && set->clusters.entries[i].value >> bit; ++bit)
-    {
-      const int b[3] = { first[0] + (bit & 3), first[1] + (bit >> 2 & 3), first[2] + (bit >> 4) };
-      if (set->clusters.entries[i].value >> bit & 1)
-      {
-        keys[count++] = mcor_brick_key(rung, b);
-      }
-    }
-  }
-  return count;
-}
-
 mcor_status mcor_list_splits(
   mcor_context* context, const mcor_tree* tree, uint64_t** keys, int64_t* count)
 {
@@ -49,9 +22,24 @@ mcor_status mcor_list_splits(
   *count = 0;
   for (int l = 0; l <= tree->top + 1; ++l)
   {
-    *count += (int64_t)mcor_write_keys(tree, l, *keys + *count);
+    const mcor_table* clusters = &tree->split[l].clusters;
+    const mcor_rung* rung = &tree->lattice->rungs[l];
+    for (size_t i = 0; i < clusters->capacity; ++i)
+    {
+      int first[3];
+      mcor_first_of_cluster(rung, clusters->entries[i].key, first);
+      for (uint64_t rest = clusters->entries[i].value, bit = 0; rest; rest >>= 1, ++bit)
+      {
+        const int b[3] = { first[0] + (int)(bit & 3), first[1] + (int)(bit >> 2 & 3),
+          first[2] + (int)(bit >> 4) };
+        if (rest & 1)
+        {
+          (*keys)[(*count)++] = mcor_brick_key(rung, b);
+        }
+      }
+    }
   }
-  mcor_sort_keys(*keys, total);
+  qsort(*keys, total, sizeof **keys, mcor_compare_keys);
   return mcor_report_launch(context);
 }
 

@@ -163,7 +163,7 @@ static mcor_status mcor_list_blocks(
       tree->block_keys[tree->block_count++] = blocks->entries[i].key;
     }
   }
-  mcor_sort_keys(tree->block_keys, n);
+  qsort(tree->block_keys, n, sizeof *tree->block_keys, mcor_compare_keys);
   int level = 0;
   for (size_t i = 0; i < n; ++i)
   {

@@ -9,45 +9,38 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-/* Lines by their points: a point begins one line at most, and ends one. */
+/* The lines at a point: one begins there at most, and one ends. next: where the first leads to;
+ * last: where the second comes from; -1: none. */
+typedef struct mcor_line_ends
+{
+  int32_t next, last;
+  bool done; /* the line that begins here is in a polyline */
+} mcor_line_ends;
+
+/* Lines by their points. */
 typedef struct mcor_joining
 {
   int64_t count, points; /* lines */
-  int32_t *next, *last;  /* [points]: the line that begins, that ends there; -1: none */
-  bool* done;            /* [points]: the line that begins there is in a polyline */
+  mcor_line_ends* at;    /* [points] */
 } mcor_joining;
-
-static void mcor_free_joining(mcor_joining* j)
-{
-  free(j->next);
-  free(j->last);
-  free(j->done);
-}
 
 /* Begins without lines. */
 static bool mcor_create_joining(int64_t points, mcor_joining* j)
 {
-  const size_t n = (size_t)points;
-  *j = (mcor_joining){ .points = points,
-    .next = malloc(n * sizeof *j->next + 1),
-    .last = malloc(n * sizeof *j->last + 1),
-    .done = calloc(n + 1, sizeof *j->done) };
-  if (!j->next || !j->last || !j->done)
+  *j = (mcor_joining){ .points = points, .at = malloc((size_t)points * sizeof *j->at + 1) };
+  for (int64_t i = 0; i < points && j->at; ++i)
   {
-    return false;
+    j->at[i] = (mcor_line_ends){ -1, -1, false };
   }
-  memset(j->next, 0xff, n * sizeof *j->next);
-  memset(j->last, 0xff, n * sizeof *j->last);
-  return true;
+  return j->at != NULL;
 }
 
 static void mcor_join_line(mcor_joining* j, int32_t from, int32_t to)
 {
   ++j->count;
-  j->next[from] = to;
-  j->last[to] = from;
+  j->at[from].next = to;
+  j->at[to].last = from;
 }
 
 /* Whether a triangle stands for a line: two of its corners are one. The others are filled. */
@@ -87,16 +80,17 @@ static bool mcor_join(mcor_joining* j, mcor_surface* surface)
   for (int64_t n = 0; n < 2 * j->points; ++n)
   {
     const int32_t first = (int32_t)(n % j->points), closed = n >= j->points;
-    if (j->next[first] < 0 || j->done[first] || (!closed && j->last[first] >= 0))
+    const mcor_line_ends* ends = &j->at[first];
+    if (ends->next < 0 || ends->done || (!closed && ends->last >= 0))
     {
       continue;
     }
     int64_t to = surface->line_offsets[surface->line_count];
     surface->line_points[to++] = first;
-    for (int32_t at = first; j->next[at] >= 0 && !j->done[at]; at = j->next[at])
+    for (int32_t at = first; j->at[at].next >= 0 && !j->at[at].done; at = j->at[at].next)
     {
-      j->done[at] = true;
-      surface->line_points[to++] = j->next[at];
+      j->at[at].done = true;
+      surface->line_points[to++] = j->at[at].next;
     }
     surface->line_offsets[++surface->line_count] = surface->line_point_count = to;
   }
@@ -145,7 +139,7 @@ mcor_status mcor_join_lines(
     mcor_join_line(&joining, pieces[i][0], pieces[i][1]);
   }
   made = made && mcor_join(&joining, surface);
-  mcor_free_joining(&joining);
+  free(joining.at);
   if (made)
   {
     mcor_measure_lines(surface, mcor_plane_axis(plane, 0), mcor_plane_axis(plane, 1));
@@ -167,8 +161,8 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
     {
       continue;
     }
-    const int64_t from = joining.last[i] >= 0 ? joining.last[i] : i,
-                  to = joining.next[i] >= 0 ? joining.next[i] : i;
+    const mcor_line_ends ends = joining.at[i];
+    const int64_t from = ends.last >= 0 ? ends.last : i, to = ends.next >= 0 ? ends.next : i;
     const double dx = surface->points[3 * to] - surface->points[3 * from],
                  dy = surface->points[3 * to + 1] - surface->points[3 * from + 1];
     const double length = sqrt(dx * dx + dy * dy);
@@ -176,7 +170,7 @@ mcor_status mcor_finish_line_normals(mcor_context* context, mcor_surface* surfac
     n[1] = length > 0 ? (float)(-dx / length) : 0;
     n[2] = 0;
   }
-  mcor_free_joining(&joining);
+  free(joining.at);
   return status;
 }
 
@@ -186,7 +180,7 @@ mcor_status mcor_finish_lines(mcor_context* context, mcor_surface* surface)
   mcor_joining joining;
   mcor_status status = mcor_read_joining(context, surface, &joining);
   MCOR_THEN(status, mcor_allocated(context, mcor_join(&joining, surface)));
-  mcor_free_joining(&joining);
+  free(joining.at);
   MCOR_TRY(status);
   const bool filled = surface->band_value != NULL;
   int64_t count = 0;

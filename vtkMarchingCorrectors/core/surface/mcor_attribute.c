@@ -88,13 +88,6 @@ mcor_status mcor_list_components(
   return MCOR_OK;
 }
 
-/* Whether components are left to evaluate at the vertices of the finished mesh. */
-bool mcor_attributes_remain(const mcor_context* context)
-{
-  return mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE) ||
-    context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT;
-}
-
 /* Copies up to MCOR_ATTRIBUTE_LIMIT varying components to the device, from number `first` on. */
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first)
 {

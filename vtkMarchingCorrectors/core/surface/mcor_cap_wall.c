@@ -324,8 +324,6 @@ static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* ce
 static mcor_status mcor_cut_wall_face(
   mcor_cap_job* cap, const mcor_wall_cell* cell, int axis, int upper)
 {
-  const int first = 1 << (axis + 1) % 3, second = 1 << (axis + 2) % 3;
-  const int corner[4] = { 0, first, first | second, second };
   mcor_cap_square square = { .axis = axis,
     .upper = upper,
     .node = { cell->node[0], cell->node[1], cell->node[2] },
@@ -334,7 +332,8 @@ static mcor_status mcor_cut_wall_face(
   int total = 0;
   for (int k = 0; k < 4; ++k)
   {
-    const int c = upper << axis | corner[k];
+    const int c =
+      upper << axis | mcor_corner_u(k) << (axis + 1) % 3 | mcor_corner_v(k) << (axis + 2) % 3;
     square.above[k] = cell->above[c];
     square.margin[k] = cell->margin[c];
     total += cell->above[c];

@@ -382,12 +382,14 @@ static mcor_status mcor_append_mesh(
   return MCOR_OK;
 }
 
-/* Whether the output still needs particles on the device. */
+/* Whether the output still needs particles on the device. Components beyond the limit are evaluated
+ * at the vertices of the finished mesh. */
 bool mcor_output_evaluates(const mcor_context* context)
 {
-  return mcor_wants(context,
-           MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE) ||
-    mcor_attributes_remain(context);
+  return context->attributes.varying_count > MCOR_ATTRIBUTE_LIMIT ||
+    mcor_wants(context,
+      MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE |
+        MCOR_OUT_NEAREST_PARTICLE);
 }
 
 /* Appends the mesh of one iso value to the surface. */

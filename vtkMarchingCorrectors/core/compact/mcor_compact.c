@@ -9,8 +9,8 @@
  * again; bunches allow this at any time. It may turn triangles beside them over, so there are
  * two rounds.
  *
- * Vertices stay sorted by node, because keys need this order. If vertices were added behind the
- * others, all are gathered once more at the end. */
+ * Vertices that stay, merged ones, and those of bunches taken apart are appended to the mesh one
+ * after the other. At the end all are sorted by node, because keys need this order. */
 
 #include "mcor_compact.h"
 #include "mcor_adaptive.h"
@@ -157,7 +157,6 @@ static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean
 {
   const mcor_context* context = bunches->context;
   int count = 0;
-  mean[0] = mean[1] = mean[2] = 0;
   for (int32_t v = first; v >= 0; v = bunches->next[v], ++count)
   {
     const double low = mcor_get_real(context, bunches->ends, 2 * (int64_t)v),
@@ -174,55 +173,76 @@ static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean
   }
 }
 
-/* Vertices that are being appended to the mesh. */
+/* Vertices that are being appended to the mesh: on edges, or merged ones. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
-  const int32_t* list;
+  bool merged;
   cl_int* node;
-  uint8_t *ends, *offset;
+  uint8_t* start; /* real [][2]: ends of edges; real [][4]: offsets of merged vertices */
 } mcor_adding;
 
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_adding* to = data;
   const mcor_bunches* bunches = to->bunches;
-  const mcor_context* context = bunches->context;
   for (int64_t i = first; i < last; ++i)
   {
-    const int32_t v = mcor_vertex_of(to->list[i]);
-    const bool merged = to->list[i] < 0;
-    double start[3] = { 0, 0, 0 };
-    memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
-    if (merged)
+    const int32_t v = mcor_vertex_of(bunches->order[i]);
+    double mean[4] = { 0 };
+    if (to->merged)
     {
       mcor_bunch_node(bunches, v, to->node + 4 * i);
-      mcor_mean_of(bunches, v, start);
+      mcor_mean_of(bunches, v, mean);
     }
-    for (int k = 0; k < 2; ++k) /* a merged vertex has no edge: any ends of different signs do */
+    else
     {
-      mcor_put_real(context, to->ends, 2 * i + k,
-        merged ? 2 * k - 1 : mcor_get_real(context, bunches->ends, 2 * (int64_t)v + k));
+      memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
     }
-    for (int a = 0; a < 4; ++a)
+    for (int k = 0; k < (to->merged ? 4 : 2); ++k)
     {
-      mcor_put_real(context, to->offset, 4 * i + a, a < 3 ? start[a] : 0);
+      mcor_put_real(bunches->context, to->start, (to->merged ? 4 : 2) * i + k,
+        to->merged ? mean[k] : mcor_get_real(bunches->context, bunches->ends, 2 * (int64_t)v + k));
     }
   }
   (void)slice;
 }
 
+static mcor_status mcor_write_added(mcor_context* context, const mcor_adding* add, int count)
+{
+  mcor_mesh* mesh = &context->mesh;
+  const size_t o = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size;
+  struct
+  {
+    mcor_buffer* array;
+    size_t width;
+  } const of_edges[] = { { &mesh->linear, real }, { &mesh->evaluations, 1 },
+    { &mesh->ends, 2 * real } }; /* so far, cuts and caps may have none */
+  MCOR_TRY(mcor_extend_vertices(context, (int)o, (int)(o + n)));
+  for (size_t i = 0; i < 3; ++i)
+  {
+    const size_t width = of_edges[i].width, size = of_edges[i].array->size;
+    MCOR_TRY(mcor_extend(
+      context, of_edges[i].array, size < o * width ? size : o * width, (o + n) * width));
+  }
+  MCOR_TRY(mcor_append_bytes(context, &mesh->node, o * 16, add->node, n * 16));
+  const size_t width = (add->merged ? 4 : 2) * real;
+  return mcor_append_bytes(
+    context, add->merged ? &mesh->offset : &mesh->ends, o * width, add->start, n * width);
+}
+
 /* Notes the places of the new vertices, and the first one of each level. */
-static void mcor_note_added(mcor_bunches* bunches, const int32_t* list, int count)
+static void mcor_note_added(mcor_bunches* bunches, int count)
 {
   mcor_mesh* mesh = &bunches->context->mesh;
   const int old = mesh->vertex_count;
   int level = 0;
   for (int i = 0; i < count; ++i)
   {
-    const cl_int* node = mcor_marched_node(bunches, mcor_vertex_of(list[i]));
-    *mcor_place_in(bunches, list[i]) = old + i;
-    for (; level <= node[3] >> MCOR_LEVEL_SHIFT; ++level)
+    const int32_t entry = bunches->order[i];
+    *mcor_place_in(bunches, entry) = old + i;
+    for (; level <= mcor_marched_node(bunches, mcor_vertex_of(entry))[3] >> MCOR_LEVEL_SHIFT;
+         ++level)
     {
       mesh->level_first[1][level] = old + i;
     }
@@ -235,62 +255,46 @@ static void mcor_note_added(mcor_bunches* bunches, const int32_t* list, int coun
   mesh->vertex_count = old + count;
 }
 
-static mcor_status mcor_write_added(
-  mcor_context* context, const mcor_adding* add, int old, int count)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const mcor_bunches* bunches = add->bunches;
-  const size_t o = (size_t)old, n = (size_t)count, real = context->cl.real_size;
-  const size_t edges =
-    old > bunches->march_count && bunches->late ? (size_t)bunches->march_count : o;
-  MCOR_TRY(mcor_extend_vertices(context, old, old + count));
-  MCOR_TRY(mcor_extend(context, &mesh->linear, edges * real, (o + n) * real));
-  MCOR_TRY(mcor_extend(context, &mesh->evaluations, edges, o + n));
-  MCOR_TRY(mcor_extend(context, &mesh->ends, 2 * edges * real, 2 * (o + n) * real));
-  MCOR_TRY(mcor_append_bytes(context, &mesh->node, o * 16, add->node, n * 16));
-  MCOR_TRY(mcor_append_bytes(context, &mesh->ends, 2 * o * real, add->ends, 2 * n * real));
-  return mcor_append_bytes(context, &mesh->offset, 4 * o * real, add->offset, 4 * n * real);
-}
-
-/* Appends vertices to the mesh, and corrects them. */
-static mcor_status mcor_add_vertices(mcor_bunches* bunches, const int32_t* list, int count)
+/* Appends the vertices in `order` to the mesh, which are on edges, or merged, and corrects
+ * them. */
+static mcor_status mcor_add_vertices(mcor_bunches* bunches, bool merged, int count)
 {
   mcor_context* context = bunches->context;
-  const size_t n = (size_t)count, real = context->cl.real_size;
-  const int old = context->mesh.vertex_count;
+  const size_t n = (size_t)count;
   mcor_adding add = { .bunches = bunches,
-    .list = list,
+    .merged = merged,
     .node = malloc(4 * n * sizeof *add.node + 1),
-    .ends = malloc(2 * n * real + 1),
-    .offset = malloc(4 * n * real + 1) };
-  mcor_status status = mcor_allocated(context, add.node && add.ends && add.offset);
+    .start = malloc(4 * n * context->cl.real_size + 1) };
+  mcor_status status = mcor_allocated(context, add.node && add.start);
   status = status == MCOR_OK
     ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL)
     : status;
-  status = status == MCOR_OK ? mcor_write_added(context, &add, old, count) : status;
+  status = status == MCOR_OK ? mcor_write_added(context, &add, count) : status;
   free(add.node);
-  free(add.ends);
-  free(add.offset);
+  free(add.start);
   MCOR_TRY(status);
-  mcor_note_added(bunches, list, count);
-  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, "mcor_compact_vertices");
+  mcor_note_added(bunches, count);
+  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, merged);
 }
 
-/* Makes the first vertices: all, or, if the mesh has corrected ones, only the merged ones. */
+/* Makes the first vertices: those that stay, unless the mesh has them, and the merged ones. */
 static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 {
-  mcor_mesh* mesh = &bunches->context->mesh;
   int count = 0;
-  if (!bunches->late)
-  {
-    mesh->vertex_count = 0;
-    count = mcor_order_vertices(bunches);
-    return mcor_add_vertices(bunches, bunches->order, count);
-  }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
     bunches->place[v] = v;
+    if (!bunches->late && !mcor_is_merged(bunches, bunches->first[v]))
+    {
+      bunches->order[count++] = v;
+    }
   }
+  if (!bunches->late)
+  {
+    bunches->context->mesh.vertex_count = 0;
+    MCOR_TRY(mcor_add_vertices(bunches, false, count));
+  }
+  count = 0;
   for (int i = 0; i < bunches->sorted_count; ++i)
   {
     if (mcor_is_merged(bunches, bunches->sorted[i].first))
@@ -298,7 +302,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
       bunches->order[count++] = -1 - bunches->sorted[i].first;
     }
   }
-  return mcor_add_vertices(bunches, bunches->order, count);
+  return mcor_add_vertices(bunches, true, count);
 }
 
 /* ---- Taking apart ---- */
@@ -425,9 +429,9 @@ static mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
   return mcor_unmap_all(context, views, 4, status);
 }
 
-/* Takes the bad bunches apart, and the bunches that lean on them. Lists their vertices. Returns
- * how many. */
-static int mcor_list_fresh(mcor_bunches* bunches, int32_t* fresh)
+/* Takes the bad bunches apart, and the bunches that lean on them. Lists their vertices in
+ * `order`. Returns how many. */
+static int mcor_list_fresh(mcor_bunches* bunches)
 {
   int count = 0;
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
@@ -446,35 +450,22 @@ static int mcor_list_fresh(mcor_bunches* bunches, int32_t* fresh)
     }
     if (mcor_state_of(bunches, bunches->first[v]) == MCOR_BUNCH_FRESH) /* it comes first */
     {
-      fresh[count++] = v;
+      bunches->order[count++] = v;
     }
   }
   return count;
 }
 
-/* *apart: whether any bunch was taken apart. */
-static mcor_status mcor_take_apart(mcor_bunches* bunches, bool* apart)
+static mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
-  mcor_context* context = bunches->context;
-  int32_t* fresh = malloc((size_t)bunches->vertex_count * sizeof *fresh);
-  mcor_status status = mcor_allocated(context, fresh);
   bool found = true;
-  for (int round = 0; round < MCOR_COMPACT_ROUNDS && found && status == MCOR_OK; ++round)
+  for (int round = 0; round < MCOR_COMPACT_ROUNDS && found; ++round)
   {
-    status = mcor_find_bad(bunches, round, &found);
-    if (found && status == MCOR_OK)
-    {
-      *apart = true;
-      const int count = mcor_list_fresh(bunches, fresh);
-      for (int i = 0; i < count && bunches->late; ++i)
-      {
-        bunches->place[fresh[i]] = fresh[i];
-      }
-      status = bunches->late ? MCOR_OK : mcor_add_vertices(bunches, fresh, count);
-    }
+    MCOR_TRY(mcor_find_bad(bunches, round, &found));
+    const int count = found ? mcor_list_fresh(bunches) : 0;
+    MCOR_TRY(found && !bunches->late ? mcor_add_vertices(bunches, false, count) : MCOR_OK);
   }
-  free(fresh);
-  return status;
+  return MCOR_OK;
 }
 
 /* ---- In order again ---- */
@@ -604,7 +595,12 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   free(from);
   MCOR_TRY(status);
   mcor_note_order(bunches, march_count, count);
-  return bunches->late ? mcor_renumber_cuts(bunches) : MCOR_OK;
+  MCOR_TRY(bunches->late ? mcor_renumber_cuts(bunches) : MCOR_OK);
+  for (int32_t v = 0; v < bunches->vertex_count; ++v) /* no other place is needed any more */
+  {
+    bunches->place[v] = mcor_place_of(bunches, v);
+  }
+  return MCOR_OK;
 }
 
 /* ---- Triangles ---- */
@@ -625,7 +621,7 @@ static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3]
   const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
   for (int c = 0; c < 3; ++c)
   {
-    to[c] = mcor_place_of(bunches, corner[c]);
+    to[c] = bunches->place[corner[c]];
   }
   return to[0] != to[1] && (bunches->corners == 2 || (to[1] != to[2] && to[2] != to[0]));
 }
@@ -722,20 +718,11 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 
 static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
 {
-  bool apart = bunches->late;
   MCOR_TRY(mcor_find_bunches(bunches));
   MCOR_TRY(mcor_sort_bunches(bunches));
   MCOR_TRY(mcor_place_vertices(bunches));
-  MCOR_TRY(mcor_take_apart(bunches, &apart));
-  if (apart)
-  {
-    MCOR_TRY(mcor_gather_vertices(bunches));
-  }
-  else
-  {
-    mcor_note_order(
-      bunches, bunches->context->mesh.vertex_count, bunches->context->mesh.vertex_count);
-  }
+  MCOR_TRY(mcor_take_apart(bunches));
+  MCOR_TRY(mcor_gather_vertices(bunches));
   return mcor_file_triangles(bunches);
 }
 

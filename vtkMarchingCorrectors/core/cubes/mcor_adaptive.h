@@ -44,7 +44,7 @@ mcor_status mcor_launch_at_vertices(
   mcor_context* context, int vertices, const char* name, const mcor_arg* more, size_t count);
 
 /* mcor_correct.c. Corrects vertices by a kernel, level by level. */
-mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel);
+mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines);
 
 /* mcor_leaf.c. Makes the leaves, and writes their blocks to the device, unless they are there. */
 mcor_status mcor_begin_leaves(mcor_context* context, const mcor_input* input);

@@ -17,13 +17,14 @@ mcor_status mcor_reserve_vertices(mcor_context* context, int count)
   return mcor_reserve(context, &mesh->evaluations, (size_t)count);
 }
 
-mcor_status mcor_launch_correction(mcor_context* context, int vertices, const char* kernel)
+mcor_status mcor_launch_correction(mcor_context* context, int vertices, bool lines)
 {
   mcor_mesh* mesh = &context->mesh;
   const mcor_options* options = context->run.options;
   const double range = context->measure.scalar_max - context->measure.scalar_min;
-  return MCOR_LAUNCH_AT_VERTICES(context, vertices, kernel, MCOR_BUFFER(&mesh->ends),
-    MCOR_REAL(context->run.iso.relative), MCOR_REAL(options->tolerance * range),
+  return MCOR_LAUNCH_AT_VERTICES(context, vertices, "mcor_correct_vertices",
+    MCOR_BUFFER(&mesh->ends), MCOR_INT(lines), MCOR_REAL(context->run.iso.relative),
+    MCOR_REAL(options->tolerance * range),
     MCOR_INT(options->preview ? 0 : options->iteration_limit), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->linear), MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),
     MCOR_BUFFER(&mesh->vertex_weight), MCOR_BUFFER(&mesh->evaluations),
@@ -42,7 +43,7 @@ mcor_status mcor_correct(mcor_context* context)
   else
   {
     MCOR_TRY(mcor_reserve_vertices(context, context->mesh.march_count));
-    MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, "mcor_correct_vertices"));
+    MCOR_TRY(mcor_launch_correction(context, MCOR_ON_EDGES, false));
   }
   if (options->preview)
   {

@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Correction [III-D.2]: the safeguarded Newton iteration along a lattice edge, for MCOR_LANES
- * edges at a time. */
+ * edges at a time. Vertices of a compact contour that are not on an edge move along a line, one
+ * cube of the gradient's direction where they start. */
 
 /* Returns x / y, or -1 (outside of every bracket) if y is 0. No kernel makes an infinite value
  * or a NaN, because compilers that relax arithmetic need not honour them. */
@@ -74,14 +75,20 @@ MCOR_ONE_COPY void mcor_points_store(const mcor_grid* grid, const mcor_points* p
 /* A bracket of this length is not halved further. */
 #define MCOR_EDGE_RESOLUTION (MCOR_DOUBLE ? (real)1e-15 : (real)1.2e-7f)
 
-/* Edges: values at both ends, against iso, and vectors from end to end. */
+/* Edges or lines: vectors from end to end, and values at both ends, against iso. Lines: start,
+ * from the node, and slope there, in place of the value at the other end. */
 typedef struct
 {
+  bool lines;
   realv v0, v1, ax, ay, az;
+  realv x, y, z, slope;
 } mcor_edges;
 
 /* Most vertices are this close to their place by linear interpolation, in cubes. */
 #define MCOR_EDGE_SLACK ((real)0.15f)
+
+/* Most vertices move this far on a line, in cubes. */
+#define MCOR_LINE_SLACK ((real)0.3f)
 
 /* Loads group number `group` of edges: their lower nodes and their ends. */
 MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* groups, int group,
@@ -91,6 +98,8 @@ MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* gr
   int from[MCOR_LANES];
   mcor_points_place(vertex_edge, groups[group], groups[group + 1], points, from);
   mcor_points_load(grid, vertex_edge, from, points);
+  edges->lines = false;
+  edges->x = edges->y = edges->z = edges->slope = 0;
   for (int lane = 0; lane < MCOR_LANES; ++lane)
   {
     const int v = from[lane], axis = vertex_edge[v].w & 3;
@@ -106,9 +115,37 @@ MCOR_ONE_COPY void mcor_edges_load(const mcor_grid* grid, __global const int* gr
 void mcor_edges_bound(const mcor_grid* grid, const mcor_edges* e, realv low, realv high,
   mcor_points* points, mcor_query* query)
 {
-  const realv from[3] = { low * e->ax, low * e->ay, low * e->az };
-  const realv to[3] = { high * e->ax, high * e->ay, high * e->az };
+  const realv x0 = low * e->ax, y0 = low * e->ay, z0 = low * e->az;
+  const realv x1 = high * e->ax, y1 = high * e->ay, z1 = high * e->az;
+  const realv from[3] = { e->x + fmin(x0, x1), e->y + fmin(y0, y1), e->z + fmin(z0, z1) };
+  const realv to[3] = { e->x + fmax(x0, x1), e->y + fmax(y0, y1), e->z + fmax(z0, z1) };
   mcor_points_bound(grid, from, to, points, query);
+}
+
+/* Evaluates at the starts of lines, and makes them along the gradient, towards the iso value. */
+void mcor_lines_load(const mcor_grid* grid, __global const int* groups, int group,
+  __global const int4* node, __global const real4* offset, real iso, mcor_edges* lines,
+  mcor_points* points, mcor_query* query, mcor_reach* reach, mcor_field_at* at)
+{
+  mcor_group_load(
+    grid, groups[group], groups[group + 1], node, offset, MCOR_LINE_SLACK, points, query);
+  mcor_tile_init(&reach->tile);
+  mcor_evaluate(grid, query, reach, points, iso, at);
+  const realv most = fmax(fmax(fabs(at->gx), fabs(at->gy)), fabs(at->gz));
+  const realv inv = (realv)1 / (most > 0 ? most : (realv)1);
+  const realv x = at->gx * inv, y = at->gy * inv, z = at->gz * inv;
+  const realv length = mcor_rsqrt(mcor_square(x, y, z));
+  const realv scale = at->value < 0 ? length : -length;
+  lines->lines = true;
+  lines->v0 = at->value;
+  lines->v1 = 0;
+  lines->ax = x * scale;
+  lines->ay = y * scale;
+  lines->az = z * scale;
+  lines->x = points->ox;
+  lines->y = points->oy;
+  lines->z = points->oz;
+  lines->slope = at->gx * lines->ax + at->gy * lines->ay + at->gz * lines->az;
 }
 
 /* Returns a quantity with the sign of field minus iso value: the sum of the terms against the
@@ -127,34 +164,44 @@ realv mcor_correct_side(const mcor_field_at* at)
 #endif
 }
 
+/* Returns how close to the iso value a vertex must be, where a small residual alone may be far
+ * from the surface. */
+realv mcor_correct_near(realv slope, real iso)
+{
+  return fmax(MCOR_EDGE_ERROR * fabs(slope), (realv)(MCOR_SUM_ROUNDING * fabs(iso)));
+}
+
 /* Moves all vertices of a group along their edges, from t0, until each is on the surface or has
  * made `limit` steps. evaluations: counts the evaluations that each needed. */
 void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, real iso,
   real tolerance, int limit, mcor_points* points, mcor_query* query, mcor_reach* reach,
   mcor_field_at* at, realv* t, fixv* evaluations)
 {
-  realv low = MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
+  realv low = e->lines ? (realv)0 : (realv)MCOR_EDGE_MARGIN, high = 1 - MCOR_EDGE_MARGIN;
   const fixv rising = e->v0 < 0;
   fixv active = low < high;
-  realv last_t = t0, last_value = 0, last_slope = 0;
-  realv reached_low = fmax(t0 - MCOR_EDGE_SLACK, (realv)0);
-  realv reached_high = fmin(t0 + MCOR_EDGE_SLACK, (realv)1);
-  mcor_tile_init(&reach->tile);
-  mcor_edges_bound(grid, e, reached_low, reached_high, points, query);
+  realv last_t = 0, last_value = e->v0, last_slope = e->slope;
+  realv reached_low = 0, reached_high = MCOR_LINE_SLACK;
+  if (!e->lines) /* else mcor_lines_load has gathered */
+  {
+    reached_low = fmax(t0 - MCOR_EDGE_SLACK, (realv)0);
+    reached_high = fmin(t0 + MCOR_EDGE_SLACK, (realv)1);
+    mcor_tile_init(&reach->tile);
+    mcor_edges_bound(grid, e, reached_low, reached_high, points, query);
+  }
   *t = t0;
   *evaluations = 0;
   for (int i = 0;; ++i)
   {
-    points->ox = *t * e->ax;
-    points->oy = *t * e->ay;
-    points->oz = *t * e->az;
+    points->ox = e->x + *t * e->ax;
+    points->oy = e->y + *t * e->ay;
+    points->oz = e->z + *t * e->az;
     mcor_evaluate(grid, query, reach, points, iso, at);
     *evaluations += active ? (fixv)1 : (fixv)0;
     const realv slope = at->gx * e->ax + at->gy * e->ay + at->gz * e->az;
     const realv error = fabs(at->value);
     active = active && high - low > MCOR_EDGE_RESOLUTION &&
-      (error > (real)0.5 * tolerance ||
-        error > fmax(MCOR_EDGE_ERROR * fabs(slope), (realv)(MCOR_SUM_ROUNDING * fabs(iso))));
+      (error > (real)0.5 * tolerance || error > mcor_correct_near(slope, iso));
     if (i >= limit || !MCOR_ANY(active))
     {
       return;
@@ -163,7 +210,7 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
     const fixv before = rising ? side < 0 : side >= 0;
     low = before ? *t : low;
     high = before ? high : *t;
-    realv next = i == 0
+    realv next = i == 0 && !e->lines
       ? mcor_correct_first(e->v0, e->v1, *t, at->value, slope)
       : mcor_correct_next(*t, at->value, slope, last_t - *t, last_value, last_slope);
     last_t = *t;
@@ -185,12 +232,13 @@ void mcor_correct_group(const mcor_grid* grid, const mcor_edges* e, realv t0, re
   }
 }
 
-/* One work-item = one group of vertices. Reads edges and end values (against iso). Writes
- * position (node, offset), linear less final position along the edge, value, gradient and
- * trimming weight, number of evaluations, and attributes. limit 0: no correction (preview). */
+/* One work-item = one group of vertices. Reads edges and end values (against iso), or, with
+ * `lines`, starts (offset). Writes position (node, offset), linear less final position along the
+ * edge, value, gradient and trimming weight, number of evaluations, and attributes. On lines,
+ * linear becomes 1 where the surface is not reached. limit 0: no correction (preview). */
 __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   __global const int* groups, __global const int4* vertex_edge, __global const real* vertex_ends,
-  const real iso, const real tolerance, const int limit, __global real4* offset,
+  const int lines, const real iso, const real tolerance, const int limit, __global real4* offset,
   __global real* linear, __global real* value, __global real4* gradient, __global real* weight,
   __global uchar* evaluations, MCOR_ATTRIBUTE_PARAMS)
 {
@@ -201,13 +249,30 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
   mcor_reach reach;
   mcor_edges edges;
   mcor_field_at at;
-  mcor_edges_load(&grid, groups, group, vertex_edge, vertex_ends, &edges, &points);
-  const realv t0 =
-    clamp(edges.v0 / (edges.v0 - edges.v1), (realv)MCOR_EDGE_MARGIN, (realv)(1 - MCOR_EDGE_MARGIN));
-  realv t;
-  fixv count;
+  realv linear_t = 0, t;
+  fixv count, missed = 0;
+  if (lines)
+  {
+    mcor_lines_load(
+      &grid, groups, group, vertex_edge, offset, iso, &edges, &points, &query, &reach, &at);
+    t = clamp(-mcor_correct_ratio(edges.v0, edges.slope), (realv)0, (realv)MCOR_LINE_SLACK);
+    t = limit > 0 ? t : (realv)0;
+  }
+  else
+  {
+    mcor_edges_load(&grid, groups, group, vertex_edge, vertex_ends, &edges, &points);
+    t = linear_t = clamp(
+      edges.v0 / (edges.v0 - edges.v1), (realv)MCOR_EDGE_MARGIN, (realv)(1 - MCOR_EDGE_MARGIN));
+  }
   mcor_correct_group(
-    &grid, &edges, t0, iso, tolerance, limit, &points, &query, &reach, &at, &t, &count);
+    &grid, &edges, t, iso, tolerance, limit, &points, &query, &reach, &at, &t, &count);
+  if (lines)
+  {
+    const realv slope = at.gx * edges.ax + at.gy * edges.ay + at.gz * edges.az;
+    missed = fabs(at.value) > fmax(mcor_correct_near(slope, iso), (realv)tolerance);
+    missed = limit > 0 ? missed : (fixv)0;
+    count += 1;
+  }
   if (attribute_count > 0)
   {
     mcor_attribute_group(&grid, &query, &points, iso, &reach, true, MCOR_ATTRIBUTE_ARGS);
@@ -218,7 +283,8 @@ __kernel void mcor_correct_vertices(MCOR_GRID_PARAMS, const int group_count,
     if (v >= 0)
     {
       mcor_points_store(&grid, &points, &at, lane, v, offset, value, gradient, weight);
-      linear[v] = MCOR_GET(t0, lane) - MCOR_GET(t, lane);
+      linear[v] =
+        MCOR_GET_FIX(missed, lane) ? (real)1 : MCOR_GET(linear_t, lane) - MCOR_GET(t, lane);
       evaluations[v] = (uchar)min((int)MCOR_GET_FIX(count, lane), 255);
     }
   }

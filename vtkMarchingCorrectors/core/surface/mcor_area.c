@@ -27,17 +27,10 @@ static inline void mcor_measure_triangle(
   double c[3][3], u[3], v[3], n[3];
   for (int i = 0; i < 3; ++i)
   {
-    const double* point = surface->points + 3 * (int64_t)surface->triangles[3 * t + i];
-    for (int d = 0; d < 3; ++d)
-    {
-      c[i][d] = point[d] - origin[d];
-    }
+    mcor_subtract(surface->points + 3 * (int64_t)surface->triangles[3 * t + i], origin, c[i]);
   }
-  for (int d = 0; d < 3; ++d)
-  {
-    u[d] = c[1][d] - c[0][d];
-    v[d] = c[2][d] - c[0][d];
-  }
+  mcor_subtract(c[1], c[0], u);
+  mcor_subtract(c[2], c[0], v);
   mcor_cross(u, v, n);
   *area = 0.5 * sqrt(mcor_dot(n, n));
   *volume = mcor_dot(c[0], n) / 6;

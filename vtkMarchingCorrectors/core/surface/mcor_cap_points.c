@@ -5,6 +5,7 @@
  * mesh, behind all others. */
 
 #include "mcor_cap.h"
+#include "mcor_vector.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -137,18 +138,17 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper)
 
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
 {
-  double n[3], square = 0;
+  double n[3];
   for (int a = 0; a < 3; ++a)
   {
     n[a] = node[a] == mcor_cap_plane(context, a, 0) ? -1
       : node[a] == mcor_cap_plane(context, a, 1)    ? 1
                                                     : 0;
-    square += n[a] * n[a];
   }
+  mcor_normalise(n); /* 0 of caps at walls: they get normals from their triangles */
   for (int a = 0; a < 3; ++a)
   {
-    normal[a] = square > 0 ? (float)(n[a] / sqrt(square))
-                           : 0; /* caps at walls get normals from their triangles */
+    normal[a] = (float)n[a];
   }
 }
 
@@ -205,19 +205,11 @@ mcor_status mcor_append_cap_vertices(
       keys[2 * i + 1] = vertices[i].key[1];
     }
   }
-  const struct
-  {
-    mcor_buffer* to;
-    const void* data;
-    size_t width;
-  } arrays[] = { { &mesh->node, node, 4 * sizeof *node }, { &mesh->offset, offset, width },
-    { &mesh->flag, flag, 1 } };
+  const size_t place = 4 * sizeof *node;
   MCOR_THEN(status, mcor_extend_vertices(context, (int)old, (int)(old + n)));
-  for (int i = 0; i < 3 && status == MCOR_OK; ++i)
-  {
-    const size_t bytes = arrays[i].width;
-    status = mcor_append_bytes(context, arrays[i].to, old * bytes, arrays[i].data, n * bytes);
-  }
+  MCOR_THEN(status, mcor_append_bytes(context, &mesh->node, old * place, node, n * place));
+  MCOR_THEN(status, mcor_append_bytes(context, &mesh->offset, old * width, offset, n * width));
+  MCOR_THEN(status, mcor_append_bytes(context, &mesh->flag, old, flag, n));
   free(node);
   free(offset);
   free(flag);

@@ -7,6 +7,7 @@
  * is 0. */
 
 #include "mcor_cap_job.h"
+#include "mcor_vector.h"
 
 #include <string.h>
 
@@ -117,10 +118,7 @@ static mcor_status mcor_cap_cut(
   const mcor_bracket bracket = { { 0, 1 }, { low->margin, high->margin }, -1 };
   const double s =
     fmin(fmax(mcor_bracket_share(&bracket), MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
-  for (int a = 0; a < 3; ++a)
-  {
-    cut->at[a] = low->at[a] + s * (high->at[a] - low->at[a]);
-  }
+  mcor_point_between(low->at, high->at, s, cut->at);
   const int64_t before = job->vertices.count;
   const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
   MCOR_TRY(mcor_find_cap_vertex(
@@ -310,10 +308,7 @@ static void mcor_move_cut(
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
   line->done = line->at == before; /* at an end of its line, or as exact as numbers are */
   double at[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    at[a] = line->from[a] + line->at * (line->to[a] - line->from[a]);
-  }
+  mcor_point_between(line->from, line->to, line->at, at);
   mcor_put_cap_vertex(vertex, at);
 }
 

@@ -364,11 +364,8 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
     for (int k = 1; k + 1 < count; ++k)
     {
       double u[3], v[3], n[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        u[a] = at[(i + k) % count][a] - at[i][a];
-        v[a] = at[(i + k + 1) % count][a] - at[i][a];
-      }
+      mcor_subtract(at[(i + k) % count], at[i], u);
+      mcor_subtract(at[(i + k + 1) % count], at[i], v);
       mcor_cross(u, v, n);
       area += sqrt(mcor_dot(n, n));
     }

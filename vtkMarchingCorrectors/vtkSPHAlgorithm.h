@@ -491,7 +491,10 @@ protected:
    * Returns the class that Process() makes of a data object of this class, which is not
    * composite.
    */
-  virtual const char* GetOutputClassName(const char* inputClassName) = 0;
+  virtual const char* GetOutputClassName(const char* inputClassName)
+  {
+    return inputClassName;
+  }
 
   /**
    * Does the work, for the whole input or one of its blocks.

@@ -118,11 +118,6 @@ vtkSPHDerivatives::vtkSPHDerivatives()
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
 
-const char* vtkSPHDerivatives::GetOutputClassName(const char* inputClassName)
-{
-  return inputClassName;
-}
-
 // A file may have another array of that name: made with another kernel, or by the solver.
 std::string vtkSPHDerivatives::NameResult(const std::string& name, vtkPointSet* particles) const
 {

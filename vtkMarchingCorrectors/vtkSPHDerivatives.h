@@ -102,7 +102,6 @@ protected:
   vtkSPHDerivatives();
   ~vtkSPHDerivatives() override = default;
 
-  const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool KeepsBlocks() const override { return true; }
 

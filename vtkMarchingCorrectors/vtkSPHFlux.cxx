@@ -154,17 +154,6 @@ std::vector<vtkSPHMeter::Place> vtkSPHFlux::ListPlaces(vtkDataObject* more)
   return sections;
 }
 
-void vtkSPHFlux::AddBounds(const Place& place, double low[3], double high[3]) const
-{
-  const bool isDisc = place.Shape == MCOR_SECTION_DISC;
-  const double margin = isDisc ? place.Numbers[6] : 0.0;
-  for (size_t i = 0; i < (isDisc ? 3 : place.Numbers.size()); ++i)
-  {
-    low[i % 3] = std::min(low[i % 3], place.Numbers[i] - margin);
-    high[i % 3] = std::max(high[i % 3], place.Numbers[i] + margin);
-  }
-}
-
 bool vtkSPHFlux::Collect(vtkSPHParticles& particles)
 {
   return this->Superclass::Collect(particles) && particles.CollectFlow(this->VelocityArrayName);

@@ -100,7 +100,6 @@ protected:
   const char* GetNoun() const override { return "section"; }
   const char* GetConsequence() const override { return "nothing flows"; }
   std::vector<Place> ListPlaces(vtkDataObject* more) override;
-  void AddBounds(const Place& place, double low[3], double high[3]) const override;
   bool Collect(vtkSPHParticles& particles) override;
   int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
     const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,

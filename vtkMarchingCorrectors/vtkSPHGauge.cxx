@@ -74,17 +74,6 @@ std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
   return gauges;
 }
 
-void vtkSPHGauge::AddBounds(const Place& place, double low[3], double high[3]) const
-{
-  for (int a = 0; a < 3; ++a)
-  {
-    const double from = place.Numbers[static_cast<size_t>(a)],
-                 to = place.Numbers[static_cast<size_t>(a) + 3];
-    low[a] = std::min({ low[a], from, to });
-    high[a] = std::max({ high[a], from, to });
-  }
-}
-
 int vtkSPHGauge::Measure(mcor_context* context, const mcor_input& input,
   const mcor_options& options, const std::vector<Place>& places, vtkTable* table,
   std::vector<bool>& outside, mcor_statistics& statistics) const

@@ -14,6 +14,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
 #include <limits>
 #include <set>
 #include <utility>
@@ -144,7 +145,13 @@ void vtkSPHMeter::Process(vtkDataObject* data, vtkDataObject* output)
   double low[3] = { infinity, infinity, infinity }, high[3] = { -infinity, -infinity, -infinity };
   for (const Place& place : places)
   {
-    this->AddBounds(place, low, high);
+    const size_t count = place.Numbers.size();
+    const double radius = count % 3 == 1 ? place.Numbers.back() : 0.0;
+    for (size_t i = 0; i < (count % 3 == 1 ? 3 : count); ++i)
+    {
+      low[i % 3] = std::min(low[i % 3], place.Numbers[i] - radius);
+      high[i % 3] = std::max(high[i % 3], place.Numbers[i] + radius);
+    }
   }
   run->PlaceBox(low, high);
   vtkSPHParticles* input = run->Share(mine, collect);

@@ -74,7 +74,7 @@ protected:
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
 
-  /** A place of measurement. Each filter gives the numbers their meaning. */
+  /** A place of measurement: points, or a centre, a normal and a radius. */
   struct Place
   {
     std::string Name;
@@ -85,13 +85,12 @@ protected:
   ///@{
   /**
    * Differences of filters: the word for one place ("gauge"); the consequence of no fluid, in
-   * words; the places of this process, whose second input is `more`, or null; the bounds of a
-   * place; the particle arrays that are needed.
+   * words; the places of this process, whose second input is `more`, or null; the particle arrays
+   * that are needed.
    */
   virtual const char* GetNoun() const = 0;
   virtual const char* GetConsequence() const = 0;
   virtual std::vector<Place> ListPlaces(vtkDataObject* more) = 0;
-  virtual void AddBounds(const Place& place, double low[3], double high[3]) const = 0;
   virtual bool Collect(vtkSPHParticles& particles);
   ///@}
 

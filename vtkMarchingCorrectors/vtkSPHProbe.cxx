@@ -356,11 +356,6 @@ int vtkSPHProbe::FillInputPortInformation(int port, vtkInformation* info)
   return 1;
 }
 
-const char* vtkSPHProbe::GetOutputClassName(const char* inputClassName)
-{
-  return inputClassName;
-}
-
 // Each piece of the points needs all particles. Ranks find them by themselves.
 int vtkSPHProbe::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)

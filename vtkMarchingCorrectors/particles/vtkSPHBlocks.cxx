@@ -151,39 +151,6 @@ std::vector<bool> MarkWalls(vtkDataObjectTree* tree, const std::string& fluidArr
   return count > 0 && count < leaves.size() ? walls : std::vector<bool>();
 }
 
-void JoinPoints(const Blocks& blocks, vtkPolyData* joined, vtkIdType total)
-{
-  const bool asDouble = std::any_of(blocks.begin(), blocks.end(),
-    [](vtkPointSet* block) { return block->GetPoints()->GetDataType() != VTK_FLOAT; });
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(asDouble ? VTK_DOUBLE : VTK_FLOAT);
-  points->SetNumberOfPoints(total);
-  vtkIdType at = 0;
-  for (vtkPointSet* block : blocks)
-  {
-    points->InsertPoints(at, block->GetNumberOfPoints(), 0, block->GetPoints());
-    at += block->GetNumberOfPoints();
-  }
-  joined->SetPoints(points);
-}
-
-void MarkWallParticles(const Blocks& blocks, const std::vector<bool>& walls, vtkPolyData* joined)
-{
-  auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
-  marks->SetName(MCOR_WALL_BLOCK);
-  marks->SetNumberOfTuples(joined->GetNumberOfPoints());
-  vtkIdType at = 0;
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-  {
-    const vtkIdType end = at + blocks[b]->GetNumberOfPoints();
-    for (; at < end; ++at)
-    {
-      marks->SetValue(at, walls[b] ? 1 : 0);
-    }
-  }
-  joined->GetPointData()->AddArray(marks);
-}
-
 /** Lists the data set itself and all blocks in it, at any depth. */
 std::vector<vtkDataObject*> ListAll(vtkDataObjectTree* tree)
 {
@@ -257,12 +224,17 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   const Blocks blocks = vtkSPHListPointSets(tree);
   const std::vector<bool> walls = MarkWalls(tree, fluidArray);
   auto joined = vtkSmartPointer<vtkPolyData>::New();
-  vtkIdType total = 0;
+  const bool asDouble = std::any_of(blocks.begin(), blocks.end(),
+    [](vtkPointSet* block) { return block->GetPoints()->GetDataType() != VTK_FLOAT; });
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(asDouble ? VTK_DOUBLE : VTK_FLOAT);
   for (vtkPointSet* block : blocks)
   {
-    total += block->GetNumberOfPoints();
+    points->InsertPoints(
+      points->GetNumberOfPoints(), block->GetNumberOfPoints(), 0, block->GetPoints());
   }
-  JoinPoints(blocks, joined, total);
+  joined->SetPoints(points);
+  const vtkIdType total = points->GetNumberOfPoints();
   for (vtkPointSet* block : blocks)
   {
     for (int i = 0; i < block->GetPointData()->GetNumberOfArrays(); ++i)
@@ -277,7 +249,17 @@ vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   }
   if (!walls.empty())
   {
-    MarkWallParticles(blocks, walls, joined);
+    auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    marks->SetName(MCOR_WALL_BLOCK);
+    marks->SetNumberOfTuples(total);
+    vtkIdType at = 0;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+    {
+      const vtkIdType count = blocks[b]->GetNumberOfPoints();
+      std::fill_n(marks->GetPointer(at), count, walls[b] ? 1 : 0);
+      at += count;
+    }
+    joined->GetPointData()->AddArray(marks);
   }
   const std::vector<vtkDataObject*> all = ListAll(tree);
   for (auto each = all.rbegin(); each != all.rend();

@@ -53,13 +53,6 @@ bool ReadNumbers(vtkDataArray* array, Numbers& numbers, vtkIdType& bad)
   return true;
 }
 
-/** Whether both steps have the same numbers in the same ascending order. */
-bool IsSameOrder(const Numbers& a, const Numbers& b)
-{
-  return a == b &&
-    std::adjacent_find(a.begin(), a.end(), std::greater_equal<std::int64_t>()) == a.end();
-}
-
 std::string TellTwins(
   vtkDataArray* array, const std::string& set, vtkIdType one, vtkIdType other, std::int64_t number)
 {
@@ -69,17 +62,6 @@ std::string TellTwins(
 }
 
 using Entry = std::pair<std::int64_t, vtkIdType>;
-
-std::vector<Entry> Sorted(const Numbers& numbers)
-{
-  std::vector<Entry> sorted(numbers.size());
-  for (size_t i = 0; i < numbers.size(); ++i)
-  {
-    sorted[i] = { numbers[i], static_cast<vtkIdType>(i) };
-  }
-  vtkSMPTools::Sort(sorted.begin(), sorted.end());
-  return sorted;
-}
 
 Partners Search(const Numbers& numbers, const std::vector<Entry>& sorted)
 {
@@ -136,14 +118,21 @@ std::string vtkSPHMatchNumbers(const std::array<vtkDataArray*, 2>& arrays,
       return sentence.str();
     }
   }
-  if (IsSameOrder(numbers[0], numbers[1]))
+  const bool ascend = std::adjacent_find(numbers[0].begin(), numbers[0].end(),
+                        std::greater_equal<std::int64_t>()) == numbers[0].end();
+  if (ascend && numbers[0] == numbers[1])
   {
     partners[0]->resize(numbers[0].size());
     std::iota(partners[0]->begin(), partners[0]->end(), 0);
     *partners[1] = *partners[0];
     return "";
   }
-  const std::vector<Entry> sorted = Sorted(numbers[1]);
+  std::vector<Entry> sorted;
+  for (const std::int64_t number : numbers[1])
+  {
+    sorted.emplace_back(number, static_cast<vtkIdType>(sorted.size()));
+  }
+  vtkSMPTools::Sort(sorted.begin(), sorted.end());
   const auto same = std::adjacent_find(sorted.begin(), sorted.end(),
     [](const Entry& a, const Entry& b) { return a.first == b.first; });
   if (same != sorted.end())

@@ -16,7 +16,6 @@
 #include "vtkSPHRanksWait.h"
 #include "vtkType.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>

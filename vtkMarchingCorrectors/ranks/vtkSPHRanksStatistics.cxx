@@ -32,12 +32,6 @@ void Merge(vtkSPHHow how, T (&all)[N], const T (&one)[N])
   }
 }
 
-void MergeAll(mcor_statistics& all, const mcor_statistics& one)
-{
-#define STATISTIC(how, when, member, name) Merge(how, all.member, one.member);
-#include "mcor_statistics.def"
-}
-
 /** Returns the box around both. */
 void AddCells(mcor_statistics& all, const mcor_statistics& one)
 {
@@ -132,7 +126,8 @@ mcor_statistics vtkSPHMergeShares(const std::vector<vtkSPHRanksShare>& shares)
     AddCells(all, share.Statistics);
     if (known != shares.end() && &share != &*known)
     {
-      MergeAll(all, share.Statistics);
+#define STATISTIC(how, when, member, name) Merge(how, all.member, share.Statistics.member);
+#include "mcor_statistics.def"
     }
     sums.Add(share);
   }

@@ -294,28 +294,25 @@ uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)
   return hash;
 }
 
-uint64_t core_hash(const mcor_surface* s)
+uint64_t core_hash(const mcor_surface* surface)
 {
-  const size_t n = (size_t)s->point_count;
-  uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, &s->point_count, sizeof s->point_count);
-  hash = core_hash_bytes(hash, s->points, n * 3 * sizeof(double));
-  hash = core_hash_bytes(hash, s->triangles, (size_t)s->triangle_count * 3 * sizeof(int32_t));
-  hash = core_hash_bytes(hash, s->line_points, (size_t)s->line_point_count * sizeof(int32_t));
-  hash = core_hash_bytes(hash, s->normals, n * 3 * sizeof(float));
-  hash = core_hash_bytes(hash, s->gradients, n * 3 * sizeof(double));
-  hash = core_hash_bytes(hash, s->weight_sum, n * sizeof(float));
-  hash = core_hash_bytes(hash, s->boundary_eigenvalue, n * sizeof(float));
-  hash = core_hash_bytes(hash, s->correction_length, n * sizeof(float));
-  hash = core_hash_bytes(hash, s->residual, n * sizeof(float));
-  hash = core_hash_bytes(hash, s->boundary_flag, n);
-  hash = core_hash_bytes(hash, s->iso_value, n * sizeof(double));
-  hash = core_hash_bytes(hash, s->nearest_particle, n * sizeof(int64_t));
-  hash = core_hash_bytes(hash, s->mean_curvature, n * sizeof(double));
-  hash = core_hash_bytes(hash, s->gauss_curvature, n * sizeof(double));
-  hash = core_hash_bytes(hash, &s->attribute_count, sizeof s->attribute_count);
-  for (int a = 0; a < s->attribute_count; ++a)
+  mcor_surface s = *surface;
+  mcor_surface_array arrays[MCOR_SURFACE_ARRAYS];
+  const size_t n = (size_t)s.point_count;
+  uint64_t hash = core_hash_bytes(CORE_HASH_OF_NOTHING, &s.point_count, sizeof s.point_count);
+  hash = core_hash_bytes(hash, s.triangles, (size_t)s.triangle_count * 3 * sizeof(int32_t));
+  hash = core_hash_bytes(hash, s.line_points, (size_t)s.line_point_count * sizeof(int32_t));
+  mcor_list_surface_arrays(&s, arrays);
+  for (int a = 0; a < MCOR_SURFACE_ARRAYS; ++a)
   {
-    hash = core_hash_bytes(hash, s->attributes[a], n * sizeof(double)); /* at least */
+    /* Factors of widening are not there where lengths are given as wide as they become. */
+    const bool hashed = arrays[a].array != (void**)&s.widening;
+    hash = core_hash_bytes(hash, hashed ? *arrays[a].array : NULL, n * arrays[a].width);
+  }
+  hash = core_hash_bytes(hash, &s.attribute_count, sizeof s.attribute_count);
+  for (int a = 0; a < s.attribute_count; ++a)
+  {
+    hash = core_hash_bytes(hash, s.attributes[a], n * sizeof(double)); /* at least */
   }
   return hash;
 }

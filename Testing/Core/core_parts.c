@@ -216,7 +216,7 @@ void core_check_these_cuts(mcor_context* context, const char* name, const mcor_i
 {
   core_whole whole = { 0 };
   mcor_surface surface = core_extract(context, input, options);
-  CORE_CHECK(surface.triangle_count > 500, "%s: only %lld triangles", name,
+  CORE_CHECK(surface.triangle_count > 300, "%s: only %lld triangles", name,
     (long long)surface.triangle_count);
   check_keys(&surface);
   core_add_surface(&whole.triangles, input, &surface);

@@ -31,43 +31,6 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
   return hash;
 }
 
-/* Returns the hash of a context that never saw anything else. */
-static uint64_t fresh_hash(const mcor_input* input, const mcor_options* options)
-{
-  mcor_context* context = NULL;
-  CORE_OK(context, mcor_create_context(NULL, &context));
-  mcor_input alone = *input;
-  alone.particles_version = alone.scalar_version = 0;
-  const uint64_t hash = hash_of(context, &alone, options);
-  mcor_free_context(context);
-  return hash;
-}
-
-/* Supports of many cubes, with which positions of particles are rounded: values of nodes do not
- * depend on the iso value for which they were first needed. */
-static void test_far_reach(void** state)
-{
-  core_set set = core_make_random(900, 6, 0.25, 6, 5);
-  double iso = 0, middle = 0;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.scalar[i] = set.position[3 * i] + 0.5 * set.scalar[i];
-    middle += set.scalar[i] / (double)set.count;
-  }
-  mcor_input input = core_input(&set);
-  input.particles_version = input.scalar_version = 11;
-  mcor_options options = core_options(&iso);
-  ask_for_all(&options);
-  options.seeds = MCOR_PAIRS;
-  options.cube_size_factor = 0.7;
-  for (int step = 0; step < 4; ++step)
-  {
-    iso = middle + (step == 1 ? 0.1 : step == 2 ? -0.1 : 0);
-    CORE_CHECK(hash_of(*state, &input, &options) == fresh_hash(&input, &options), "step %d", step);
-  }
-  core_free_set(&set);
-}
-
 /* Several iso values at once are the surfaces of each. */
 static void test_several_iso_values(void** state)
 {
@@ -441,10 +404,10 @@ static void test_build(void** state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = { cmocka_unit_test(test_far_reach),
-    cmocka_unit_test(test_several_iso_values), cmocka_unit_test(test_order_of_input),
-    cmocka_unit_test(test_memory_limit), cmocka_unit_test(test_kept_buffers),
-    cmocka_unit_test(test_devices), cmocka_unit_test(test_names), cmocka_unit_test(test_lanes),
-    cmocka_unit_test(test_build), cmocka_unit_test(test_statistics) };
+  const struct CMUnitTest tests[] = { cmocka_unit_test(test_several_iso_values),
+    cmocka_unit_test(test_order_of_input), cmocka_unit_test(test_memory_limit),
+    cmocka_unit_test(test_kept_buffers), cmocka_unit_test(test_devices),
+    cmocka_unit_test(test_names), cmocka_unit_test(test_lanes), cmocka_unit_test(test_build),
+    cmocka_unit_test(test_statistics) };
   return cmocka_run_group_tests_name("context", tests, core_set_up, core_tear_down);
 }

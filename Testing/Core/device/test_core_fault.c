@@ -45,14 +45,7 @@ static mcor_status extract(
 
 static uint64_t hash_numbers(const double* values, int64_t count)
 {
-  uint64_t hash = (uint64_t)count;
-  for (int64_t i = 0; values && i < count; ++i)
-  {
-    uint64_t bits;
-    memcpy(&bits, values + i, sizeof bits);
-    hash = hash * 31 + bits;
-  }
-  return hash;
+  return core_hash_bytes(CORE_HASH_OF_NOTHING, values, (size_t)count * sizeof *values);
 }
 
 static mcor_status probe(

@@ -175,91 +175,11 @@ static void test_several_at_once(void** state)
 #endif
 }
 
-/* Enough particles for several slices; one in 8 is solid. */
-static core_set make_large_set(void)
-{
-  core_set set = core_make_block(40, 0.2, 3, core_ball);
-  uint64_t seed = 5;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.smoothing_length[i] *= 1 + 0.2 * random_unit(&seed);
-    set.solid[i] = random_bits(&seed) % 8 == 0;
-  }
-  set.has_solids = 1;
-  assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
-  return set;
-}
-
-typedef struct outcome
-{
-  mcor_surface surface;
-  uint64_t hash;
-} outcome;
-
-static outcome extract(mcor_context* context, const core_set* set)
-{
-  const double iso = -250;
-  const mcor_array attributes[2] = { core_array(set->position, 3), core_array(set->scalar, 1) };
-  mcor_input input = core_input(set);
-  input.ignore_solids = 1;
-  input.attributes = attributes;
-  input.attribute_count = 2;
-  mcor_options options = core_options(&iso);
-  options.outputs |=
-    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
-  options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
-  options.cube_size_factor = 0.4;
-  outcome result = { .surface = core_extract(context, &input, &options) };
-  result.hash = core_hash(&result.surface);
-  assert_true(result.surface.point_count > 2 * MCOR_HEAVY_GRAIN);
-  return result;
-}
-
-static void expect_same(const outcome* a, const outcome* b)
-{
-  const mcor_statistics *x = &a->surface.statistics, *y = &b->surface.statistics;
-  const size_t points = (size_t)a->surface.point_count;
-  assert_true(a->hash == b->hash);
-  assert_memory_equal(
-    a->surface.attributes[0], b->surface.attributes[0], points * 3 * sizeof(double));
-  assert_memory_equal(a->surface.attributes[1], b->surface.attributes[1], points * sizeof(double));
-  assert_true(x->fluid_particles == y->fluid_particles);
-  assert_true(x->correction_mean == y->correction_mean);
-  assert_true(x->correction_deviation == y->correction_deviation);
-  assert_true(x->correction_max == y->correction_max && x->residual_max == y->residual_max);
-  assert_true(x->scalar_min == y->scalar_min && x->scalar_max == y->scalar_max);
-}
-
-/* Particles that are left out leave the others in order. */
-static void test_solids_left_out(void** state)
-{
-  core_set set = make_large_set();
-  outcome ignored = extract(*state, &set);
-  int64_t to = 0;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    if (!set.solid[i])
-    {
-      memmove(set.position + 3 * to, set.position + 3 * i, 3 * sizeof(double));
-      set.smoothing_length[to] = set.smoothing_length[i];
-      set.volume[to] = set.volume[i];
-      set.scalar[to++] = set.scalar[i];
-    }
-  }
-  set.count = to;
-  set.has_solids = 0;
-  outcome removed = extract(*state, &set);
-  expect_same(&ignored, &removed);
-  mcor_free_surface(&ignored.surface);
-  mcor_free_surface(&removed.surface);
-  core_free_set(&set);
-}
-
 /* The first of several bad particles is named, whichever thread finds one first. */
 static void test_first_bad_particle(void** state)
 {
-  core_set set = make_large_set();
-  set.has_solids = 0;
+  core_set set = core_make_block(40, 0.2, 3, core_ball);
+  assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
   const double iso = 0;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
@@ -315,7 +235,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_every_element_once),
     cmocka_unit_test(test_several_at_once), cmocka_unit_test(test_cancelled),
-    cmocka_unit_test(test_solids_left_out), cmocka_unit_test(test_first_bad_particle),
-    cmocka_unit_test(test_ranges) };
+    cmocka_unit_test(test_first_bad_particle), cmocka_unit_test(test_ranges) };
   return cmocka_run_group_tests_name("parallel", tests, core_set_up, core_tear_down);
 }

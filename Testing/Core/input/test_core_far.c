@@ -5,6 +5,7 @@
  * not stop a run: with a box, or at points, they do not matter; else a few of them are left out, with a warning. */
 
 #include "core_fixture.h"
+#include "mcor_parallel.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,6 +108,20 @@ static void test_absent(void** state)
   mcor_surface surface;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
   assert_non_null(strstr(mcor_last_error(*state), "position of particle 1000"));
+  core_free_set(&set);
+  core_free_set(&block);
+  /* Many, read in several slices, of which those that count stay in order. */
+  set = core_make_block(40, 0.2, 3, core_ball);
+  assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
+  block = core_make_set(set.count);
+  block.count = 0;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.solid[i] = (i * 2654435761 >> 7) % 8 == 0;
+    set.solid[i] ? (void)0 : core_append(&block, &set, i);
+  }
+  options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be other numbers */
+  check_same(*state, &block, &set, input_without_solids, &options);
   core_free_set(&set);
   core_free_set(&block);
 }

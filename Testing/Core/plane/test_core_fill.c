@@ -3,6 +3,7 @@
 
 /* Filled regions and bands of two dimensions. */
 
+#include "core_parts.h"
 #include "fill_check.h"
 
 #include <math.h>
@@ -194,91 +195,17 @@ static void test_random(void** state)
   CORE_CHECK(inverted < 1e-4 * area, "%g of %g is inverted", inverted, area);
 }
 
-/* The keys of points and triangles, and triangles by the keys of their points, of what is filled. */
-static uint64_t* fill_keys(const mcor_surface* s, int64_t* count)
-{
-  *count = s->triangle_count;
-  const size_t width = MCOR_TRIANGLE_KEY + 3 * MCOR_POINT_KEY;
-  uint64_t* keys = malloc((size_t)*count * width * sizeof *keys + 1);
-  assert_non_null(keys);
-  for (int64_t t = 0; t < s->triangle_count; ++t)
-  {
-    uint64_t* to = keys + (size_t)t * width;
-    memcpy(to, s->triangle_keys + MCOR_TRIANGLE_KEY * t, MCOR_TRIANGLE_KEY * sizeof *to);
-    for (int c = 0; c < 3; ++c)
-    {
-      memcpy(to + MCOR_TRIANGLE_KEY + MCOR_POINT_KEY * c,
-        s->point_keys + MCOR_POINT_KEY * (int64_t)s->triangles[3 * t + c],
-        MCOR_POINT_KEY * sizeof *to);
-    }
-  }
-  return keys;
-}
-
-static int compare_keys(const void* x, const void* y)
-{
-  const uint64_t *a = x, *b = y;
-  for (int i = 0; i < MCOR_TRIANGLE_KEY + 3 * MCOR_POINT_KEY; ++i)
-  {
-    if (a[i] != b[i])
-    {
-      return a[i] < b[i] ? -1 : 1;
-    }
-  }
-  return 0;
-}
-
-/* Boxes side by side make the whole: the same triangles, of points with the same keys. */
+/* Boxes side by side make the whole: the same triangles and lines, with all that their points carry. */
 static void test_boxes(void** state)
 {
+  static const core_cut cuts[] = { { "4 boxes", { 0, 1, 1 }, { { 0 }, { 0.1 }, { -0.7 } } },
+    { "thin ones", { 0, 2, 0 }, { { 0 }, { 1.1, 1.3 } } } };
   const double isos[2] = { -8, 2 };
   core_set set = plane_make(14, 0.3, 1.3, 0, 4, 9);
   mcor_options options = fill_options(isos, 2);
-  options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
-  mcor_surface whole;
-  const fill_report all = extract(*state, &set, &options, 0, &whole);
-  int64_t count, parts = 0;
-  uint64_t* of_whole = fill_keys(&whole, &count);
-  const size_t width = MCOR_TRIANGLE_KEY + 3 * MCOR_POINT_KEY;
-  uint64_t* of_parts = malloc((size_t)count * width * sizeof *of_parts);
-  assert_non_null(of_parts);
-  double area = 0;
-  for (int side = 0; side < 4; ++side)
-  {
-    const double box[6] = { 3, 5, side & 1 ? 0.1 : -INFINITY, side & 1 ? INFINITY : 0.1,
-      side & 2 ? -0.7 : -INFINITY, side & 2 ? INFINITY : -0.7 };
-    memcpy(options.box, box, sizeof box);
-    mcor_input input = core_input(&set);
-    mcor_surface part = core_extract(*state, &input, &options);
-    int64_t n;
-    uint64_t* keys = fill_keys(&part, &n);
-    CORE_CHECK(parts + n <= count, "%lld and more triangles", (long long)(parts + n));
-    memcpy(of_parts + (size_t)parts * width, keys, (size_t)n * width * sizeof *keys);
-    parts += n;
-    area += part.statistics.area;
-    for (int64_t p = 1; p < part.point_count; ++p)
-    {
-      const uint64_t *a = part.point_keys + MCOR_POINT_KEY * (p - 1), *b = a + MCOR_POINT_KEY;
-      CORE_CHECK(a[0] < b[0] || (a[0] == b[0] && (a[1] < b[1] || (a[1] == b[1] && a[2] < b[2]))),
-        "keys of points %lld", (long long)p);
-    }
-    free(keys);
-    mcor_free_surface(&part);
-  }
-  assert_int_equal(parts, count);
-  check_close(area, all.area, 1e-9, "boxes");
-  for (int64_t t = 1; t < count; ++t)
-  {
-    const uint64_t *a = of_whole + (size_t)(t - 1) * width, *b = a + width;
-    CORE_CHECK(
-      a[0] < b[0] || (a[0] == b[0] && a[1] <= b[1]), "keys of triangles %lld", (long long)t);
-  }
-  qsort(of_whole, (size_t)count, width * sizeof *of_whole, compare_keys);
-  qsort(of_parts, (size_t)count, width * sizeof *of_parts, compare_keys);
-  assert_memory_equal(of_whole, of_parts, (size_t)count * width * sizeof *of_whole);
-  free(of_whole);
-  free(of_parts);
-  mcor_free_surface(&whole);
+  const mcor_input input = core_input(&set);
+  core_ask_for_all(&options);
+  core_check_these_cuts(*state, "filled", &input, &options, cuts, 2);
   core_free_set(&set);
 }
 

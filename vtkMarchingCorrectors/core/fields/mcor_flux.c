@@ -6,11 +6,9 @@
  * crossings of the level. */
 
 #include "mcor_flux.h"
-#include "mcor_input.h"
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -116,7 +114,7 @@ static mcor_status mcor_flux_input(
     ? MCOR_FLUX_CELL * options->h_scale * options->globals->measured.h_min +
       0.5 * options->globals->measured.cube
     : 0;
-  MCOR_TRY(mcor_bound_level(context, input, options, job->edges.box, margin, job->low, job->high));
+  MCOR_TRY(mcor_bound_level(context, input, options, job->edges.box, margin, &job->around));
   MCOR_TRY(mcor_prepare(context, input, options));
   if (context->grid.count == 0)
   {
@@ -185,8 +183,7 @@ mcor_status mcor_flux(mcor_context* context, const mcor_input* input, const mcor
     .fluxes = fluxes,
     .velocity_components = mcor_components(&input->attributes[0]),
     .has_density = input->attribute_count == 2,
-    .low = { DBL_MAX, DBL_MAX, DBL_MAX },
-    .high = { -DBL_MAX, -DBL_MAX, -DBL_MAX } };
+    .around = mcor_no_findings() };
   MCOR_TRY(
     mcor_begin_level(context, options, "Fluxes", &given, &own, &job.edges.level, &job.edges.box));
   const mcor_status status = mcor_run_call(

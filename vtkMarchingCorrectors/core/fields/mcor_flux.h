@@ -112,7 +112,7 @@ typedef struct mcor_flux_job
   mcor_flux_section* found; /* [section_count] */
   MCOR_LIST(mcor_patch) patches;
   MCOR_LIST(mcor_flux_cell) cells;
-  double low[3], high[3]; /* around all patches */
+  mcor_findings around; /* ranges along x, y, z that hold all patches */
   /* Work space: pieces, their parts, and what of those lies in fluid; cuts; lines that the level
    * crosses, in parameters, one for each of the changed parts of `edges`. */
   mcor_flux_field field;

@@ -41,8 +41,8 @@ static mcor_status mcor_add_patch(mcor_flux_job* job, int64_t number, mcor_patch
     patch.along[a] = along[axis];
     patch.across[a] = across[axis];
     const double ends[2] = { along[axis], across[axis] };
-    job->low[a] = fmin(job->low[a], patch.corner[a] + fmin(ends[0], 0) + fmin(ends[1], 0));
-    job->high[a] = fmax(job->high[a], patch.corner[a] + fmax(ends[0], 0) + fmax(ends[1], 0));
+    mcor_add_range(&job->around, a, patch.corner[a] + fmin(ends[0], 0) + fmin(ends[1], 0),
+      patch.corner[a] + fmax(ends[0], 0) + fmax(ends[1], 0));
   }
   for (int c = 0, axis = 0; axis < 3; ++axis)
   {

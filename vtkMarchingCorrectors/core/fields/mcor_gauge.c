@@ -4,11 +4,9 @@
 /* Gauges: where lines cross the free surface. The probe evaluates the weight sums. */
 
 #include "mcor_gauge.h"
-#include "mcor_input.h"
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,8 +45,7 @@ static mcor_status mcor_gauge_all(mcor_gauge_job* job)
 
 /* The box is one of points, not of cells. */
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const double* box, double margin, const double low[3],
-  const double high[3])
+  const mcor_options* options, const double* box, double margin, const mcor_findings* around)
 {
   MCOR_RETURN_IF(box && margin > mcor_reach_margin(options, options->globals, 0), context,
     MCOR_INVALID_ARGUMENT,
@@ -57,8 +54,8 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
     options->globals->measured.cube);
   for (int a = 0; a < 3; ++a)
   {
-    context->box.points[2 * a] = box ? box[2 * a] - margin : low[a];
-    context->box.points[2 * a + 1] = box ? box[2 * a + 1] + margin : high[a];
+    context->box.points[2 * a] = box ? box[2 * a] - margin : around->least[a];
+    context->box.points[2 * a + 1] = box ? box[2 * a + 1] + margin : around->most[a];
   }
   context->box.has_points = true;
   /* Other calls may reuse the search grid, unless it is cut to these points. */
@@ -69,22 +66,17 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
 static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* input,
   const mcor_options* options, const mcor_gauge_job* job)
 {
-  double low[3], high[3];
-  for (int a = 0; a < 3; ++a)
+  mcor_findings around = mcor_no_findings();
+  for (int64_t i = 0; i < 3 * job->line_count; ++i)
   {
-    low[a] = DBL_MAX;
-    high[a] = -DBL_MAX;
-    for (int64_t i = 0; i < job->line_count; ++i)
-    {
-      const double from = job->lines[i].from[a], to = job->lines[i].to[a];
-      low[a] = fmin(low[a], fmin(from, to));
-      high[a] = fmax(high[a], fmax(from, to));
-    }
+    const mcor_gauge_line* line = &job->lines[i / 3];
+    const double from = line->from[i % 3], to = line->to[i % 3];
+    mcor_add_range(&around, (int)(i % 3), fmin(from, to), fmax(from, to));
   }
   const double margin = job->box
     ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
     : 0;
-  return mcor_bound_level(context, input, options, job->box, margin, low, high);
+  return mcor_bound_level(context, input, options, job->box, margin, &around);
 }
 
 mcor_status mcor_run_points(

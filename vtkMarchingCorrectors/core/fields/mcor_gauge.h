@@ -6,6 +6,7 @@
 /* Lines whose crossings with the level are sought. Places on a line are numbers from 0 to 1.
  * Fluxes (mcor_flux.h) use lines along the edges of a section's triangles. */
 
+#include "mcor_input.h"
 #include "mcor_probe.h"
 
 /* A part of a line between two places at which the weight sum is known. */
@@ -76,11 +77,10 @@ typedef struct mcor_gauge_label
  * error sentence. */
 mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options, const char* who,
   mcor_input* input, mcor_options* own, double* level, const double** box);
-/* Sets the box in which the field is evaluated: from low to high, or, if ranks share the work,
+/* Sets the box in which the field is evaluated: the ranges `around`, or, if ranks share the work,
  * the caller's box and `margin` around it. */
 mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const double* box, double margin, const double low[3],
-  const double high[3]);
+  const mcor_options* options, const double* box, double margin, const mcor_findings* around);
 /* Loads the attributes, prepares the job's run for MCOR_GAUGE_BATCH points at a time, and calls
  * `work`. */
 mcor_status mcor_run_points(

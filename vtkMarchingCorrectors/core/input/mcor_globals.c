@@ -9,7 +9,7 @@
 #include "mcor_ranks.h"
 #include "mcor_tree.h"
 
-#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 /* A component varies if it does on any rank, or if ranks have different values. */
@@ -36,18 +36,16 @@ static mcor_status mcor_measure_components(
         continue;
       }
       mcor_measure_component(context, input, a, c, found);
-      const double first = input->count > 0 ? mcor_array_at(array, 0, c) : DBL_MAX;
-      double least[2] = { first, found->low };
-      double most[3] = { input->count > 0 ? first : -DBL_MAX,
-        mcor_largest_of(found->low, found->high), found->high };
-      int64_t varies = found->varies;
-      MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &varies));
-      MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, least, 2));
-      MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, most, 3));
-      found->varies = varies || least[0] != most[0];
-      found->largest = found->varies ? most[1] : 0;
-      found->low = least[1];
-      found->high = most[2];
+      const double first = input->count > 0 ? mcor_array_at(array, 0, c) : NAN;
+      mcor_findings all = mcor_no_findings();
+      mcor_add_range(&all, 0, found->low, found->high);
+      mcor_add_range(&all, 1, first, first);
+      all.sums[0] = found->varies;
+      MCOR_TRY(mcor_reduce_findings(context, &all));
+      found->low = all.least[0];
+      found->high = all.most[0];
+      found->varies = all.sums[0] > 0 || all.least[1] != all.most[1];
+      found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
     }
   }
   return MCOR_OK;

@@ -50,6 +50,14 @@ static inline bool mcor_is_skipped(const uint8_t* solid, mcor_skip skip, int64_t
   return solid && solid[i] && (skip == MCOR_SKIP_SOLIDS || solid[i] == MCOR_ABSENT);
 }
 
+/* Returns the positions, whatever number of components the caller says that they have. */
+static inline mcor_array mcor_positions_of(const mcor_input* input)
+{
+  mcor_array positions = input->positions;
+  positions.components = 3;
+  return positions;
+}
+
 #define MCOR_CHUNK 1024
 
 /* Returns the number of particles of the next chunk, if so many are left. */

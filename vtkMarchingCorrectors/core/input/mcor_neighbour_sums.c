@@ -313,8 +313,7 @@ static void mcor_sum_slice(void* data, int slice, int64_t first, int64_t last)
 static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_job* job)
 {
   const mcor_input* input = job->input;
-  mcor_array positions = input->positions;
-  positions.components = 3;
+  const mcor_array positions = mcor_positions_of(input);
   for (job->leaves = 1; job->leaves * MCOR_LEAF < input->count; job->leaves *= 2)
   {
   }
@@ -362,8 +361,7 @@ static mcor_status mcor_check_neighbours(mcor_context* context, double eta, mcor
     mcor_sph_kernel_name(kernel) ? mcor_sph_kernel_name(kernel) : "?");
   MCOR_RETURN_IF(input->count < 0 || (input->count > 0 && !input->positions.data), context,
     MCOR_INVALID_ARGUMENT, "There are no particle positions.");
-  mcor_array positions = input->positions;
-  positions.components = 3;
+  const mcor_array positions = mcor_positions_of(input);
   int c = 0;
   int64_t i = mcor_find_illegal(NULL, &positions, input->solid, skip, input->count, false, &c);
   MCOR_RETURN_IF(i >= 0, context, MCOR_INVALID_DATA,

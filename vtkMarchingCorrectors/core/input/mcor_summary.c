@@ -43,8 +43,7 @@ static double mcor_sum_cubes(
   const mcor_input* input, const mcor_options* options, double least, bool is_plane)
 {
   const bool has_box = mcor_has_box(options) != 0;
-  mcor_array positions = input->positions;
-  positions.components = 3;
+  const mcor_array positions = mcor_positions_of(input);
   const bool one_for_all = mcor_has_one_length(input) && !input->solid && !has_box;
   const int levels = options->filled || options->capping ? 0 : options->level_limit;
   double cubes = 0.0;

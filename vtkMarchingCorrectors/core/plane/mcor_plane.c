@@ -18,24 +18,13 @@
 
 /* ---- The plane ---- */
 
-/* The extent of the particles along x, y, z: first the fluid, then the solids that play a part.
- * low > high: none. */
-typedef struct mcor_spread
-{
-  double low[6], high[6];
-} mcor_spread;
-
+/* Finds the ranges of the particles along x, y, z: first the fluid's, then those of the solids that
+ * play a part. */
 typedef struct mcor_spread_job
 {
   const mcor_input* input;
-  mcor_spread slices[MCOR_SLICES];
+  mcor_findings slices[MCOR_SLICES];
 } mcor_spread_job;
-
-static void mcor_extend_spread(mcor_spread* spread, int i, double low, double high)
-{
-  spread->low[i] = low < spread->low[i] ? low : spread->low[i];
-  spread->high[i] = high > spread->high[i] ? high : spread->high[i];
-}
 
 /* Whether all particles are where the fluid has been so far; written to be vectorised. */
 static bool mcor_is_all_at(const double* x, int count, double low, double high)
@@ -53,7 +42,7 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
 {
   mcor_spread_job* job = data;
   const mcor_input* input = job->input;
-  mcor_spread spread = job->slices[slice];
+  mcor_findings spread = mcor_no_findings();
   bool everywhere = false;
   for (int64_t begin = first; begin < last && !everywhere; begin += MCOR_CHUNK)
   {
@@ -62,22 +51,22 @@ static void mcor_extent_slice(void* data, int slice, int64_t first, int64_t last
     everywhere = true;
     for (int a = 0; a < 3; ++a)
     {
-      if (spread.low[a] < spread.high[a])
+      if (spread.least[a] < spread.most[a])
       {
         continue;
       }
       mcor_read_array(&input->positions, begin, count, a, x);
-      const bool same = !input->solid && mcor_is_all_at(x, count, spread.low[a], spread.high[a]);
+      const bool same = !input->solid && mcor_is_all_at(x, count, spread.least[a], spread.most[a]);
       for (int i = 0; i < count && !same; ++i)
       {
         const bool solid = input->solid && input->solid[begin + i], finite = isfinite(x[i]);
         if (mcor_is_present(input, begin + i) && (finite || !solid))
         {
-          mcor_extend_spread(
+          mcor_add_range(
             &spread, solid ? 3 + a : a, finite ? x[i] : -DBL_MAX, finite ? x[i] : DBL_MAX);
         }
       }
-      everywhere = everywhere && spread.low[a] < spread.high[a];
+      everywhere = everywhere && spread.least[a] < spread.most[a];
     }
   }
   job->slices[slice] = spread;
@@ -90,37 +79,27 @@ static bool mcor_has_positions(const mcor_input* input)
     (unsigned)input->positions.type <= MCOR_FLOAT64;
 }
 
-static mcor_spread mcor_spread_of(mcor_context* context, const mcor_input* input)
+static mcor_findings mcor_spread_of(mcor_context* context, const mcor_input* input)
 {
   mcor_input given = *input;
   mcor_spread_job job = { .input = &given };
   given.positions.components = 3;
-  for (int i = 0; i < 6 * MCOR_SLICES; ++i)
-  {
-    job.slices[i / 6].low[i % 6] = DBL_MAX;
-    job.slices[i / 6].high[i % 6] = -DBL_MAX;
-  }
   const int slices = mcor_has_positions(input)
     ? mcor_parallel_for(context, input->count, MCOR_LIGHT_GRAIN, mcor_extent_slice, &job)
     : 0;
-  for (int i = 0; i < 6 * slices; ++i)
-  {
-    const mcor_spread* slice = &job.slices[i / 6];
-    mcor_extend_spread(&job.slices[0], i % 6, slice->low[i % 6], slice->high[i % 6]);
-  }
-  return job.slices[0];
+  return mcor_merge_findings(job.slices, slices);
 }
 
 /* Chooses the plane. Particles on a line, or at a point, lie in no known plane, unless the
  * caller says so. */
-static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
+static mcor_plane mcor_plane_of(const mcor_findings* spread, int dimension)
 {
   mcor_plane plane = { 0 };
   int constant = 0;
   for (int a = 0; a < 3; ++a)
   {
-    const double low = fmin(spread->low[a], spread->low[3 + a]),
-                 high = fmax(spread->high[a], spread->high[3 + a]);
+    const double low = fmin(spread->least[a], spread->least[3 + a]),
+                 high = fmax(spread->most[a], spread->most[3 + a]);
     constant += low == high;
     plane = low == high ? (mcor_plane){ a + 1, low + 0.0 } : plane; /* never -0 */
   }
@@ -129,10 +108,10 @@ static mcor_plane mcor_plane_of(const mcor_spread* spread, int dimension)
 
 int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int dimension)
 {
-  mcor_spread spread = mcor_spread_of(NULL, input);
+  mcor_findings spread = mcor_spread_of(NULL, input);
   if (ranks &&
-    (ranks->reduce_doubles(ranks->user, MCOR_LEAST, spread.low, 6) ||
-      ranks->reduce_doubles(ranks->user, MCOR_GREATEST, spread.high, 6)))
+    (ranks->reduce_doubles(ranks->user, MCOR_LEAST, spread.least, 6) ||
+      ranks->reduce_doubles(ranks->user, MCOR_GREATEST, spread.most, 6)))
   {
     return 3; /* another rank failed */
   }
@@ -141,7 +120,7 @@ int mcor_find_dimension(const mcor_input* input, const mcor_ranks* ranks, int di
 
 /* Names the first particle off the plane (a solid one if all fluid shares a plane). */
 static mcor_status mcor_refuse_plane(
-  mcor_context* context, const mcor_input* input, const mcor_spread* spread)
+  mcor_context* context, const mcor_input* input, const mcor_findings* spread)
 {
   const char* const rule = "in two dimensions all particles must lie in one plane. Correct these "
                            "positions, or use three dimensions";
@@ -152,9 +131,9 @@ static mcor_status mcor_refuse_plane(
   }
   for (int a = 2; a >= 0; --a)
   {
-    const double at = spread->low[a], solids = spread->low[3 + a];
-    const bool in_plane = at == spread->high[a];
-    MCOR_RETURN_IF(in_plane && solids == spread->high[3 + a], context, MCOR_INVALID_DATA,
+    const double at = spread->least[a], solids = spread->least[3 + a];
+    const bool in_plane = at == spread->most[a];
+    MCOR_RETURN_IF(in_plane && solids == spread->most[3 + a], context, MCOR_INVALID_DATA,
       "The fluid particles have %c = %.10g, but the solid ones have %.10g: %s.", "xyz"[a], at,
       solids, rule);
     int64_t i = 0;
@@ -181,7 +160,7 @@ static mcor_status mcor_refuse_plane(
 /* Whether rounding made the plane: its coordinate is so large that single precision rounds it by
  * about the particles' spacing, and most particles lie on others. */
 static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* input,
-  const mcor_spread* spread, const mcor_plane* plane, bool* rounding)
+  const mcor_findings* spread, const mcor_plane* plane, bool* rounding)
 {
   const mcor_array* positions = &input->positions;
   int64_t counts[3] = { 0 }; /* particles; samples, and those with a twin */
@@ -194,8 +173,8 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
   for (int a = 0; a < 2; ++a)
   {
     const int axis = mcor_plane_axis(plane, a);
-    area *= fmax(spread->high[axis], spread->high[3 + axis]) -
-      fmin(spread->low[axis], spread->low[3 + axis]);
+    area *= fmax(spread->most[axis], spread->most[3 + axis]) -
+      fmin(spread->least[axis], spread->least[3 + axis]);
   }
   const double spacing = sqrt(area / (double)(counts[0] > 0 ? counts[0] : 1));
   *rounding = plane->at != 0 && (double)(float)plane->at == plane->at &&
@@ -242,9 +221,9 @@ static mcor_status mcor_find_plane(
   {
     return MCOR_OK;
   }
-  mcor_spread spread = mcor_spread_of(context, input);
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.low, 6));
-  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.high, 6));
+  mcor_findings spread = mcor_spread_of(context, input);
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, spread.least, 6));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, spread.most, 6));
   const mcor_plane plane = mcor_plane_of(&spread, options->dimension);
   bool rounding = false;
   if (plane.axis > 0 && options->dimension == 0)
@@ -252,14 +231,14 @@ static mcor_status mcor_find_plane(
     MCOR_TRY(mcor_is_rounding(context, input, &spread, &plane, &rounding));
   }
   mcor_set_plane(context, rounding ? (mcor_plane){ 0 } : plane);
-  const bool some = spread.low[0] <= spread.high[0] || spread.low[3] <= spread.high[3];
+  const bool some = spread.least[0] <= spread.most[0] || spread.least[3] <= spread.most[3];
   int planes = 0;
   bool apart = false; /* fluid in one plane and solids in another: meant as two dimensions */
   for (int a = 0; a < 3; ++a)
   {
-    const bool in_plane = spread.low[a] == spread.high[a];
+    const bool in_plane = spread.least[a] == spread.most[a];
     planes += in_plane;
-    apart = apart || (in_plane && spread.low[3 + a] == spread.high[3 + a]);
+    apart = apart || (in_plane && spread.least[3 + a] == spread.most[3 + a]);
   }
   const bool refused = options->dimension == 2 ? some : !rounding && planes == 1 && apart;
   return refused && !mcor_is_plane(context) ? mcor_refuse_plane(context, input, &spread) : MCOR_OK;

@@ -199,25 +199,31 @@ void mcor_measure_component(mcor_context* context, const mcor_input* input, int 
 
 typedef struct mcor_legal_job
 {
-  mcor_array values; /* all components, one after the other */
+  const mcor_array* array;
   bool positive;
   bool illegal[MCOR_SLICES];
 } mcor_legal_job;
+
+/* Written to be vectorised. */
+#define MCOR_TEST_ALL(type, most)                                                                  \
+  for (int64_t i = first; i < last; ++i)                                                           \
+  {                                                                                                \
+    const type x = ((const type*)job->array->data)[i];                                             \
+    illegal |= !((x <= most) & (positive ? x > 0 : x >= -most));                                   \
+  }
 
 static void mcor_legal_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_legal_job* job = data;
   const bool positive = job->positive;
-  double x[MCOR_CHUNK];
   int illegal = 0;
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  if (job->array->type == MCOR_FLOAT64)
   {
-    const int count = mcor_chunk_of(last - begin);
-    mcor_read_array(&job->values, begin, count, 0, x);
-    for (int i = 0; i < count; ++i) /* written to be vectorised */
-    {
-      illegal |= !((x[i] <= DBL_MAX) & (positive ? x[i] > 0 : x[i] >= -DBL_MAX));
-    }
+    MCOR_TEST_ALL(double, DBL_MAX)
+  }
+  else
+  {
+    MCOR_TEST_ALL(float, FLT_MAX)
   }
   job->illegal[slice] = illegal;
 }
@@ -226,8 +232,7 @@ int64_t mcor_find_illegal(mcor_context* context, const mcor_array* array, const 
   mcor_skip skip, int64_t count, bool positive, int* component)
 {
   const int components = mcor_components(array);
-  mcor_legal_job job = { .values = *array, .positive = positive };
-  job.values.components = 1;
+  mcor_legal_job job = { .array = array, .positive = positive };
   const int slices = array->data
     ? mcor_parallel_for(context, count * components, MCOR_MEMORY_GRAIN, mcor_legal_slice, &job)
     : 0;
@@ -307,14 +312,13 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
     mcor_read_array(a, first, count, component, out);
     return;
   }
-  memset(out, 0, (size_t)count * sizeof *out);
   for (int c = 0; c < mcor_components(a); ++c)
   {
     mcor_read_array(b, first, count, c, other);
     mcor_read_array(a, first, is_dot ? count : 0, c, x);
     for (int i = 0; i < count; ++i)
     {
-      out[i] += x[i] * other[i];
+      out[i] = x[i] * other[i] + (c > 0 ? out[i] : 0);
     }
   }
   for (int i = 0; i < count; ++i)

@@ -169,18 +169,16 @@ static void mcor_list_around(const mcor_neighbour_job* job, int64_t n, const dou
     return;
   }
   const int64_t first = (n - job->leaves) * MCOR_LEAF;
-  for (int64_t i = first; i < first + MCOR_LEAF && i < job->count; ++i)
+  list->failed = list->failed ||
+    mcor_make_room(NULL, (void**)&list->near.of, list->near.count + MCOR_LEAF, &list->near.room,
+      sizeof *list->near.of) != MCOR_OK;
+  for (int64_t i = first; i < first + MCOR_LEAF && i < job->count && !list->failed; ++i)
   {
     double d[3];
     mcor_subtract(x, job->sorted[i].x, d);
     const mcor_near near = { mcor_dot(d, d), job->sorted[i].mass };
-    list->failed = list->failed ||
-      mcor_make_room(
-        NULL, (void**)&list->near.of, list->near.count, &list->near.room, sizeof near) != MCOR_OK;
-    if (near.square < radius * radius && !list->failed)
-    {
-      list->near.of[list->near.count++] = near;
-    }
+    list->near.of[list->near.count] = near;
+    list->near.count += near.square < radius * radius;
   }
 }
 

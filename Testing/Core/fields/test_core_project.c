@@ -611,6 +611,9 @@ static void test_bad_input(void** state)
   CORE_OK(*state, mcor_project(*state, &input, &options, &view, &found));
   assert_true(fabs(total_of(&found) - set.volume[0]) < ALLOWED);
   mcor_free_projection(&found);
+  view.box[0] = NAN;
+  assert_int_equal(mcor_project(*state, &input, &options, &view, &found), MCOR_INVALID_ARGUMENT);
+  CORE_CHECK(strstr(mcor_last_error(*state), "numbers"), "%s", mcor_last_error(*state));
   core_free_set(&set);
   core_free_set(&flat);
 }

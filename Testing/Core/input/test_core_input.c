@@ -564,7 +564,7 @@ static void test_outliers(void** state)
   ARGUMENT("cube size 4 is too large for the period 10 along x|no more than 1.5",
            call.options.cube_size = 4;
            repeat(&call, 10, 0));
-  ARGUMENT("too short for support radii", repeat(&call, 3, 0));
+  ARGUMENT("too short for support radii|Correct the period", repeat(&call, 3, 0));
   expect_good(*state);
 }
 

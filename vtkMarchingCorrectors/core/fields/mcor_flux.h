@@ -89,7 +89,7 @@ typedef struct mcor_flux_form
 /* Samples of a batch. */
 typedef struct mcor_flux_field
 {
-  double (*at)[3]; /* [MCOR_GAUGE_BATCH]: u, v and number of the patch */
+  double (*at)[3]; /* [MCOR_GAUGE_BATCH]: u, v and number of the patch; the others follow it */
   double *weight, *velocity, *density;
   double* values[2]; /* velocity and density, as the probe takes them */
 } mcor_flux_field;

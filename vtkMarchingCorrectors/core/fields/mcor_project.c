@@ -135,10 +135,10 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
     const int axis = mcor_plane_axis(&context->plane, a);
     const double from = is_given ? job->view->box[2 * axis] : -INFINITY,
                  to = is_given ? job->view->box[2 * axis + 1] : INFINITY;
-    MCOR_RETURN_IF(!(from < to) && !(from == to && job->axes[2][a] == 1), context,
-      MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; the first must be lower than the second.", 'x' + axis,
-      from, to);
+    if (!(from < to) && !(from == to && job->axes[2][a] == 1))
+    {
+      return mcor_refuse_sides(context, a, from, to);
+    }
     job->period[a] = periodic[2 * a + 1] - periodic[2 * a];
     const bool is_periodic = job->period[a] > 0;
     MCOR_RETURN_IF(is_periodic && high[6] * support > MCOR_MOST_PERIODS * job->period[a], context,

@@ -306,9 +306,12 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
   context->attributes.kept = 0; /* in another order */
   MCOR_THEN(status, staging.count > 0 ? mcor_sort_particles(context, &staging) : MCOR_OK);
   MCOR_TRY(mcor_unmap_all(context, staging.views, staging.view_count, status));
-  return staging.count == 0 ? MCOR_OK
-    : mcor_needs_density(input)
-    ? mcor_compute_volumes(context, input)
+  if (staging.count > 0 && mcor_needs_density(input))
+  {
+    return mcor_compute_volumes(context, input);
+  }
+  return staging.count == 0
+    ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_grid_weigh", MCOR_LIGHT, grid->count, MCOR_INT(grid->count),
         MCOR_REAL(mcor_kernel_of(context->cl.build.sph_kernel)->norm), MCOR_BUFFER(&grid->inv_h),
         MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight));

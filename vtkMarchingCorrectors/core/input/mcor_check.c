@@ -10,15 +10,19 @@
 #include <stdio.h>
 #include <string.h>
 
+mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to)
+{
+  return mcor_fail(context, MCOR_INVALID_ARGUMENT, "The box along %c goes from %g to %g; %s.",
+    mcor_axis_letter(context, axis), from, to,
+    isnan(from) || isnan(to) ? "both must be numbers" : "the first must be lower than the second");
+}
+
 static mcor_status mcor_check_sides(mcor_context* context, const mcor_options* options)
 {
   for (int a = 0; a < 3 && mcor_has_box(options); ++a)
   {
     const double from = options->box[2 * a], to = options->box[2 * a + 1];
-    MCOR_RETURN_IF(!(from < to), context, MCOR_INVALID_ARGUMENT,
-      "The box along %c goes from %g to %g; %s.", mcor_axis_letter(context, a), from, to,
-      isnan(from) || isnan(to) ? "both must be numbers"
-                               : "the first must be lower than the second");
+    MCOR_TRY(from < to ? MCOR_OK : mcor_refuse_sides(context, a, from, to));
   }
   for (int a = 0; a < 3; ++a)
   {

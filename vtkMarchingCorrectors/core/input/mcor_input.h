@@ -77,6 +77,9 @@ static inline double mcor_most(double a, double b)
   return b > a ? b : a;
 }
 
+/* mcor_check.c. Fails, as the sides of a box are no interval. */
+mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, double to);
+
 /* Kernels count in int, also a little beyond the last particle. */
 #define MCOR_PARTICLE_LIMIT 2000000000
 

@@ -159,7 +159,8 @@ mcor_status mcor_fit_period(
     {
       const double most = MCOR_MOST_PERIODS * length[a];
       MCOR_RETURN_IF(reach - 8 * longest > most, context, MCOR_INVALID_ARGUMENT,
-        "The period along %c is %g, too short for support radii of up to %g.",
+        "The period along %c is %g, too short for support radii of up to %g. Correct the period, "
+        "or the smoothing lengths.",
         mcor_axis_letter(context, a), length[a], m->support_max);
       MCOR_RETURN_IF(reach > most, context, MCOR_INVALID_ARGUMENT,
         "The cube size %g is too large for the period %g along %c. Use a cube size of no more than "

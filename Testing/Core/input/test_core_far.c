@@ -150,7 +150,12 @@ static void test_few(void** state)
   core_set set = add_far(&block, 8);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
-  check_same(*state, &block, &set, core_input, &options);
+  for (int widest = 1; widest <= 2; ++widest)
+  {
+    options.widen = widest;
+    check_same(*state, &block, &set, core_input, &options);
+  }
+  options.widen = 1;
   mcor_input input = core_input_to_keep(&set);
   for (int again = 0; again < 2; ++again) /* nothing of such a run is kept */
   {
@@ -185,7 +190,12 @@ static void test_region(void** state)
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   memcpy(options.box, box, sizeof box);
-  check_same(*state, &block, &set, core_input, &options);
+  for (int widest = 1; widest <= 4; ++widest) /* at 4, sums reach beyond the region's margin */
+  {
+    options.widen = widest;
+    check_same(*state, &block, &set, core_input, &options);
+  }
+  options.widen = 1;
   options.periodic[0] = -5; /* images reach the box from there */
   options.periodic[1] = 5;
   options.box[0] = -5;

@@ -192,10 +192,9 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-static mcor_status mcor_run_widen(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+static mcor_status mcor_widen_all(mcor_context* context, const mcor_input* input,
+  const mcor_options* options, mcor_widen_run* run)
 {
-  mcor_widen_run* run = data;
   mcor_widening* out = run->out;
   for (int64_t i = 0; i < input->count; ++i)
   {
@@ -228,6 +227,22 @@ static mcor_status mcor_run_widen(
   return mcor_finish_statistics(context);
 }
 
+/* Finds the factors of all particles. A box without globals only tells which ones are too far away
+ * to matter, see mcor_leave_out_far. */
+static mcor_status mcor_run_widen(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
+{
+  mcor_options everywhere = *options;
+  if (!options->globals)
+  {
+    memset(everywhere.box, 0, sizeof everywhere.box);
+  }
+  context->run.options = &everywhere;
+  const mcor_status status = mcor_widen_all(context, input, &everywhere, data);
+  context->run.options = options;
+  return status;
+}
+
 /* ---- The call ---- */
 
 /* Returns the highest iso value of the free surface. */
@@ -254,6 +269,7 @@ static bool mcor_choose_widening(
   own->node_threshold = 0;
   own->outputs = 0;
   mcor_evaluate_without_scalar(input, own);
+  memcpy(own->box, options->box, sizeof own->box);
   return mcor_uses_solids(input, options);
 }
 
@@ -322,6 +338,7 @@ static mcor_status mcor_renew_widening(
   mcor_input particles;
   mcor_options own;
   const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
+  memset(own.box, 0, sizeof own.box);
   if (kept->widening.factor && mcor_same_particles(&particles, &kept->input) &&
     mcor_same_options(&own, &kept->options) && kept->widest == options->widen && kept->iso == iso &&
     kept->uses_solids == uses_solids)
@@ -333,12 +350,12 @@ static mcor_status mcor_renew_widening(
   mcor_free_widening(&kept->widening);
   *kept = (mcor_kept_widening){ .input = particles,
     .options = own,
-    .widest = options->widen,
     .iso = iso,
     .uses_solids = uses_solids };
   mcor_widening made;
   MCOR_TRY(mcor_widen(context, input, options, &made));
   kept->widening = made;
+  kept->widest = context->measure.cut ? 0 : options->widen; /* 0: they depend on the box */
   return MCOR_OK;
 }
 

@@ -112,7 +112,8 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
     const double largest = job->all.most[0];
     const double volumes =
       mcor_needs_density(job->input) ? largest * (1 + 1 / options->h_scale) : 0;
-    const double around = (volumes + largest) * (1 + context->run.widest);
+    /* Particles that reach there with widened lengths, the mean around them, and sums there. */
+    const double around = (volumes + largest) * (1 + 2 * context->run.widest);
     job->radius = largest > 0 ? around + 2 * context->measure.h_min : 0;
     return mcor_mark_far(context, job);
   }

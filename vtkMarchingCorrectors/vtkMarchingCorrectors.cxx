@@ -69,18 +69,25 @@ void vtkMarchingCorrectors::SetSolids(int solids)
 }
 
 // Lists the values that are numbers: an empty row of a panel's list is NaN.
-void vtkMarchingCorrectors::ListIsoValues(
-  const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list)
+void vtkMarchingCorrectors::SetIsoValues(
+  vtkRun& run, const vtkMarchingCorrectorsInput& input, std::vector<double>& list)
 {
   const bool isFree = input.Choice.FreeSurface;
   vtkContourValues* values = isFree ? this->FreeSurfaceValues : this->ContourValues;
   std::copy_if(values->GetValues(), values->GetValues() + values->GetNumberOfContours(),
     std::back_inserter(list), [](double value) { return !std::isnan(value); });
-  double range[2], value = 0.5;
-  if (list.empty() && (isFree || mcor_find_iso_value(&input.Core, ranks, range, &value)))
-  {
-    list.push_back(value);
-  }
+  run.CallAside(
+    [&](const mcor_ranks* ranks)
+    {
+      double range[2], value = 0.5;
+      if (list.empty() && (isFree || mcor_find_iso_value(&input.Core, ranks, range, &value)))
+      {
+        list.push_back(value);
+      }
+      return !list.empty();
+    });
+  run.Options.iso_values = list.data();
+  run.Options.iso_count = static_cast<int>(list.size());
 }
 
 void vtkMarchingCorrectors::SetPanelBoxPosition(double x, double y, double z)
@@ -188,14 +195,7 @@ void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
     return;
   }
   std::vector<double> isoValues;
-  run->CallAside(
-    [&](const mcor_ranks* ranks)
-    {
-      this->ListIsoValues(input, ranks, isoValues);
-      return !isoValues.empty();
-    });
-  run->Options.iso_values = isoValues.data();
-  run->Options.iso_count = static_cast<int>(isoValues.size());
+  this->SetIsoValues(*run, input, isoValues);
 #if MCOR_HAS_RANKS
   if (run->IsShared())
   {
@@ -222,33 +222,49 @@ bool vtkMarchingCorrectors::IsTaken(vtkRun& run, vtkMarchingCorrectorsInput& inp
 
 bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
 {
-  vtkRun run(this);
-  run.Begin(particles);
-  mcor_options& options = run.Options;
+  const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
+  if (!run->Begin(particles))
+  {
+    return false;
+  }
   vtkMarchingCorrectorsChoice choice;
-  this->FillOptions(options);
-  this->FillChoice(choice, particles);
+  this->FillOptions(run->Options);
+  this->FillChoice(choice, run->Own, run->MergeRanges());
   choice.InterpolateAttributes = false;
-  vtkMarchingCorrectorsInput input(choice, particles);
+  vtkMarchingCorrectorsInput input(choice, run->Own);
   std::vector<double> isoValues;
+  if (!this->IsTaken(*run, input))
+  {
+    return false;
+  }
+  this->SetIsoValues(*run, input, isoValues);
+  vtkNew<vtkPointData> found;
   vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
-  if (!this->IsTaken(run, input))
+  const vtkIdType count = run->Own->GetNumberOfPoints();
+#if MCOR_HAS_RANKS
+  if (run->IsShared())
   {
-    return false;
+    if (!this->WidenDistributed(
+          static_cast<vtkSharedRun&>(*run), input, found, widening.statistics))
+    {
+      return false;
+    }
   }
-  this->ListIsoValues(input, nullptr, isoValues);
-  options.iso_values = isoValues.data();
-  options.iso_count = static_cast<int>(isoValues.size());
-  if (!run.Call(input,
-        [&](mcor_context* context)
-        { return mcor_widen(context, &input.Core, &options, &widening); }))
+  else
+#endif
   {
-    return false;
+    if (!run->Call(input,
+          [&](mcor_context* context)
+          { return mcor_widen(context, &input.Core, &run->Options, &widening); }))
+    {
+      return false;
+    }
+    vtkSPHAddWidening(found, input.Core, widening, count);
   }
-  const vtkIdType count = particles->GetNumberOfPoints();
   const mcor_input& core = input.Core;
+  vtkDataArray* const factors = found->GetArray("Widening");
   const double unit = core.smoothing_length_is_support_radius && !core.estimate_smoothing_length
-    ? 1.0 / mcor_support_factor(options.sph_kernel)
+    ? 1.0 / mcor_support_factor(run->Options.sph_kernel)
     : 1.0;
   vtkNew<vtkDoubleArray> lengths;
   lengths->SetNumberOfValues(count);
@@ -257,20 +273,16 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
     const double length = core.estimate_smoothing_length
       ? widening.statistics.smoothing_length_min
       : vtkSPHValueOf(core.smoothing_length, i) * unit;
-    lengths->SetValue(i, length * widening.factor[i]);
+    lengths->SetValue(i, length * factors->GetComponent(i, 0));
   }
   output->Initialize();
-  output->SetPoints(particles->GetPoints());
-  output->GetPointData()->ShallowCopy(particles->GetPointData());
-  output->GetFieldData()->ShallowCopy(particles->GetFieldData());
+  output->SetPoints(run->Own->GetPoints());
+  output->GetPointData()->ShallowCopy(run->Own->GetPointData());
+  output->GetFieldData()->ShallowCopy(run->Own->GetFieldData());
   vtkSPHAddArray(output->GetPointData(), "WidenedSmoothingLength", lengths.Get());
-  const bool hasVolumes = widening.volume;
-  const vtkSmartPointer<vtkDataArray> factors = vtkSPHAdopt(widening.factor, 1, count),
-                                      volumes = vtkSPHAdopt(widening.volume, 1, count);
-  vtkSPHAddArray(output->GetPointData(), "Widening", factors);
-  if (hasVolumes)
+  for (int i = 0; i < found->GetNumberOfArrays(); ++i)
   {
-    vtkSPHAddArray(output->GetPointData(), "WideningVolume", volumes);
+    output->GetPointData()->AddArray(found->GetAbstractArray(i));
   }
   return true;
 }

@@ -368,7 +368,8 @@ public:
    * The particles as a run with this filter's settings would take them, with the arrays Widening,
    * the factors; WidenedSmoothingLength, the products; and, where volumes are computed,
    * WideningVolume. Uniform cubes of the same size, these lengths and these volumes give the
-   * surface of Widening without it. False, and an error, where that fails.
+   * surface of Widening without it. False, and an error, where that fails. If several processes
+   * share the filter's runs, all call it together, and each gets those of its own particles.
    */
   bool Widen(vtkPointSet* particles, vtkPolyData* output);
 
@@ -581,7 +582,9 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
     vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
-  bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, std::int64_t& outside);
+  /** Finds the arrays of Widen() for this rank's particles, and statistics of them. */
+  bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
+    mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input,
     mcor_options options, mcor_surface& surface, vtkPolyData* output);
   /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
@@ -609,10 +612,9 @@ private:
   void WarnOfHugeRun();
   void Summarize(const vtkMarchingCorrectorsInput& input, const mcor_options& options,
     const mcor_statistics& statistics);
-  /** Lists the iso values that were given, or a usual one, over all ranks unless that is null: empty
-   * if there is none. */
-  void ListIsoValues(
-    const vtkMarchingCorrectorsInput& input, const mcor_ranks* ranks, std::vector<double>& list);
+  /** Sets the run's iso values to those that were given, or to a usual one; `list` holds them. */
+  void SetIsoValues(
+    vtkRun& run, const vtkMarchingCorrectorsInput& input, std::vector<double>& list);
 
   vtkAhead Next;
   vtkTimeStamp LookTime; // when that was found

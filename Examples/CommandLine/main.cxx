@@ -127,13 +127,16 @@ void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
       }
     });
   sharing.OnAll([&] { files.Commit(); }); // only where all have written all
+  if (!job.WideningFile.empty())
+  {
+    vtkSmartPointer<vtkPolyData> widened;
+    sharing.OnAll([&] { widened = Widen(job, messages); });
+    widened = sharing.Append(widened);
+    sharing.OnFirst([&] { WriteDataSet(job.WideningFile, widened, messages); });
+  }
   sharing.OnFirst(
     [&]
     {
-      if (!job.WideningFile.empty())
-      {
-        WriteDataSet(job.WideningFile, Widen(job, messages), messages);
-      }
       if (!job.StatisticsFile.empty())
       {
         std::cout.flush(); // the file may be /dev/stdout

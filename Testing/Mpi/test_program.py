@@ -354,6 +354,25 @@ class Program(unittest.TestCase):
                                         "--smoothing-length", "Nope"), "Nope")
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
+    def test_factors(self):
+        """--widening: the file of the first process has all particles, with the arrays that one process finds; one of them is so far
+        away that it is left out."""
+        particles = read(PARTICLES)
+        particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
+        for how in ([], ["--smoothing-length", "estimate", "--periodic", "0,0,3"]):
+            for name in ("Mass", "Density", "Volume") if how else ():  # volumes are computed
+                particles.GetPointData().RemoveArray(name)
+            write(particles, self.path("in.vtp"))
+            for name, run in (("alone", self.run_alone), ("ranks", self.run_ranks)):
+                done = self.good(run(self.path("in.vtp"), self.path(name + "-surface.vtp"), "--free-surface", "--smooth", *how,
+                                     "--widening", self.path(name + ".vtp")))
+                self.assertIn("1 particle is so far away", done.stderr)
+            alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
+            np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
+            self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
+            self.assertGreater(alone.GetPointData().GetArray("Widening").GetRange()[1], 1.9)
+            self.check_point_data(alone, ranks)
+
     def write_series(self):
         """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""
         particles = read(PARTICLES)

@@ -35,9 +35,16 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   std::int64_t outside = 0; // of the particles that this rank was given
   if (options.widen > 1.0)
   {
-    if (!this->WidenDistributed(run, mine, outside))
+    vtkNew<vtkPointData> found;
+    mcor_statistics statistics = {};
+    if (!this->WidenDistributed(run, mine, found, statistics))
     {
       return;
+    }
+    outside = statistics.widening_outside;
+    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
+    {
+      run.Own->GetPointData()->AddArray(found->GetAbstractArray(i));
     }
     options.widen = 1.0;
     choice.IsWidened = true;
@@ -91,12 +98,12 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
 
 // The rank that owns a particle's place finds its factor, which then travels to where the particle
 // came from.
-bool vtkMarchingCorrectors::WidenDistributed(
-  vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, std::int64_t& outside)
+bool vtkMarchingCorrectors::WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine,
+  vtkPointData* found, mcor_statistics& statistics)
 {
   vtkSharedRun sums(this);
   sums.Own = run.Own;
-  sums.Options = run.Options;
+  sums.Options = mcor_spell_out(&run.Options);
   sums.Options.level_limit = 0;
   std::fill(sums.Options.box, sums.Options.box + 6, 0.0);
   if (!sums.Measure(mine, false))
@@ -114,12 +121,7 @@ bool vtkMarchingCorrectors::WidenDistributed(
     return false;
   }
   const vtkIdType near = sums.Near->GetNumberOfPoints();
-  vtkNew<vtkPointData> found;
-  vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, near));
-  if (vtkSPHComputesVolumes(mine.Core))
-  {
-    vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, near));
-  }
+  vtkSPHAddWidening(found, mine.Core, widening, near);
   vtkNew<vtkUnsignedCharArray> flags;
   flags->SetName("WideningOutside");
   flags->SetArray(widening.outside, near, 1); // which stays the widening's
@@ -128,13 +130,10 @@ bool vtkMarchingCorrectors::WidenDistributed(
   vtkDataArray* const home = found->GetArray("WideningOutside");
   for (vtkIdType i = 0; i < home->GetNumberOfTuples(); ++i)
   {
-    outside += home->GetComponent(i, 0) != 0.0 ? 1 : 0;
+    statistics.widening_outside += home->GetComponent(i, 0) != 0.0 ? 1 : 0;
   }
   found->RemoveArray("WideningOutside");
-  for (int i = 0; i < found->GetNumberOfArrays(); ++i)
-  {
-    run.Own->GetPointData()->AddArray(found->GetAbstractArray(i));
-  }
+  statistics.smoothing_length_min = sums.Globals.measured.h_min;
   return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "vtkPointData.h"
 #include "vtkSPHArrays.h"
+#include "vtkSPHRun.h"
 
 VTK_ABI_NAMESPACE_BEGIN
 vtkMarchingCorrectorsInput::vtkMarchingCorrectorsInput(
@@ -134,5 +135,15 @@ void vtkMarchingCorrectorsInput::SignScalar()
   vtkSPHSign(this->ScalarSignature, this->Scalar);
   vtkSPHSign(this->ScalarSignature, this->ScalarDot);
   this->ScalarSignature.push_back(static_cast<std::uint64_t>(this->Core.scalar_component));
+}
+
+void vtkSPHAddWidening(
+  vtkPointData* found, const mcor_input& core, mcor_widening& widening, vtkIdType count)
+{
+  vtkSPHAddArray(found, "Widening", vtkSPHAdopt(widening.factor, 1, count));
+  if (vtkSPHComputesVolumes(core))
+  {
+    vtkSPHAddArray(found, "WideningVolume", vtkSPHAdopt(widening.volume, 1, count));
+  }
 }
 VTK_ABI_NAMESPACE_END

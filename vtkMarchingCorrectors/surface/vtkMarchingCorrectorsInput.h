@@ -46,6 +46,10 @@ private:
   void NameScalar();
   void SignScalar();
 };
+
+/** Adds the arrays Widening and, where volumes are computed, WideningVolume, for `count` particles. */
+void vtkSPHAddWidening(
+  vtkPointData* found, const mcor_input& core, mcor_widening& widening, vtkIdType count);
 VTK_ABI_NAMESPACE_END
 
 #endif

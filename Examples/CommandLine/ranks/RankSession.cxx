@@ -7,6 +7,8 @@
 #include "ParticleTimes.h"
 #include "SafeText.h"
 
+#include "vtkAppendPolyData.h"
+#include "vtkFieldData.h"
 #include "vtkMPIController.h"
 #include "vtkPointData.h"
 #include "vtkSPHFound.h"
@@ -101,6 +103,24 @@ vtkSmartPointer<vtkPointSet> RankSession::Read(
 vtkSmartPointer<vtkPolyData> RankSession::Merge(vtkPolyData* part)
 {
   return vtkSPHMergeSurface(this->Controller, part);
+}
+
+vtkSmartPointer<vtkPolyData> RankSession::Append(vtkPolyData* particles)
+{
+  std::vector<vtkSmartPointer<vtkDataObject>> parts;
+  vtkNew<vtkAppendPolyData> append;
+  vtkSPHAwaitRanks(this->Controller);
+  this->Controller->Gather(particles, parts, 0);
+  for (const auto& part : parts)
+  {
+    append->AddInputData(vtkPolyData::SafeDownCast(part));
+  }
+  if (this->IsFirst())
+  {
+    append->Update();
+    append->GetOutput()->GetFieldData()->ShallowCopy(particles->GetFieldData());
+  }
+  return append->GetOutput();
 }
 
 vtkSmartPointer<vtkPointSet> RankSession::Part(const std::string& file, bool mayBeEmpty)

@@ -30,6 +30,7 @@ public:
     ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
   /// Puts the parts in the order of GlobalPointIds and GlobalCellIds, and drops these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override;
+  vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) override;
 
 private:
   using Particles = vtkSmartPointer<vtkPointSet>;

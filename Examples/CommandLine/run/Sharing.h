@@ -45,6 +45,9 @@ public:
 
   /// The whole surface on the first process, null on others.
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
+
+  /// The particles of all processes, in their order, on the first process.
+  virtual vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) { return particles; }
 };
 
 /// The environment tells of mpirun before MPI is asked. Built without MPI, there is none.

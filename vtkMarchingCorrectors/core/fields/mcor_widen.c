@@ -192,8 +192,8 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-static mcor_status mcor_widen_all(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_widen_run* run)
+static mcor_status mcor_widen_all(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_widen_run* run)
 {
   mcor_widening* out = run->out;
   for (int64_t i = 0; i < input->count; ++i)
@@ -348,10 +348,9 @@ static mcor_status mcor_renew_widening(
     return MCOR_OK;
   }
   mcor_free_widening(&kept->widening);
-  *kept = (mcor_kept_widening){ .input = particles,
-    .options = own,
-    .iso = iso,
-    .uses_solids = uses_solids };
+  *kept = (mcor_kept_widening){
+    .input = particles, .options = own, .iso = iso, .uses_solids = uses_solids
+  };
   mcor_widening made;
   MCOR_TRY(mcor_widen(context, input, options, &made));
   kept->widening = made;

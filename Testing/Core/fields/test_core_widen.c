@@ -174,65 +174,72 @@ static void test_factors(void** state)
   core_free_set(&set);
 }
 
-/* The surface, but for the array of factors, is that of the widened lengths. */
+/* The surface, but for the array of factors, is that of the widened lengths, in cubes of one size as large. */
+static void check_surface(mcor_context* context, const mcor_input* asked, mcor_options options)
+{
+  mcor_input input = *asked;
+  mcor_widening w;
+  options.widen = WIDEST;
+  options.level_limit = 0;
+  CORE_OK(context, mcor_widen(context, &input, &options, &w));
+  mcor_surface widened = core_extract(context, &input, &options);
+  assert_int_equal(w.volume != NULL, !mcor_is_given(&input.volume));
+  const mcor_statistics* s = &widened.statistics;
+  CORE_CHECK(s->widening_min == 1 && s->widening_max > 1.99 && s->widening_mean > 1.1, "%g %g %g",
+    s->widening_min, s->widening_mean, s->widening_max);
+  assert_int_equal(s->widening_outside, w.statistics.widening_outside);
+  double* length = malloc((size_t)input.count * sizeof *length);
+  assert_non_null(length);
+  for (int64_t j = 0; j < input.count; ++j)
+  {
+    CORE_CHECK(!(input.solid && input.solid[j]) || w.factor[j] == 1, "a solid has %g", w.factor[j]);
+    length[j] = ((const double*)input.smoothing_length.data)[j] * w.factor[j];
+  }
+  options.widen = 1;
+  options.cube_size = 0.5 * 1.1;
+  input.smoothing_length.data = length;
+  input.volume = w.volume ? core_array(w.volume, 1) : input.volume;
+  mcor_surface plain = core_extract(context, &input, &options);
+  CORE_CHECK(plain.point_count > 30 && plain.point_count == widened.point_count,
+    "%lld and %lld points", (long long)plain.point_count, (long long)widened.point_count);
+  assert_true(core_hash(&plain) == core_hash(&widened));
+  for (int64_t p = 0; p < widened.point_count; ++p)
+  {
+    CORE_CHECK(
+      widened.widening[p] > 0.999 && widened.widening[p] < 2.001, "%g", widened.widening[p]);
+  }
+  mcor_free_surface(&plain);
+  mcor_free_surface(&widened);
+  mcor_free_widening(&w);
+  free(length);
+}
+
+/* Bits of a way: a scalar, volumes that are computed, periods, lengths that differ, solids. The last ways are in a
+ * plane. */
 static void test_surface(void** state)
 {
-  mcor_context* context = *state;
   core_set set = make_scene(8, 0.24, 5);
-  double* length = malloc((size_t)set.count * sizeof *length);
-  assert_non_null(length);
-  for (int way = 0; way < 16; ++way)
+  for (int way = 0; way < 64; ++way)
   {
     for (int64_t j = 0; j < set.count; ++j)
     {
       set.smoothing_length[j] = way & 8 ? 1.1 + 0.1 * (double)(j % 3) : 1.1;
+      set.solid[j] = way & 16 && set.position[3 * j] < 1.5;
+      set.position[3 * j + 2] *= way & 32 ? 0 : 1;
     }
     const double iso = way & 1 ? 3.3 : 0.5;
     mcor_input input = core_input(&set);
     mcor_options options = core_options(&iso);
     options.field = way & 1 ? MCOR_SHEPARD : MCOR_WEIGHT_SUM;
     input.volume = way & 2 ? (mcor_array){ 0 } : input.volume;
-    for (int a = 0; a < 3 && way & 4; ++a)
+    input.solid = way & 16 ? set.solid : NULL;
+    for (int a = 0; a < (way & 32 ? 2 : 3) && way & 4; ++a)
     {
       options.periodic[2 * a] = -2.25;
       options.periodic[2 * a + 1] = a == 1 ? 38 : 16 + 2 * a;
     }
-    mcor_widening w;
-    mcor_surface widened, plain;
-    options.widen = WIDEST;
-    options.level_limit = 0;
-    CORE_OK(context, mcor_widen(context, &input, &options, &w));
-    CORE_OK(context, mcor_extract(context, &input, &options, &widened));
-    assert_int_equal(w.volume != NULL, (way & 2) != 0);
-    const mcor_statistics* s = &widened.statistics;
-    CORE_CHECK(s->widening_min == 1 && s->widening_max > 1.99 && s->widening_mean > 1.1,
-      "%g %g %g", s->widening_min, s->widening_mean, s->widening_max);
-    assert_int_equal(s->widening_outside, w.statistics.widening_outside);
-    options.widen = 1;
-    options.cube_size = 0.5 * 1.1;
-    for (int64_t j = 0; j < set.count; ++j)
-    {
-      length[j] = set.smoothing_length[j] * w.factor[j];
-    }
-    input.smoothing_length.data = length;
-    if (w.volume)
-    {
-      input.volume = core_array(w.volume, 1);
-    }
-    CORE_OK(context, mcor_extract(context, &input, &options, &plain));
-    CORE_CHECK(plain.point_count > 500 && plain.point_count == widened.point_count,
-      "%lld and %lld points", (long long)plain.point_count, (long long)widened.point_count);
-    assert_true(core_hash(&plain) == core_hash(&widened));
-    for (int64_t p = 0; p < widened.point_count; ++p)
-    {
-      CORE_CHECK(
-        widened.widening[p] > 0.999 && widened.widening[p] < 2.001, "%g", widened.widening[p]);
-    }
-    mcor_free_surface(&plain);
-    mcor_free_surface(&widened);
-    mcor_free_widening(&w);
+    check_surface(*state, &input, options);
   }
-  free(length);
   core_free_set(&set);
 }
 

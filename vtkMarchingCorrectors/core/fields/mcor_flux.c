@@ -21,9 +21,9 @@
 
 /* ---- the call ---- */
 
-static mcor_status mcor_check_velocity(
-  mcor_context* context, const mcor_input* input, int64_t not_finite[2])
+static mcor_status mcor_check_velocity(mcor_context* context, const mcor_input* input)
 {
+  int64_t not_finite[2] = { -1, -1 };
   const int axes = context->space.axes, components = mcor_components(&input->attributes[0]);
   MCOR_RETURN_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
     "The velocity has %d components; it must have 3%s.", components,
@@ -97,9 +97,8 @@ static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
 static mcor_status mcor_flux_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flux_job* job)
 {
-  int64_t not_finite[2] = { -1, -1 };
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_TRY(mcor_check_velocity(context, input, not_finite));
+  MCOR_TRY(mcor_check_velocity(context, input));
   context->attributes.kept = 0;
   for (int64_t s = 0; s < job->section_count; ++s)
   {

@@ -33,16 +33,10 @@ void mcor_release_probe(mcor_probe_run* run)
 
 /* ---- evaluation ---- */
 
-/* The device's results for one batch. */
-typedef struct mcor_probe_views
-{
-  void *order, *weight, *sums, *weight_gradient, *gradients;
-} mcor_probe_views;
-
 typedef struct mcor_probe_job
 {
   const mcor_probe_run* run;
-  mcor_probe_views views;
+  void *order, *weight, *sums, *weight_gradient, *gradients; /* views of the device's results */
   double threshold;
 } mcor_probe_job;
 
@@ -60,11 +54,11 @@ static void mcor_put_weights(const mcor_probe_job* job, mcor_probe_chunk* chunk)
 {
   const mcor_probe_run* run = job->run;
   const mcor_context* context = run->context;
-  const cl_int* order = (const cl_int*)job->views.order + chunk->first;
+  const cl_int* order = (const cl_int*)job->order + chunk->first;
   for (int i = 0; i < chunk->count; ++i)
   {
     const int64_t to = run->first + order[i];
-    const double weight = mcor_get_real(context, job->views.weight, chunk->first + i);
+    const double weight = mcor_get_real(context, job->weight, chunk->first + i);
     const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
     chunk->weight[i] = weight;
     chunk->to[i] = to;
@@ -74,7 +68,7 @@ static void mcor_put_weights(const mcor_probe_job* job, mcor_probe_chunk* chunk)
     for (int a = 0; a < 3 && run->samples->weight_gradient; ++a)
     {
       run->samples->weight_gradient[3 * to + a] =
-        mcor_get_real(context, job->views.weight_gradient, 3 * (chunk->first + i) + a) /
+        mcor_get_real(context, job->weight_gradient, 3 * (chunk->first + i) + a) /
         context->lattice.cube;
     }
   }
@@ -101,7 +95,7 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
     if (chunk->valid[i])
     {
       const double sum =
-        mcor_get_real(context, job->views.sums, (chunk->first + i) * attributes->count + c);
+        mcor_get_real(context, job->sums, (chunk->first + i) * attributes->count + c);
       const double weight = chunk->weight[i];
       const double value = is_sum ? sum * unscale + shift * weight : sum / weight * unscale + shift;
       values[chunk->to[i] * width] = value < low ? low : value > high ? high : value;
@@ -122,9 +116,9 @@ static void mcor_put_gradients(const mcor_probe_job* job, const mcor_probe_chunk
     const int p = i / 3, a = i % 3;
     const int64_t point = chunk->first + p, at = point * attributes->count + c;
     const double weight = chunk->weight[p];
-    const double mean = mcor_get_real(context, job->views.sums, at) / weight;
-    const double slope = mcor_get_real(context, job->views.gradients, 3 * at + a);
-    const double weight_slope = mcor_get_real(context, job->views.weight_gradient, 3 * point + a);
+    const double mean = mcor_get_real(context, job->sums, at) / weight;
+    const double slope = mcor_get_real(context, job->gradients, 3 * at + a);
+    const double weight_slope = mcor_get_real(context, job->weight_gradient, 3 * point + a);
     if (chunk->valid[p])
     {
       gradients[3 * (chunk->to[p] * width + component->component) + a] =
@@ -162,11 +156,10 @@ static mcor_status mcor_deliver_samples(mcor_probe_run* run)
   const size_t n = (size_t)run->inside, real = context->cl.real_size,
                arrays = (size_t)context->attributes.count;
   mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
-  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.views.order },
-    { &run->weight, n * real, &job.views.weight },
-    { &run->sums, n * arrays * real, &job.views.sums },
-    { &run->weight_gradient, n * 3 * real, &job.views.weight_gradient },
-    { &run->gradients, n * 3 * arrays * real, &job.views.gradients } };
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
+    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums },
+    { &run->weight_gradient, n * 3 * real, &job.weight_gradient },
+    { &run->gradients, n * 3 * arrays * real, &job.gradients } };
   const int count = run->samples->weight_gradient ? 5 : 3;
   mcor_status status = mcor_map_all(context, views, count);
   MCOR_THEN(status,

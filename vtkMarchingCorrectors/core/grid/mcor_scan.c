@@ -138,27 +138,34 @@ void mcor_release_sort(mcor_context* context)
   MCOR_RELEASE(context, &s->keys, &s->values, &s->histogram, &s->order, &s->flags);
 }
 
+/* Flags the first of each run of equal ones among sorted keys, and numbers the runs. */
+static mcor_status mcor_number_runs(
+  mcor_context* context, const mcor_buffer* keys, int count, int* distinct_count)
+{
+  mcor_buffer* flags = &context->sort.flags;
+  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_unique_count", MCOR_LIGHT, count, MCOR_BUFFER(keys),
+    MCOR_INT(count), MCOR_BUFFER(flags)));
+  return mcor_scan(context, flags, count, distinct_count);
+}
+
 /* Lists the distinct keys in order; index_of[i] becomes the index of key i among them. Sorts
  * `keys`. */
 mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uint64_t key_limit,
   mcor_buffer* distinct, mcor_buffer* index_of, int* distinct_count)
 {
   mcor_buffer* values = &context->sort.order;
-  mcor_buffer* flags = &context->sort.flags;
   *distinct_count = 0;
   if (count == 0)
   {
     return MCOR_OK;
   }
   MCOR_TRY(mcor_sort(context, keys, values, count, key_limit));
-  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_unique_count", MCOR_LIGHT, count, MCOR_BUFFER(keys),
-    MCOR_INT(count), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_scan(context, flags, count, distinct_count));
+  MCOR_TRY(mcor_number_runs(context, keys, count, distinct_count));
   MCOR_TRY(mcor_reserve(context, distinct, (size_t)*distinct_count * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, index_of, (size_t)count * sizeof(cl_int)));
   return MCOR_LAUNCH(context, "mcor_unique_fill", MCOR_LIGHT, count, MCOR_BUFFER(keys),
-    MCOR_BUFFER(values), MCOR_INT(count), MCOR_BUFFER(flags), MCOR_BUFFER(distinct),
+    MCOR_BUFFER(values), MCOR_INT(count), MCOR_BUFFER(&context->sort.flags), MCOR_BUFFER(distinct),
     MCOR_BUFFER(index_of));
 }
 
@@ -167,17 +174,14 @@ mcor_status mcor_unique(mcor_context* context, mcor_buffer* keys, int count, uin
 mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
   mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count)
 {
-  mcor_buffer* flags = &context->sort.flags;
-  MCOR_TRY(mcor_reserve(context, flags, ((size_t)count + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_unique_count", MCOR_LIGHT, count, MCOR_BUFFER(keys),
-    MCOR_INT(count), MCOR_BUFFER(flags)));
-  MCOR_TRY(mcor_scan(context, flags, count, distinct_count));
+  MCOR_TRY(mcor_number_runs(context, keys, count, distinct_count));
   const size_t n = (size_t)*distinct_count;
   MCOR_TRY(mcor_reserve(context, distinct, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_reserve(context, begins, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_run_fill", MCOR_LIGHT, count, MCOR_BUFFER(keys),
-    MCOR_INT(count), MCOR_BUFFER(flags), MCOR_BUFFER(distinct), MCOR_BUFFER(begins)));
-  mcor_release(context, flags);
+  MCOR_TRY(
+    MCOR_LAUNCH(context, "mcor_run_fill", MCOR_LIGHT, count, MCOR_BUFFER(keys), MCOR_INT(count),
+      MCOR_BUFFER(&context->sort.flags), MCOR_BUFFER(distinct), MCOR_BUFFER(begins)));
+  mcor_release(context, &context->sort.flags);
   return MCOR_OK;
 }
 

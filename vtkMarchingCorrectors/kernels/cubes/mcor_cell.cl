@@ -17,27 +17,6 @@ MCOR_ONE_COPY void mcor_cell_corners(ulong* m)
   }
 }
 
-/* Return the cells that have some corner set, and the cells that have all. */
-ulong mcor_cell_some(const ulong* corners)
-{
-  ulong some = 0;
-  for (int c = 0; c < 8; ++c)
-  {
-    some |= corners[c];
-  }
-  return some;
-}
-
-ulong mcor_cell_all(const ulong* corners)
-{
-  ulong all = ~0UL;
-  for (int c = 0; c < 8; ++c)
-  {
-    all &= corners[c];
-  }
-  return all;
-}
-
 /* Returns the cells whose lower (side 0) or upper face across an axis is crossed, i.e. has nodes
  * on both sides. */
 ulong mcor_cell_faces(const ulong* corners, int axis, int side)
@@ -66,7 +45,14 @@ ulong mcor_cells_beside(ulong used, const ulong* lower, const ulong* upper)
 /* Returns the cells that are valid at all corners and have corners on both sides. */
 ulong mcor_cells_crossed(const ulong* above, const ulong* valid)
 {
-  return mcor_cell_some(above) & ~mcor_cell_all(above) & mcor_cell_all(valid);
+  ulong some = 0, all = ~0UL, usable = ~0UL;
+  for (int c = 0; c < 8; ++c)
+  {
+    some |= above[c];
+    all &= above[c];
+    usable &= valid[c];
+  }
+  return some & ~all & usable;
 }
 
 /* Makes masks of the corners of a brick's cells. */

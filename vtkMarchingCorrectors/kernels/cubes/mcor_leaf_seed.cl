@@ -13,6 +13,13 @@
 /* Bits d = x + 3 y + 9 z, x, y, z 0 to 2: the finer ones of the 27 bricks in and around a leaf. */
 #define MCOR_DIRECTION(x, y, z) ((x) + 3 * (y) + 9 * (z))
 
+/* Returns the bits of the 8 bricks of a row, counted through the rows of all blocks. */
+#define MCOR_BLOCK_ROWS (MCOR_BLOCK_BRICKS / 8)
+uint mcor_row_of(__global const uint* bits, int row)
+{
+  return bits[row >> 2] >> 8 * (row & 3) & 0xff;
+}
+
 /* Returns which bricks x = -1 to 8 (bits 0 to 9) of a row have their bits set. row: number of
  * its first brick in the block. */
 uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
@@ -29,12 +36,9 @@ uint mcor_row_bits(int3 blocks, int row, __global const uint* bits)
 __kernel void mcor_leaf_compare(MCOR_BLOCK_PARAMS, const int plane, __global const uint* leaves,
   __global const uint* split, __global uint* beside)
 {
-  const int m = get_global_id(0) * 8;
-  const uint own = m < block_count * MCOR_BLOCK_BRICKS ? leaves[m >> 5] >> (m & 31) & 0xff : 0;
-  if (own == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(item, item < block_count * MCOR_BLOCK_ROWS && mcor_row_of(leaves, item) != 0);
+  const int m = item * 8;
+  const uint own = mcor_row_of(leaves, item);
   const int4 brick = mcor_brick_of_number(rungs, block_keys, m), block = brick >> 3;
   const int3 blocks = mcor_seed_blocks(MCOR_BLOCK_ARGS, brick.w, block.x, block.y, block.z);
   uint rows[9], up[4];
@@ -90,12 +94,9 @@ int mcor_leaf_sides(MCOR_KNOWN_PARAMS, int m, int d)
 __kernel void mcor_leaf_choose(
   MCOR_KNOWN_PARAMS, const int plane, __global const uint* beside, __global uint* chosen)
 {
-  const int m = get_global_id(0) * 8;
-  const uint own = m < block_count * MCOR_BLOCK_BRICKS ? leaves[m >> 5] >> (m & 31) & 0xff : 0;
-  if (own == 0)
-  {
-    return;
-  }
+  MCOR_ITEM(item, item < block_count * MCOR_BLOCK_ROWS && mcor_row_of(leaves, item) != 0);
+  const int m = item * 8;
+  const uint own = mcor_row_of(leaves, item);
   const int4 first = mcor_brick_of_number(rungs, block_keys, m);
   uint found = 0;
   for (uint rest = own; rest; rest &= rest - 1)

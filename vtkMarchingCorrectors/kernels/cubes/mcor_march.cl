@@ -102,10 +102,14 @@ __kernel void mcor_march_count(const int brick_count, MCOR_CUT_PARAMS, const int
     vertices += mcor_cell_edges(q, a, to);
   }
   vertex_count[slot] = vertices;
-  int tunnels = 0;
+  int tunnels = 0, made = 0;
   mcor_cell_corners(m);
-  const int made = plane ? mcor_plane_count(m, plain_used[slot])
-                         : mcor_cells_count(m, MCOR_CUT_ARGS, slot, plain_used[slot], &tunnels);
+  for (ulong rest = plain_used[slot]; rest; rest &= rest - 1)
+  {
+    const int cell = mcor_ctz(rest);
+    made += plane ? mcor_plane_count(m, cell)
+                  : mcor_cell_cut(m, MCOR_CUT_ARGS, slot, cell, &tunnels)->triangles;
+  }
   triangle_count[slot] += made;
   if (resolved)
   {

@@ -69,14 +69,3 @@ __global const mcor_cell_row* mcor_cell_cut(
   *tunnels += other != 0;
   return rows + (other ? first + other : row);
 }
-
-/* Returns the number of triangles of these cells of a brick, and adds to the number of tunnels. */
-int mcor_cells_count(const ulong* corners, MCOR_CUT_PARAMS, int slot, ulong cells, int* tunnels)
-{
-  int triangles = 0;
-  for (ulong rest = cells; rest; rest &= rest - 1)
-  {
-    triangles += mcor_cell_cut(corners, MCOR_CUT_ARGS, slot, mcor_ctz(rest), tunnels)->triangles;
-  }
-  return triangles;
-}

@@ -40,16 +40,11 @@ int mcor_plane_case(const ulong* corners, int cell)
   return above;
 }
 
-/* Returns the number of lines in squares. */
-int mcor_plane_count(const ulong* corners, ulong squares)
+/* Returns the number of lines in a square that has some. */
+int mcor_plane_count(const ulong* corners, int cell)
 {
-  int lines = 0;
-  for (ulong rest = squares; rest; rest &= rest - 1)
-  {
-    const int above = mcor_plane_case(corners, mcor_ctz(rest));
-    lines += above == 6 || above == 9 ? 2 : 1;
-  }
-  return lines;
+  const int above = mcor_plane_case(corners, cell);
+  return above == 6 || above == 9 ? 2 : 1;
 }
 
 /* Makes masks of the squares beside edges along an axis, as mcor_cell_around does for cells. A

@@ -296,9 +296,9 @@ private:
     }
     vtkNew<vtkActor> actor;
     actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(0.36, 0.60, 0.85);
+    actor->GetProperty()->SetColor(0.45, 0.72, 0.95);
     actor->GetProperty()->SetLighting(!isFlat);
-    actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.25);
+    actor->GetProperty()->SetSpecular(isColored ? 0.0 : 0.4);
     actor->GetProperty()->SetSpecularPower(30.0);
     actor->GetProperty()->SetLineWidth(3.0);
     actor->GetProperty()->SetPointSize(3.0);

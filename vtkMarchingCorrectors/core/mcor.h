@@ -286,7 +286,8 @@ extern "C"
     /* Nonzero: a compact contour, with a quarter fewer triangles and hardly any slivers. Vertices
      * of one node of the virtual grid that edges of triangles join are merged, and then moved along
      * the gradient onto the surface, not along lattice edges. That is undone where it would change
-     * the pieces or turn a triangle over. Points on the sides of periods, at caps and on borders
+     * the pieces or turn a triangle over; the widest corner of a sliver that is left starts anew
+     * from the middle of its neighbours. Points on the sides of periods, at caps and on borders
      * stay, and are those without this option. Cannot be combined with `filled`. */
     int compact;
     int smooth; /* nonzero: for pictures; as `compact`, and `widen` of 2 if that is 1 */

@@ -7,7 +7,7 @@
  *
  * Merged vertices that do not reach the surface, or that turn a triangle over, are taken apart
  * again; bunches allow this at any time. It may turn triangles beside them over, so there are
- * two rounds.
+ * two rounds. Vertices of slivers that are left then move (mcor_compact_face.c).
  *
  * Vertices that stay, merged ones, and those of bunches taken apart are appended to the mesh one
  * after the other. At the end all are sorted by node, because keys need this order. */
@@ -45,18 +45,6 @@ typedef struct mcor_sorted_bunch
   uint64_t key;
   int32_t first;
 } mcor_sorted_bunch;
-
-/* Finds the node of a bunch, in the form that its merged vertex has. */
-static void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, cl_int node[4])
-{
-  const cl_int* from = mcor_marched_node(bunches, first);
-  const uint64_t key = bunches->key[first];
-  for (int a = 0; a < 3; ++a)
-  {
-    node[a] = (cl_int)(key >> 21 * a & 0x1fffff);
-  }
-  node[3] = from[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS;
-}
 
 /* Returns a key that sorts nodes in the order of vertices. */
 static uint64_t mcor_order_key(const mcor_bunches* bunches, const cl_int node[4])
@@ -141,17 +129,6 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   return count;
 }
 
-/* Return the vertex of an entry of the order, or the first one of its bunch; and its place. */
-static int32_t mcor_vertex_of(int32_t entry)
-{
-  return entry < 0 ? -1 - entry : entry;
-}
-
-static int32_t* mcor_place_in(const mcor_bunches* bunches, int32_t entry)
-{
-  return (entry < 0 ? bunches->merged_place : bunches->place) + mcor_vertex_of(entry);
-}
-
 /* Finds the mean of a bunch's vertices, from its node, in edges. */
 static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean[3])
 {
@@ -173,13 +150,15 @@ static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean
   }
 }
 
-/* Vertices that are being appended to the mesh: on edges, or merged ones. */
+/* Vertices that are being appended to the mesh, and corrected on edges, or on lines from their
+ * starts; those of merged vertices are the means if they are not given. */
 typedef struct mcor_adding
 {
   const mcor_bunches* bunches;
-  bool merged;
+  bool lines;
+  const double (*starts)[3]; /* from the nodes, in edges */
   cl_int* node;
-  uint8_t* start; /* real [][2]: ends of edges; real [][4]: offsets of merged vertices */
+  uint8_t* data; /* real [][2]: ends of edges; real [][4]: offsets of starts */
 } mcor_adding;
 
 static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
@@ -189,20 +168,24 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
   for (int64_t i = first; i < last; ++i)
   {
     const int32_t v = mcor_vertex_of(bunches->order[i]);
-    double mean[4] = { 0 };
-    if (to->merged)
+    double start[4] = { 0 };
+    memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
+    if (bunches->order[i] < 0)
     {
       mcor_bunch_node(bunches, v, to->node + 4 * i);
-      mcor_mean_of(bunches, v, mean);
     }
-    else
+    if (to->starts)
     {
-      memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
+      memcpy(start, to->starts[i], sizeof to->starts[i]);
     }
-    for (int k = 0; k < (to->merged ? 4 : 2); ++k)
+    else if (to->lines)
     {
-      mcor_put_real(bunches->context, to->start, (to->merged ? 4 : 2) * i + k,
-        to->merged ? mean[k] : mcor_get_real(bunches->context, bunches->ends, 2 * (int64_t)v + k));
+      mcor_mean_of(bunches, v, start);
+    }
+    for (int k = 0; k < (to->lines ? 4 : 2); ++k)
+    {
+      mcor_put_real(bunches->context, to->data, (to->lines ? 4 : 2) * i + k,
+        to->lines ? start[k] : mcor_get_real(bunches->context, bunches->ends, 2 * (int64_t)v + k));
     }
   }
   (void)slice;
@@ -226,9 +209,9 @@ static mcor_status mcor_write_added(mcor_context* context, const mcor_adding* ad
       context, of_edges[i].array, size < o * width ? size : o * width, (o + n) * width));
   }
   MCOR_TRY(mcor_append_bytes(context, &mesh->node, o * 16, add->node, n * 16));
-  const size_t width = (add->merged ? 4 : 2) * real;
+  const size_t width = (add->lines ? 4 : 2) * real;
   return mcor_append_bytes(
-    context, add->merged ? &mesh->offset : &mesh->ends, o * width, add->start, n * width);
+    context, add->lines ? &mesh->offset : &mesh->ends, o * width, add->data, n * width);
 }
 
 /* Notes the places of the new vertices, and the first one of each level. */
@@ -255,26 +238,26 @@ static void mcor_note_added(mcor_bunches* bunches, int count)
   mesh->vertex_count = old + count;
 }
 
-/* Appends the vertices in `order` to the mesh, which are on edges, or merged, and corrects
- * them. */
-static mcor_status mcor_add_vertices(mcor_bunches* bunches, bool merged, int count)
+mcor_status mcor_add_vertices(
+  mcor_bunches* bunches, bool lines, const double (*starts)[3], int count)
 {
   mcor_context* context = bunches->context;
   const size_t n = (size_t)count;
   mcor_adding add = { .bunches = bunches,
-    .merged = merged,
+    .lines = lines,
+    .starts = starts,
     .node = malloc(4 * n * sizeof *add.node + 1),
-    .start = malloc(4 * n * context->cl.real_size + 1) };
-  mcor_status status = mcor_allocated(context, add.node && add.start);
+    .data = malloc(4 * n * context->cl.real_size + 1) };
+  mcor_status status = mcor_allocated(context, add.node && add.data);
   status = status == MCOR_OK
     ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL)
     : status;
   status = status == MCOR_OK ? mcor_write_added(context, &add, count) : status;
   free(add.node);
-  free(add.start);
+  free(add.data);
   MCOR_TRY(status);
   mcor_note_added(bunches, count);
-  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, merged);
+  return mcor_launch_correction(context, MCOR_ON_BOUNDARY, lines);
 }
 
 /* Makes the first vertices: those that stay, unless the mesh has them, and the merged ones. */
@@ -292,7 +275,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
   if (!bunches->late)
   {
     bunches->context->mesh.vertex_count = 0;
-    MCOR_TRY(mcor_add_vertices(bunches, false, count));
+    MCOR_TRY(mcor_add_vertices(bunches, false, NULL, count));
   }
   count = 0;
   for (int i = 0; i < bunches->sorted_count; ++i)
@@ -302,132 +285,10 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
       bunches->order[count++] = -1 - bunches->sorted[i].first;
     }
   }
-  return mcor_add_vertices(bunches, true, count);
+  return mcor_add_vertices(bunches, true, NULL, count);
 }
 
 /* ---- Taking apart ---- */
-
-typedef struct mcor_facing
-{
-  mcor_bunches* bunches;
-  int round;
-  double edge[3];
-  void *node, *offset, *linear, *gradient;
-  atomic_int bad; /* whether any bunch is bad */
-} mcor_facing;
-
-static void mcor_make_bad(mcor_facing* facing, int32_t first)
-{
-  if (mcor_is_merged(facing->bunches, first))
-  {
-    mcor_set_state(facing->bunches, first, MCOR_BUNCH_BAD);
-    atomic_store_explicit(&facing->bad, 1, memory_order_relaxed);
-  }
-}
-
-/* Whether a triangle, or line, is turned over: it does not face against the mean of its corners'
- * unit gradients. */
-static bool mcor_is_turned(const mcor_facing* facing, const int32_t* place, int corners)
-{
-  const mcor_context* context = facing->bunches->context;
-  double at[3][3], normal[3], against[3] = { 0, 0, 0 };
-  for (int c = 0; c < corners; ++c)
-  {
-    const int64_t i = place[c];
-    const cl_int* node = (const cl_int*)facing->node + 4 * i;
-    const double size = 1u << (node[3] >> MCOR_LEVEL_SHIFT);
-    double g[3], length = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      at[c][a] =
-        (node[a] + mcor_get_real(context, facing->offset, 4 * i + a)) * size * facing->edge[a];
-      g[a] = mcor_get_real(context, facing->gradient, 4 * i + a);
-      length += g[a] * g[a];
-    }
-    for (int a = 0; a < 3 && length > 0; ++a)
-    {
-      against[a] -= g[a] / sqrt(length);
-    }
-  }
-  double along = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int b = (a + 1) % 3, d = (a + 2) % 3;
-    normal[a] = corners == 3 ? (at[1][b] - at[0][b]) * (at[2][d] - at[0][d]) -
-        (at[1][d] - at[0][d]) * (at[2][b] - at[0][b])
-      : a == 0 ? at[1][1] - at[0][1]
-      : a == 1 ? at[0][0] - at[1][0]
-               : 0;
-    along += normal[a] * against[a];
-  }
-  return !(along > 0);
-}
-
-static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  mcor_facing* facing = data;
-  const mcor_bunches* bunches = facing->bunches;
-  const mcor_context* context = bunches->context;
-  const int corners = bunches->corners;
-  for (int64_t t = first; t < last; ++t)
-  {
-    const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
-    int32_t place[3], of[3];
-    bool merged = false, fresh = facing->round == 0, missed = false;
-    for (int c = 0; c < corners; ++c)
-    {
-      of[c] = bunches->first[corner[c]];
-      place[c] = mcor_place_of(bunches, corner[c]);
-      merged = merged || mcor_is_merged(bunches, of[c]);
-      fresh = fresh || mcor_state_of(bunches, of[c]) == MCOR_BUNCH_FRESH;
-    }
-    const bool is_left =
-      place[0] != place[1] && (corners == 2 || (place[1] != place[2] && place[2] != place[0]));
-    if (!merged || !fresh || !is_left)
-    {
-      continue;
-    }
-    for (int c = 0; c < corners; ++c)
-    {
-      if (mcor_is_merged(bunches, of[c]) && mcor_get_real(context, facing->linear, place[c]) > 0)
-      {
-        mcor_make_bad(facing, of[c]);
-        missed = true;
-      }
-    }
-    if (!missed && mcor_is_turned(facing, place, corners))
-    {
-      for (int c = 0; c < corners; ++c)
-      {
-        mcor_make_bad(facing, of[c]);
-      }
-    }
-  }
-  (void)slice;
-}
-
-/* Finds the bunches to be taken apart. */
-static mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
-{
-  mcor_context* context = bunches->context;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  mcor_facing facing = { .bunches = bunches, .round = round };
-  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &facing.node },
-    { &mesh->offset, 4 * n * real, &facing.offset }, { &mesh->linear, n * real, &facing.linear },
-    { &mesh->gradient, 4 * n * real, &facing.gradient } };
-  for (int a = 0; a < 3; ++a)
-  {
-    facing.edge[a] = mcor_edge_of(&context->lattice, a);
-  }
-  atomic_init(&facing.bad, 0);
-  mcor_status status = mcor_map_all(context, views, 4);
-  status = status == MCOR_OK ? mcor_parallel_run(context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
-                                 mcor_face_slice, &facing, NULL)
-                             : status;
-  *found = atomic_load(&facing.bad);
-  return mcor_unmap_all(context, views, 4, status);
-}
 
 /* Takes the bad bunches apart, and the bunches that lean on them. Lists their vertices in
  * `order`. Returns how many. */
@@ -463,7 +324,7 @@ static mcor_status mcor_take_apart(mcor_bunches* bunches)
   {
     MCOR_TRY(mcor_find_bad(bunches, round, &found));
     const int count = found ? mcor_list_fresh(bunches) : 0;
-    MCOR_TRY(found && !bunches->late ? mcor_add_vertices(bunches, false, count) : MCOR_OK);
+    MCOR_TRY(found && !bunches->late ? mcor_add_vertices(bunches, false, NULL, count) : MCOR_OK);
   }
   return MCOR_OK;
 }
@@ -722,6 +583,7 @@ static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
   MCOR_TRY(mcor_sort_bunches(bunches));
   MCOR_TRY(mcor_place_vertices(bunches));
   MCOR_TRY(mcor_take_apart(bunches));
+  MCOR_TRY(mcor_move_slivers(bunches));
   MCOR_TRY(mcor_gather_vertices(bunches));
   return mcor_file_triangles(bunches);
 }

@@ -17,11 +17,15 @@ bool mcor_compacts_late(const mcor_context* context);
 mcor_status mcor_compact(mcor_context* context);
 
 /* Cells around a box on which its vertices depend: four decide whether a vertex is merged, two
- * more each round of taking bunches apart, and one the normals of triangles. */
+ * more each round of taking bunches apart, four whether it moves, and one the normals of
+ * triangles. */
 #define MCOR_COMPACT_ROUNDS 2
-#define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 5)
+#define MCOR_COMPACT_RING (2 * MCOR_COMPACT_ROUNDS + 9)
 
 /* ---- Private to the module ---- */
+
+/* Key of a vertex that stays, in place of a node. */
+#define MCOR_FROZEN UINT64_MAX
 
 /* Axis of a merged vertex, which is not on an edge. Its node is the node of its bunch. */
 #define MCOR_MERGED_AXIS 3
@@ -56,8 +60,8 @@ typedef struct mcor_bunches
   int32_t *first, *next;   /* [vertex_count]: first vertex of the bunch; next one, or -1 */
   int32_t *star,
     *before; /* by bunch: last corner of its triangles; by corner: the one before, or -1 */
-  atomic_uchar* state;     /* [vertex_count], by bunch */
-  uint8_t* leans; /* [vertex_count], by bunch: whether one that is not sure can be merged */
+  atomic_uchar* state; /* [vertex_count], by bunch */
+  uint8_t* leans;      /* [vertex_count], by bunch: whether one that is not sure can be merged */
   struct mcor_sorted_bunch*
     sorted; /* bunches that were merged at first, in the order of vertices */
   int sorted_count;
@@ -93,6 +97,39 @@ static inline int32_t mcor_place_of(const mcor_bunches* bunches, int32_t v)
   const int32_t first = bunches->first[v];
   return mcor_is_merged(bunches, first) ? bunches->merged_place[first] : bunches->place[v];
 }
+
+/* Return the vertex of an entry of the order, or the first one of its bunch; and its place. */
+static inline int32_t mcor_vertex_of(int32_t entry)
+{
+  return entry < 0 ? -1 - entry : entry;
+}
+
+static inline int32_t* mcor_place_in(const mcor_bunches* bunches, int32_t entry)
+{
+  return (entry < 0 ? bunches->merged_place : bunches->place) + mcor_vertex_of(entry);
+}
+
+/* Finds the node of a bunch, in the form that its merged vertex has. */
+static inline void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, cl_int node[4])
+{
+  const cl_int* from = mcor_marched_node(bunches, first);
+  const uint64_t key = bunches->key[first];
+  for (int a = 0; a < 3; ++a)
+  {
+    node[a] = (cl_int)(key >> 21 * a & 0x1fffff);
+  }
+  node[3] = from[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS;
+}
+
+/* mcor_compact.c. Appends the vertices in `order` to the mesh, and corrects them: on edges, or on
+ * lines. starts: of lines, from the nodes; NULL: the means of bunches. */
+mcor_status mcor_add_vertices(
+  mcor_bunches* bunches, bool lines, const double (*starts)[3], int count);
+
+/* mcor_compact_face.c. Finds the merged bunches that are to be taken apart; moves vertices of
+ * slivers. */
+mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found);
+mcor_status mcor_move_slivers(mcor_bunches* bunches);
 
 /* mcor_compact_bunch.c. Finds the bunches, and merges the ones that can be, whatever becomes of
  * the others. */

@@ -22,9 +22,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Key of a vertex that stays, in place of a node. */
-#define MCOR_FROZEN UINT64_MAX
-
 /* Most vertices around a bunch with one fan. */
 #define MCOR_FAN_LIMIT 48
 

@@ -11,38 +11,22 @@ modules, and without a display Testing/with-display.sh.
 """
 import sys
 
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkFiltersModeling import vtkBandedPolyDataContourFilter
 from vtkmodules.vtkFiltersPoints import vtkSPHCubicKernel, vtkSPHInterpolator
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
-                                         vtkWindowToImageFilter)
 
-
-def read(name):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(name)
-    reader.Update()
-    return reader.GetOutput()
+from pictures import mesh_actor, panel, poly_data, read, save
 
 
 def fluid_of(particles):
     """The particles of type 0, with the arrays that the interpolation needs."""
     data = particles.GetPointData()
     kept = vtk_to_numpy(data.GetArray("Type")) == 0
-    fluid, points = vtkPolyData(), vtkPoints()
-    points.SetData(numpy_to_vtk(vtk_to_numpy(particles.GetPoints().GetData())[kept], deep=True))
-    fluid.SetPoints(points)
-    for name in ("Pressure", "SmoothingLength", "Density", "Mass"):
-        array = numpy_to_vtk(vtk_to_numpy(data.GetArray(name))[kept], deep=True)
-        array.SetName(name)
-        fluid.GetPointData().AddArray(array)
-    return fluid
+    return poly_data(vtk_to_numpy(particles.GetPoints().GetData())[kept], **{
+        name: vtk_to_numpy(data.GetArray(name))[kept] for name in ("Pressure", "SmoothingLength", "Density", "Mass")})
 
 
 def interpolate(particles, square):
@@ -82,10 +66,8 @@ def banded(flat, values):
 
 
 def actor_of(data, colors=None, array=None):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputData(data)
-    actor = vtkActor()
-    actor.SetMapper(mapper)
+    actor = mesh_actor(data)
+    mapper = actor.GetMapper()
     actor.GetProperty().LightingOff()
     actor.GetProperty().SetColor(0.1, 0.1, 0.1)
     actor.GetProperty().SetLineWidth(1.5)
@@ -108,16 +90,9 @@ def lines_of(filled):
 
 
 def draw(panels, colors, bounds, name):
-    window = vtkRenderWindow()
-    window.SetMultiSamples(8)
-    window.SetOffScreenRendering(1)
-    window.SetSize(1100, 2 * 330)
+    renderers = []
     for i, (bands, lines, array) in enumerate(panels):
-        renderer = vtkRenderer()
-        renderer.SetViewport(0, 0.5 - 0.5 * i, 1, 1 - 0.5 * i)
-        renderer.SetBackground(1, 1, 1)
-        renderer.AddActor(actor_of(bands, colors, array))
-        renderer.AddActor(actor_of(lines))
+        renderer = panel((0, 0.5 - 0.5 * i, 1, 1 - 0.5 * i), actor_of(bands, colors, array), actor_of(lines))
         camera = renderer.GetActiveCamera()
         camera.ParallelProjectionOn()
         middle = [0.5 * (bounds[2 * a] + bounds[2 * a + 1]) for a in range(3)]
@@ -126,20 +101,13 @@ def draw(panels, colors, bounds, name):
         camera.SetViewUp(0, 0, 1)
         camera.SetParallelScale(0.54 * (bounds[1] - bounds[0]) * 330 / 1100)
         renderer.ResetCameraClippingRange()
-        window.AddRenderer(renderer)
-    window.Render()
-    picture = vtkWindowToImageFilter()
-    picture.SetInput(window)
-    picture.ReadFrontBufferOff()
-    writer = vtkPNGWriter()
-    writer.SetInputConnection(picture.GetOutputPort())
-    writer.SetFileName(name)
-    writer.Write()
+        renderers.append(renderer)
+    save(renderers, (1100, 2 * 330), name, samples=8)
 
 
 def main():
     flume, filled, name = sys.argv[1:]
-    particles, ours = fluid_of(read(flume)), read(filled)
+    particles, ours = fluid_of(read(flume).GetOutput()), read(filled).GetOutput()
     bands = ours.GetCellData().GetArray("BandValue")
     values = sorted({bands.GetValue(i) for i in range(bands.GetNumberOfValues())})
     square = 0.5 * particles.GetPointData().GetArray("SmoothingLength").GetValue(0)

@@ -10,20 +10,14 @@ PYTHONPATH must name the directory of the package marchingcorrectors.
 import os
 import sys
 
-import vtkmodules.vtkInteractionStyle  # noqa: F401
-import vtkmodules.vtkRenderingFreeType  # noqa: F401
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkFiltersCore import vtkThreshold
 from vtkmodules.vtkFiltersSources import vtkOutlineSource
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkLightKit, vtkRenderer,
-                                         vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkLightKit
 
+import pictures
 from marchingcorrectors import vtkMarchingCorrectors
 
-DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Data", "dam_break_45k.vtp")
 SPEEDS = (0.0, 2.5)  # m/s, of the colours
 
 
@@ -122,17 +116,8 @@ def outline_actor(reader):
 
 
 def panel(reader, actors, caption, viewport):
-    renderer = vtkRenderer()
-    renderer.SetViewport(*viewport)
-    renderer.SetBackground(1, 1, 1)
-    for actor in (outline_actor(reader), *actors):
-        renderer.AddActor(actor)
-    text = vtkTextActor()
-    text.SetInput(caption)
-    text.GetTextProperty().SetColor(0.1, 0.1, 0.1)
-    text.GetTextProperty().SetFontSize(28)
-    text.SetPosition(24, 474)
-    renderer.AddViewProp(text)
+    renderer = pictures.panel(viewport, outline_actor(reader), *actors,
+                              pictures.caption(caption, 28, (24, 474), (0.1, 0.1, 0.1)))
     lights = vtkLightKit()
     lights.AddLightsToRenderer(renderer)
     camera = renderer.GetActiveCamera()
@@ -144,31 +129,10 @@ def panel(reader, actors, caption, viewport):
     return renderer
 
 
-def save(renderers, size, path):
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(*size)
-    for renderer in renderers:
-        renderer.UseFXAAOn()
-        window.AddRenderer(renderer)
-    window.Render()
-    image = vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
-    writer = vtkPNGWriter()
-    writer.SetFileName(path)
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.Write()
-    print(path)
-
-
 def main(directory):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(DATA)
-    reader.Update()
+    reader = pictures.read()
     third = 1 / 3
-    save([
+    pictures.save([
         panel(reader, [particle_actor(reader)], "particles", (0, 0, third, 1)),
         panel(reader, [free_surface_actor(reader)], "free surface, smooth", (third, 0, 2 * third, 1)),
         panel(reader, [isosurface_actor(reader), free_surface_actor(reader, 0.2)],

@@ -12,18 +12,13 @@ import tempfile
 
 import numpy as np
 import pysplashsurf
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+from vtkmodules.vtkRenderingCore import vtkCamera, vtkLightKit
 
-DATA = pathlib.Path(__file__).resolve().parent / "Data" / "dam_break_45k.vtp"
+from pictures import DATA, caption, mesh_actor, panel, poly_data, read, save
+
 SIZE = (560, 520)
-
-
-def read(path):
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    return reader.GetOutput()
 
 
 def extract(program, *words):
@@ -31,12 +26,12 @@ def extract(program, *words):
         output = pathlib.Path(folder) / "surface.vtp"
         subprocess.run([program, DATA, output, "--free-surface", "--fluid", "ParticleType=0", "--no-attributes", "--quiet", *words],
                        check=True)
-        return read(output)
+        return read(output).GetOutput()
 
 
 def splashsurf():
     """Its recommended settings, with cubes of half a particle radius."""
-    particles = read(DATA)
+    particles = read().GetOutput()
     fluid = vtk_to_numpy(particles.GetPointData().GetArray("ParticleType")) == 0
     x = vtk_to_numpy(particles.GetPoints().GetData())[fluid].astype(np.float32)
     mass, density = (vtk_to_numpy(particles.GetPointData().GetArray(name))[fluid] for name in ("Mass", "Density"))
@@ -48,10 +43,8 @@ def splashsurf():
     normals = np.asarray(mesh.point_attributes["normals"], np.float32) if hasattr(mesh, "point_attributes") else None
     mesh = getattr(mesh, "mesh", mesh)
     points, triangles = np.asarray(mesh.vertices, np.float64), np.asarray(mesh.triangles, np.int64)
-    data, places, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
-    places.SetData(numpy_to_vtk(points, deep=1))
+    data, cells = poly_data(points), vtkCellArray()
     cells.SetData(3, numpy_to_vtkIdTypeArray(triangles.ravel(), deep=1))
-    data.SetPoints(places)
     data.SetPolys(cells)
     if normals is not None:
         data.GetPointData().SetNormals(numpy_to_vtk(normals, deep=1))
@@ -61,11 +54,7 @@ def splashsurf():
 def main():
     program, picture = sys.argv[1:]
     meshes = [("as it is", extract(program)), ("--smooth", extract(program, "--smooth")), ("splashsurf", splashsurf())]
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(SIZE[0] * len(meshes), SIZE[1])
-    camera = vtk.vtkCamera()
+    camera, renderers = vtkCamera(), []
     bounds = meshes[0][1].GetBounds()
     focus = [bounds[0] + 0.7 * (bounds[1] - bounds[0]), bounds[2] + 0.4 * (bounds[3] - bounds[2]), 0.5 * (bounds[4] + bounds[5])]
     size = bounds[1] - bounds[0]
@@ -74,32 +63,16 @@ def main():
     camera.SetViewUp(0, 1, 0)
     camera.SetViewAngle(20)
     for i, (name, mesh) in enumerate(meshes):
-        renderer = vtk.vtkRenderer()
-        renderer.SetViewport(i / len(meshes), 0, (i + 1) / len(meshes), 1)
-        renderer.SetBackground(1, 1, 1)
-        renderer.SetActiveCamera(camera)
-        vtk.vtkLightKit().AddLightsToRenderer(renderer)
-        mapper, actor, label = vtk.vtkPolyDataMapper(), vtk.vtkActor(), vtk.vtkTextActor()
-        mapper.SetInputData(mesh)
-        mapper.ScalarVisibilityOff()
-        actor.SetMapper(mapper)
-        actor.GetProperty().SetColor(0.36, 0.60, 0.85)
+        actor = mesh_actor(mesh, 0.36, 0.60, 0.85)
         actor.GetProperty().SetSpecular(0.4)
         actor.GetProperty().SetSpecularPower(40)
-        label.SetInput(f"{name}: {mesh.GetNumberOfPolys():,} triangles")
-        label.GetTextProperty().SetColor(0, 0, 0)
-        label.GetTextProperty().SetFontSize(20)
-        label.SetPosition(12, 10)
-        renderer.AddActor(actor)
-        renderer.AddActor2D(label)
-        window.AddRenderer(renderer)
+        renderer = panel((i / len(meshes), 0, (i + 1) / len(meshes), 1), actor,
+                         caption(f"{name}: {mesh.GetNumberOfPolys():,} triangles", 20, (12, 10)))
+        renderer.SetActiveCamera(camera)
+        vtkLightKit().AddLightsToRenderer(renderer)
         renderer.ResetCameraClippingRange()
-    window.Render()
-    image, writer = vtk.vtkWindowToImageFilter(), vtk.vtkPNGWriter()
-    image.SetInput(window)
-    writer.SetFileName(picture)
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.Write()
+        renderers.append(renderer)
+    save(renderers, (SIZE[0] * len(meshes), SIZE[1]), picture)
 
 
 if __name__ == "__main__":

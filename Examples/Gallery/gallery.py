@@ -13,10 +13,10 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
 # pylint: disable=wrong-import-position
-from readme_pictures import DATA, need_surface, panel, save, surface_filter  # noqa: E402
+from pictures import read, save  # noqa: E402
+from readme_pictures import need_surface, panel, surface_filter  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkLookupTable  # noqa: E402
 from marchingcorrectors import vtkSPHDerivatives  # noqa: E402
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader  # noqa: E402
 from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper  # noqa: E402
 
 RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
@@ -161,9 +161,7 @@ FIGURES = {"1": figure_1, "4": figure_4, "5": figure_5, "6": figure_6, "7": figu
 
 
 def main(directory, numbers):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(DATA)
-    reader.Update()
+    reader = read()
     for number in numbers or FIGURES:
         if number not in FIGURES:
             sys.exit(f"there is no figure {number}; there are {', '.join(FIGURES)}")

@@ -16,12 +16,9 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
 # pylint: disable=wrong-import-position
-from readme_pictures import save  # noqa: E402
+from pictures import caption, mesh_actor, panel, poly_data, save  # noqa: E402
 from marchingcorrectors import vtkMarchingCorrectors  # noqa: E402
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
-from vtkmodules.vtkCommonCore import vtkPoints  # noqa: E402
-from vtkmodules.vtkCommonDataModel import vtkPolyData  # noqa: E402
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkTextActor  # noqa: E402
+from vtkmodules.util.numpy_support import vtk_to_numpy  # noqa: E402
 
 FINEST, SHARE = 0.002, 0.1  # a particle's spacing, and its growth with the distance from the point
 WATER, LINE = (0.62, 0.80, 0.95), (0.25, 0.35, 0.6)
@@ -47,18 +44,6 @@ def particles():
     return np.concatenate(found)
 
 
-def poly_data(rows):
-    data = vtkPolyData()
-    data.SetPoints(vtkPoints())
-    data.GetPoints().SetData(numpy_to_vtk(rows[:, :3].copy(), deep=1))
-    # 1.5 edges: the kernel reaches across the step from one edge to the next.
-    for name, values in (("SmoothingLength", 1.5 * rows[:, 3]), ("Volume", rows[:, 3] ** 3)):
-        array = numpy_to_vtk(values, deep=1)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    return data
-
-
 def free_surface(data):
     extract = vtkMarchingCorrectors()
     extract.SetInputData(data)
@@ -70,29 +55,11 @@ def free_surface(data):
     return extract.GetOutput(), extract.GetRunStatistics()
 
 
-def caption(text):
-    actor = vtkTextActor()
-    actor.SetInput(text)
-    actor.GetTextProperty().SetColor(0, 0, 0)
-    actor.GetTextProperty().SetFontSize(18)
-    actor.SetPosition(12, 10)
-    return actor
-
-
 def look(surface, zoom, viewport):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputData(surface)
-    mapper.ScalarVisibilityOff()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(*WATER)
+    actor = mesh_actor(surface, *WATER)
     actor.GetProperty().EdgeVisibilityOn()
     actor.GetProperty().SetEdgeColor(*LINE)
-    renderer = vtkRenderer()
-    renderer.SetViewport(*viewport)
-    renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor)
-    renderer.AddViewProp(caption("all of it" if zoom == 1 else f"{zoom} times as near"))
+    renderer = panel(viewport, actor, caption("all of it" if zoom == 1 else f"{zoom} times as near", 18, (12, 10)))
     camera = renderer.GetActiveCamera()
     camera.SetPosition(0, -0.9 / zoom, 1.2 / zoom)
     camera.SetFocalPoint(0, 0, 0)
@@ -104,7 +71,8 @@ def look(surface, zoom, viewport):
 
 def main(directory):
     rows = particles()
-    surface, statistics = free_surface(poly_data(rows))
+    # 1.5 edges: the kernel reaches across the step from one edge to the next.
+    surface, statistics = free_surface(poly_data(rows[:, :3].copy(), SmoothingLength=1.5 * rows[:, 3], Volume=rows[:, 3] ** 3))
     by_level = vtk_to_numpy(statistics.GetArray("TrianglesOfLevel"))
     print(f"{len(rows)} particles of spacing {rows[:, 3].min():.2g} to {rows[:, 3].max():.2g}, "
           f"{surface.GetNumberOfCells()} triangles, by level: {', '.join(str(int(n)) for n in by_level)}")

@@ -12,23 +12,19 @@ import os
 import sys
 
 import numpy as np
-import vtkmodules.vtkInteractionStyle  # noqa: F401
 import vtkmodules.vtkRenderingContextOpenGL2  # noqa: F401
-import vtkmodules.vtkRenderingFreeType  # noqa: F401
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkChartsCore import vtkAxis, vtkChart, vtkChartXY
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkTable
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkmodules.vtkRenderingContext2D import vtkContextActor
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow,
-                                         vtkWindowToImageFilter)
+from vtkmodules.vtkRenderingCore import vtkActor
 
-from marchingcorrectors import vtkMarchingCorrectors, vtkSPHComponents, vtkSPHGauge
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+# pylint: disable=wrong-import-position
+from marchingcorrectors import vtkMarchingCorrectors, vtkSPHComponents, vtkSPHGauge  # noqa: E402
+from pictures import mesh_actor, panel, poly_data, read, save  # noqa: E402
 
-DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Data", "dam_break_45k.vtp")
 SPACING, DEPTH, LENGTH, HEIGHT = 0.02, 0.4, 1.0, 0.03  # m, of a tank with a standing wave
 WAVE = math.pi / LENGTH
 PERIOD = 2 * math.pi / math.sqrt(9.81 * WAVE * math.tanh(WAVE * DEPTH))
@@ -39,15 +35,8 @@ def tank(time):
     axes = [np.arange(SPACING / 2, extent, SPACING) for extent in (LENGTH, 0.2, DEPTH)]
     x, y, z = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3).T
     amplitude = HEIGHT * math.cos(2 * math.pi * time / PERIOD) / math.sinh(WAVE * DEPTH)
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.stack([x - amplitude * np.sin(WAVE * x) * np.cosh(WAVE * z), y,
-                                          z + amplitude * np.cos(WAVE * x) * np.sinh(WAVE * z)], -1), deep=True))
-    particles = vtkPolyData()
-    particles.SetPoints(points)
-    volume = numpy_to_vtk(np.full(len(x), SPACING ** 3), deep=True)
-    volume.SetName("Volume")
-    particles.GetPointData().AddArray(volume)
-    return particles
+    return poly_data(np.stack([x - amplitude * np.sin(WAVE * x) * np.cosh(WAVE * z), y,
+                               z + amplitude * np.cos(WAVE * x) * np.sinh(WAVE * z)], -1), Volume=np.full(len(x), SPACING ** 3))
 
 
 def levels(times):
@@ -106,8 +95,7 @@ def level_chart(rows):
 
 
 def pieces_of_dam_break():
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(DATA)
+    reader = read()
     surface = vtkMarchingCorrectors()
     surface.SetInputConnection(reader.GetOutputPort())
     surface.SetFluidArrayName("ParticleType")
@@ -140,13 +128,10 @@ def colored_by_volume(pieces):
     table.SetAboveRangeColor(0.35, 0.6, 0.85, 1)
     table.UseAboveRangeColorOn()
     table.Build()
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputData(mesh)
-    mapper.SetScalarModeToUseCellData()
-    mapper.SetLookupTable(table)
-    mapper.UseLookupTableScalarRangeOn()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
+    actor = mesh_actor(mesh)
+    actor.GetMapper().SetScalarModeToUseCellData()
+    actor.GetMapper().SetLookupTable(table)
+    actor.GetMapper().UseLookupTableScalarRangeOn()
     return actor
 
 
@@ -166,24 +151,21 @@ def histogram_chart(table):
     return chart
 
 
-def add(window, viewport, content):
-    renderer = vtkRenderer()
-    renderer.SetViewport(*viewport)
-    renderer.SetBackground(1, 1, 1)
-    window.AddRenderer(renderer)
+def panel_of(viewport, content):
     if isinstance(content, vtkActor):
-        renderer.AddActor(content)
+        renderer = panel(viewport, content)
         camera = renderer.GetActiveCamera()
         camera.SetPosition(2.6, 2.3, 3.4)
         camera.SetFocalPoint(1.6, 0.45, 0)
         camera.SetViewUp(0, 1, 0)
         renderer.ResetCamera()
         camera.Zoom(1.5)
-    else:
-        actor = vtkContextActor()
-        actor.GetScene().AddItem(content)
-        renderer.AddActor(actor)
-        actor.GetScene().SetRenderer(renderer)
+        return renderer
+    actor = vtkContextActor()
+    actor.GetScene().AddItem(content)
+    renderer = panel(viewport, actor)
+    actor.GetScene().SetRenderer(renderer)
+    return renderer
 
 
 def main():
@@ -191,20 +173,9 @@ def main():
         sys.exit(__doc__)
     rows = levels(np.linspace(0, 2 * PERIOD, 41))
     pieces = pieces_of_dam_break()
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(1400, 800)
-    add(window, (0, 0.52, 0.62, 1), level_chart(rows))
-    add(window, (0, 0, 0.62, 0.52), colored_by_volume(pieces))
-    add(window, (0.62, 0, 1, 1), histogram_chart(pieces.GetTable()))
-    window.Render()
-    image = vtkWindowToImageFilter()
-    image.SetInput(window)
-    writer = vtkPNGWriter()
-    writer.SetFileName(os.path.join(sys.argv[1], "numbers.png"))
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.Write()
+    save([panel_of((0, 0.52, 0.62, 1), level_chart(rows)), panel_of((0, 0, 0.62, 0.52), colored_by_volume(pieces)),
+          panel_of((0.62, 0, 1, 1), histogram_chart(pieces.GetTable()))], (1400, 800),
+         os.path.join(sys.argv[1], "numbers.png"), samples=8)
     off = np.abs(rows[:, 1] - rows[:, 2]).max()
     drops = drops_of(pieces.GetTable())
     print(f"gauge: off the theory by {off / SPACING:.3f} spacings at most; the highest particle by "

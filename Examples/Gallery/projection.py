@@ -13,11 +13,13 @@ import sys
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
-from marchingcorrectors import vtkSPHProjection
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+# pylint: disable=wrong-import-position
+from marchingcorrectors import vtkSPHProjection  # noqa: E402
+from pictures import poly_data  # noqa: E402
 
 COUNT, SIZE, SIDE, DECADES = 60000, 480, 1.0, 3.5
 COLOURS = np.array([[0, 0, 4], [51, 13, 103], [136, 34, 106], [211, 67, 58], [249, 142, 9], [252, 255, 164]])
@@ -31,13 +33,7 @@ def galaxy():
     angle -= 0.42 * np.sin(2 * (angle - 4 * np.log(radius + 0.05)))
     places = np.stack([radius * np.cos(angle), radius * np.sin(angle),
                        0.03 * (0.4 + radius) * random.normal(size=COUNT)], -1)
-    points, particles = vtkPoints(), vtkPolyData()
-    points.SetData(numpy_to_vtk(places, deep=True))
-    particles.SetPoints(points)
-    mass = numpy_to_vtk(np.full(COUNT, 1 / COUNT), deep=True)
-    mass.SetName("m")
-    particles.GetPointData().AddArray(mass)
-    return particles, places
+    return poly_data(places, m=np.full(COUNT, 1 / COUNT)), places
 
 
 def seen(particles, direction, height):

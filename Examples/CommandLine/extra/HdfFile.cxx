@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HdfFile.h"
 
+#include "SafeText.h"
+
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkHDFReader.h"
@@ -16,7 +18,6 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
 
 namespace
 {
@@ -79,7 +80,7 @@ void RefuseLinks(const std::string& file)
   }
   if (!found.empty())
   {
-    throw std::runtime_error(file + " cannot be read: " + found);
+    FailToRead(file, found);
   }
 }
 
@@ -150,10 +151,7 @@ public:
   {
   }
 
-  [[noreturn]] void Fail(const std::string& why) const
-  {
-    throw std::runtime_error(this->Name + " cannot be read: " + why);
-  }
+  [[noreturn]] void Fail(const std::string& why) const { FailToRead(this->Name, why); }
 
   bool IsGood() const { return this->Root >= 0; }
 

@@ -6,6 +6,7 @@
 #include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
+#include "SafeText.h"
 
 #include "vtkActor.h"
 #include "vtkBoundingBox.h"
@@ -32,7 +33,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include <dlfcn.h>
 
@@ -229,8 +229,7 @@ public:
   {
     if (this->Display.IsMissing())
     {
-      throw std::runtime_error(options.File +
-        " could not be written: rendering needs a display; try xvfb-run -a -s -noreset");
+      FailToWrite(options.File, "rendering needs a display; try xvfb-run -a -s -noreset");
     }
     this->Renderer->SetBackground(1.0, 1.0, 1.0);
     // A headlight alone leaves what faces sideways nearly black.
@@ -269,8 +268,7 @@ public:
     std::string bytes = this->Render();
     if (bytes.empty() || !messages->GetErrors().empty())
     {
-      throw std::runtime_error(file + " could not be written" +
-        (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+      FailToWrite(file, messages->GetErrors().empty() ? "" : messages->GetErrors().front());
     }
     return bytes;
   }

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SafeText.h"
 
-
 #include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <stdexcept>
 
 namespace
 {
@@ -113,6 +113,16 @@ std::string QuotedForJson(const std::string& text)
 void Say(const std::string& sentence)
 {
   std::cerr << "marching-correctors: " << Printable(WithOptions(sentence)) << "\n";
+}
+
+void FailToRead(const std::string& file, const std::string& why)
+{
+  throw std::runtime_error(file + " cannot be read: " + why);
+}
+
+void FailToWrite(const std::string& file, const std::string& why)
+{
+  throw std::runtime_error(file + " could not be written" + (why.empty() ? "" : ": " + why));
 }
 
 std::string EscapedForXml(const std::string& text)

@@ -27,6 +27,12 @@ std::string Reworded(
 /// files have put into the sentence.
 void Say(const std::string& sentence);
 
+/// Throws std::runtime_error, "FILE cannot be read: WHY", or that it could not be written.
+///@{
+[[noreturn]] void FailToRead(const std::string& file, const std::string& why);
+[[noreturn]] void FailToWrite(const std::string& file, const std::string& why);
+///@}
+
 /// Returns why the work failed, in one sentence; empty if it did not fail.
 std::string FailureOf(const std::function<void()>& work);
 

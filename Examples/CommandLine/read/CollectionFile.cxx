@@ -18,7 +18,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 namespace
 {
@@ -31,11 +30,6 @@ std::string AttributeOf(vtkXMLDataElement* element, const char* name)
   return value ? value : "";
 }
 
-[[noreturn]] void Fail(const std::string& file, const std::string& why)
-{
-  throw std::runtime_error(file + " cannot be read: " + why);
-}
-
 /// The element below the root of a VTK XML file that has this name.
 vtkSmartPointer<vtkXMLDataElement> ReadElement(
   const std::string& file, const char* name, MessageCapture* messages)
@@ -43,11 +37,11 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(
   std::error_code error;
   if (fs::is_directory(file, error))
   {
-    Fail(file, "it is a directory");
+    FailToRead(file, "it is a directory");
   }
   if (!std::ifstream(file, std::ios::binary))
   {
-    Fail(file, std::strerror(errno));
+    FailToRead(file, std::strerror(errno));
   }
   const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
   const Silence silence;
@@ -56,13 +50,13 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(
   root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
   if (!root || !messages->GetErrors().empty())
   {
-    Fail(file,
+    FailToRead(file,
       messages->GetErrors().empty() ? "it is not XML, or damaged" : messages->GetErrors().front());
   }
   vtkXMLDataElement* found = root->FindNestedElementWithName(name);
   if (!found)
   {
-    Fail(file, std::string("it has no element ") + name);
+    FailToRead(file, std::string("it has no element ") + name);
   }
   return found;
 }
@@ -136,7 +130,7 @@ std::vector<CollectionEntry> ReadCollection(
     double value = 0.0;
     if (name.empty() || (!time.empty() && !ParseNumber(time, value)))
     {
-      Fail(file,
+      FailToRead(file,
         name.empty() ? "entry " + std::to_string(i) + " names no file"
                      : "the time of " + name + " is '" + time + "', not a number");
     }
@@ -146,7 +140,7 @@ std::vector<CollectionEntry> ReadCollection(
   }
   if (entries.empty())
   {
-    Fail(file, "it lists no files");
+    FailToRead(file, "it lists no files");
   }
   std::stable_sort(entries.begin(), entries.end(),
     [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
@@ -185,7 +179,7 @@ std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* mes
   }
   if (pieces.empty())
   {
-    Fail(file, "it lists no pieces");
+    FailToRead(file, "it lists no pieces");
   }
   return pieces;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "SafeText.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -98,9 +100,9 @@ public:
     {
       char digits[32];
       std::snprintf(digits, sizeof(digits), "%.15g", value);
-      throw std::runtime_error(this->File + " cannot be read: " + std::string(name) + " is " +
-        digits + (value >= 0.0 ? ", more than a file of its size can hold" : "") +
-        "; it may be damaged");
+      FailToRead(this->File,
+        std::string(name) + " is " + digits +
+          (value >= 0.0 ? ", more than a file of its size can hold" : "") + "; it may be damaged");
     }
   }
 

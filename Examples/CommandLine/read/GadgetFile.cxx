@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "SafeText.h"
+
 #include "vtkByteSwap.h"
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
@@ -15,7 +17,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -152,10 +153,7 @@ public:
     return gas;
   }
 
-  [[noreturn]] void Fail(const std::string& why) const
-  {
-    throw std::runtime_error(this->Name + " cannot be read: " + why);
-  }
+  [[noreturn]] void Fail(const std::string& why) const { FailToRead(this->Name, why); }
 
   bool IsGadget = false;
   std::int32_t Counts[6] = {}, Files = 1;

@@ -206,15 +206,15 @@ void CheckReadable(
   std::error_code error;
   if (fs::is_directory(file, error))
   {
-    throw std::runtime_error(file + " cannot be read: it is a directory");
+    FailToRead(file, "it is a directory");
   }
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
   {
-    throw std::runtime_error(file + " cannot be read: it is not a regular file");
+    FailToRead(file, "it is not a regular file");
   }
   if (!std::ifstream(file, std::ios::binary))
   {
-    throw std::runtime_error(file + " cannot be read: " + std::strerror(errno));
+    FailToRead(file, std::strerror(errno));
   }
   if (!FormatOf(formats, file))
   {
@@ -223,16 +223,24 @@ void CheckReadable(
 }
 
 /// VTK's reader at work. Its exceptions are those of the standard library where it asks for memory
-/// by sizes that a damaged file gave it.
-vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file,
+/// by sizes that a damaged file gave it. After errors VTK goes on, with arrays of zeros; such data
+/// would give a wrong surface.
+vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file, MessageCapture* messages,
   const std::vector<FileFormat<Reader>>& formats = Formats, std::size_t step = 0)
 {
+  CheckReadable(file, formats);
+  messages->Clear();
   const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
   const Silence silence;
   CheckDeclaredSizes(file);
   try
   {
-    return FormatOf(formats, file)->Process(file, step);
+    const vtkSmartPointer<vtkDataObject> data = FormatOf(formats, file)->Process(file, step);
+    if (!messages->GetErrors().empty())
+    {
+      FailToRead(file, messages->GetErrors().front());
+    }
+    return data;
   }
   catch (const std::bad_alloc&)
   {
@@ -240,8 +248,7 @@ vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file,
   catch (const std::length_error&)
   {
   }
-  throw std::runtime_error(
-    file + " cannot be read: it needs more memory than is available; it may be damaged");
+  FailToRead(file, "it needs more memory than is available; it may be damaged");
 }
 
 /// Makes names fit for sentences and for the surface's file; a legacy file can hold bytes that
@@ -267,9 +274,10 @@ void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count,
     MakePrintable(array);
     if (array->GetNumberOfTuples() != count)
     {
-      throw std::runtime_error(file + " cannot be read: its array '" + array->GetName() + "' has " +
-        std::to_string(array->GetNumberOfTuples()) + " entries for " + std::to_string(count) +
-        kind);
+      FailToRead(file,
+        std::string("its array '") + array->GetName() + "' has " +
+          std::to_string(array->GetNumberOfTuples()) + " entries for " + std::to_string(count) +
+          kind);
     }
   }
 }
@@ -329,14 +337,7 @@ void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
 {
   std::size_t step = 0;
   TakeStep(file, step);
-  CheckReadable(file);
-  messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, Formats, step);
-  // VTK goes on after errors, with arrays of zeros; such data would give a wrong surface.
-  if (!messages->GetErrors().empty())
-  {
-    throw std::runtime_error(file + " cannot be read: " + messages->GetErrors().front());
-  }
+  const vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, messages, Formats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
   if (!points)
   {
@@ -376,7 +377,7 @@ std::vector<std::string> ListParts(const std::string& file, MessageCapture* mess
   {
     if (IsList(part))
     {
-      throw std::runtime_error(file + " cannot be read: its piece " + part + " is a list itself");
+      FailToRead(file, "its piece " + part + " is a list itself");
     }
   }
   return parts;
@@ -490,13 +491,7 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
 
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)
 {
-  CheckReadable(file, DataFormats);
-  messages->Clear();
-  vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, DataFormats);
-  if (!messages->GetErrors().empty())
-  {
-    throw std::runtime_error(file + " cannot be read: " + messages->GetErrors().front());
-  }
+  const vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, messages, DataFormats);
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
   if (set && set->GetNumberOfPoints() > MostPoints)
   {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "SafeText.h"
+
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
@@ -24,7 +26,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -32,11 +33,6 @@ namespace
 {
 
 using View = std::string_view;
-
-[[noreturn]] void Fail(const std::string& file, const std::string& why)
-{
-  throw std::runtime_error(file + " cannot be read: " + why);
-}
 
 View Trimmed(View text)
 {
@@ -133,7 +129,7 @@ public:
     }
     if (this->Line.find('\0') != std::string::npos)
     {
-      Fail(this->File, "line " + std::to_string(this->Number) + " is no text");
+      FailToRead(this->File, "line " + std::to_string(this->Number) + " is no text");
     }
     if (!this->Line.empty() && this->Line.back() == '\r')
     {
@@ -146,7 +142,7 @@ public:
   {
     if (!this->Next())
     {
-      Fail(this->File, std::string("it ends before ") + what);
+      FailToRead(this->File, std::string("it ends before ") + what);
     }
   }
 
@@ -220,7 +216,7 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
 {
   if (cells.size() != table.size())
   {
-    Fail(lines.File,
+    FailToRead(lines.File,
       lines.Where() + " has " + std::to_string(cells.size()) + " values for " +
         std::to_string(table.size()) + " columns");
   }
@@ -390,7 +386,7 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
     {
       list += (c ? ", " : "") + table[c].Name;
     }
-    Fail(file,
+    FailToRead(file,
       "it has no columns of positions, which are called x, y and z, or Points:0, Points:1 and "
       "Points:2; there are " +
         list);
@@ -525,7 +521,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, bool isBlankTab
     {
       if (cells.size() > mostColumns)
       {
-        Fail(file, lines.Where() + " has " + std::to_string(cells.size()) + " columns");
+        FailToRead(file, lines.Where() + " has " + std::to_string(cells.size()) + " columns");
       }
       const std::vector<View> words = WordsOf(comment);
       const bool isHead = !AreNumbers(cells);
@@ -541,7 +537,7 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, bool isBlankTab
   }
   if (table.empty())
   {
-    Fail(file, "it has no row of values");
+    FailToRead(file, "it has no row of values");
   }
   std::vector<std::size_t> positions = FindPositions(table);
   for (std::size_t c = 0; c < 3 && c < table.size() && separator == ' ' && positions.size() <= c;
@@ -616,7 +612,7 @@ std::vector<std::string> PropertiesOf(const std::string& file, const std::string
     const vtkTypeInt64 width = CountOf(parts[p + 2]);
     if (width < 1 || width > 100)
     {
-      Fail(file,
+      FailToRead(file,
         "its Properties give " + std::string(parts[p]) + " " + std::string(parts[p + 2]) +
           " columns");
     }
@@ -654,7 +650,7 @@ bool FindXyzStep(Lines& lines, Step& step)
   step.Count = CountOf(lines.Get());
   if (step.Count < 0)
   {
-    Fail(lines.File, lines.Where() + " does not say how many particles a step has");
+    FailToRead(lines.File, lines.Where() + " does not say how many particles a step has");
   }
   lines.Need("the second line of a step");
   const std::string comment(lines.Get());
@@ -699,7 +695,7 @@ bool FindDumpStep(Lines& lines, Step& step)
       lines.Need("the number of a step");
       if (!ToNumber(Trimmed(lines.Get()), time))
       {
-        Fail(lines.File, lines.Where() + " is no time");
+        FailToRead(lines.File, lines.Where() + " is no time");
       }
       step.Time = isStep && isTold ? step.Time : time;
       isTold = isTold || !isStep;
@@ -710,7 +706,7 @@ bool FindDumpStep(Lines& lines, Step& step)
       step.Count = CountOf(lines.Get());
       if (step.Count < 0)
       {
-        Fail(lines.File, lines.Where() + " is no number of particles");
+        FailToRead(lines.File, lines.Where() + " is no number of particles");
       }
     }
     else if (StartsWith(line, "ITEM: BOX BOUNDS"))
@@ -739,7 +735,7 @@ bool FindDumpStep(Lines& lines, Step& step)
     }
     else if (!line.empty())
     {
-      Fail(lines.File, lines.Where() + " is none of a dump of LAMMPS");
+      FailToRead(lines.File, lines.Where() + " is none of a dump of LAMMPS");
     }
   }
   return false;
@@ -799,7 +795,7 @@ vtkSmartPointer<vtkDataObject> ReadStep(
     }
     if (!find(lines, step))
     {
-      Fail(file, "it has no step " + std::to_string(number));
+      FailToRead(file, "it has no step " + std::to_string(number));
     }
   }
   Table table = TableOf(step.Names);

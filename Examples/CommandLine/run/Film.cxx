@@ -202,8 +202,7 @@ private:
   {
     const double seconds =
       Project(this->Options, particles, this->Messages, this->Shared, progress);
-    const std::vector<std::string> more = this->Messages->GetWarnings();
-    warnings.insert(warnings.end(), more.begin(), more.end());
+    this->Messages->AppendWarnings(warnings);
     this->Shared.OnFirst(
       [&]
       {

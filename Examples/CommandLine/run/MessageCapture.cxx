@@ -4,6 +4,8 @@
 
 #include "vtkObjectFactory.h"
 
+#include <stdexcept>
+
 vtkStandardNewMacro(MessageCapture);
 
 namespace
@@ -64,4 +66,17 @@ void MessageCapture::Clear()
 {
   this->Errors.clear();
   this->Warnings.clear();
+}
+
+void MessageCapture::Check(const std::string& error) const
+{
+  if (!error.empty() || !this->Errors.empty())
+  {
+    throw std::runtime_error(error.empty() ? this->Errors.front() : error);
+  }
+}
+
+void MessageCapture::AppendWarnings(std::vector<std::string>& to) const
+{
+  to.insert(to.end(), this->Warnings.begin(), this->Warnings.end());
 }

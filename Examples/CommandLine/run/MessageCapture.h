@@ -25,6 +25,10 @@ public:
   const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
   void Clear();
 
+  /// Throws std::runtime_error with `error`, or with the first one that was reported, if any.
+  void Check(const std::string& error = "") const;
+  void AppendWarnings(std::vector<std::string>& to) const;
+
 private:
   std::vector<std::string> Errors;
   std::vector<std::string> Warnings;

@@ -130,8 +130,7 @@ private:
     {
       this->Task.Finish(table, time);
     }
-    const std::vector<std::string> more = this->Messages->GetWarnings();
-    warnings.insert(warnings.end(), more.begin(), more.end());
+    this->Messages->AppendWarnings(warnings);
     for (const std::string& warning : warnings)
     {
       if (this->Shared.IsFirst() &&

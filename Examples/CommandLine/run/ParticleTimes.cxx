@@ -137,10 +137,7 @@ vtkSmartPointer<vtkPointSet> ParticleTimes::At(double time, std::vector<std::str
   this->Interpolator->UpdateTimeStep(time);
   std::string error = this->Source->GetError();
   error = error.empty() ? this->Interpolator->GetErrorMessage() : error;
-  if (!error.empty() || !this->Messages->GetErrors().empty())
-  {
-    throw std::runtime_error(error.empty() ? this->Messages->GetErrors().front() : error);
-  }
+  this->Messages->Check(error);
   for (const std::string& sentence : this->Messages->GetWarnings())
   {
     warnings.push_back(Reworded(sentence, "set the time scale",

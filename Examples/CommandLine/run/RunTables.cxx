@@ -83,10 +83,7 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   split->SetLeastVolume(this->Options->LeastVolume);
   split->SetLeastParticles(this->Options->LeastParticles);
   split->Update();
-  if (!messages->GetErrors().empty())
-  {
-    throw std::runtime_error(messages->GetErrors().front());
-  }
+  messages->Check();
   vtkTable* pieces = split->GetTable();
   const bool isWhole = this->Options->LeastVolume == 0.0 && this->Options->LeastParticles == 0;
   run.Surface->ShallowCopy(split->GetOutput());
@@ -143,8 +140,7 @@ void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* me
   {
     vtkTable* gauges =
       MeasureWith(this->Options.Gauge, this->Options, particles, time, messages, "");
-    const std::vector<std::string> more = messages->GetWarnings();
-    warnings.insert(warnings.end(), more.begin(), more.end());
+    messages->AppendWarnings(warnings);
     for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)
     {
       const std::string name = gauges->GetValueByName(i, "gauge").ToString();

@@ -345,11 +345,7 @@ double Update(
   {
     std::fputs("\r\033[K", stderr);
   }
-  const std::string error = filter->GetErrorMessage();
-  if (!error.empty() || !messages->GetErrors().empty())
-  {
-    throw std::runtime_error(error.empty() ? messages->GetErrors().front() : error);
-  }
+  messages->Check(filter->GetErrorMessage());
   return elapsed.count();
 }
 

@@ -163,8 +163,7 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCaptu
   std::string bytes;
   if (!FindFormat(Formats, file)->Process.Write(data, bytes) || !messages->GetErrors().empty())
   {
-    throw std::runtime_error(file + " could not be written" +
-      (messages->GetErrors().empty() ? "" : ": " + messages->GetErrors().front()));
+    FailToWrite(file, messages->GetErrors().empty() ? "" : messages->GetErrors().front());
   }
   return bytes;
 }

@@ -4,6 +4,7 @@
 
 #include "Ending.h"
 #include "OptionValue.h"
+#include "SafeText.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -22,14 +23,9 @@ namespace
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void Fail(const std::string& file, const std::string& why)
-{
-  throw std::runtime_error(file + " could not be written: " + why);
-}
-
 [[noreturn]] void FailWithError(const std::string& file)
 {
-  Fail(file, std::strerror(errno));
+  FailToWrite(file, std::strerror(errno));
 }
 
 /// The target of an output.
@@ -115,7 +111,7 @@ void CheckAccess(const Target& target)
   const std::string folder = FolderOf(target.Path);
   if (access(folder.c_str(), W_OK | X_OK) != 0)
   {
-    Fail(target.Name,
+    FailToWrite(target.Name,
       "no file can be created in the folder " + folder + " (" + std::strerror(errno) + ")");
   }
 }
@@ -134,7 +130,7 @@ Target Find(const std::string& name)
   }
   if (target.Exists && S_ISDIR(target.Status.st_mode))
   {
-    Fail(name, "it is a directory");
+    FailToWrite(name, "it is a directory");
   }
   CheckAccess(target);
   return target;

@@ -329,14 +329,14 @@ std::string SurfaceBytes(
   const vtkIdType lines = surface->GetNumberOfLines(), triangles = surface->GetNumberOfPolys();
   if (lines > 0 && triangles == 0 && !isTable)
   {
-    throw std::runtime_error(file +
-      " could not be written: this format cannot hold lines, which particles in a plane give; "
+    FailToWrite(file,
+      "this format cannot hold lines, which particles in a plane give; "
       "write a .vtp file, or a .csv file of their points");
   }
   if (isTable && lines == 0 && triangles > 0)
   {
-    throw std::runtime_error(file +
-      " could not be written: this format holds the points of lines, which particles in a plane "
+    FailToWrite(file,
+      "this format holds the points of lines, which particles in a plane "
       "give, but this is a surface; write a .vtp file");
   }
   std::string bytes;

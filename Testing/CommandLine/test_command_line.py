@@ -177,14 +177,10 @@ class BadData(CommandLineTest):
         files.write_vtp(self.input, [], {})
         self.refuse_with("particles.vtp holds no points")
 
-    def test_missing_arrays(self):
+    def test_missing_array(self):
+        """The filter's sentence; test_input.py has them all."""
         self.refuse_with("no point array 'Temperature' for the scalar.*Radius",
                        "--scalar", "Temperature", "--iso", "1")
-        for option, role in [("--smoothing-length", "smoothing length"), ("--volume", "volume"),
-                             ("--mass", "mass"), ("--density", "density")]:
-            with self.subTest(option):
-                self.refuse_with(f"no point array 'Nothing' for the {role}", *ISO, option, "Nothing")
-        self.refuse_with("no point array 'Nothing' for the fluid", *ISO, "--fluid", "Nothing=0")
 
     def test_no_smoothing_length(self):
         self.refuse_changed("no smoothing length.*Give --smoothing-length NAME, VALUE or estimate",
@@ -192,20 +188,6 @@ class BadData(CommandLineTest):
 
     def test_missing_attribute(self):
         self.refuse_with("no point array 'Colour' to interpolate", *ISO, "--attributes", "Kind,Colour")
-
-    def test_mistyped_arrays(self):
-        names = files.string_array("Names", ["a"] * len(self.points))
-        files.write_vtp(self.input, self.points, self.arrays, names)
-        self.refuse_with("'Names' does not hold numbers", "--scalar", "Names", "--iso", "1")
-        self.refuse_with("'Names' does not hold numbers", *ISO, "--mass", "Names")
-        self.refuse_with("'Velocity' has 3 components", *ISO, "--smoothing-length", "Velocity")
-        self.refuse_with("'Velocity' has no component 3", "--scalar", "Velocity", "--component", "3",
-                       "--iso", "0.1")
-
-    def test_positions_not_finite(self):
-        """The core's sentence, with the file's particle."""
-        self.points[11] = (0.0, float("nan"), 0.0)
-        self.refuse_changed("(?i)position.* of particle 11 is", {})
 
     def test_surface_too_large(self):
         self.refuse_with(r"too large.*larger cube size \(--cube-size\)", *ISO, "--cube-size", "1e-5")
@@ -668,16 +650,6 @@ class Options(CommandLineTest):
                 "<PolyData>", f'<PolyData><FieldData><DataArray type="Float64" Name="{wrong}" NumberOfTuples="6" '
                 'format="ascii">0 1 0 1 0 1</DataArray></FieldData>'))
             self.refuse(self.extract(*free, "--periodic", "auto"), 1, "field data of the particles give no period")
-
-    def test_array_that_is_not_finite(self):
-        self.arrays["Velocity"] = [(float("nan"), 0.0, 0.0)] + self.arrays["Velocity"][1:]
-        files.write_vtp(self.input, self.points, self.arrays)
-        result = self.extract(*ISO)
-        self.assertEqual(result.returncode, 0)
-        self.assertRegex(result.stderr, r"^marching-correctors: warning: The point array "
-                                        r"'Velocity' is NaN or infinite at particle 0 .*\n$")
-        self.assertNotIn('Name="Velocity"', self.output.read_text())
-        self.extract_good(*ISO, "--attributes", "Kind")
 
     def test_output_is_a_function_of_the_input(self):
         """Two runs write one file, byte for byte; so does one that ran more than once."""

@@ -1,0 +1,266 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""File formats of the program marching-correctors: test_formats.py PROGRAM PRELOAD."""
+import pathlib
+import re
+import struct
+
+import particle_files as files
+from command_line_test import CommandLineTest, main
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def box_of(path):
+    """Smallest and largest coordinates of an ASCII .obj file."""
+    points = [tuple(map(float, line.split()[1:4])) for line in path.read_text().splitlines()
+              if line.startswith("v ")]
+    return [(min(p[c] for p in points), max(p[c] for p in points)) for c in range(3)]
+
+
+class Formats(CommandLineTest):
+    """Surfaces as .stl, .ply and .obj; particles from .pvtp, .pvtu and .vtkhdf."""
+
+    def extract_as(self, ending, *options):
+        self.output = self.directory / ("surface" + ending)
+        result = self.extract("--free-surface", "--quiet", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.output.read_bytes()
+
+    def counts(self):
+        statistics = self.succeed("--free-surface")["statistics"]
+        return statistics["points"], statistics["triangles"]
+
+    def test_stl(self):
+        points, triangles = self.counts()
+        data = self.extract_as(".stl")
+        self.assertEqual(len(data), 84 + 50 * triangles)
+        self.assertEqual(struct.unpack_from("<I", data, 80)[0], triangles)
+        numbers = struct.unpack_from("<12f", data, 84)
+        self.assertAlmostEqual(sum(n * n for n in numbers[:3]), 1, delta=1e-5)
+        self.assertGreater(sum(a * b for a, b in zip(numbers[:3], numbers[3:6])), 0)  # outwards
+        self.assertGreater(points, 0)
+
+    def test_ply(self):
+        points, triangles = self.counts()
+        data = self.extract_as(".ply")
+        head, body = data.split(b"end_header\n", 1)
+        self.assertIn(f"element vertex {points}\n".encode(), head)
+        self.assertIn(f"element face {triangles}\n".encode(), head)
+        self.assertEqual(len(body), 24 * points + 13 * triangles)
+        for i in range(points):
+            values = struct.unpack_from("=6f", body, 24 * i)
+            self.assertAlmostEqual(sum(n * n for n in values[3:]), 1, delta=1e-5)
+            self.assertGreater(sum(x * n for x, n in zip(values[:3], values[3:])), 0)
+        for i in range(triangles):
+            n, *corners = struct.unpack_from("=B3i", body, 24 * points + 13 * i)
+            self.assertEqual(n, 3)
+            self.assertTrue(all(0 <= c < points for c in corners) and len(set(corners)) == 3)
+
+    def test_obj(self):
+        points, triangles = self.counts()
+        lines = self.extract_as(".obj").decode().splitlines()
+        kinds = [line.split(" ", 1)[0] for line in lines]
+        self.assertEqual([kinds.count(k) for k in ("v", "vn", "f")], [points, points, triangles])
+        self.assertTrue(all(re.fullmatch(r"f (\d+)//\1 (\d+)//\2 (\d+)//\3", x) for x in lines if x[0] == "f"))
+        self.assertLess(abs(box_of(self.output)[0][0] + box_of(self.output)[0][1]), 1e-3)
+
+    def test_obj_digits(self):
+        """Nine: every float comes back."""
+        self.points = [(1e-3 * x + 1.0, y, z) for x, y, z in self.points]
+        files.write_vtp(self.input, self.points, self.arrays)
+        self.extract_as(".obj", "--output-precision", "single")
+        found = [tuple(map(float, line.split()[1:])) for line in self.output.read_text().splitlines() if line[:2] == "v "]
+        data = self.extract_as(".ply", "--output-precision", "single")
+        start = data.index(b"end_header\n") + len(b"end_header\n")
+        self.assertGreater(len(found), 100)
+        for i, place in enumerate(found):
+            self.assertEqual(struct.pack("=3f", *place), data[start + 24 * i:start + 24 * i + 12])
+
+    def test_colors(self):
+        """The array of --color-by is in a .ply file as colours; what others leave out is said."""
+        points, triangles = self.counts()
+        self.output = self.directory / "surface.ply"
+        self.extract_good("--free-surface", "--quiet", "--color-by", "Velocity", "--color-range", "0.46,0.7")
+        head, body = self.output.read_bytes().split(b"end_header\n", 1)
+        self.assertIn(b"property uchar red\nproperty uchar green\nproperty uchar blue\n", head)
+        self.assertEqual(len(body), 27 * points + 13 * triangles)
+        speeds = []
+        for i in range(points):
+            x, y, z, *_, red, green, blue = struct.unpack_from("=6f3B", body, 27 * i)
+            speeds.append(((x * x + y * y + z * z) ** 0.5, green))
+        speeds.sort()  # the speed is about the distance from the centre; the colours grow in green with it
+        self.assertLess(speeds[0][1], 60)
+        self.assertEqual(speeds[-1][1], 231)  # the last colour, beyond the range
+        for ending, hint in ((".ply", "--color-by NAME makes colours of one"), (".obj", "--no-attributes"),
+                             (".stl", ".vtp keeps all")):
+            self.output = self.directory / ("surface" + ending)
+            self.one_sentence(self.extract("--free-surface", "--quiet"), 0,
+                              f"warning: {ending} files hold no arrays, so these are left out: .*Velocity.*{hint}")
+            self.extract_good("--free-surface", "--quiet", "--no-attributes")
+        self.output = self.directory / "surface2.ply"
+        result = self.extract("--free-surface", "--quiet", "--color-by", "Nothing")
+        self.one_sentence(result, 1, "no array 'Nothing' to colour by; there are .*Velocity")
+        self.assertFalse(self.output.exists())
+
+    def test_empty(self):
+        for ending in (".stl", ".ply", ".obj"):
+            self.extract_as(ending, "--iso", "5")
+            self.assertTrue(self.output.exists())
+
+    # Inputs
+
+    def write_pieces(self, kind, write, ghosts=False):
+        """particles.p<kind> with two pieces and an empty one."""
+        pieces = []
+        for i, numbers in enumerate((range(0, 600 if ghosts else 500), range(500, 1000), [])):
+            path = self.directory / f"piece{i}.{kind}"
+            points, arrays = files.drop_at(0, numbers=list(numbers))
+            if ghosts:
+                marks = [int(n >= 500 and i == 0) for n in numbers]
+                arrays["vtkGhostType"] = marks
+            write(path, points, arrays)
+            if ghosts:
+                path.write_text(path.read_text().replace('"Float64" Name="vtkGhostType"',
+                                                         '"UInt8" Name="vtkGhostType"'))
+            pieces.append(path)
+        name = {"vtp": "PolyData", "vtu": "UnstructuredGrid"}[kind]
+        path = self.directory / f"particles.p{kind}"
+        path.write_text(f'<?xml version="1.0"?><VTKFile type="P{name}"><P{name} GhostLevel="0">' +
+                        "".join(f'<Piece Source="{p.name}"/>' for p in pieces) +
+                        f"</P{name}></VTKFile>")
+        return path, pieces
+
+    def test_pieces(self):
+        whole = self.directory / "whole.vtp"
+        files.write_vtp(whole, *files.drop_at(0))
+        expected = self.succeed("--free-surface", source=whole)["statistics"]["triangles"]
+        for kind, write in (("vtp", files.write_vtp), ("vtu", files.write_vtu)):
+            for ghosts in (False, True):
+                with self.subTest(kind, ghosts=ghosts):
+                    path, _ = self.write_pieces(kind, write, ghosts)
+                    found = self.succeed("--free-surface", source=path)["statistics"]
+                    self.assertEqual(found["fluid_particles"], 1000)
+                    self.assertEqual(found["triangles"], expected)
+
+    def test_pieces_of_several_types(self):
+        """An array in one piece as float, in another as double, with numbers that both hold."""
+        path, pieces = self.write_pieces("vtp", files.write_vtp)
+        expected = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
+        text = pieces[1].read_text()
+        self.assertIn('"Float64" Name="Radius"', text)
+        pieces[1].write_text(text.replace('"Float64" Name="Radius"', '"Float32" Name="Radius"'))
+        found = self.succeed("--scalar", "Radius", "--iso", "0.25", source=path)["statistics"]["triangles"]
+        self.assertEqual(found, expected)
+
+    def test_range_that_vtk_cannot_read(self):
+        """VTK writes inf as an array's range, if it is, and cannot read it; the numbers count."""
+        files.write_vtp(self.input, *files.drop_at(0))
+        text = self.input.read_text()
+        key = ('<InformationKey name="L2_NORM_RANGE" location="vtkDataArray" length="2"><Value index="0">0</Value>'
+               '<Value index="1">inf</Value></InformationKey></DataArray>')
+        self.assertIn("</DataArray>", text)
+        expected = self.succeed("--free-surface")["statistics"]["triangles"]
+        self.input.write_text(text.replace("</DataArray>", key))
+        self.assertEqual(self.succeed("--free-surface")["statistics"]["triangles"], expected)
+
+    def test_damaged_pieces(self):
+        path, pieces = self.write_pieces("vtp", files.write_vtp)
+        pieces[1].write_text(pieces[1].read_text()[:2000])
+        self.output.unlink(missing_ok=True)
+        self.refuse(self.extract("--free-surface", source=path), 1, "piece1.vtp is not a complete")
+        pieces[1].unlink()
+        self.refuse(self.extract("--free-surface", source=path), 1, "piece1.vtp cannot be read: No such")
+        path.write_text(path.read_text().replace("piece1.vtp", "particles.pvtp"))
+        self.refuse(self.extract("--free-surface", source=path), 1, "is a list itself")
+        path.write_text("<VTKFile><PPolyData/></VTKFile>")
+        self.refuse(self.extract("--free-surface", source=path), 1, "it lists no pieces")
+
+    def test_gadget(self):
+        """Both binary formats, in both orders of bytes; several files are one snapshot. Gas alone, h half of GADGET's."""
+        points, arrays = files.lattice(4)
+        files.write_vtp(self.input, points, {name: arrays[name] for name in ("SmoothingLength", "Mass", "Density")})
+        self.succeed("--free-surface", "--no-attributes")
+        expected = re.search('Name="Points".*?</DataArray>', self.output.read_text(), re.DOTALL)[0]
+
+        def write(name, chosen, order, named, count):
+            def record(data):
+                return struct.pack(order + "I", len(data)) + data + struct.pack(order + "I", len(data))
+
+            def reals(values):
+                return struct.pack(f"{order}{len(values)}d", *values)
+
+            n, stars = len(chosen), 3
+            header = struct.pack(order + "6i6d2d2i6I2i4d", n, 0, 0, 0, stars, 0, *[0] * 6, 0.25, 3, 0, 0, n, 0, 0, 0, stars, 0, 0,
+                                 count, 8, 0.3, 0.7, 0.7)
+            blocks = [("HEAD", header.ljust(256, b"\0")),
+                      ("POS", reals([x for i in chosen for x in points[i]] + [9.0] * 3 * stars)),
+                      ("VEL", reals([0.0] * 3 * (n + stars))), ("ID", struct.pack(f"{order}{n + stars}I", *range(n + stars))),
+                      ("MASS", reals([arrays["Mass"][i] for i in chosen] + [1.0] * stars)), ("U", reals([1.0] * n)),
+                      ("RHO", reals([arrays["Density"][i] for i in chosen])),
+                      ("HSML", reals([2 * arrays["SmoothingLength"][i] for i in chosen]))]
+            data = b""
+            for label, block in blocks:
+                data += record(label.ljust(4).encode() + struct.pack(order + "I", len(block) + 8)) if named else b""
+                data += record(block)
+            (self.directory / name).write_bytes(data)
+            return self.directory / name
+
+        whole = range(len(points))
+        for order, named in (("<", False), (">", True), ("<", True), (">", False)):
+            single = write("snapshot_003", whole, order, named, 1)
+            write("snapshot_004.1", whole[40:], order, named, 2)
+            for source in (single, write("snapshot_004.0", whole[:40], order, named, 2)):
+                self.succeed("--free-surface", "--no-attributes", source=source)
+                self.assertIn(expected, self.output.read_text())
+        self.output.unlink()
+        data = single.read_bytes()
+        for size in (3, 7, 200, 500, 2000, len(data) - 1):
+            single.write_bytes(data[:size])
+            self.refuse(self.extract("--free-surface", source=single), 1, "snapshot_003")
+
+    def test_vtkhdf(self):
+        grid = HERE / "lattice.vtkhdf"
+        result = self.extract("--free-surface", source=grid)
+        if "without its reader" in result.stderr:
+            self.skipTest("this VTK has no reader for it")
+        points, arrays = files.lattice(3)
+        files.write_vtp(self.input, points, arrays)
+
+        def made(source):
+            self.succeed("--free-surface", source=source)
+            found = re.findall(r'<DataArray [^>]*Name="(\w+)"[^>]*>\s*(.*?)\s*</DataArray>', self.output.read_text(), re.DOTALL)
+            return {name: text for name, text in found if name != "Kind"}  # of another type of integers there
+        self.assertGreater(set(made(self.input)), {"Points", "Normals", "Velocity", "connectivity"})
+        self.assertEqual(made(grid), made(self.input))  # to the last bit
+        self.output.unlink()
+        self.assertEqual(made(HERE / "lattice_poly.vtkhdf"), made(self.input))
+        film = self.directory / "film.pvd"
+        result = self.run_program(HERE / "film.vtkhdf", film, "--free-surface")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(re.findall('timestep="(.*?)"', film.read_text()), ["0", "0.5", "2"])
+        for step, side in enumerate((3, 0, 2)):
+            points, arrays = files.lattice(side) if side else ([], {})
+            made_alone = ""
+            if side:
+                files.write_vtp(self.input, points, arrays)
+                self.succeed("--free-surface", source=self.input)
+                made_alone = re.search('Name="Points".*?</DataArray>', self.output.read_text(), re.DOTALL)[0]
+            found = (self.directory / f"film_{step:04d}.vtp").read_text()
+            self.assertIn(made_alone, found)
+            self.assertEqual('NumberOfPoints="0"' in found, side == 0)
+        self.output.unlink()
+        self.refuse(self.extract("--free-surface", source=f"{HERE / 'film.vtkhdf'}#3"), 1, "it has no step 3")
+        damaged = self.directory / "damaged.vtkhdf"
+        self.output.unlink(missing_ok=True)
+        data = grid.read_bytes()
+        for bad in (data[:2000], data[:2002] + b"\xf5" + data[2003:]):  # HDF5 says more of the second when it ends
+            damaged.write_bytes(bad)
+            self.refuse(self.extract("--free-surface", source=damaged), 1, "damaged.vtkhdf cannot be read: ")
+        for name in ("link", "storage", "virtual"):  # whether or not there is such a file
+            self.refuse(self.extract("--free-surface", source=HERE / f"{name}.vtkhdf"), 1,
+                        "its 'VTKHDF/PointData/Secret' lies in another file, which is not opened")
+
+
+if __name__ == "__main__":
+    main()

@@ -59,26 +59,13 @@ static int mcor_compare_bunches(const void* x, const void* y)
                           : (a->first > b->first) - (a->first < b->first);
 }
 
-/* Takes a bunch apart, and the bunches that lean on it, before anything is placed. */
-static void mcor_drop_bunch(mcor_bunches* bunches, int32_t first)
-{
-  mcor_set_state(bunches, first, MCOR_BUNCH_APART);
-  mcor_drop_leaning(bunches, first, MCOR_BUNCH_APART);
-}
-
 /* Sorts the merged bunches. A node has keys for two of them; others stay apart. */
 static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
 {
-  mcor_sorted_bunch* sorted = NULL;
+  mcor_sorted_bunch* sorted = malloc((size_t)bunches->vertex_count * sizeof *sorted);
   int64_t count = 0;
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
-  {
-    count += mcor_is_merged(bunches, v);
-  }
-  sorted = malloc(((size_t)count + 1) * sizeof *sorted);
   bunches->sorted = sorted;
   MCOR_TRY(mcor_allocated(bunches->context, sorted));
-  count = 0;
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
     if (mcor_is_merged(bunches, v))
@@ -93,7 +80,8 @@ static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
   {
     if (sorted[i].key == sorted[i - 2].key)
     {
-      mcor_drop_bunch(bunches, sorted[i].first);
+      mcor_set_state(bunches, sorted[i].first, MCOR_BUNCH_APART);
+      mcor_drop_leaning(bunches, sorted[i].first, MCOR_BUNCH_APART);
     }
   }
   bunches->sorted_count = (int)count;
@@ -484,7 +472,7 @@ static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3]
   {
     to[c] = bunches->place[corner[c]];
   }
-  return to[0] != to[1] && (bunches->corners == 2 || (to[1] != to[2] && to[2] != to[0]));
+  return mcor_is_left(to, bunches->corners);
 }
 
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)

@@ -91,6 +91,13 @@ static inline bool mcor_is_merged(const mcor_bunches* bunches, int32_t first)
   return mcor_state_of(bunches, first) >= MCOR_BUNCH_MERGED;
 }
 
+/* Whether a triangle, or line, is left: its corners differ. */
+static inline bool mcor_is_left(const int32_t corner[3], int corners)
+{
+  return corner[0] != corner[1] &&
+    (corners == 2 || (corner[1] != corner[2] && corner[2] != corner[0]));
+}
+
 /* Returns the place in the mesh of vertex v, or of the merged vertex that replaced it. */
 static inline int32_t mcor_place_of(const mcor_bunches* bunches, int32_t v)
 {

@@ -213,16 +213,44 @@ static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3
   }
 }
 
-/* Finds the fan around a bunch. Returns false if the bunch cannot be drawn together, or has no
- * fan. */
-static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
+static int mcor_size_of(const mcor_bunches* bunches, int32_t bunch)
 {
-  int size = 1, whole = 0,
-      partly = 0; /* vertices; triangles with three, and with two corners in the bunch */
+  int size = 1;
   for (int32_t v = bunch; bunches->next[v] >= 0; v = bunches->next[v])
   {
     ++size;
   }
+  return size;
+}
+
+/* Finds the fan of lines to and from a bunch. */
+static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
+{
+  int within = 0, before = 0, behind = 0;
+  for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
+  {
+    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    const int c = e % 3;
+    const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
+    within += joins && c == 0;
+    before += !joins && c == 1;
+    behind += !joins && c == 0;
+    fan->from[0] = !joins && c == 1 ? corner[0] : fan->from[0];
+    fan->to[0] = !joins && c == 0 ? corner[1] : fan->to[0];
+  }
+  fan->count = 1;
+  return mcor_size_of(bunches, bunch) - within == 1 && before == 1 && behind == 1;
+}
+
+/* Finds the fan around a bunch. Returns false if the bunch cannot be drawn together, or has no
+ * fan. */
+static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
+{
+  if (bunches->corners == 2)
+  {
+    return mcor_read_line_fan(bunches, bunch, fan);
+  }
+  int whole = 0, partly = 0; /* triangles with three, and with two corners in the bunch */
   fan->count = 0;
   for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
   {
@@ -249,30 +277,7 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
       fan->to[fan->count++] = last;
     }
   }
-  return 2 * size - whole - partly == 2;
-}
-
-/* Finds the fan of lines to and from a bunch. */
-static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
-{
-  int size = 1, within = 0, before = 0, behind = 0;
-  for (int32_t v = bunch; bunches->next[v] >= 0; v = bunches->next[v])
-  {
-    ++size;
-  }
-  for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
-  {
-    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
-    const int c = e % 3;
-    const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
-    within += joins && c == 0;
-    before += !joins && c == 1;
-    behind += !joins && c == 0;
-    fan->from[0] = !joins && c == 1 ? corner[0] : fan->from[0];
-    fan->to[0] = !joins && c == 0 ? corner[1] : fan->to[0];
-  }
-  fan->count = 1;
-  return size - within == 1 && before == 1 && behind == 1;
+  return 2 * mcor_size_of(bunches, bunch) - whole - partly == 2;
 }
 
 /* Replaces vertices around a bunch by their bunches, all or the sure ones. Edges within a bunch
@@ -350,8 +355,7 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
     {
       int32_t of[3];
       mcor_bunches_of(bunches, e / 3, of);
-      bool counts = of[e % 3] == near[i] && of[0] != of[1] &&
-        (bunches->corners == 2 || (of[1] != of[2] && of[2] != of[0]));
+      bool counts = of[e % 3] == near[i] && mcor_is_left(of, bunches->corners);
       for (int j = 0; j < i; ++j)
       {
         counts = counts && of[0] != near[j] && of[1] != near[j] && of[2] != near[j];
@@ -373,8 +377,7 @@ static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
       continue;
     }
     mcor_fan fan, merged = { 0 };
-    bool may = bunches->corners == 3 ? mcor_read_fan(bunches, v, &fan)
-                                     : mcor_read_line_fan(bunches, v, &fan);
+    bool may = mcor_read_fan(bunches, v, &fan);
     if (may)
     {
       mcor_merge_fan(bunches, true, &fan, &merged);
@@ -402,8 +405,7 @@ static void mcor_lean_slice(void* data, int slice, int64_t first, int64_t last)
       continue;
     }
     mcor_fan fan, merged;
-    bool merges = bunches->corners == 3 ? mcor_read_fan(bunches, v, &fan)
-                                        : mcor_read_line_fan(bunches, v, &fan);
+    bool merges = mcor_read_fan(bunches, v, &fan);
     for (int i = 0; i < fan.count && state == MCOR_BUNCH_CLASHES; ++i)
     {
       const int32_t p = bunches->first[fan.from[i]], q = bunches->first[fan.to[i]];

@@ -113,9 +113,7 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
       merged = merged || mcor_is_merged(bunches, of[c]);
       fresh = fresh || mcor_state_of(bunches, of[c]) == MCOR_BUNCH_FRESH;
     }
-    const bool is_left =
-      place[0] != place[1] && (corners == 2 || (place[1] != place[2] && place[2] != place[0]));
-    if (!merged || !fresh || !is_left)
+    if (!merged || !fresh || !mcor_is_left(place, corners))
     {
       continue;
     }
@@ -171,12 +169,7 @@ static bool mcor_stand_ins(const mcor_bunches* bunches, int64_t t, int32_t of[3]
   {
     of[c] = mcor_stand_in(bunches, corner[c]);
   }
-  return of[0] != of[1] && of[1] != of[2] && of[2] != of[0];
-}
-
-static int32_t mcor_entry_of(const mcor_bunches* bunches, int32_t v)
-{
-  return mcor_is_merged(bunches, bunches->first[v]) ? -1 - bunches->first[v] : v;
+  return mcor_is_left(of, 3);
 }
 
 /* Returns the cosine of the least angle of a triangle, 1 if it has no area. */
@@ -298,7 +291,7 @@ static mcor_status mcor_list_moving(
   {
     if (wide[v] && mcor_find_middle(&facing, v, starts[*count]))
     {
-      bunches->order[(*count)++] = mcor_entry_of(bunches, v);
+      bunches->order[(*count)++] = mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v;
     }
   }
   return mcor_unmap_all(bunches->context, facing.views, 4, status);

@@ -172,26 +172,23 @@ static bool mcor_stand_ins(const mcor_bunches* bunches, int64_t t, int32_t of[3]
   return mcor_is_left(of, 3);
 }
 
-/* Returns the cosine of the least angle of a triangle, 1 if it has no area. */
+/* Returns the cosine of the least angle of a triangle, 1 if it has no area, and finds the corner
+ * with the widest one. These are opposite to the shortest and to the longest side. */
 static double mcor_least_angle(const double at[3][3], int* widest)
 {
-  double most = -1, least = 2;
+  double side[3]; /* squared, by the corner opposite to it */
+  int least = 0;
+  *widest = 0;
   for (int c = 0; c < 3; ++c)
   {
-    const double *p = at[c], *q = at[(c + 1) % 3], *r = at[(c + 2) % 3];
-    double dot = 0, u = 0, v = 0;
-    for (int a = 0; a < 3; ++a)
-    {
-      dot += (q[a] - p[a]) * (r[a] - p[a]);
-      u += (q[a] - p[a]) * (q[a] - p[a]);
-      v += (r[a] - p[a]) * (r[a] - p[a]);
-    }
-    const double cosine = u > 0 && v > 0 ? dot / sqrt(u * v) : 1;
-    *widest = cosine < least ? c : *widest;
-    least = fmin(least, cosine);
-    most = fmax(most, cosine);
+    const double *q = at[(c + 1) % 3], *r = at[(c + 2) % 3];
+    const double d[3] = { r[0] - q[0], r[1] - q[1], r[2] - q[2] };
+    side[c] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    *widest = side[c] > side[*widest] ? c : *widest;
+    least = side[c] < side[least] ? c : least;
   }
-  return most;
+  const double p = side[(least + 1) % 3], q = side[(least + 2) % 3];
+  return side[least] > 0 ? (p + q - side[least]) / (2 * sqrt(p * q)) : 1;
 }
 
 static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last)
@@ -200,17 +197,25 @@ static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last
   const mcor_bunches* bunches = facing->bunches;
   for (int64_t t = first; t < last; ++t)
   {
-    int32_t of[3];
+    const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+    int32_t place[3];
     double at[3][3];
-    int widest = 0;
-    const bool is_left = mcor_stand_ins(bunches, t, of);
-    for (int c = 0; c < 3 && is_left; ++c)
+    int widest;
+    for (int c = 0; c < 3; ++c)
     {
-      mcor_place_corner(facing, mcor_place_of(bunches, of[c]), at[c]);
+      place[c] = mcor_place_of(bunches, corner[c]);
     }
-    if (is_left && mcor_least_angle(at, &widest) > MCOR_SLIVER)
+    if (!mcor_is_left(place, 3))
     {
-      const int32_t v = of[widest];
+      continue;
+    }
+    for (int c = 0; c < 3; ++c)
+    {
+      mcor_place_corner(facing, place[c], at[c]);
+    }
+    if (mcor_least_angle(at, &widest) > MCOR_SLIVER)
+    {
+      const int32_t v = mcor_stand_in(bunches, corner[widest]);
       const bool moves =
         bunches->key[v] != MCOR_FROZEN && (!bunches->held[v] || mcor_is_merged(bunches, v));
       atomic_store_explicit(&facing->wide[v], moves, memory_order_relaxed);
@@ -263,7 +268,7 @@ static double mcor_worst_around(const mcor_facing* facing, int32_t v)
   {
     int32_t of[3], place[3];
     double at[3][3];
-    int widest = 0;
+    int widest;
     if (mcor_stand_ins(bunches, e / 3, of) && of[e % 3] == v)
     {
       for (int c = 0; c < 3; ++c)

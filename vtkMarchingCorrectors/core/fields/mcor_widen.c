@@ -73,8 +73,8 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
   MCOR_TRY(mcor_scan(context, &run->wanted, n, &listed));
   if (listed > 0)
   {
-    MCOR_TRY(mcor_reserve(context, &run->list, (size_t)listed * sizeof(cl_int)));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_list", MCOR_LIGHT, n, MCOR_INT(n),
+    MCOR_TRY(mcor_reserve(context, &run->list, ((size_t)listed + 1) * sizeof(cl_int)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_group_fill", MCOR_LIGHT, n + 1, MCOR_INT(0), MCOR_INT(n),
       MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->list)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_widen_solve", MCOR_HEAVY, (listed + lanes - 1) / lanes,
       MCOR_GRID_ARGS(context), MCOR_INT(plane), MCOR_REAL(run->widest), MCOR_REAL(run->iso),
@@ -199,10 +199,10 @@ static mcor_status mcor_widen_all(
   for (int64_t i = 0; i < input->count; ++i)
   {
     out->factor[i] = 1;
-  }
-  for (int64_t i = 0; i < input->count && out->volume; ++i)
-  {
-    out->volume[i] = 1; /* stays for particles that are not on the device; never read */
+    if (out->volume)
+    {
+      out->volume[i] = 1; /* stays for particles that are not on the device; never read */
+    }
   }
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->run.widest = run->widest;
@@ -358,14 +358,6 @@ static mcor_status mcor_renew_widening(
   return MCOR_OK;
 }
 
-/* Moves the last attribute, which is the widening, to its own array. */
-static void mcor_take_widening(mcor_surface* surface)
-{
-  const int last = --surface->attribute_count;
-  surface->widening = surface->attributes[last];
-  surface->attributes[last] = NULL;
-}
-
 mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   const mcor_options* options, mcor_surface* surface)
 {
@@ -405,7 +397,9 @@ mcor_status mcor_extract_widened(mcor_context* context, const mcor_input* input,
   if (status == MCOR_OK)
   {
     mcor_statistics* s = &surface->statistics;
-    mcor_take_widening(surface);
+    const int last = --surface->attribute_count; /* the widening, which has its own array */
+    surface->widening = surface->attributes[last];
+    surface->attributes[last] = NULL;
     s->widening_outside = widening.statistics.widening_outside;
     s->build_seconds += widening.statistics.build_seconds;
     for (int p = 0; p < MCOR_PHASE_COUNT; ++p)

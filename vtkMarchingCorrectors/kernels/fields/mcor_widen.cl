@@ -199,17 +199,6 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   }
 }
 
-/* One work-item = one sorted particle. Reads `wanted`, scanned. Lists the wanted particles. */
-__kernel void mcor_widen_list(
-  const int count, __global const int* scanned, __global int* list)
-{
-  MCOR_ITEM(i, i < count);
-  if (scanned[i] != scanned[i + 1])
-  {
-    list[scanned[i]] = i;
-  }
-}
-
 /* An array of a work-item's own, with an element for each lane. */
 #if MCOR_LANES == 1
 #define MCOR_WIDEN_LANES(array) (array)[0]

@@ -36,12 +36,6 @@ static uint64_t* make_keys(int kind, int count)
   return keys;
 }
 
-static int compare_keys(const void* a, const void* b)
-{
-  const uint64_t x = *(const uint64_t*)a, y = *(const uint64_t*)b;
-  return (x > y) - (x < y);
-}
-
 /* Reads `count` elements of `width` bytes; free the result. */
 static void* read_back(mcor_context* context, const mcor_buffer* buffer, int count, size_t width)
 {
@@ -132,12 +126,15 @@ static void test_argument_count(void** state)
   mcor_release(context, &buffer);
 }
 
-static void check_sort(mcor_context* context, int kind, int count)
+/* Keys in order, with where each was; buckets of the sorted ones; and the distinct ones, with runs of each. */
+static void check_keys(mcor_context* context, int kind, int count)
 {
+  const uint64_t limit = kinds[kind].limit;
   uint64_t* keys = make_keys(kind, count);
-  mcor_buffer buffer = { 0 }, order = { 0 };
+  mcor_buffer buffer = { 0 }, order = { 0 }, buckets = { 0 }, distinct = { 0 }, index_of = { 0 },
+              runs = { 0 };
   CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
-  CORE_OK(context, mcor_sort(context, &buffer, &order, count, kinds[kind].limit));
+  CORE_OK(context, mcor_sort(context, &buffer, &order, count, limit));
   uint64_t* sorted = read_back(context, &buffer, count, sizeof *keys);
   int* from = read_back(context, &order, count, sizeof(int));
   uint8_t* seen = calloc((size_t)count + 1, 1);
@@ -152,116 +149,70 @@ static void check_sort(mcor_context* context, int kind, int count)
       i == 0 || sorted[i - 1] < sorted[i] || (sorted[i - 1] == sorted[i] && from[i - 1] < from[i]),
       "%s, size %d: element %d is out of order", kinds[kind].name, count, i);
   }
-  mcor_release(context, &buffer);
-  mcor_release(context, &order);
+  int shift = -1, next = 0, found = -1;
+  CORE_OK(context, mcor_index_keys(context, &buffer, count, limit, &buckets, &shift));
+  const uint64_t bucket_count = (limit >> shift) + 2;
+  CORE_CHECK(bucket_count <= 4 * (uint64_t)count + (1 << 20) + 2, "%s, size %d: %llu buckets",
+    kinds[kind].name, count, (unsigned long long)bucket_count);
+  int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
+  for (uint64_t b = 0; b < bucket_count; ++b)
+  {
+    while (next < count && sorted[next] >> shift < b)
+    {
+      ++next;
+    }
+    CORE_CHECK(first[b] == next, "%s, size %d: bucket %llu begins at %d, not %d", kinds[kind].name,
+      count, (unsigned long long)b, first[b], next);
+  }
+  CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
+  CORE_OK(context, mcor_unique(context, &buffer, count, limit, &distinct, &index_of, &found));
+  int expected = 0;
+  if (count > 0)
+  {
+    uint64_t* values = read_back(context, &distinct, found, sizeof *values);
+    int* index = read_back(context, &index_of, count, sizeof(int));
+    int run_count = -1;
+    CORE_OK(context, mcor_list_runs(context, &buffer, count, &distinct, &runs, &run_count));
+    assert_int_equal(run_count, found);
+    int* begins = read_back(context, &runs, found + 1, sizeof(int));
+    assert_int_equal(begins[found], count);
+    for (int i = 0; i < count; ++i)
+    {
+      CORE_CHECK(index[i] >= 0 && index[i] < found && values[index[i]] == keys[i],
+        "%s, size %d: index %d of key %d", kinds[kind].name, count, index[i], i);
+      if (i == 0 || sorted[i] != sorted[i - 1])
+      {
+        CORE_CHECK(expected < found && values[expected] == sorted[i] && begins[expected] == i,
+          "%s, size %d: distinct key %d", kinds[kind].name, count, expected);
+        ++expected;
+      }
+    }
+    free(values);
+    free(index);
+    free(begins);
+  }
+  assert_int_equal(found, expected);
+  mcor_buffer* const buffers[] = { &buffer, &order, &buckets, &distinct, &index_of, &runs };
+  for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+  {
+    mcor_release(context, buffers[i]);
+  }
   free(keys);
   free(sorted);
   free(from);
   free(seen);
-}
-
-static void check_unique(mcor_context* context, int kind, int count)
-{
-  uint64_t* keys = make_keys(kind, count);
-  mcor_buffer buffer = { 0 }, distinct = { 0 }, index_of = { 0 };
-  int found = -1;
-  CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
-  CORE_OK(
-    context, mcor_unique(context, &buffer, count, kinds[kind].limit, &distinct, &index_of, &found));
-  if (count == 0)
-  {
-    assert_int_equal(found, 0);
-    free(keys);
-    mcor_release(context, &buffer);
-    return;
-  }
-  uint64_t* values = read_back(context, &distinct, found, sizeof *values);
-  int* index = read_back(context, &index_of, count, sizeof(int));
-  for (int i = 0; i < count; ++i)
-  {
-    CORE_CHECK(index[i] >= 0 && index[i] < found && values[index[i]] == keys[i],
-      "%s, size %d: index %d of key %d", kinds[kind].name, count, index[i], i);
-  }
-  mcor_buffer runs = { 0 };
-  int run_count = -1;
-  CORE_OK(context, mcor_list_runs(context, &buffer, count, &distinct, &runs, &run_count));
-  assert_int_equal(run_count, found);
-  int* begins = read_back(context, &runs, found + 1, sizeof(int));
-  assert_int_equal(begins[found], count);
-  qsort(keys, (size_t)count, sizeof *keys, compare_keys);
-  int expected = 0;
-  for (int i = 0; i < count; ++i)
-  {
-    if (i == 0 || keys[i] != keys[i - 1])
-    {
-      CORE_CHECK(expected < found && values[expected] == keys[i] && begins[expected] == i,
-        "%s, size %d: distinct key %d", kinds[kind].name, count, expected);
-      ++expected;
-    }
-  }
-  assert_int_equal(found, expected);
-  mcor_release(context, &buffer);
-  mcor_release(context, &distinct);
-  mcor_release(context, &index_of);
-  mcor_release(context, &runs);
-  free(keys);
-  free(values);
-  free(index);
-  free(begins);
-}
-
-static void check_index(mcor_context* context, int kind, int count)
-{
-  uint64_t* keys = make_keys(kind, count);
-  qsort(keys, (size_t)count, sizeof *keys, compare_keys);
-  mcor_buffer buffer = { 0 }, buckets = { 0 };
-  int shift = -1;
-  CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
-  CORE_OK(context, mcor_index_keys(context, &buffer, count, kinds[kind].limit, &buckets, &shift));
-  const uint64_t bucket_count = (kinds[kind].limit >> shift) + 2;
-  CORE_CHECK(bucket_count <= 4 * (uint64_t)count + (1 << 20) + 2, "%s, size %d: %llu buckets",
-    kinds[kind].name, count, (unsigned long long)bucket_count);
-  int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
-  int expected = 0;
-  for (uint64_t b = 0; b < bucket_count; ++b)
-  {
-    while (expected < count && keys[expected] >> shift < b)
-    {
-      ++expected;
-    }
-    CORE_CHECK(first[b] == expected, "%s, size %d: bucket %llu begins at %d, not %d",
-      kinds[kind].name, count, (unsigned long long)b, first[b], expected);
-  }
-  mcor_release(context, &buffer);
-  mcor_release(context, &buckets);
-  free(keys);
   free(first);
 }
 
-static void for_all(mcor_context* context, void (*check)(mcor_context*, int, int))
+static void test_keys(void** state)
 {
   for (int kind = 0; kind < KIND_COUNT; ++kind)
   {
     for (int s = 0; s < SIZE_COUNT; ++s)
     {
-      check(context, kind, sizes[s]);
+      check_keys(*state, kind, sizes[s]);
     }
   }
-}
-
-static void test_sort(void** state)
-{
-  for_all(*state, check_sort);
-}
-
-static void test_unique(void** state)
-{
-  for_all(*state, check_unique);
-}
-
-static void test_index_keys(void** state)
-{
-  for_all(*state, check_index);
 }
 
 /* Each work-item of a launch in parts runs once. */
@@ -304,6 +255,6 @@ int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_parts), cmocka_unit_test(test_scan),
     cmocka_unit_test(test_scan_overflow), cmocka_unit_test(test_argument_count),
-    cmocka_unit_test(test_sort), cmocka_unit_test(test_unique), cmocka_unit_test(test_index_keys) };
+    cmocka_unit_test(test_keys) };
   return cmocka_run_group_tests_name("scan", tests, set_up, core_tear_down);
 }

@@ -169,8 +169,9 @@ static void check_surface(
   }
   else
   {
-    CORE_CHECK(of_flag[1] > 100 && of_flag[2] < 10, "kernel %d: %lld on the boundary, %lld beside it",
-      (int)kernel, (long long)of_flag[1], (long long)of_flag[2]);
+    CORE_CHECK(of_flag[1] > 100 && of_flag[2] < 10,
+      "kernel %d: %lld on the boundary, %lld beside it", (int)kernel, (long long)of_flag[1],
+      (long long)of_flag[2]);
   }
   oracle_free_field(&field);
   core_free_set(&set);

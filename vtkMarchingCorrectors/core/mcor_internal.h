@@ -43,8 +43,11 @@
 #define MCOR_APPEND(context, list, ...)                                                            \
   do                                                                                               \
   {                                                                                                \
-    MCOR_TRY(mcor_make_room(context, (void**)&(list)->of, (list)->count, &(list)->room,            \
-      sizeof *(list)->of));                                                                        \
+    if ((list)->count == (list)->room)                                                             \
+    {                                                                                              \
+      MCOR_TRY(mcor_make_room(                                                                     \
+        context, (void**)&(list)->of, (list)->count, &(list)->room, sizeof *(list)->of));          \
+    }                                                                                              \
     (list)->of[(list)->count++] = __VA_ARGS__;                                                     \
   } while (0)
 
@@ -307,7 +310,7 @@ mcor_status mcor_list_components(
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
 mcor_status mcor_find_curvature(mcor_context* context); /* likewise */
-mcor_status mcor_find_nearest(mcor_context* context); /* of all vertices */
+mcor_status mcor_find_nearest(mcor_context* context);   /* of all vertices */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);

@@ -247,6 +247,47 @@ static void test_first_rows(void** state)
 
 /* ---- cells beside finer ones ---- */
 
+/* A side between two of a cell's triangles is no line within one part of a face, which the cell beside it could have,
+ * too, but between triangles that lie flat in the face. Places are in halves of the cell. */
+static void check_inner_side(
+  const double* a, const double* b, const double* c, const double* d, uint32_t split)
+{
+  for (int face = 0; face < 6; ++face)
+  {
+    static const int stride[3] = { 1, 3, 9 };
+    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const double at = 2 * (face & 1);
+    if (a[axis] != at || b[axis] != at)
+    {
+      continue;
+    }
+    const int divided = split >> (13 + (face & 1 ? 1 : -1) * stride[axis]) & 1;
+    const int in_one = !divided || ((a[u] - 1) * (b[u] - 1) >= 0 && (a[v] - 1) * (b[v] - 1) >= 0);
+    CORE_CHECK(
+      !in_one || (c[axis] == at && d[axis] == at), "split %x: a side within face %d", split, face);
+  }
+}
+
+static void check_inner_sides(
+  const lattice* l, const int at[3], int step, uint32_t split, const int32_t* triangles, int count)
+{
+  double x[3 * MCOR_ADAPTIVE_TRIANGLES][3];
+  for (int i = 0; i < 9 * count; ++i)
+  {
+    x[i / 3][i % 3] = (l->points[3 * triangles[i / 3] + i % 3] - at[i % 3]) * 2 / step;
+  }
+  for (int i = 0; i < 9 * count * count; ++i)
+  {
+    const int m = i / (3 * count), n = i % (3 * count);
+    const int next = m - m % 3 + (m + 1) % 3, after = n - n % 3 + (n + 1) % 3;
+    if (triangles[m] == triangles[after] && triangles[next] == triangles[n])
+    {
+      check_inner_side(
+        x[m], x[next], x[m - m % 3 + (m + 2) % 3], x[n - n % 3 + (n + 2) % 3], split);
+    }
+  }
+}
+
 /* Adds a cell whose nodes are `step` apart, with these middles as nodes. */
 static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
 {
@@ -269,6 +310,7 @@ static void add_adaptive(lattice* l, const int at[3], int step, uint32_t split)
     l->triangles[3 * l->triangle_count + i] =
       vertex_on(l, node[low], axis, middle ? step / 2 : step);
   }
+  check_inner_sides(l, at, step, split, l->triangles + 3 * l->triangle_count, count);
   l->triangle_count += count;
 }
 

@@ -22,6 +22,7 @@
 #include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 #include "vtkSPHVertices.h"
+#include "vtkVersionMacros.h"
 
 #include <algorithm>
 #include <array>
@@ -83,13 +84,20 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
   return range[0] == range[1];
 }
 
-// A block that fails leaves its place empty, and does not touch the others.
+// A block that fails leaves its place empty, and does not touch the others. An observer of the
+// progress may take blocks out of the input.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
-  output->CopyStructure(input);
-  const std::vector<std::string> names = vtkSPHNameBlocks(input);
+  auto blocks = vtkSmartPointer<vtkDataObjectTree>::Take(input->NewInstance());
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 3, 0)
+  blocks->CompositeShallowCopy(input);
+#else
+  blocks->ShallowCopy(input); // the same blocks
+#endif
+  output->CopyStructure(blocks);
+  const std::vector<std::string> names = vtkSPHNameBlocks(blocks);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
-  iterator.TakeReference(input->NewTreeIterator());
+  iterator.TakeReference(blocks->NewTreeIterator());
   iterator->InitTraversal();
   this->WarnOnce(WARN_WALL_BLOCK, vtkSPHFindWalls(names));
   const double share = 1.0 / static_cast<double>(names.size());
@@ -107,7 +115,7 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   this->SetProgressShiftScale(0.0, 1.0);
   if (this->IsAborted())
   {
-    output->CopyStructure(input); // a result has all blocks or none
+    output->CopyStructure(blocks); // a result has all blocks or none
   }
 }
 

@@ -142,6 +142,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.ExcludedArrays, self.Only, self.ErrorMessage, self.BlockName = [], [], "", ""
         self.RunStatistics = vtkFieldData()
         self._context, self._context_device = None, None
+        self._in_run = self._release = False
         self._signatures, self._versions = (None, None), [0, 0]
         self._ahead, self._look_time = None, vtkTimeStamp()
         self.SetInputArrayToProcess(
@@ -253,7 +254,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         return "".join(f"{i}: {device}\n" for i, device in enumerate(list_devices()))
 
     def ReleaseDeviceMemory(self):
-        if self._context:
+        """In a run, which uses it: at its end."""
+        if self._in_run:
+            self._release = True
+        elif self._context:
             self._context.release_memory()
 
     def __str__(self):
@@ -335,8 +339,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         is_one = not isinstance(data, vtkDataObjectTree) or self.Blocks == self.APART
         return data if is_one else self._keep(join_blocks, data)
 
-    def _process_blocks(self, data, output):
+    def _process_blocks(self, given, output):
         """A block that fails leaves its place empty, and the others as they are."""
+        data = given.NewInstance()  # an observer of the progress may take blocks out of the input
+        getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # the same blocks, before VTK 9.3, too
         output.CopyStructure(data)
         names, iterator = name_blocks(data), data.NewTreeIterator()
         iterator.InitTraversal()
@@ -457,6 +463,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     @contextmanager
     def _called(self, particles, arguments):
         choice = particles.choice
+        self._in_run, self._release = True, not choice.KeepDeviceData
         try:
             if self._context is None or self._context_device != choice.Device:
                 self._signatures = (None, None)
@@ -472,8 +479,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 self._context = None
             raise
         finally:
-            if self._context and not choice.KeepDeviceData:
-                self._context.release_memory()
+            self._in_run = False
+            if self._release:
+                self.ReleaseDeviceMemory()
 
     def _summarize(self, particles, arguments, surface):
         options, statistics = arguments.options, surface.statistics
@@ -500,16 +508,13 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             single = particles.scalar is not None and is_single(particles.scalar)
             arrays[particles.iso_value_name] = iso.astype(np.float32 if single else np.float64)
         build_mesh(output, found, arrays)
-        for array in particles.interpolated:
-            if name_of(array) in arrays:
-                data.GetArray(name_of(array)).CopyComponentNames(array)
-        for array in particles.from_nearest if nearest is not None else ():
-            add_nearest(data, array, nearest)
-        scalar = particles.scalar
-        is_one = scalar is not None and particles.dot is None and options.iso_count == 1 and (
-            scalar.GetNumberOfComponents() == 1 or particles.choice.ScalarComponent == -1)
-        names = [name_of(array) for array in particles.interpolated if varies(array, data.GetArray(name_of(array)))
-                 and not (is_one and name_of(array) == name_of(scalar))]
+        for name, array in particles.interpolated.items():
+            if name in arrays:
+                data.GetArray(name).CopyComponentNames(array)
+        for name, array in particles.from_nearest.items() if nearest is not None else ():
+            add_nearest(data, name, array, nearest)
+        names = [name for name, array in particles.interpolated.items() if varies(array, data.GetArray(name))
+                 and not (options.iso_count == 1 and name == particles.contoured)]
         best = choose_array([data.GetArray(name) for name in (*names, particles.iso_value_name) if data.HasArray(name)])
         if best is not None:
             data.SetActiveScalars(name_of(best))

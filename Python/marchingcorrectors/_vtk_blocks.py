@@ -59,7 +59,7 @@ def add_values(data, count, chosen, made):
     """These of the arrays that have `count` values, unless there is one of that name."""
     for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
         if name_of(array) and not made.HasArray(name_of(array)) and array.GetNumberOfTuples() == count:
-            add_nearest(made, array, chosen)
+            add_nearest(made, name_of(array), array, chosen)
             attribute = data.IsArrayAnAttribute(i)
             if attribute >= 0 and made.GetAbstractAttribute(attribute) is None:
                 made.SetActiveAttribute(name_of(array), attribute)

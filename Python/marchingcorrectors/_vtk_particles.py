@@ -167,7 +167,9 @@ class Particles:
         self.used = dict.fromkeys(QUANTITIES)  # arrays
         self.values = {}  # arrays or constants for the core, by quantity
         self.scalar_name, self.iso_value_name = "", "IsoValue"
-        self.interpolated, self.from_nearest = [], []
+        self.contoured = None  # the name of the array that is the iso value on the surface, if one is
+        # {name: array}: an observer of the progress may call the array by another name.
+        self.interpolated, self.from_nearest = {}, {}
         self.solid = self.present = None
 
     def collect(self, requests, taken, options=None):
@@ -285,9 +287,12 @@ class Particles:
         if self.scalar is None:
             return
         self.scalar_name, component = name_of(self.scalar), self.choice.ScalarComponent
+        several = self.scalar.GetNumberOfComponents() > 1
+        if self.dot is None and not (several and component >= 0):
+            self.contoured = self.scalar_name
         if self.dot is not None:
             self.scalar_name += "_Dot_" + name_of(self.dot)
-        elif self.scalar.GetNumberOfComponents() > 1:
+        elif several:
             label = self.scalar.GetComponentName(component) if component >= 0 else "Magnitude"
             few = self.scalar.GetNumberOfComponents() <= 3
             self.scalar_name += "_" + (label or ("XYZ"[component] if few else str(component)))
@@ -301,7 +306,7 @@ class Particles:
         for array in arrays + ([] if velocity is None else [velocity]):
             if name_of(array) not in left and array.GetNumberOfTuples() == self.count:
                 real = isinstance(array, vtkDataArray) and is_real(array)
-                (self.interpolated if real else self.from_nearest).append(array)
+                (self.interpolated if real else self.from_nearest)[name_of(array)] = array
 
     # -- for the core --
 
@@ -320,7 +325,7 @@ class Particles:
             result.input.scalar_component = self.choice.ScalarComponent if several else 0
         if self.dot is not None:
             result.input.scalar_dot = view(self.dot)
-        result.set_attributes({name_of(array): to_numpy(array) for array in self.interpolated})
+        result.set_attributes({name: to_numpy(array) for name, array in self.interpolated.items()})
         for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", "ignore_solids"):
             setattr(result.input, name, bool(getattr(self.choice, camel(name))))
         return result

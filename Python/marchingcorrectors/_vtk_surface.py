@@ -59,7 +59,7 @@ def build_mesh(output, surface, arrays):
         data.SetActiveNormals("Normals")
 
 
-def add_nearest(data, array, nearest):
+def add_nearest(data, name, array, nearest):
     """Adds the values, of any type, of particles with these numbers."""
     if isinstance(array, vtkDataArray) and array.GetDataTypeAsString() != "bit":
         made = numpy_to_vtk(vtk_to_numpy(array)[nearest], deep=True, array_type=array.GetDataType())
@@ -70,7 +70,7 @@ def add_nearest(data, array, nearest):
         for particle in nearest.tolist():
             ids.InsertNextId(particle)
         array.GetTuples(ids, made)
-    made.SetName(array.GetName())
+    made.SetName(name)
     made.CopyComponentNames(array)
     data.AddArray(made)
 

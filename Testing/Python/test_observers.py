@@ -7,7 +7,7 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from vtk_test import (
-    POINTS, cube, on_progress, particles_of, points_of, run, sphere, statistic, statistics_of, surface_of, take_step)
+    POINTS, blocks_of, cube, on_progress, particles_of, points_of, run, sphere, statistic, statistics_of, surface_of, take_step)
 
 
 def take_arrays(extract):
@@ -65,6 +65,16 @@ class TestObservers(unittest.TestCase):
                 found = self.observed(extract, lambda made, change=change: take_step(change, made))
                 self.assertTrue(found == expected)
                 self.assertEqual((statistics_of(extract), extract.GetErrorMessage()), (statistics, ""))
+
+    def test_blocks(self):
+        """That are taken out of the input have their surfaces all the same."""
+        expected, blocks = surface_of(run(sphere())[0]), blocks_of(cube(), cube())
+        extract = sphere(blocks)
+        on_progress(extract, lambda made: made.GetProgress() > 0.1 and blocks.SetNumberOfBlocks(0))
+        output, told = run(extract, BlocksToApart=())
+        self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
+        for i in range(2):
+            self.assertTrue(surface_of(output.GetBlock(i)) == expected)
 
     def test_update_within(self):
         """Is refused by VTK, and changes nothing; one after it works."""

@@ -71,7 +71,7 @@ static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
     if (mcor_is_merged(bunches, v))
     {
       cl_int node[4];
-      mcor_bunch_node(bunches, v, node);
+      mcor_entry_node(bunches, -1 - v, node);
       sorted[count++] = (mcor_sorted_bunch){ mcor_order_key(bunches, node), v };
     }
   }
@@ -157,11 +157,7 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
   {
     const int32_t v = mcor_vertex_of(bunches->order[i]);
     double start[4] = { 0 };
-    memcpy(to->node + 4 * i, mcor_marched_node(bunches, v), 4 * sizeof *to->node);
-    if (bunches->order[i] < 0)
-    {
-      mcor_bunch_node(bunches, v, to->node + 4 * i);
-    }
+    mcor_entry_node(bunches, bunches->order[i], to->node + 4 * i);
     if (to->starts)
     {
       memcpy(start, to->starts[i], sizeof to->starts[i]);
@@ -445,11 +441,7 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   MCOR_TRY(status);
   mcor_note_order(bunches, march_count, count);
   MCOR_TRY(bunches->late ? mcor_renumber_cuts(bunches) : MCOR_OK);
-  for (int32_t v = 0; v < bunches->vertex_count; ++v) /* no other place is needed any more */
-  {
-    bunches->place[v] = mcor_place_of(bunches, v);
-  }
-  return MCOR_OK;
+  return mcor_find_places(bunches);
 }
 
 /* ---- Triangles ---- */
@@ -464,17 +456,6 @@ typedef struct mcor_filing
   int64_t gone[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 1]; /* owned ones that are not left, by level */
 } mcor_filing;
 
-/* Finds the corners of a triangle. Returns whether it is left. */
-static bool mcor_corners_of(const mcor_bunches* bunches, int64_t t, cl_int to[3])
-{
-  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
-  for (int c = 0; c < 3; ++c)
-  {
-    to[c] = bunches->place[corner[c]];
-  }
-  return mcor_is_left(to, bunches->corners);
-}
-
 static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_filing* filing = data;
@@ -484,8 +465,8 @@ static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
   int level = 0;
   for (int64_t t = first; t < last; ++t)
   {
-    cl_int corners[3];
-    const bool is_left = mcor_corners_of(bunches, t, corners);
+    int32_t corners[3];
+    const bool is_left = mcor_places_of(bunches, t, corners);
     for (; level + 1 < bunches->context->lattice.levels && t >= bunches->level_end[level];)
     {
       ++level;
@@ -503,8 +484,8 @@ static void mcor_fill_slice(void* data, int slice, int64_t first, int64_t last)
   int64_t to = filing->first[slice];
   for (int64_t t = first; t < last; ++t)
   {
-    cl_int corners[3];
-    if (mcor_corners_of(filing->bunches, t, corners))
+    int32_t corners[3];
+    if (mcor_places_of(filing->bunches, t, corners))
     {
       memcpy(filing->triangles + 3 * to, corners, sizeof corners);
       if (filing->follows)
@@ -597,10 +578,13 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   b->order = malloc(2 * n * sizeof *b->order);
   b->place = malloc(n * sizeof *b->place);
   b->merged_place = malloc(n * sizeof *b->merged_place);
+  b->now = malloc(n * sizeof *b->now);
+  b->wide = calloc(n, sizeof *b->wide);
   b->held = calloc(n, sizeof *b->held);
   MCOR_TRY(mcor_allocated(context,
     b->node && b->ends && b->offset && b->key && b->first && b->next && b->star && b->before &&
-      b->state && b->leans && b->order && b->place && b->merged_place && b->held));
+      b->state && b->leans && b->order && b->place && b->merged_place && b->now && b->wide &&
+      b->held));
   for (int l = 0; l < context->lattice.levels; ++l)
   {
     MCOR_TRY(mcor_read(context, &mesh->triangle_base,
@@ -615,7 +599,8 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
 static void mcor_end_bunches(mcor_bunches* b)
 {
   void* const arrays[] = { b->node, b->ends, b->offset, b->key, b->first, b->next, b->star,
-    b->before, b->state, b->leans, b->order, b->place, b->merged_place, b->held, b->sorted };
+    b->before, b->state, b->leans, b->order, b->place, b->merged_place, b->held, b->sorted, b->now,
+    b->wide, b->points };
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
   {
     free(arrays[i]);

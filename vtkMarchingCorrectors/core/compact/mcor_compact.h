@@ -9,6 +9,7 @@
 #include "mcor_internal.h"
 
 #include <stdatomic.h>
+#include <string.h>
 
 /* Merges the vertices of the present iso value, and corrects the merged ones. If the surface is
  * neither trimmed nor capped, this replaces the correction. Otherwise it comes after caps
@@ -41,6 +42,8 @@ enum
   MCOR_BUNCH_BAD      /* is to be taken apart */
 };
 
+typedef struct mcor_point mcor_point; /* mcor_compact_face.c */
+
 /* The mesh before merging, and its bunches. A bunch is a set of vertices that belong to one
  * lattice node and are joined by edges of triangles. Most vertices are in one; its first vertex
  * stands for it. A vertex in no bunch counts as a bunch that stays apart. */
@@ -59,13 +62,17 @@ typedef struct mcor_bunches
   uint64_t* key;           /* [vertex_count]: lattice node of a vertex */
   int32_t *first, *next;   /* [vertex_count]: first vertex of the bunch; next one, or -1 */
   int32_t *star,
-    *before; /* by bunch: last corner of its triangles; by corner: the one before, or -1 */
+    *before; /* by bunch: corner of its last triangle; by corner: that of the one before, or -1 */
   atomic_uchar* state; /* [vertex_count], by bunch */
   uint8_t* leans;      /* [vertex_count], by bunch: whether one that is not sure can be merged */
   struct mcor_sorted_bunch*
     sorted; /* bunches that were merged at first, in the order of vertices */
   int sorted_count;
-  uint8_t* held; /* [vertex_count]: keys of cuts need the vertex, even if it is merged */
+  mcor_point* points; /* [point_count]: vertices of the mesh */
+  int point_count;
+  int32_t* now;       /* [vertex_count]: place of a vertex in the mesh, see mcor_place_of */
+  atomic_uchar* wide; /* [vertex_count]: whether it has the widest angle of a sliver */
+  uint8_t* held;      /* [vertex_count]: keys of cuts need the vertex, even if it is merged */
   /* [2 vertex_count]: vertices of the mesh in order: v, or -1 - first of a merged bunch;
    * [vertex_count]: place of a vertex, and, by first vertex, of a merged bunch. */
   int32_t *order, *place, *merged_place;
@@ -116,16 +123,29 @@ static inline int32_t* mcor_place_in(const mcor_bunches* bunches, int32_t entry)
   return (entry < 0 ? bunches->merged_place : bunches->place) + mcor_vertex_of(entry);
 }
 
-/* Finds the node of a bunch, in the form that its merged vertex has. */
-static inline void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, cl_int node[4])
+/* Finds the corners of a triangle in the mesh. Returns whether it is left. */
+static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_t place[3])
 {
-  const cl_int* from = mcor_marched_node(bunches, first);
-  const uint64_t key = bunches->key[first];
-  for (int a = 0; a < 3; ++a)
+  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  for (int c = 0; c < 3; ++c)
+  {
+    place[c] = bunches->now[corner[c]];
+  }
+  return mcor_is_left(place, bunches->corners);
+}
+
+/* Finds the node of an entry of the order; of a bunch, in the form that its merged vertex has. */
+static inline void mcor_entry_node(const mcor_bunches* bunches, int32_t entry, cl_int node[4])
+{
+  const int32_t v = mcor_vertex_of(entry);
+  const uint64_t key = bunches->key[v];
+  memcpy(node, bunches->node + 4 * (int64_t)v, 4 * sizeof *node);
+  for (int a = 0; a < 3 && entry < 0; ++a)
   {
     node[a] = (cl_int)(key >> 21 * a & 0x1fffff);
   }
-  node[3] = from[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS;
+  node[3] =
+    entry < 0 ? node[3] >> MCOR_LEVEL_SHIFT << MCOR_LEVEL_SHIFT | MCOR_MERGED_AXIS : node[3];
 }
 
 /* mcor_compact.c. Appends the vertices in `order` to the mesh, and corrects them: on edges, or on
@@ -133,8 +153,9 @@ static inline void mcor_bunch_node(const mcor_bunches* bunches, int32_t first, c
 mcor_status mcor_add_vertices(
   mcor_bunches* bunches, bool lines, const double (*starts)[3], int count);
 
-/* mcor_compact_face.c. Finds the merged bunches that are to be taken apart; moves vertices of
- * slivers. */
+/* mcor_compact_face.c. Finds the present places of vertices (`now`); finds the merged bunches that
+ * are to be taken apart; moves vertices of slivers. */
+mcor_status mcor_find_places(mcor_bunches* bunches);
 mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found);
 mcor_status mcor_move_slivers(mcor_bunches* bunches);
 

@@ -137,6 +137,16 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 
 /* ---- Bunches ---- */
 
+/* Finds the corners of a triangle, as the first vertices of their bunches. */
+static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3])
+{
+  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  for (int c = 0; c < 3; ++c)
+  {
+    of[c] = bunches->first[corner[c]];
+  }
+}
+
 /* Returns the first vertex that this one is known to be joined with. */
 static int32_t mcor_first_of(int32_t* first, int32_t v)
 {
@@ -179,16 +189,20 @@ static void mcor_join_vertices(mcor_bunches* bunches)
   }
 }
 
+/* Lists the triangles of each bunch, once by their first corner in it. */
 static void mcor_list_stars(mcor_bunches* bunches)
 {
-  const cl_int* corner = bunches->triangles;
-  for (int64_t t = 0; t < bunches->triangle_count; ++t, corner += 3)
+  for (int64_t t = 0; t < bunches->triangle_count; ++t)
   {
+    int32_t of[3];
+    mcor_bunches_of(bunches, t, of);
     for (int c = 0; c < bunches->corners; ++c)
     {
-      int32_t* last = &bunches->star[bunches->first[corner[c]]];
-      bunches->before[3 * t + c] = *last;
-      *last = (int32_t)(3 * t + c);
+      if ((c < 1 || of[c] != of[0]) && (c < 2 || of[2] != of[1]))
+      {
+        bunches->before[3 * t + c] = bunches->star[of[c]];
+        bunches->star[of[c]] = (int32_t)(3 * t + c);
+      }
     }
   }
 }
@@ -202,16 +216,6 @@ typedef struct mcor_fan
   int count;
   int32_t from[MCOR_FAN_LIMIT], to[MCOR_FAN_LIMIT];
 } mcor_fan;
-
-/* Finds the corners of a triangle, as the first vertices of their bunches. */
-static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3])
-{
-  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
-  for (int c = 0; c < 3; ++c)
-  {
-    of[c] = bunches->first[corner[c]];
-  }
-}
 
 static int mcor_size_of(const mcor_bunches* bunches, int32_t bunch)
 {
@@ -250,34 +254,26 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
   {
     return mcor_read_line_fan(bunches, bunch, fan);
   }
-  int whole = 0, partly = 0; /* triangles with three, and with two corners in the bunch */
+  int within = 0; /* triangles with two or three corners in the bunch */
   fan->count = 0;
   for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
   {
     const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
     const int c = e % 3;
-    int32_t of[3];
-    mcor_bunches_of(bunches, e / 3, of);
-    const int32_t next = corner[(c + 1) % 3], last = corner[(c + 2) % 3];
-    const int others = (of[(c + 1) % 3] == bunch) + (of[(c + 2) % 3] == bunch);
-    const bool is_first = of[0] == bunch ? c == 0 : of[1] == bunch ? c == 1 : c == 2;
-    if (!is_first)
+    const int32_t next = corner[c < 2 ? c + 1 : 0], last = corner[c > 0 ? c - 1 : 2];
+    if (bunches->first[next] == bunch || bunches->first[last] == bunch)
     {
+      ++within;
       continue;
     }
-    whole += others == 2;
-    partly += others == 1;
-    if (others == 0)
+    if (fan->count == MCOR_FAN_LIMIT)
     {
-      if (fan->count == MCOR_FAN_LIMIT)
-      {
-        return false;
-      }
-      fan->from[fan->count] = next;
-      fan->to[fan->count++] = last;
+      return false;
     }
+    fan->from[fan->count] = next;
+    fan->to[fan->count++] = last;
   }
-  return 2 * mcor_size_of(bunches, bunch) - whole - partly == 2;
+  return 2 * mcor_size_of(bunches, bunch) - within == 2;
 }
 
 /* Replaces vertices around a bunch by their bunches, all or the sure ones. Edges within a bunch
@@ -300,62 +296,64 @@ static void mcor_merge_fan(
 }
 
 /* Whether the edges form one closed ring through different vertices; for lines, whether the two
- * ends differ. */
-static bool mcor_is_ring(const mcor_fan* fan, int corners)
+ * ends differ. Puts the edges in the order of the ring. */
+static bool mcor_is_ring(mcor_fan* fan, int corners)
 {
-  int steps = 0, at = 0;
+  const int count = fan->count;
   if (corners == 2)
   {
-    return fan->count == 1 && fan->from[0] != fan->to[0];
+    return count == 1 && fan->from[0] != fan->to[0];
   }
-  do
+  for (int i = 0; i + 1 < count; ++i)
   {
-    int next = -1;
-    for (int i = 0; i < fan->count; ++i)
+    const int32_t at = fan->to[i];
+    int next = 0, choices = 0;
+    for (int k = i + 1; k < count; ++k)
     {
-      const bool follows = fan->from[i] == fan->to[at];
-      if (follows && next >= 0)
-      {
-        return false;
-      }
-      next = follows ? i : next;
+      next = fan->from[k] == at ? k : next;
+      choices += fan->from[k] == at;
     }
-    if (next < 0)
+    if (choices != 1 || at == fan->from[0])
     {
       return false;
     }
-    at = next;
-    ++steps;
-  } while (at != 0 && steps < fan->count);
-  return at == 0 && steps == fan->count && steps >= 3;
+    const int32_t to = fan->to[next];
+    fan->from[next] = fan->from[i + 1];
+    fan->to[next] = fan->to[i + 1];
+    fan->from[i + 1] = at;
+    fan->to[i + 1] = to;
+  }
+  return count >= 3 && fan->to[count - 1] == fan->from[0];
 }
 
 /* Whether a closed piece would keep enough triangles: counts those of a bunch and of the bunches
  * around it, with all merged. */
 static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor_fan* fan)
 {
+  const bool lines = bunches->corners == 2;
   const int least = MCOR_LEAST_PIECE(bunches->corners);
-  int32_t near[MCOR_LEAST_PIECE(3) + 2] = { bunch };
-  int count = 1, triangles = 0;
-  if (fan->count >= least)
+  int32_t near[MCOR_LEAST_PIECE(3) + 2];
+  int count = 1, triangles = lines ? 2 : fan->count;
+  if (triangles >= least)
   {
     return true;
   }
+  near[0] = bunch;
   for (int i = 0; i < fan->count; ++i)
   {
     near[count++] = fan->from[i];
   }
-  if (bunches->corners == 2 && fan->count == 1)
+  if (lines && fan->count == 1)
   {
     near[count++] = fan->to[0];
   }
-  for (int i = 0; i < count; ++i)
+  for (int i = 1; i < count; ++i)
   {
     for (int32_t e = bunches->star[near[i]]; e >= 0 && triangles < least; e = bunches->before[e])
     {
       int32_t of[3];
       mcor_bunches_of(bunches, e / 3, of);
-      bool counts = of[e % 3] == near[i] && mcor_is_left(of, bunches->corners);
+      bool counts = mcor_is_left(of, bunches->corners);
       for (int j = 0; j < i; ++j)
       {
         counts = counts && of[0] != near[j] && of[1] != near[j] && of[2] != near[j];
@@ -366,29 +364,30 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return triangles >= least;
 }
 
+static int mcor_test_bunch(const mcor_bunches* bunches, int32_t bunch)
+{
+  mcor_fan fan, merged;
+  if (!mcor_read_fan(bunches, bunch, &fan))
+  {
+    return MCOR_BUNCH_APART;
+  }
+  mcor_merge_fan(bunches, true, &fan, &merged);
+  return !mcor_is_large(bunches, bunch, &merged) ? MCOR_BUNCH_APART
+    : !mcor_is_ring(&merged, bunches->corners)   ? MCOR_BUNCH_CLASHES
+    : mcor_is_ring(&fan, bunches->corners)       ? MCOR_BUNCH_MERGED
+                                                 : MCOR_BUNCH_LEANING;
+}
+
 /* Finds which bunches are sure. Others may be leaning, or clash with a bunch beside them. */
 static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
   for (int32_t v = (int32_t)first; v < last; ++v)
   {
-    if (bunches->first[v] != v || bunches->next[v] < 0)
+    if (bunches->first[v] == v && bunches->next[v] >= 0)
     {
-      continue;
+      mcor_set_state(bunches, v, mcor_test_bunch(bunches, v));
     }
-    mcor_fan fan, merged = { 0 };
-    bool may = mcor_read_fan(bunches, v, &fan);
-    if (may)
-    {
-      mcor_merge_fan(bunches, true, &fan, &merged);
-      may = mcor_is_large(bunches, v, &merged);
-    }
-    const bool fits = may && mcor_is_ring(&merged, bunches->corners);
-    const int state = !may                   ? MCOR_BUNCH_APART
-      : !fits                                ? MCOR_BUNCH_CLASHES
-      : mcor_is_ring(&fan, bunches->corners) ? MCOR_BUNCH_MERGED
-                                             : MCOR_BUNCH_LEANING;
-    mcor_set_state(bunches, v, state);
   }
   (void)slice;
 }

@@ -8,7 +8,91 @@
 #include "mcor_parallel.h"
 
 #include <stdlib.h>
-#include <string.h>
+
+/* ---- Points ---- */
+
+/* A vertex of the mesh. */
+struct mcor_point
+{
+  double at[3], uphill[3]; /* uphill: unit gradient, 0 if there is none */
+  double linear;           /* above 0: it did not reach the surface */
+};
+
+typedef struct mcor_placing
+{
+  mcor_bunches* bunches;
+  void *node, *offset, *linear, *gradient;
+} mcor_placing;
+
+static void mcor_place_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_placing* from = data;
+  const mcor_bunches* bunches = from->bunches;
+  const mcor_context* context = bunches->context;
+  for (int64_t i = bunches->point_count + first; i < bunches->point_count + last; ++i)
+  {
+    mcor_point* point = &bunches->points[i];
+    const cl_int* node = (const cl_int*)from->node + 4 * i;
+    const double size = 1u << (node[3] >> MCOR_LEVEL_SHIFT);
+    double g[3], length = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      point->at[a] = (node[a] + mcor_get_real(context, from->offset, 4 * i + a)) * size *
+        mcor_edge_of(&context->lattice, a);
+      g[a] = mcor_get_real(context, from->gradient, 4 * i + a);
+      length += g[a] * g[a];
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      point->uphill[a] = length > 0 ? g[a] / sqrt(length) : 0;
+    }
+    point->linear = mcor_get_real(context, from->linear, i);
+  }
+  (void)slice;
+}
+
+static void mcor_now_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_bunches* bunches = data;
+  for (int64_t v = first; v < last; ++v)
+  {
+    bunches->now[v] = mcor_place_of(bunches, (int32_t)v);
+  }
+  (void)slice;
+}
+
+mcor_status mcor_find_places(mcor_bunches* bunches)
+{
+  return mcor_parallel_run(
+    bunches->context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_now_slice, bunches, NULL);
+}
+
+/* Reads the vertices that were added since the last time, and finds the places of those before
+ * merging. */
+static mcor_status mcor_update_points(mcor_bunches* bunches)
+{
+  mcor_context* context = bunches->context;
+  const mcor_mesh* mesh = &context->mesh;
+  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
+  MCOR_TRY(mcor_find_places(bunches));
+  if (bunches->point_count == mesh->vertex_count)
+  {
+    return MCOR_OK;
+  }
+  mcor_point* points = realloc(bunches->points, n * sizeof *points);
+  MCOR_TRY(mcor_allocated(context, points));
+  bunches->points = points;
+  mcor_placing from = { .bunches = bunches };
+  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &from.node },
+    { &mesh->offset, 4 * n * real, &from.offset }, { &mesh->linear, n * real, &from.linear },
+    { &mesh->gradient, 4 * n * real, &from.gradient } };
+  mcor_status status = mcor_map_all(context, views, 4);
+  MCOR_THEN(status,
+    mcor_parallel_run(context, mesh->vertex_count - bunches->point_count, MCOR_LIGHT_GRAIN,
+      mcor_place_slice, &from, NULL));
+  bunches->point_count = mesh->vertex_count;
+  return mcor_unmap_all(context, views, 4, status);
+}
 
 /* ---- Bunches to be taken apart ---- */
 
@@ -16,40 +100,8 @@ typedef struct mcor_facing
 {
   mcor_bunches* bunches;
   int round;
-  double edge[3];
-  void *node, *offset, *linear, *gradient;
-  mcor_mapping views[4]; /* of these */
-  atomic_int bad;        /* whether any bunch is bad */
-  atomic_uchar* wide;    /* [vertex_count]: whether it has the widest angle of a sliver */
+  atomic_int bad; /* whether any bunch is bad */
 } mcor_facing;
-
-static mcor_status mcor_begin_facing(mcor_bunches* bunches, int round, mcor_facing* facing)
-{
-  const mcor_mesh* mesh = &bunches->context->mesh;
-  const size_t n = (size_t)mesh->vertex_count, real = bunches->context->cl.real_size;
-  const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &facing->node },
-    { &mesh->offset, 4 * n * real, &facing->offset }, { &mesh->linear, n * real, &facing->linear },
-    { &mesh->gradient, 4 * n * real, &facing->gradient } };
-  *facing = (mcor_facing){ .bunches = bunches, .round = round };
-  memcpy(facing->views, views, sizeof views);
-  for (int a = 0; a < 3; ++a)
-  {
-    facing->edge[a] = mcor_edge_of(&bunches->context->lattice, a);
-  }
-  atomic_init(&facing->bad, 0);
-  return mcor_map_all(bunches->context, facing->views, 4);
-}
-
-static void mcor_place_corner(const mcor_facing* facing, int64_t i, double at[3])
-{
-  const cl_int* node = (const cl_int*)facing->node + 4 * i;
-  const double size = 1u << (node[3] >> MCOR_LEVEL_SHIFT);
-  for (int a = 0; a < 3; ++a)
-  {
-    at[a] = (node[a] + mcor_get_real(facing->bunches->context, facing->offset, 4 * i + a)) * size *
-      facing->edge[a];
-  }
-}
 
 static void mcor_make_bad(mcor_facing* facing, int32_t first)
 {
@@ -62,35 +114,23 @@ static void mcor_make_bad(mcor_facing* facing, int32_t first)
 
 /* Whether a triangle, or line, is turned over: it does not face against the mean of its corners'
  * unit gradients. */
-static bool mcor_is_turned(const mcor_facing* facing, const int32_t* place, int corners)
+static bool mcor_is_turned(const mcor_bunches* bunches, const int32_t place[3])
 {
-  const mcor_context* context = facing->bunches->context;
-  double at[3][3], normal[3], against[3] = { 0, 0, 0 };
-  for (int c = 0; c < corners; ++c)
-  {
-    const int64_t i = place[c];
-    double g[3], length = 0;
-    mcor_place_corner(facing, i, at[c]);
-    for (int a = 0; a < 3; ++a)
-    {
-      g[a] = mcor_get_real(context, facing->gradient, 4 * i + a);
-      length += g[a] * g[a];
-    }
-    for (int a = 0; a < 3 && length > 0; ++a)
-    {
-      against[a] -= g[a] / sqrt(length);
-    }
-  }
+  const mcor_point* points = bunches->points;
+  const double *p = points[place[0]].at, *q = points[place[1]].at;
   double along = 0;
   for (int a = 0; a < 3; ++a)
   {
     const int b = (a + 1) % 3, d = (a + 2) % 3;
-    normal[a] = corners == 3 ? (at[1][b] - at[0][b]) * (at[2][d] - at[0][d]) -
-        (at[1][d] - at[0][d]) * (at[2][b] - at[0][b])
-      : a == 0 ? at[1][1] - at[0][1]
-      : a == 1 ? at[0][0] - at[1][0]
-               : 0;
-    along += normal[a] * against[a];
+    double normal = a == 0 ? q[1] - p[1] : a == 1 ? p[0] - q[0] : 0;
+    double against = -points[place[0]].uphill[a] - points[place[1]].uphill[a];
+    if (bunches->corners == 3)
+    {
+      const double* r = points[place[2]].at;
+      normal = (q[b] - p[b]) * (r[d] - p[d]) - (q[d] - p[d]) * (r[b] - p[b]);
+      against -= points[place[2]].uphill[a];
+    }
+    along += normal * against;
   }
   return !(along > 0);
 }
@@ -99,33 +139,35 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_facing* facing = data;
   const mcor_bunches* bunches = facing->bunches;
-  const mcor_context* context = bunches->context;
   const int corners = bunches->corners;
   for (int64_t t = first; t < last; ++t)
   {
-    const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
     int32_t place[3], of[3];
     bool merged = false, fresh = facing->round == 0, missed = false;
-    for (int c = 0; c < corners; ++c)
-    {
-      of[c] = bunches->first[corner[c]];
-      place[c] = mcor_place_of(bunches, corner[c]);
-      merged = merged || mcor_is_merged(bunches, of[c]);
-      fresh = fresh || mcor_state_of(bunches, of[c]) == MCOR_BUNCH_FRESH;
-    }
-    if (!merged || !fresh || !mcor_is_left(place, corners))
+    if (!mcor_places_of(bunches, t, place))
     {
       continue;
     }
     for (int c = 0; c < corners; ++c)
     {
-      if (mcor_is_merged(bunches, of[c]) && mcor_get_real(context, facing->linear, place[c]) > 0)
+      of[c] = bunches->first[((const cl_int*)bunches->triangles)[3 * t + c]];
+      const int state = mcor_state_of(bunches, of[c]);
+      merged = merged || state >= MCOR_BUNCH_MERGED;
+      fresh = fresh || state == MCOR_BUNCH_FRESH;
+    }
+    if (!merged || !fresh)
+    {
+      continue;
+    }
+    for (int c = 0; c < corners; ++c)
+    {
+      if (bunches->points[place[c]].linear > 0 && mcor_is_merged(bunches, of[c]))
       {
         mcor_make_bad(facing, of[c]);
         missed = true;
       }
     }
-    if (!missed && mcor_is_turned(facing, place, corners))
+    if (!missed && mcor_is_turned(bunches, place))
     {
       for (int c = 0; c < corners; ++c)
       {
@@ -138,19 +180,19 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
 
 mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
 {
-  mcor_facing facing;
-  mcor_status status = mcor_begin_facing(bunches, round, &facing);
-  status = status == MCOR_OK ? mcor_parallel_run(bunches->context, bunches->triangle_count,
-                                 MCOR_LIGHT_GRAIN, mcor_face_slice, &facing, NULL)
-                             : status;
+  mcor_facing facing = { .bunches = bunches, .round = round };
+  atomic_init(&facing.bad, 0);
+  MCOR_TRY(mcor_update_points(bunches));
+  MCOR_TRY(mcor_parallel_run(
+    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_face_slice, &facing, NULL));
   *found = atomic_load(&facing.bad);
-  return mcor_unmap_all(bunches->context, facing.views, 4, status);
+  return MCOR_OK;
 }
 
 /* ---- Slivers ---- */
 
-/* Cosine of the least angle of other triangles: of 20 degrees. */
-#define MCOR_SLIVER 0.93969262
+/* Measure (mcor_sharpness) of the least angle of other triangles: of 20 degrees. */
+#define MCOR_SLIVER (4 * 0.93969262 * 0.93969262)
 
 /* Farthest start from the node, in edges; a line from there ends within MCOR_POINT_EXTENT. */
 #define MCOR_FARTHEST_START 1.5
@@ -161,64 +203,51 @@ static int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
   return mcor_is_merged(bunches, bunches->first[v]) ? bunches->first[v] : v;
 }
 
-/* Finds the corners of a triangle that is left. Returns whether it is. */
-static bool mcor_stand_ins(const mcor_bunches* bunches, int64_t t, int32_t of[3])
+/* Finds the corners of a triangle. Returns whether it is left, and v is one of them. */
+static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, int32_t of[3])
 {
   const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
   for (int c = 0; c < 3; ++c)
   {
     of[c] = mcor_stand_in(bunches, corner[c]);
   }
-  return mcor_is_left(of, 3);
+  return mcor_is_left(of, 3) && (of[0] == v || of[1] == v || of[2] == v);
 }
 
-/* Returns the cosine of the least angle of a triangle, 1 if it has no area, and finds the corner
- * with the widest one. These are opposite to the shortest and to the longest side. */
-static double mcor_least_angle(const double at[3][3], int* widest)
+/* Returns four times the squared cosine of the least angle of a triangle, 4 if it has no area, and
+ * finds the corner with the widest one. These are opposite to the shortest and to the longest
+ * side. */
+static double mcor_sharpness(const mcor_bunches* bunches, const int32_t place[3], int* widest)
 {
   double side[3]; /* squared, by the corner opposite to it */
   int least = 0;
   *widest = 0;
   for (int c = 0; c < 3; ++c)
   {
-    const double *q = at[(c + 1) % 3], *r = at[(c + 2) % 3];
+    const double *q = bunches->points[place[(c + 1) % 3]].at,
+                 *r = bunches->points[place[(c + 2) % 3]].at;
     const double d[3] = { r[0] - q[0], r[1] - q[1], r[2] - q[2] };
     side[c] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     *widest = side[c] > side[*widest] ? c : *widest;
     least = side[c] < side[least] ? c : least;
   }
-  const double p = side[(least + 1) % 3], q = side[(least + 2) % 3];
-  return side[least] > 0 ? (p + q - side[least]) / (2 * sqrt(p * q)) : 1;
+  const double p = side[(least + 1) % 3], q = side[(least + 2) % 3], along = p + q - side[least];
+  return side[least] > 0 ? along * along / (p * q) : 4;
 }
 
 static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_facing* facing = data;
-  const mcor_bunches* bunches = facing->bunches;
+  const mcor_bunches* bunches = data;
   for (int64_t t = first; t < last; ++t)
   {
-    const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
     int32_t place[3];
-    double at[3][3];
     int widest;
-    for (int c = 0; c < 3; ++c)
+    if (mcor_places_of(bunches, t, place) && mcor_sharpness(bunches, place, &widest) > MCOR_SLIVER)
     {
-      place[c] = mcor_place_of(bunches, corner[c]);
-    }
-    if (!mcor_is_left(place, 3))
-    {
-      continue;
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-      mcor_place_corner(facing, place[c], at[c]);
-    }
-    if (mcor_least_angle(at, &widest) > MCOR_SLIVER)
-    {
-      const int32_t v = mcor_stand_in(bunches, corner[widest]);
+      const int32_t v = mcor_stand_in(bunches, ((const cl_int*)bunches->triangles)[3 * t + widest]);
       const bool moves =
         bunches->key[v] != MCOR_FROZEN && (!bunches->held[v] || mcor_is_merged(bunches, v));
-      atomic_store_explicit(&facing->wide[v], moves, memory_order_relaxed);
+      atomic_store_explicit(&bunches->wide[v], moves, memory_order_relaxed);
     }
   }
   (void)slice;
@@ -226,30 +255,34 @@ static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last
 
 /* Finds the middle of the vertices around one, from its node, in edges. The sum is one of whole
  * numbers, so that its order does not count. Returns whether the vertex may start there. */
-static bool mcor_find_middle(const mcor_facing* facing, int32_t v, double start[3])
+static bool mcor_find_middle(const mcor_bunches* bunches, int32_t v, double start[3])
 {
-  const mcor_bunches* bunches = facing->bunches;
+  cl_int node[4];
   int64_t sum[3] = { 0 }, count = 0;
   for (int32_t e = bunches->star[bunches->first[v]]; e >= 0; e = bunches->before[e])
   {
     int32_t of[3];
-    const bool is_around = mcor_stand_ins(bunches, e / 3, of) && of[e % 3] == v;
-    for (int c = 1; c < 3 && is_around; ++c, ++count)
+    const bool is_around = mcor_is_around(bunches, e / 3, v, of);
+    for (int c = 0; c < 3 && is_around; ++c)
     {
-      const int32_t w = of[(e + c) % 3];
-      double at[3];
-      if (w < v && atomic_load_explicit(&facing->wide[w], memory_order_relaxed))
+      const int32_t w = of[c];
+      if (w == v)
+      {
+        continue;
+      }
+      ++count;
+      if (w < v && atomic_load_explicit(&bunches->wide[w], memory_order_relaxed))
       {
         return false; /* no two vertices beside each other move */
       }
-      mcor_place_corner(facing, mcor_place_of(bunches, w), at);
       for (int a = 0; a < 3; ++a)
       {
-        sum[a] += llround(ldexp(at[a] / facing->edge[a], 20));
+        const double at = bunches->points[bunches->now[w]].at[a];
+        sum[a] += llround(ldexp(at / mcor_edge_of(&bunches->context->lattice, a), 20));
       }
     }
   }
-  const cl_int* node = (const cl_int*)facing->node + 4 * (int64_t)mcor_place_of(bunches, v);
+  mcor_entry_node(bunches, mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v, node);
   bool is_near = count > 0;
   for (int a = 0; a < 3 && is_near; ++a)
   {
@@ -259,67 +292,60 @@ static bool mcor_find_middle(const mcor_facing* facing, int32_t v, double start[
   return is_near;
 }
 
-/* Returns the cosine of the least angle around a vertex; 2 if a triangle is turned over. */
-static double mcor_worst_around(const mcor_facing* facing, int32_t v)
+/* Returns the sharpness of the least angle around a vertex; 8 if a triangle is turned over. */
+static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
 {
-  const mcor_bunches* bunches = facing->bunches;
   double worst = -1;
   for (int32_t e = bunches->star[bunches->first[v]]; e >= 0; e = bunches->before[e])
   {
     int32_t of[3], place[3];
-    double at[3][3];
     int widest;
-    if (mcor_stand_ins(bunches, e / 3, of) && of[e % 3] == v)
+    if (mcor_is_around(bunches, e / 3, v, of))
     {
       for (int c = 0; c < 3; ++c)
       {
         place[c] = mcor_place_of(bunches, of[c]);
-        mcor_place_corner(facing, place[c], at[c]);
       }
-      worst = fmax(worst, mcor_is_turned(facing, place, 3) ? 2 : mcor_least_angle(at, &widest));
+      worst =
+        fmax(worst, mcor_is_turned(bunches, place) ? 8 : mcor_sharpness(bunches, place, &widest));
     }
   }
   return worst;
 }
 
 /* Lists the vertices that move in `order`, and their starts. */
-static mcor_status mcor_list_moving(
-  mcor_bunches* bunches, atomic_uchar* wide, double (*starts)[3], int* count)
+static mcor_status mcor_list_moving(mcor_bunches* bunches, double (*starts)[3], int* count)
 {
-  mcor_facing facing;
-  mcor_status status = mcor_begin_facing(bunches, 0, &facing);
-  facing.wide = wide;
-  status = status == MCOR_OK ? mcor_parallel_run(bunches->context, bunches->triangle_count,
-                                 MCOR_LIGHT_GRAIN, mcor_sliver_slice, &facing, NULL)
-                             : status;
-  for (int32_t v = 0; v < bunches->vertex_count && status == MCOR_OK; ++v)
+  MCOR_TRY(mcor_update_points(bunches));
+  MCOR_TRY(mcor_parallel_run(
+    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_sliver_slice, bunches, NULL));
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
-    if (wide[v] && mcor_find_middle(&facing, v, starts[*count]))
+    if (bunches->wide[v] && mcor_find_middle(bunches, v, starts[*count]))
     {
       bunches->order[(*count)++] = mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v;
     }
   }
-  return mcor_unmap_all(bunches->context, facing.views, 4, status);
+  return MCOR_OK;
 }
 
 /* Puts vertices back that did not reach the surface, or that made no angle around them better. */
 static mcor_status mcor_put_back(mcor_bunches* bunches, const int32_t* before, int count)
 {
-  mcor_facing facing;
-  const mcor_status status = mcor_begin_facing(bunches, 0, &facing);
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
+  MCOR_TRY(mcor_update_points(bunches));
+  for (int i = 0; i < count; ++i)
   {
     const int32_t v = mcor_vertex_of(bunches->order[i]);
     int32_t* place = mcor_place_in(bunches, bunches->order[i]);
     const int32_t now = *place;
-    const double worst = mcor_worst_around(&facing, v);
+    const double worst = mcor_worst_around(bunches, v);
     *place = before[i];
-    *place = mcor_get_real(bunches->context, facing.linear, now) <= 0 &&
-        worst < mcor_worst_around(&facing, v)
-      ? now
-      : before[i];
+    if (bunches->points[now].linear <= 0 && worst < mcor_worst_around(bunches, v))
+    {
+      *place = now;
+    }
   }
-  return mcor_unmap_all(bunches->context, facing.views, 4, status);
+  return MCOR_OK;
 }
 
 /* A vertex with the widest angle of a sliver starts anew from the middle of the vertices around
@@ -331,22 +357,20 @@ mcor_status mcor_move_slivers(mcor_bunches* bunches)
   {
     return MCOR_OK;
   }
-  atomic_uchar* wide = calloc(n, sizeof *wide);
   double(*starts)[3] = malloc(n * sizeof *starts);
   int32_t* before = malloc(n * sizeof *before);
   int count = 0;
-  mcor_status status = mcor_allocated(bunches->context, wide && starts && before);
-  status = status == MCOR_OK ? mcor_list_moving(bunches, wide, starts, &count) : status;
+  mcor_status status = mcor_allocated(bunches->context, starts && before);
+  MCOR_THEN(status, mcor_list_moving(bunches, starts, &count));
   for (int i = 0; i < count && status == MCOR_OK; ++i)
   {
     before[i] = *mcor_place_in(bunches, bunches->order[i]);
   }
-  if (status == MCOR_OK && count > 0)
+  if (count > 0)
   {
-    status = mcor_add_vertices(bunches, true, starts, count);
-    status = status == MCOR_OK ? mcor_put_back(bunches, before, count) : status;
+    MCOR_THEN(status, mcor_add_vertices(bunches, true, starts, count));
+    MCOR_THEN(status, mcor_put_back(bunches, before, count));
   }
-  free(wide);
   free(starts);
   free(before);
   return status;

@@ -385,10 +385,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
             self.UsedFluid = particles.describe_fluid()
         if particles.fluid is None:
-            self._warn_once("type", (describe_unused_types(data.GetPointData()) or ("",))[0])
-        if particles.solid is not None and particles.solid.all():
-            self._say(f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}, so there is no fluid and "
-                      "no surface.", "Warning")
+            self._warn_once("type", describe_unused_types(data.GetPointData()))
+        why = particles.describe_no_fluid()
+        if why:
+            self._say(why + ", so there is no fluid and no surface.", "Warning")
             return
         try:
             self._extract(particles, options, output)
@@ -446,6 +446,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             iso = [0.5 if choice.FreeSurface else found[1] if found else 0.0]
         arguments.set_iso_values(iso)
         options.nearest_particle = bool(particles.from_nearest)
+        self.UsedVolume = take_text(lib.mcor_describe_volume(ctypes.byref(arguments.input)))
         self.EstimatedCells = particles.estimate_cells(arguments, options)
         self._warn_once("cells of " + self.BlockName, take_text(lib.mcor_describe_estimate(self.EstimatedCells)))
         with self._called(particles, arguments) as surface:
@@ -491,7 +492,6 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.UsedIsoValues = ", ".join(f"{value:g}" for value in options.iso_values[:options.iso_count])
         self.IsoValueArrayName = particles.iso_value_name if options.iso_value else ""
         self.UsedSmoothingLength = take_text(lib.mcor_describe_smoothing_length(given, used))
-        self.UsedVolume = take_text(lib.mcor_describe_volume(given))
         self.UsedCubeSize = statistics.cube_size
         self.SurfaceMeasures = take_text(lib.mcor_describe_measures(used))
 

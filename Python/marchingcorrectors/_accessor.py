@@ -103,9 +103,8 @@ class PointData(FileParticles):
 
     def check_smoothing_length(self, words):
         if not words.get("estimate_smoothing_length") and words.get("smoothing_length") is None and not self.smoothing_length:
-            remedy = "Give smoothing_length=, a name or a value, or estimate_smoothing_length=True."
-            raise InvalidArgument(describe_missing_length(self.data.GetPointData(), remedy)
-                                  + f"Point arrays: {', '.join(self.arrays) or 'none'}.")
+            remedy = "Give smoothing_length=, a name or a value, or estimate_smoothing_length=True"
+            raise InvalidArgument(describe_missing_length(self.data.GetPointData(), remedy))
 
 
 @pyvista.register_dataset_accessor("sph", pyvista.DataSet)
@@ -176,12 +175,8 @@ class SphAccessor:
         keywords["attributes"] = [name for name in keywords["attributes"] if particles.array(name).dtype.kind in "fiub"]
         result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(np.asarray(points))
         found = _functions.probe(particles, result.points, **keywords)
-        for name, values in found.values.items():
-            result.point_data[name] = values
-        for name, values in found.gradients.items():
-            result.point_data[name + "_Gradient"] = values.reshape(len(values), -1)
-        result.point_data["WeightSum"] = found.weight_sum
-        result.point_data["vtkValidPointMask"] = found.valid.astype(np.uint8)
+        for name, values in found._point_arrays().items():
+            result.point_data[name] = values.reshape(len(values), -1) if values.ndim > 2 else values
         return result
 
     @_method(DERIVATIVES)

@@ -236,8 +236,7 @@ def write_table(output, head, rows):
 def run_probe(given, particles, points, make):
     """make(pyvista): the data set of these points (points, 3)."""
     found = probe(particles, points, attributes=attributes_of(given, particles), **find_words(given, PROBE, particles))
-    arrays = {**found.values, **{name + "_Gradient": values for name, values in found.gradients.items()},
-              "WeightSum": found.weight_sum, "vtkValidPointMask": found.valid.astype(np.uint8)}
+    arrays = found._point_arrays()
     ending = os.path.splitext(given.output)[1].lower()
     if ending == ".npz":
         np.savez_compressed(given.output, points=points, **arrays)
@@ -253,7 +252,7 @@ def run_probe(given, particles, points, make):
 
         mesh = make(pyvista)
         for name, values in arrays.items():
-            mesh.point_data[name] = values.reshape(len(points), -1) if values.ndim > 1 else values
+            mesh.point_data[name] = values.reshape(len(points), -1) if values.ndim > 2 else values
         mesh.save(given.output)
     return f"{len(points)} points, {int(found.valid.sum())} of them in the fluid"
 

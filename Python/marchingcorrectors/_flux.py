@@ -124,7 +124,7 @@ def flux(positions: Positions, velocity: ArrayLike, sections: Any, iso: float = 
     arguments = prepare(units, words, {"velocity": velocity} if density is None else
                         {"velocity": velocity, "density": density})
     names, array, _kept = _as_sections(sections, units)
-    arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
+    arguments.set_iso_values(iso)
     with called(lib.mcor_flux, c.mcor_fluxes, arguments, array, len(names)) as found:
         rows = take_rows(found.readings, found.count)
         columns = {name: rows[name].copy() for name in ("area", "volume_flux", "mass_flux", "velocity")}

@@ -76,7 +76,7 @@ def gauge(positions: Positions, lines: Any, iso: float = 0.5, **words: Unpack[Ke
     units = Units(positions)
     arguments = prepare(units, words)
     names, array = _as_lines(lines, units)
-    arguments.set_iso_values([iso] if np.ndim(iso) == 0 else iso)
+    arguments.set_iso_values(iso)
     structures = (c.mcor_gauge_line * max(len(array), 1))()
     for line, name, ends in zip(structures, names, array):
         getattr(line, "from")[:], line.to[:], line.name = ends[0], ends[1], as_bytes(name)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
 
 import numpy as np
 
+from ._arrays import camel
 from ._library import InvalidArgument
 from ._warnings import warn
 
@@ -110,7 +111,7 @@ class Surface(Result):
         for f in fields(self):
             array = getattr(self, f.name)
             if isinstance(array, np.ndarray) and f.name not in CELLS:
-                arrays["".join(part.capitalize() for part in f.name.split("_"))] = array
+                arrays[camel(f.name)] = array
         return arrays
 
     def to_pyvista(self) -> pyvista.PolyData:
@@ -235,6 +236,11 @@ class Samples(Result):
     def __repr__(self):
         return (f"<Samples: {self.valid.size} points, {int(self.valid.sum())} of them valid; "
                 f"arrays: {self._names(('valid',))}>")
+
+    def _point_arrays(self):
+        """As VTK's filter names them."""
+        return {**self.values, **{name + "_Gradient": values for name, values in self.gradients.items()},
+                "WeightSum": self.weight_sum, "vtkValidPointMask": self.valid.astype(np.uint8)}
 
 
 @dataclass(eq=False, repr=False)

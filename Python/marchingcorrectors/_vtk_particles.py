@@ -88,10 +88,21 @@ def join_velocity(data, count):
     return joined
 
 
+def list_names(data):
+    return f"Point arrays: {', '.join(names_of(data))}." if data.GetNumberOfArrays() else "The input has no point arrays."
+
+
 def describe_missing_length(data, remedy):
-    dual = lib.mcor_find_layout("\n".join(names_of(data)).encode(errors="replace")) == b"DualSPHysics"
-    return ("The particles have no smoothing length: no point array has one of its usual names (SmoothingLength, hsml, h, "
-            f"...). {remedy} " + "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. " * dual)
+    """data: point data. remedy: what to do, without the full stop."""
+    text = (f"The particles have no smoothing length. {remedy}; no point array has one of its usual names "
+            "(SmoothingLength, hsml, h, ...). ")
+    if lib.mcor_find_layout("\n".join(names_of(data)).encode(errors="replace")) == b"DualSPHysics":
+        text += "DualSPHysics does not store it: it is coefh x sqrt(3) x dp. "
+    spacing = detect(data, None, "spacing")
+    low, high = (0.0, -1.0) if spacing is None else spacing.GetRange()
+    if 0 < low == high:
+        text += f"By '{name_of(spacing)}', particles are {low:g} apart: {1.3 * low:g} is usual. "
+    return text + list_names(data)
 
 
 def rank_of(array):
@@ -131,12 +142,9 @@ def find_fluid(data):
 
 
 def describe_unused_types(data):
-    """(A sentence about the first array that does, although all particles count as fluid, its name); or None."""
-    for array in rank(data, "particle_type"):
-        sentence = describe_unused_type(name_of(array), to_numpy(array))
-        if sentence:
-            return sentence, name_of(array)
-    return None
+    """A sentence about the first array that does, although all particles count as fluid; or ""."""
+    sentences = (describe_unused_type(name_of(array), to_numpy(array)) for array in rank(data, "particle_type"))
+    return next(filter(None, sentences), "")
 
 
 def find_period(points):
@@ -189,13 +197,9 @@ class Particles:
 
     # -- arrays --
 
-    def list_point_arrays(self):
-        names = names_of(self.data)
-        return f"Point arrays: {', '.join(names)}." if names else "The input has no point arrays."
-
     def check(self, role, name, array):
         if array is None:
-            raise Unusable(f"There is no point array '{name}' for the {role}. {self.list_point_arrays()}")
+            raise Unusable(f"There is no point array '{name}' for the {role}. {list_names(self.data)}")
         if not isinstance(array, vtkDataArray):
             raise Unusable(f"The {role} array '{name_of(array)}' does not hold numbers.")
         if array.GetNumberOfTuples() != self.count or array.GetNumberOfComponents() < 1:
@@ -213,10 +217,10 @@ class Particles:
     def collect_scalar(self, scalar, dot):
         if not scalar.name and scalar.array is None:
             raise Unusable("No scalar to contour was chosen: choose a point array, or turn the free surface on. "
-                           + self.list_point_arrays())
+                           + list_names(self.data))
         if not scalar.on_points or not dot.on_points:
             raise Unusable(f"The scalar '{dot.name if scalar.on_points else scalar.name}' is not a point array; "
-                           f"SPH particles are points. {self.list_point_arrays()}")
+                           f"SPH particles are points. {list_names(self.data)}")
         if scalar.name == "Velocity" and scalar.array is None:
             scalar.array = join_velocity(self.data, self.count)
         self.scalar = self.check("scalar", scalar.name, scalar.array)
@@ -234,19 +238,18 @@ class Particles:
     def collect_quantities(self):
         choice = self.choice
         if not choice.EstimateSmoothingLength and not self.collect_quantity("smoothing_length"):
-            raise Unusable(describe_missing_length(self.data, "Name the array, give a constant, or ask for an estimate.")
-                           + self.list_point_arrays())
+            raise Unusable(describe_missing_length(
+                self.data, "Turn Estimate Smoothing Length on, or choose Smoothing Length Array"))
         is_set = (real_name(choice.MassArrayName) or real_name(choice.DensityArrayName) or choice.Mass or choice.Density)
         if not self.collect_quantity("volume", may_detect=not is_set):
-            has_mass = self.collect_quantity("mass")
-            self.collect_quantity("density")
-            if not has_mass:  # a density alone says nothing of volumes
-                self.values.pop("density", None)
-                self.used["density"] = None
-        if choice.ParticleVolume > 0 and "volume" not in self.values and not {"mass", "density"} <= set(self.values):
-            self.values["volume"], self.used["mass"], self.used["density"] = choice.ParticleVolume, None, None
-            self.values.pop("mass", None)
-            self.values.pop("density", None)
+            has = self.collect_quantity("mass"), self.collect_quantity("density")
+            by_constant = choice.ParticleVolume > 0 and not all(has)
+            # A density alone says nothing of volumes.
+            for quantity in ("mass", "density") if by_constant else () if has[0] else ("density",):
+                self.values.pop(quantity, None)
+                self.used[quantity] = None
+            if by_constant:
+                self.values["volume"] = choice.ParticleVolume
 
     def collect_quantity(self, quantity, may_detect=True):
         """A constant goes before a name, a name before the usual names. Whether there is one."""
@@ -277,10 +280,22 @@ class Particles:
             x = to_numpy(self.positions)
             present = ((x >= bounds[::2]) & (x <= bounds[1::2])).all(axis=1)
         for name in {name for name, *_ in self.choice.Only}:
-            values = to_numpy(self.find("only", name))
+            values = to_numpy(self.find("choice of particles", name))
             present &= np.any([(values >= low) & (values <= high) for each, low, high in self.choice.Only if each == name],
                               axis=0)
         return present
+
+    def describe_no_fluid(self):
+        """Why no particle is fluid; "" where some are."""
+        choice, present = self.choice, np.ones(self.count, bool) if self.present is None else self.present
+        if (present if self.solid is None else present & ~self.solid).any():
+            return ""
+        if present.any():
+            return f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}"
+        words = ["within " + ",".join(f"{side:g}" for side in choice.Within)] if any(choice.Within) else []
+        for i, (name, low, high) in enumerate(choice.Only):
+            words.append("left by " * (i == 0) + f"{name}={low:g}" + f":{high:g}" * (low != high))
+        return "No particle is " + " and ".join(words)
 
     def name_scalar(self, taken):
         """Computed arrays keep their names, which users look for."""

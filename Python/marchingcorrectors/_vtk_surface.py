@@ -119,8 +119,8 @@ def add_parameters(data, particles, arguments, wall_share):
     for name in ("smoothing_length", "volume", "mass", "density"):
         array = getattr(given, name)
         add(data, camel(name) + "Array", (array.name or b"").decode())
-        if name in ("mass", "density") and not array.data and array.constant:
-            add(data, camel(name), [array.constant])
+        if name != "smoothing_length" and not array.data and array.constant:
+            add(data, "ParticleVolume" if name == "volume" else camel(name), [array.constant])
     for name in ("smoothing_length_is_support_radius", "estimate_smoothing_length", *["ignore_solids"] * has_fluid):
         add(data, camel(name), [getattr(given, name)])
     add(data, "Scalar", particles.scalar_name)

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import (
 from marchingcorrectors import vtkMarchingCorrectors
 from vtk_test import (
     COUNT, H, POINTS, SPACING, add, blocks_of, cube, lattice, particles_of, points_of, run, sphere, statistics_of, surface_of,
-    values_of)
+    take_step, values_of)
 
 ONES = numpy.ones((COUNT, 3))
 BARE = {"InterpolateAttributes": 0, "ComputeScalars": 0}
@@ -57,8 +57,8 @@ class TestWeird(unittest.TestCase):
                 (("dot product", "'Vector'"), cube(Vector=ONES), {"InputArrayToProcess": (1, 0, 0, POINTS, "Vector")}),
                 (("'Vector'", "smoothing length", "3 components"), cube(Vector=ONES), {"SmoothingLengthArrayName": "Vector"}),
                 (("'Pair' has 2 components",), cube(Pair=ONES[:, :2]), {"FluidArrayName": "Pair"}),
-                (("no smoothing length", "stimate"), without("SmoothingLength"), {}),
-                (("no smoothing length",), cube(), {"DetectArrays": 0}),
+                (("no smoothing length. Turn Estimate Smoothing Length on, or choose",), without("SmoothingLength"), {}),
+                (("By 'Spacing', particles are 0.1 apart: 0.13 is",), cube(Spacing=numpy.full(COUNT, 0.1)), {"DetectArrays": 0}),
                 *(((f"'NoSuch' for the {role}", "Point arrays"), cube(), {name + "ArrayName": "NoSuch"}) for name, role in (
                     ("SmoothingLength", "smoothing length"), ("Volume", "volume"), ("Mass", "mass"), ("Density", "density"),
                     ("Fluid", "fluid"))),
@@ -89,10 +89,18 @@ class TestWeird(unittest.TestCase):
             surface, _ = run(extract, **settings)
             self.assertEqual(extract.GetErrorMessage(), "")
             self.assertIn(surface.GetNumberOfPoints() > 0, (there, there is None or there))
-        for settings in ({"Value": (0, 99)}, {"FluidArrayName": "Radius", "FluidValue": -5}):
+        def leave_none(extract):
+            extract.SetWithin(9, 10, 9, 10, 9, 10)
+            extract.AddOnly("Radius", 7, 8)
+
+        for step, words in (({"Value": (0, 99)}, "99 is outside"),
+                            ({"FluidArrayName": "Radius", "FluidValue": -5}, "No particle has Radius = -5, so there"),
+                            (leave_none, "No particle is within 9,10,9,10,9,10 and left by Radius=7:8, so there")):
             extract = sphere()
-            surface, told = run(extract, **settings)
+            take_step(step, extract)
+            surface, told = run(extract)
             self.assertEqual((surface.GetNumberOfPoints(), len(told), extract.GetErrorMessage()), (0, 1, ""))
+            self.assertIn(words, told[0])
 
     def test_recovery(self):
         extract = sphere()

@@ -56,7 +56,7 @@ class Test(unittest.TestCase):
         self.assertEqual(sorted(names), ["Normals", "Pressure"])
         with self.assertRaisesRegex(mc.InvalidArgument, "'Speed'.*Velocity"):
             self.dam.sph.isosurface("Speed", 1.0)
-        with self.assertRaisesRegex(mc.InvalidArgument, "no smoothing length: .*estimate_smoothing_length=True"):
+        with self.assertRaisesRegex(mc.InvalidArgument, "no smoothing length. .*estimate_smoothing_length=True"):
             pyvista.PolyData(self.dam.points).sph.free_surface(volume=1e-5)
 
     def test_box_and_period(self):

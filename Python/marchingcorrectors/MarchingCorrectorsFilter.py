@@ -6,7 +6,7 @@ This file is a plugin for any ParaView, too: Tools > Manage Plugins > Load New.
 """
 import ctypes
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import SimpleNamespace
@@ -30,18 +30,17 @@ from vtkmodules.vtkCommonMisc import vtkContourValues
 
 from marchingcorrectors import Cancelled, Context, DeviceError, Error
 from marchingcorrectors import _structs as c
-from marchingcorrectors._arrays import camel
+from marchingcorrectors._arrays import QUANTITIES, camel
 from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
-from marchingcorrectors._library import devices as list_devices
-from marchingcorrectors._library import lib
+from marchingcorrectors._library import devices, lib, take_text
 from marchingcorrectors._options import OUTPUTS
 from marchingcorrectors._vtk_blocks import (describe_mesh, find_walls, join_blocks, list_all, name_blocks, sets_of,
                                              take_vertices)
 from marchingcorrectors._vtk_particles import (NO_PERIOD, Particles, Request, Unusable, choose_array, describe_unused_types,
                                                find_fittest, find_period, is_single, name_of, varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
-from marchingcorrectors._warnings import describe_warnings, take_text
+from marchingcorrectors._warnings import describe_warnings
 
 BIG = 2147483647
 KERNELS = [name[len("MCOR_"):] for name in c.ENUMS["mcor_sph_kernel"] if not name.endswith("_COUNT")]
@@ -96,7 +95,7 @@ def with_properties(kind):
         setattr(kind, "Get" + name, lambda self, name=name: getattr(self, name))
     for name in ("ScalarRange", "IsoValue", "Components", "Dimension", "Cells", "Fluid", "Array"):
         setattr(kind, "GetNext" + name, lambda self, name=name: self._look_ahead()[name])
-    for quantity in ("SmoothingLength", "Volume", "Mass", "Density"):
+    for quantity in map(camel, QUANTITIES):
         setattr(kind, f"GetUsed{quantity}ArrayName", lambda self, q=quantity: self.UsedNames.get(q, ""))
     for number, name in enumerate(KERNELS):
         setattr(kind, name, number)
@@ -127,6 +126,8 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
     WEIGHT_SUM, EIGENVALUE = range(2)
     SOLIDS_WEIGHT, SOLIDS_IGNORE, SOLIDS_WALL, SOLIDS_AUTO = range(4)
     TOGETHER, APART = range(2)
+    ESTIMATE_SPACING, ESTIMATE_NEIGHBORS = range(2)
+    DIMENSION_AUTO, DIMENSION_2, DIMENSION_3 = 0, 2, 3
     MAGNITUDE = -1
     Box, PeriodicBounds, Within = (0.0, 1.0) * 3, (0.0,) * 6, (0.0,) * 6
 
@@ -251,7 +252,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     @staticmethod
     def ListDevices():
-        return "".join(f"{i}: {device}\n" for i, device in enumerate(list_devices()))
+        return "".join(f"{i}: {device}\n" for i, device in enumerate(devices()))
 
     def ReleaseDeviceMemory(self):
         """In a run, which uses it: at its end."""
@@ -286,7 +287,7 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         choice = self._choice()
         choice.InterpolateAttributes = False
         particles = Particles(choice, points)
-        try:
+        with suppress(Unusable):
             particles.collect_solids()
             ahead["Fluid"] = particles.describe_fluid()
             if not choice.FreeSurface:
@@ -297,18 +298,14 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                     ahead["ScalarRange"] = min(*ends, *before), max(*ends, *before)
                     ahead["IsoValue"] = ahead["IsoValue"] if before else value
                     ahead["Components"] = 1 if particles.dot is not None else particles.scalar.GetNumberOfComponents()
-        except Unusable:
-            pass
         choice = self._choice()
         choice.FreeSurface, choice.InterpolateAttributes = True, False
         particles = Particles(choice, points)
-        try:
+        with suppress(Unusable):
             particles.collect((None, None), [])
             given = particles.arguments()
             ahead["Dimension"] = lib.mcor_find_dimension(ctypes.byref(given.input), None, choice.Dimension)
             ahead["Cells"] += particles.estimate_cells(given, self._options(choice))
-        except Unusable:
-            pass
 
     # -- a run --
 

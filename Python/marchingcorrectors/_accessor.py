@@ -11,7 +11,8 @@ import numpy as np
 import pyvista
 
 from . import _flux, _functions, _gauge, _project
-from ._call import QUANTITIES, Shared, own_keywords
+from ._arrays import QUANTITIES
+from ._call import Shared, own_keywords
 from ._library import InvalidArgument
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
 from ._vtk_blocks import describe_mesh, join_blocks, take_vertices

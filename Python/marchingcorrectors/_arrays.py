@@ -7,14 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from . import _structs as c
-from ._library import ERRORS, Error, InvalidArgument, lib
+from ._library import ERRORS, Error, InvalidArgument, lib, take_text
 from ._options import ISOSURFACE, did_you_mean, kind_of, words_of
 from ._units import plain, unit_of, without_unit
-from ._warnings import take_text
 
 FLOATS = {np.dtype(np.float32): c.ENUMS["mcor_type"]["MCOR_FLOAT32"],
           np.dtype(np.float64): c.ENUMS["mcor_type"]["MCOR_FLOAT64"]}
 ABSENT = 2  # MCOR_ABSENT
+QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 WORDS = {int: "whole number", float: "number"}
 # As the header spells them: "cubic_spline" is "cubic".
 OTHER_WORDS = {"precision": {"float32": "single", "float64": "double"},

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Tuple, Union, cast
 
 from . import _structs as c
-from ._arrays import SUMMED, Arguments, as_bytes, choose
+from ._arrays import QUANTITIES, SUMMED, Arguments, as_bytes, choose
 from ._context import Context, default_context
 from ._library import InvalidArgument, InvalidData, lib
 from ._options import Function, Options, check_names, did_you_mean, show
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     Attributes = Union[Mapping[str, ArrayLike], Frame, Sequence[str]]
     Only = Union[Mapping[str, Union[float, Tuple[float, float]]], ArrayLike]
 
-QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 # Arguments for which particles of a file take the name of an array.
 ARRAYS = ("scalar", "scalar_dot", "velocity", "weighted_by", "solid", *QUANTITIES)
 

@@ -55,6 +55,17 @@ lib = _open()
 _free = ctypes.CDLL("ucrtbase" if os.name == "nt" else None).free  # of the C library that the core uses
 _free.restype, _free.argtypes = None, [ctypes.c_void_p]
 
+
+def take_text(pointer):
+    """A text of the core, which is freed; "" for NULL."""
+    if not pointer:
+        return ""
+    try:
+        return ctypes.string_at(pointer).decode(errors="replace")
+    finally:
+        _free(pointer)
+
+
 _state_lock = threading.Lock()
 _ready_in = None  # the process in which OpenCL was started
 
@@ -74,10 +85,7 @@ def start():
 def _list():
     text = ctypes.c_void_p()
     lib.mcor_list_devices(ctypes.byref(text))
-    try:
-        return (ctypes.string_at(text) if text else b"").decode(errors="replace")
-    finally:
-        _free(text)
+    return take_text(text.value)
 
 
 def devices() -> List[str]:

@@ -9,12 +9,11 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkFloatArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _structs as c
-from ._arrays import SUMMED, Arguments, camel, place_period
+from ._arrays import QUANTITIES, SUMMED, Arguments, camel, place_period
 from ._library import lib
 from ._warnings import describe_unused_type
 
 GHOSTS = "vtkGhostType"
-QUANTITIES = ("smoothing_length", "volume", "mass", "density")
 NO_PERIOD = ("The field data of the particles give no period: there is no array PeriodicBounds, BoxSize, or box "
              "with boundaryType.")
 WALL_BLOCK = "WallBlock"  # of blocks that are one set: whether its name tells of walls

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray, vtkIdList, 
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from . import _structs as c
-from ._arrays import camel
+from ._arrays import QUANTITIES, camel
 
 # Options of mcor_options that are left out: users do not look for them, or statistics tell them.
 NOT_TOLD = ("", "Dimension", "CubeSize", "WallShare")
@@ -116,7 +116,7 @@ def add_iso_values(data, options):
 
 def add_parameters(data, particles, arguments, wall_share):
     o, given, has_fluid = arguments.options, arguments.input, particles.fluid is not None
-    for name in ("smoothing_length", "volume", "mass", "density"):
+    for name in QUANTITIES:
         array = getattr(given, name)
         add(data, camel(name) + "Array", (array.name or b"").decode())
         if name != "smoothing_length" and not array.data and array.constant:

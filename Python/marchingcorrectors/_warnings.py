@@ -8,7 +8,7 @@ import warnings
 import numpy as np
 
 from . import _structs as c
-from ._library import _free, lib
+from ._library import lib, take_text
 
 
 class InputWarning(UserWarning):
@@ -21,16 +21,6 @@ def warn(sentence):
     while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
     warnings.warn(sentence, InputWarning, stacklevel=level)
-
-
-def take_text(pointer):
-    """A text of the core, which is freed; "" for NULL."""
-    if not pointer:
-        return ""
-    try:
-        return ctypes.string_at(pointer).decode(errors="replace")
-    finally:
-        _free(pointer)
 
 
 def describe_warnings(arguments, surface):

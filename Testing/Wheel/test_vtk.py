@@ -90,19 +90,24 @@ class Test(unittest.TestCase):
 
     def test_properties_are_those_of_cxx(self):
         folder = Path(os.environ["MCOR_TEST_SOURCES"]) / "vtkMarchingCorrectors"
-        text = "".join((folder / name).read_text() for name in ("vtkSPHAlgorithm.h", "vtkMarchingCorrectors.h"))
+        headers = [(folder / name).read_text() for name in ("vtkSPHAlgorithm.h", "vtkMarchingCorrectors.h")]
+        text, public = "".join(headers), "".join(header.split("protected:")[0] for header in headers)
         names = {"Set" + name for name in re.findall(r"vtkSet(?:Clamp|StdStringFromChar|Vector\d)?Macro\((\w+)", text)}
         names |= {"Get" + name for name in re.findall(r"vtkGet(?:CharFromStdString|Vector\d)?Macro\((\w+)", text)}
         for kind, name in re.findall(r"^  vtkSPH(\w+)Macro\((\w+)", text, re.M):
             names |= {"Set" + name, "Get" + name, *([name + "On", name + "Off"] if kind == "Flag" else [])}
         names -= {"Setname", "Getname"}  # the macros' own
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
-                                text.split("protected:")[0], re.M))
+                                public, re.M))
         self.assertGreater(len(names), 100)
         # The wheel's filter runs in one process; the others are what panels of the C++ plugin begin with.
-        names -= {"SetPartition", "GetPartition", "GetNextBounds", "GetNextEstimate"}
-        lacking = sorted(name for name in names if not hasattr(vtkMarchingCorrectors, name))
+        names -= {"GetNextBounds", "GetNextEstimate"}
+        lacking = sorted(name for name in names if "Partition" not in name and not hasattr(vtkMarchingCorrectors, name))
         self.assertEqual(lacking, [], "add them to the plugin's XML, or to MarchingCorrectorsFilter.py")
+        constants = {name: int(value) for name, value in re.findall(r"^    ([A-Z]\w+) = (-?\d+)\b", public, re.M)}
+        self.assertEqual(constants.pop("BY_PARTICLES"), 0)  # of the partition
+        self.assertGreater(len(constants), 25)
+        self.assertEqual({name: getattr(vtkMarchingCorrectors, name, None) for name in constants}, constants)
         for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):
             if name == "NextIsoValue":  # no number where there is no input, in both
                 continue

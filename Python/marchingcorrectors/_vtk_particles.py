@@ -286,10 +286,12 @@ class Particles:
 
     def describe_no_fluid(self):
         """Why no particle is fluid; "" where some are."""
-        choice, present = self.choice, np.ones(self.count, bool) if self.present is None else self.present
-        if (present if self.solid is None else present & ~self.solid).any():
+        choice, fluid, present = self.choice, None if self.solid is None else ~self.solid, self.present
+        if present is not None:
+            fluid = present if fluid is None else fluid & present
+        if fluid is None or fluid.any():
             return ""
-        if present.any():
+        if present is None or present.any():
             return f"No particle has {choice.FluidArrayName} = {choice.FluidValue:g}"
         words = ["within " + ",".join(f"{side:g}" for side in choice.Within)] if any(choice.Within) else []
         for i, (name, low, high) in enumerate(choice.Only):

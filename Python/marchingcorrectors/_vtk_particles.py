@@ -414,23 +414,14 @@ class Request:
         info = requests.GetInformationObject(index)
         name = info.Get(vtkDataObject.FIELD_NAME()) or ""
         self.name = "" if name == "(automatic)" else name
-        attribute = info.Get(vtkDataObject.FIELD_ATTRIBUTE_TYPE()) if info.Has(
-            vtkDataObject.FIELD_ATTRIBUTE_TYPE()) else None
-        if not self.name and (name or attribute is None):
-            self._take_fittest(index, points)
-            return
-        association = info.Get(vtkDataObject.FIELD_ASSOCIATION())
-        self.on_points = association in (vtkDataObject.FIELD_ASSOCIATION_POINTS,
-                                         vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)
-        # Arrays of cells may be those of the particles now, see take_vertices().
-        self.on_points = self.on_points or bool(self.name and points.GetPointData().HasArray(self.name))
-        if self.on_points:
-            data = points.GetPointData()
-            self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(attribute)
-        if not self.name and (self.array is None or not isinstance(self.array, vtkDataArray) or rank_of(self.array) < 0):
-            self._take_fittest(index, points)
-
-    def _take_fittest(self, index, points):
-        """Nobody has chosen the active scalars of a file: they are taken if they are fit."""
-        best = find_fittest(points) if index == 0 else None
-        self.array = best if best is not None else self.array
+        kind, data = vtkDataObject.FIELD_ATTRIBUTE_TYPE(), points.GetPointData()
+        if self.name or not name and info.Has(kind):
+            # Arrays of cells may be those of the particles now, see take_vertices().
+            self.on_points = bool(self.name and data.HasArray(self.name)) or info.Get(vtkDataObject.FIELD_ASSOCIATION()) in (
+                vtkDataObject.FIELD_ASSOCIATION_POINTS, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS)
+            if self.on_points:
+                self.array = data.GetAbstractArray(self.name) if self.name else data.GetAbstractAttribute(info.Get(kind))
+        is_fit = isinstance(self.array, vtkDataArray) and rank_of(self.array) >= 0
+        if index == 0 and not self.name and not is_fit:  # nobody has chosen the active scalars of a file
+            best = find_fittest(points)
+            self.array = self.array if best is None else best

@@ -65,7 +65,7 @@ void mcor_pair_seed_pair(const mcor_grid* grid, MCOR_MARK_PARAMS, int j, int k)
     c[a] = (int)(from[a] / grid->step[a]);
     end[a] = (int)(to[a] / grid->step[a]);
     step[a] = to[a] < from[a] ? -1 : 1;
-    gap[a] = to[a] == from[a] ? 0 : 1 / (real)abs(to[a] - from[a]);
+    gap[a] = to[a] == from[a] ? 0 : 1 / fabs((real)(to[a] - from[a]));
     next[a] = mcor_pair_crossing(from[a], c[a] * edge[a], edge[a], step[a], gap[a], c[a] == end[a]);
     steps += abs(end[a] - c[a]);
   }

@@ -18,10 +18,11 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
     1;
   compare_state state = { reference, options, surface, mesh, trimmed, comparison,
     malloc(points * sizeof(int64_t)), malloc(edges * sizeof(int64_t)),
-    malloc(edges * sizeof(int64_t)), malloc(points * sizeof(double)) };
+    malloc(edges * sizeof(int64_t)), malloc(3 * points * sizeof(double)),
+    malloc(points * sizeof(double)) };
   int64_t* count = calloc(2 * components, sizeof(int64_t));
-  int enough =
-    state.vertex_edge && state.edge_vertex && state.second_vertex && state.vertex_cube && count;
+  int enough = state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient &&
+    state.vertex_cube && count;
   if (enough && reference->is_adaptive)
   {
     compare_adaptive(&state, count, count + components);
@@ -49,6 +50,7 @@ int oracle_compare(const oracle_reference* reference, const mcor_options* option
   free(state.vertex_edge);
   free(state.edge_vertex);
   free(state.second_vertex);
+  free(state.gradient);
   free(state.vertex_cube);
   free(count);
   return enough;

@@ -29,6 +29,7 @@ typedef struct compare_state
   /* [edge_count] of the oracle's surface, a point or -1. A pinched edge has a second vertex, as
    * each of its two cells has a fan of its own. */
   int64_t *edge_vertex, *second_vertex;
+  double* gradient;    /* [point_count][3], by the oracle */
   double* vertex_cube; /* [point_count], length of the vertex's edge */
 } compare_state;
 

@@ -256,6 +256,7 @@ void compare_vertices(compare_state* state)
     oracle_sample sample;
     int on_surface = 1;
     oracle_evaluate(&reference->field, NULL, &state->surface->points[3 * v], &sample);
+    memcpy(&state->gradient[3 * v], sample.gradient, sizeof(sample.gradient));
     compare_optional_arrays(state, v, &sample);
     const double residual = fabs(sample.value - reference->limits.iso) / reference->range;
     if (state->vertex_edge[v] == COMPARE_TRIM_VERTEX)
@@ -277,20 +278,6 @@ void compare_vertices(compare_state* state)
 
 /* ---- triangles ---- */
 
-/* 1 where the surface's normal at a vertex points up the vertex's edge, by the nodes; -1: down; 0: it is on no edge. */
-static int compare_normal_side(const compare_state* state, int64_t edge)
-{
-  const oracle_reference* r = state->reference;
-  if (edge < 0 || (r->is_adaptive && edge / 3 >= r->adaptive.edge_count))
-  {
-    return 0;
-  }
-  const int flags = r->is_adaptive ? r->adaptive.nodes.flags[r->adaptive.edges[edge / 3].node[0]]
-                                   : r->lattice.flags[edge / 3];
-  return flags & ORACLE_NODE_ABOVE ? 1 : -1;
-}
-
-/* Judges components by the sum of their triangles' normals along edges. */
 int compare_orientation(compare_state* state)
 {
   const mcor_surface* surface = state->surface;
@@ -305,18 +292,16 @@ int compare_orientation(compare_state* state)
     const int32_t* c = &surface->triangles[3 * t];
     double u[3];
     double v[3];
+    double g[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       u[axis] = surface->points[3 * c[1] + axis] - surface->points[3 * c[0] + axis];
       v[axis] = surface->points[3 * c[2] + axis] - surface->points[3 * c[0] + axis];
+      g[axis] = state->gradient[3 * c[0] + axis] + state->gradient[3 * c[1] + axis] +
+        state->gradient[3 * c[2] + axis];
     }
-    for (int corner = 0; corner < 3; ++corner)
-    {
-      const int64_t edge = state->vertex_edge[c[corner]];
-      const int side = compare_normal_side(state, edge);
-      const int64_t a = side ? (edge + 1) % 3 : 0, b = side ? (edge + 2) % 3 : 0;
-      balance[state->mesh->component[t]] += side * (u[a] * v[b] - u[b] * v[a]);
-    }
+    balance[state->mesh->component[t]] -= (u[1] * v[2] - u[2] * v[1]) * g[0] +
+      (u[2] * v[0] - u[0] * v[2]) * g[1] + (u[0] * v[1] - u[1] * v[0]) * g[2];
   }
   for (int64_t c = 0; c < components; ++c)
   {

@@ -26,8 +26,8 @@ typedef enum mcor_instructions
 typedef void mcor_native_run(unsigned number, void* const* arguments, size_t first, size_t last);
 typedef struct mcor_native_program
 {
-  const char*
-    options; /* as mcor_program_options writes them, from "-DMCOR_PROGRAM" on; NULL ends the list */
+  /* As mcor_program_options writes them, from "-DMCOR_PROGRAM" on; NULL ends the list. */
+  const char* options;
   mcor_instructions instructions;
   mcor_native_run* run;
   /* kernels: the names, each with a semicolon behind it. arguments: for each kernel a letter per

@@ -76,7 +76,7 @@ typedef struct mcor_flux_cut
   double crossing[2][2], places[2];
 } mcor_flux_cut;
 
-/* What differs between triangles and lines. Samples of a piece are its corners, the middles of its
+/* Triangles and lines differ in this. Samples of a piece are its corners, the middles of its
  * edges, and the middle. */
 #define MCOR_FLUX_POINTS 7
 typedef struct mcor_flux_form
@@ -96,8 +96,7 @@ typedef struct mcor_flux_field
 
 typedef struct mcor_flux_job
 {
-  mcor_gauge_job
-    edges; /* must be first; finds crossings on edges of pieces; its run evaluates the field */
+  mcor_gauge_job edges; /* first; finds crossings on edges of pieces, its run evaluates the field */
   const mcor_section* sections;
   int64_t section_count;
   mcor_fluxes* fluxes;

@@ -41,8 +41,8 @@ typedef struct mcor_project_job
   double h_scale;
   mcor_column column;
   int channels; /* 2: a mean */
-  double
-    unit[2][2]; /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine */
+  /* [channel]: 3/2 of a power of 2, which rounds what is added to it; coarse, fine. */
+  double unit[2][2];
   double* sums; /* [channels][2][pixels]: multiples of the coarse and of the fine unit */
   int64_t* splats_before; /* [blocks + 1] */
   int64_t first_block;    /* first of the blocks spread together */

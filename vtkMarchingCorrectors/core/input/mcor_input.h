@@ -105,7 +105,7 @@ int mcor_read_places(const mcor_context* context, const mcor_input* input, int64
  * finite. */
 void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double* out);
 
-/* What a slice of a loop finds, or the loop: ranges (empty ones have least > most), sums of whole
+/* Results of a loop, or of one of its slices: ranges (empty ones have least > most), sums of whole
  * numbers, and the least of some indices. */
 #define MCOR_RANGES 13
 typedef struct mcor_findings

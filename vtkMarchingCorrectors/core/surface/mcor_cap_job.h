@@ -44,9 +44,8 @@ typedef struct mcor_cap_job
   MCOR_LIST(mcor_cap_vertex) vertices;
   MCOR_LIST(mcor_cap_line) lines; /* of cuts that are placed exactly: at walls, or in a plane */
   MCOR_LIST(mcor_cap_triangle) triangles;
-  MCOR_LIST(cl_ulong)
-  cells; /* squares of triangles, numbered behind all cells, see
-                                mcor_triangle_cell.c */
+  /* Squares of triangles, numbered behind all cells, see mcor_triangle_cell.c. */
+  MCOR_LIST(cl_ulong) cells;
   int64_t owned_count;
   const struct mcor_cap_square* square; /* the square that is being cut */
   cl_ulong number;                      /* its number, or that of a cell of a cap at a wall */

@@ -60,12 +60,10 @@ static int mcor_compare_bunches(const void* x, const void* y)
 }
 
 /* Sorts the merged bunches. A node has keys for two of them; others stay apart. */
-static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
+static void mcor_sort_bunches(mcor_bunches* bunches)
 {
-  mcor_sorted_bunch* sorted = malloc((size_t)bunches->vertex_count * sizeof *sorted);
+  mcor_sorted_bunch* sorted = bunches->sorted;
   int64_t count = 0;
-  bunches->sorted = sorted;
-  MCOR_TRY(mcor_allocated(bunches->context, sorted));
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
     if (mcor_is_merged(bunches, v))
@@ -85,7 +83,6 @@ static mcor_status mcor_sort_bunches(mcor_bunches* bunches)
     }
   }
   bunches->sorted_count = (int)count;
-  return MCOR_OK;
 }
 
 /* Lists the mesh's vertices in order, without cuts and caps. Returns their number. */
@@ -198,28 +195,27 @@ static mcor_status mcor_write_added(mcor_context* context, const mcor_adding* ad
     context, add->lines ? &mesh->offset : &mesh->ends, o * width, add->data, n * width);
 }
 
-/* Notes the places of the new vertices, and the first one of each level. */
-static void mcor_note_added(mcor_bunches* bunches, int count)
+/* Notes that `count` vertices of the order are in the mesh from `at` on, and the first one of each
+ * level. */
+static void mcor_note_places(mcor_bunches* bunches, int at, int count, cl_int level_first[])
 {
-  mcor_mesh* mesh = &bunches->context->mesh;
-  const int old = mesh->vertex_count;
+  const int levels = bunches->context->lattice.levels;
   int level = 0;
   for (int i = 0; i < count; ++i)
   {
     const int32_t entry = bunches->order[i];
-    *mcor_place_in(bunches, entry) = old + i;
-    for (; level <= mcor_marched_node(bunches, mcor_vertex_of(entry))[3] >> MCOR_LEVEL_SHIFT;
+    *mcor_place_in(bunches, entry) = at + i;
+    for (; level < levels &&
+         level <= mcor_marched_node(bunches, mcor_vertex_of(entry))[3] >> MCOR_LEVEL_SHIFT;
          ++level)
     {
-      mesh->level_first[1][level] = old + i;
+      level_first[level] = at + i;
     }
   }
-  for (; level < bunches->context->lattice.levels; ++level)
+  for (; level <= levels; ++level)
   {
-    mesh->level_first[1][level] = old + count;
+    level_first[level] = at + count;
   }
-  mesh->march_count = old;
-  mesh->vertex_count = old + count;
 }
 
 mcor_status mcor_add_vertices(
@@ -233,14 +229,16 @@ mcor_status mcor_add_vertices(
     .node = malloc(4 * n * sizeof *add.node + 1),
     .data = malloc(4 * n * context->cl.real_size + 1) };
   mcor_status status = mcor_allocated(context, add.node && add.data);
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL)
-    : status;
-  status = status == MCOR_OK ? mcor_write_added(context, &add, count) : status;
+  MCOR_THEN(
+    status, mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL));
+  MCOR_THEN(status, mcor_write_added(context, &add, count));
   free(add.node);
   free(add.data);
   MCOR_TRY(status);
-  mcor_note_added(bunches, count);
+  mcor_mesh* mesh = &context->mesh;
+  mcor_note_places(bunches, mesh->vertex_count, count, mesh->level_first[1]);
+  mesh->march_count = mesh->vertex_count;
+  mesh->vertex_count += count;
   return mcor_launch_correction(context, MCOR_ON_BOUNDARY, lines);
 }
 
@@ -341,47 +339,31 @@ static mcor_status mcor_gather(
   mcor_gathering g = { .from = from, .width = width };
   *array = (mcor_buffer){ 0 };
   mcor_status status = mcor_reserve(context, array, (size_t)count * width);
-  status = status == MCOR_OK ? mcor_map(context, &in, (size_t)old * width, false, &g.in) : status;
-  status =
-    status == MCOR_OK ? mcor_map(context, array, (size_t)count * width, true, &g.out) : status;
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_gather_slice, &g, NULL)
-    : status;
+  MCOR_THEN(status, mcor_map(context, &in, (size_t)old * width, false, &g.in));
+  MCOR_THEN(status, mcor_map(context, array, (size_t)count * width, true, &g.out));
+  MCOR_THEN(
+    status, mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_gather_slice, &g, NULL));
   const mcor_mapping mapped[] = { { &in, 0, &g.in }, { array, 0, &g.out } };
   status = mcor_unmap_all(context, mapped, 2, status);
   mcor_release(context, &in);
   return status;
 }
 
-/* Notes the places of vertices, and the first one of each level. Cuts and caps follow the
- * vertices on edges. */
+/* Notes the places of vertices. Cuts and caps follow the vertices on edges. */
 static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
 {
-  const mcor_context* context = bunches->context;
   mcor_mesh* mesh = &bunches->context->mesh;
-  int level = 0;
-  for (int i = 0; i < count; ++i)
+  const int shift = march_count - bunches->march_count;
+  mcor_note_places(bunches, 0, march_count, mesh->level_first[0]);
+  for (int i = march_count; i < count; ++i)
   {
-    *mcor_place_in(bunches, bunches->order[i]) = i;
+    bunches->place[i - shift] = i;
   }
-  for (int i = 0; i < march_count; ++i)
+  for (int l = 0; l < bunches->context->lattice.levels; ++l)
   {
-    const cl_int* node = mcor_marched_node(bunches, mcor_vertex_of(bunches->order[i]));
-    for (; level < node[3] >> MCOR_LEVEL_SHIFT; ++level)
-    {
-      mesh->level_first[0][level + 1] = i;
-    }
+    mesh->level_first[1][l] = bunches->late ? bunches->cut_first[l] + shift : march_count;
   }
-  for (; level < context->lattice.levels; ++level)
-  {
-    mesh->level_first[0][level + 1] = march_count;
-  }
-  for (int l = 0; l < context->lattice.levels; ++l)
-  {
-    mesh->level_first[1][l] =
-      march_count + (bunches->late ? bunches->cut_first[l] - bunches->march_count : 0);
-  }
-  mesh->cap_first += march_count - bunches->march_count;
+  mesh->cap_first += shift;
   mesh->march_count = march_count;
   mesh->vertex_count = count;
 }
@@ -400,8 +382,7 @@ static mcor_status mcor_renumber_cuts(mcor_bunches* bunches)
     cut[i] =
       (cl_ulong)bunches->place[cut[i] >> 32] << 32 | (cl_ulong)bunches->place[cut[i] & UINT32_MAX];
   }
-  status =
-    status == MCOR_OK ? mcor_write(context, &mesh->cut_edges, cut, cuts * sizeof *cut) : status;
+  MCOR_THEN(status, mcor_write(context, &mesh->cut_edges, cut, cuts * sizeof *cut));
   free(cut);
   return status;
 }
@@ -530,14 +511,13 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
   MCOR_TRY(mcor_reserve(context, &context->box.cells, cells * sizeof(cl_ulong)));
   mcor_status status =
     mcor_map(context, &mesh->triangles, 3 * n * sizeof(cl_int), true, &triangle_view);
-  status = status == MCOR_OK
-    ? mcor_map(context, &context->box.cells, cells * sizeof(cl_ulong), true, &cell_view)
-    : status;
+  MCOR_THEN(
+    status, mcor_map(context, &context->box.cells, cells * sizeof(cl_ulong), true, &cell_view));
   filing.triangles = triangle_view;
   filing.cells = cell_view;
-  status = status == MCOR_OK ? mcor_parallel_run(context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
-                                 mcor_fill_slice, &filing, NULL)
-                             : status;
+  MCOR_THEN(status,
+    mcor_parallel_run(
+      context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_fill_slice, &filing, NULL));
   const mcor_mapping mapped[] = { { &mesh->triangles, 0, &triangle_view },
     { &context->box.cells, 0, &cell_view } };
   mesh->triangle_count = (int)n;
@@ -549,7 +529,7 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
 {
   MCOR_TRY(mcor_find_bunches(bunches));
-  MCOR_TRY(mcor_sort_bunches(bunches));
+  mcor_sort_bunches(bunches);
   MCOR_TRY(mcor_place_vertices(bunches));
   MCOR_TRY(mcor_take_apart(bunches));
   MCOR_TRY(mcor_move_slivers(bunches));
@@ -557,34 +537,44 @@ static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
   return mcor_file_triangles(bunches);
 }
 
-/* Memory of the host, and a copy of the vertices. */
+/* Memory of the host, in one block, and a copy of the vertices. */
 static mcor_status mcor_begin_bunches(mcor_bunches* b)
 {
   mcor_context* context = b->context;
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)b->vertex_count, march = (size_t)b->march_count,
                real = context->cl.real_size;
+  struct
+  {
+    void** array;
+    size_t bytes;
+  } const parts[] = { { (void**)&b->state, n * sizeof *b->state },
+    { (void**)&b->wide, n * sizeof *b->wide }, { (void**)&b->leans, n * sizeof *b->leans },
+    { (void**)&b->held, n * sizeof *b->held }, /* so far all zero */
+    { (void**)&b->key, n * sizeof *b->key }, { (void**)&b->first, n * sizeof *b->first },
+    { (void**)&b->next, n * sizeof *b->next }, { (void**)&b->star, n * sizeof *b->star },
+    { (void**)&b->before, 3 * (size_t)b->triangle_count * sizeof *b->before },
+    { (void**)&b->sorted, n * sizeof *b->sorted }, { (void**)&b->order, 2 * n * sizeof *b->order },
+    { (void**)&b->place, n * sizeof *b->place },
+    { (void**)&b->merged_place, n * sizeof *b->merged_place },
+    { (void**)&b->now, n * sizeof *b->now }, { (void**)&b->node, 4 * n * sizeof *b->node },
+    { &b->ends, 2 * march * real }, { &b->offset, b->late ? 4 * n * real : 0 } };
+  const size_t count = sizeof parts / sizeof parts[0];
+  size_t bytes = 0;
+  for (size_t i = 0; i < count; ++i)
+  {
+    bytes += (parts[i].bytes + 15) / 16 * 16;
+  }
+  b->memory = malloc(bytes);
+  MCOR_TRY(mcor_allocated(context, b->memory));
+  uint8_t* at = b->memory;
+  for (size_t i = 0; i < count; ++i)
+  {
+    *parts[i].array = at;
+    at += (parts[i].bytes + 15) / 16 * 16;
+  }
+  memset(b->memory, 0, (size_t)((uint8_t*)b->key - b->memory));
   memcpy(b->cut_first, mesh->level_first[1], sizeof b->cut_first);
-  b->node = malloc(4 * n * sizeof *b->node);
-  b->ends = malloc(2 * march * real);
-  b->offset = malloc(b->late ? 4 * n * real : 1);
-  b->key = malloc(n * sizeof *b->key);
-  b->first = malloc(n * sizeof *b->first);
-  b->next = malloc(n * sizeof *b->next);
-  b->star = malloc(n * sizeof *b->star);
-  b->before = malloc(3 * (size_t)b->triangle_count * sizeof *b->before);
-  b->state = calloc(n, sizeof *b->state);
-  b->leans = calloc(n, sizeof *b->leans);
-  b->order = malloc(2 * n * sizeof *b->order);
-  b->place = malloc(n * sizeof *b->place);
-  b->merged_place = malloc(n * sizeof *b->merged_place);
-  b->now = malloc(n * sizeof *b->now);
-  b->wide = calloc(n, sizeof *b->wide);
-  b->held = calloc(n, sizeof *b->held);
-  MCOR_TRY(mcor_allocated(context,
-    b->node && b->ends && b->offset && b->key && b->first && b->next && b->star && b->before &&
-      b->state && b->leans && b->order && b->place && b->merged_place && b->now && b->wide &&
-      b->held));
   for (int l = 0; l < context->lattice.levels; ++l)
   {
     MCOR_TRY(mcor_read(context, &mesh->triangle_base,
@@ -594,18 +584,6 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   MCOR_TRY(mcor_read(context, &mesh->node, 0, b->node, 4 * n * sizeof *b->node));
   MCOR_TRY(mcor_read(context, &mesh->ends, 0, b->ends, 2 * march * real));
   return b->late ? mcor_read(context, &mesh->offset, 0, b->offset, 4 * n * real) : MCOR_OK;
-}
-
-static void mcor_end_bunches(mcor_bunches* b)
-{
-  void* const arrays[] = { b->node, b->ends, b->offset, b->key, b->first, b->next, b->star,
-    b->before, b->state, b->leans, b->order, b->place, b->merged_place, b->held, b->sorted, b->now,
-    b->wide, b->points };
-  for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
-  {
-    free(arrays[i]);
-  }
-  MCOR_RELEASE(b->context, &b->corner_buffer, &b->cell_buffer);
 }
 
 bool mcor_compacts_late(const mcor_context* context)
@@ -634,9 +612,11 @@ mcor_status mcor_compact(mcor_context* context)
     { &bunches.cell_buffer, triangles * sizeof(cl_ulong), &bunches.cells } };
   const int count = mcor_follows_cells(context) ? 2 : 1;
   mcor_status status = mcor_begin_bunches(&bunches);
-  status = status == MCOR_OK ? mcor_map_all(context, views, count) : status;
-  status = status == MCOR_OK ? mcor_merge_bunches(&bunches) : status;
+  MCOR_THEN(status, mcor_map_all(context, views, count));
+  MCOR_THEN(status, mcor_merge_bunches(&bunches));
   status = mcor_unmap_all(context, views, count, status);
-  mcor_end_bunches(&bunches);
+  free(bunches.memory);
+  free(bunches.points);
+  MCOR_RELEASE(context, &bunches.corner_buffer, &bunches.cell_buffer);
   return status;
 }

@@ -55,6 +55,7 @@ typedef struct mcor_bunches
   int march_count, vertex_count, triangle_count; /* of the mesh before merging */
   int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* its level_first[1] */
   cl_int level_end[MCOR_TREE_LEVEL_LIMIT + 1];   /* end of the marched triangles of each level */
+  uint8_t* memory;                               /* of the arrays that follow */
   cl_int* node;                                  /* [vertex_count][4] */
   void *ends, *offset; /* real [march_count][2]; real [vertex_count][4], if late */
   mcor_buffer corner_buffer, cell_buffer;
@@ -68,8 +69,9 @@ typedef struct mcor_bunches
   struct mcor_sorted_bunch*
     sorted; /* bunches that were merged at first, in the order of vertices */
   int sorted_count;
-  mcor_point* points; /* [point_count]: vertices of the mesh */
+  mcor_point* points; /* [point_room]: vertices of the mesh, point_count so far */
   int point_count;
+  int64_t point_room;
   int32_t* now;       /* [vertex_count]: place of a vertex in the mesh, see mcor_place_of */
   atomic_uchar* wide; /* [vertex_count]: whether it has the widest angle of a sliver */
   uint8_t* held;      /* [vertex_count]: keys of cuts need the vertex, even if it is merged */

@@ -161,16 +161,17 @@ static int32_t mcor_first_of(int32_t* first, int32_t v)
 static void mcor_join_vertices(mcor_bunches* bunches)
 {
   const cl_int* corner = bunches->triangles;
-  const uint64_t* key = bunches->key;
   int32_t* first = bunches->first;
   for (int64_t t = 0; t < bunches->triangle_count; ++t, corner += 3)
   {
+    const int32_t v[3] = { corner[0], corner[1], corner[2] };
+    const uint64_t key[3] = { bunches->key[v[0]], bunches->key[v[1]], bunches->key[v[2]] };
     for (int c = 0; c < 3; ++c)
     {
-      const int32_t v = corner[c], w = corner[c < 2 ? c + 1 : 0];
-      if (key[v] == key[w] && key[v] != MCOR_FROZEN && v != w)
+      const int d = c < 2 ? c + 1 : 0;
+      if (key[c] == key[d] && key[c] != MCOR_FROZEN)
       {
-        const int32_t p = mcor_first_of(first, v), q = mcor_first_of(first, w);
+        const int32_t p = mcor_first_of(first, v[c]), q = mcor_first_of(first, v[d]);
         first[p > q ? p : q] = p > q ? q : p;
       }
     }

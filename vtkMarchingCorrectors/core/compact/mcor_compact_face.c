@@ -67,21 +67,24 @@ mcor_status mcor_find_places(mcor_bunches* bunches)
     bunches->context, bunches->vertex_count, MCOR_LIGHT_GRAIN, mcor_now_slice, bunches, NULL);
 }
 
-/* Reads the vertices that were added since the last time, and finds the places of those before
- * merging. */
+/* Reads the vertices that were added since the last time. */
 static mcor_status mcor_update_points(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  MCOR_TRY(mcor_find_places(bunches));
   if (bunches->point_count == mesh->vertex_count)
   {
     return MCOR_OK;
   }
-  mcor_point* points = realloc(bunches->points, n * sizeof *points);
-  MCOR_TRY(mcor_allocated(context, points));
-  bunches->points = points;
+  if (mesh->vertex_count > bunches->point_room)
+  {
+    const size_t room = n + n / 4;
+    mcor_point* points = realloc(bunches->points, room * sizeof *points);
+    MCOR_TRY(mcor_allocated(context, points));
+    bunches->points = points;
+    bunches->point_room = (int64_t)room;
+  }
   mcor_placing from = { .bunches = bunches };
   const mcor_mapping views[] = { { &mesh->node, 4 * n * sizeof(cl_int), &from.node },
     { &mesh->offset, 4 * n * real, &from.offset }, { &mesh->linear, n * real, &from.linear },
@@ -183,6 +186,7 @@ mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
   mcor_facing facing = { .bunches = bunches, .round = round };
   atomic_init(&facing.bad, 0);
   MCOR_TRY(mcor_update_points(bunches));
+  MCOR_TRY(mcor_find_places(bunches));
   MCOR_TRY(mcor_parallel_run(
     bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_face_slice, &facing, NULL));
   *found = atomic_load(&facing.bad);
@@ -214,25 +218,21 @@ static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, in
   return mcor_is_left(of, 3) && (of[0] == v || of[1] == v || of[2] == v);
 }
 
-/* Returns four times the squared cosine of the least angle of a triangle, 4 if it has no area, and
- * finds the corner with the widest one. These are opposite to the shortest and to the longest
- * side. */
-static double mcor_sharpness(const mcor_bunches* bunches, const int32_t place[3], int* widest)
+/* Returns four times the squared cosine of the least angle of a triangle, 4 if it has no area. It
+ * is opposite to the shortest side. side: squared, by the corner opposite to it. */
+static double mcor_sharpness(const mcor_bunches* bunches, const int32_t place[3], double side[3])
 {
-  double side[3]; /* squared, by the corner opposite to it */
-  int least = 0;
-  *widest = 0;
   for (int c = 0; c < 3; ++c)
   {
-    const double *q = bunches->points[place[(c + 1) % 3]].at,
-                 *r = bunches->points[place[(c + 2) % 3]].at;
+    const double *q = bunches->points[place[c < 2 ? c + 1 : 0]].at,
+                 *r = bunches->points[place[c > 0 ? c - 1 : 2]].at;
     const double d[3] = { r[0] - q[0], r[1] - q[1], r[2] - q[2] };
     side[c] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    *widest = side[c] > side[*widest] ? c : *widest;
-    least = side[c] < side[least] ? c : least;
   }
-  const double p = side[(least + 1) % 3], q = side[(least + 2) % 3], along = p + q - side[least];
-  return side[least] > 0 ? along * along / (p * q) : 4;
+  const double low = side[0] < side[1] ? side[0] : side[1],
+               high = side[0] < side[1] ? side[1] : side[0], least = low < side[2] ? low : side[2],
+               rest = low < side[2] ? side[2] : low, along = high + rest - least;
+  return high * rest > 0 ? along * along / (high * rest) : 4;
 }
 
 static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last)
@@ -241,9 +241,10 @@ static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last
   for (int64_t t = first; t < last; ++t)
   {
     int32_t place[3];
-    int widest;
-    if (mcor_places_of(bunches, t, place) && mcor_sharpness(bunches, place, &widest) > MCOR_SLIVER)
+    double side[3];
+    if (mcor_places_of(bunches, t, place) && mcor_sharpness(bunches, place, side) > MCOR_SLIVER)
     {
+      const int widest = side[2] > fmax(side[0], side[1]) ? 2 : side[1] > side[0];
       const int32_t v = mcor_stand_in(bunches, ((const cl_int*)bunches->triangles)[3 * t + widest]);
       const bool moves =
         bunches->key[v] != MCOR_FROZEN && (!bunches->held[v] || mcor_is_merged(bunches, v));
@@ -299,7 +300,7 @@ static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
   for (int32_t e = bunches->star[bunches->first[v]]; e >= 0; e = bunches->before[e])
   {
     int32_t of[3], place[3];
-    int widest;
+    double side[3];
     if (mcor_is_around(bunches, e / 3, v, of))
     {
       for (int c = 0; c < 3; ++c)
@@ -307,7 +308,7 @@ static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
         place[c] = mcor_place_of(bunches, of[c]);
       }
       worst =
-        fmax(worst, mcor_is_turned(bunches, place) ? 8 : mcor_sharpness(bunches, place, &widest));
+        fmax(worst, mcor_is_turned(bunches, place) ? 8 : mcor_sharpness(bunches, place, side));
     }
   }
   return worst;
@@ -317,6 +318,7 @@ static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
 static mcor_status mcor_list_moving(mcor_bunches* bunches, double (*starts)[3], int* count)
 {
   MCOR_TRY(mcor_update_points(bunches));
+  MCOR_TRY(mcor_find_places(bunches));
   MCOR_TRY(mcor_parallel_run(
     bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_sliver_slice, bunches, NULL));
   for (int32_t v = 0; v < bunches->vertex_count; ++v)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Output files by the rules of the program marching-correctors: written beside their places, then all take them."""
 import os
+import secrets
 import shutil
 import stat
-import tempfile
 
 from ._particles import FileError
 
@@ -68,7 +68,9 @@ class Outputs:
                 with open(target, "r+b"):  # asks the system, which may forbid it
                     pass
             folder, name = os.path.dirname(target), os.path.basename(path)
-            self._written.append((os.path.join(tempfile.mkdtemp(dir=folder, prefix=f".{name[:50]}."), name), target))
+            own = os.path.join(folder, f".{name[:50]}.{secrets.token_hex(4)}")
+            self._written.append((os.path.join(own, name), target))  # first, since a signal may end the program anywhere
+            os.mkdir(own, 0o700)
             return self._written[-1][0]
 
     def __enter__(self):
@@ -82,8 +84,16 @@ class Outputs:
                         _copy_mode(target, beside)
                     os.replace(beside, target)
         finally:
-            for beside, _ in self._written:
-                shutil.rmtree(os.path.dirname(beside), ignore_errors=True)
+            self._clear()
+
+    def _clear(self):
+        try:
+            while self._written:
+                shutil.rmtree(os.path.dirname(self._written[-1][0]), ignore_errors=True)
+                self._written.pop()
+        finally:
+            if self._written:  # a signal came
+                self._clear()
 
 
 def _copy_mode(old, new):

@@ -6,6 +6,7 @@
 
 #include "mcor_compact.h"
 #include "mcor_parallel.h"
+#include "mcor_vector.h"
 
 #include <stdlib.h>
 
@@ -34,18 +35,13 @@ static void mcor_place_slice(void* data, int slice, int64_t first, int64_t last)
     mcor_point* point = &bunches->points[i];
     const cl_int* node = (const cl_int*)from->node + 4 * i;
     const double size = 1u << (node[3] >> MCOR_LEVEL_SHIFT);
-    double g[3], length = 0;
     for (int a = 0; a < 3; ++a)
     {
       point->at[a] = (node[a] + mcor_get_real(context, from->offset, 4 * i + a)) * size *
         mcor_edge_of(&context->lattice, a);
-      g[a] = mcor_get_real(context, from->gradient, 4 * i + a);
-      length += g[a] * g[a];
+      point->uphill[a] = mcor_get_real(context, from->gradient, 4 * i + a);
     }
-    for (int a = 0; a < 3; ++a)
-    {
-      point->uphill[a] = length > 0 ? g[a] / sqrt(length) : 0;
-    }
+    mcor_normalise(point->uphill);
     point->linear = mcor_get_real(context, from->linear, i);
   }
   (void)slice;
@@ -119,23 +115,22 @@ static void mcor_make_bad(mcor_facing* facing, int32_t first)
  * unit gradients. */
 static bool mcor_is_turned(const mcor_bunches* bunches, const int32_t place[3])
 {
-  const mcor_point* points = bunches->points;
-  const double *p = points[place[0]].at, *q = points[place[1]].at;
-  double along = 0;
+  const mcor_point *p = &bunches->points[place[0]], *q = &bunches->points[place[1]];
+  double u[3], v[3], against[3];
+  mcor_subtract(q->at, p->at, u);
+  double normal[3] = { u[1], -u[0], 0 };
   for (int a = 0; a < 3; ++a)
   {
-    const int b = (a + 1) % 3, d = (a + 2) % 3;
-    double normal = a == 0 ? q[1] - p[1] : a == 1 ? p[0] - q[0] : 0;
-    double against = -points[place[0]].uphill[a] - points[place[1]].uphill[a];
-    if (bunches->corners == 3)
-    {
-      const double* r = points[place[2]].at;
-      normal = (q[b] - p[b]) * (r[d] - p[d]) - (q[d] - p[d]) * (r[b] - p[b]);
-      against -= points[place[2]].uphill[a];
-    }
-    along += normal * against;
+    against[a] = -p->uphill[a] - q->uphill[a];
   }
-  return !(along > 0);
+  if (bunches->corners == 3)
+  {
+    const mcor_point* r = &bunches->points[place[2]];
+    mcor_subtract(r->at, p->at, v);
+    mcor_cross(u, v, normal);
+    mcor_subtract(against, r->uphill, against);
+  }
+  return !(mcor_dot(normal, against) > 0);
 }
 
 static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
@@ -226,8 +221,9 @@ static double mcor_sharpness(const mcor_bunches* bunches, const int32_t place[3]
   {
     const double *q = bunches->points[place[c < 2 ? c + 1 : 0]].at,
                  *r = bunches->points[place[c > 0 ? c - 1 : 2]].at;
-    const double d[3] = { r[0] - q[0], r[1] - q[1], r[2] - q[2] };
-    side[c] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    double d[3];
+    mcor_subtract(r, q, d);
+    side[c] = mcor_dot(d, d);
   }
   const double low = side[0] < side[1] ? side[0] : side[1],
                high = side[0] < side[1] ? side[1] : side[0], least = low < side[2] ? low : side[2],

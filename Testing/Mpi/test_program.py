@@ -373,6 +373,20 @@ class Program(unittest.TestCase):
             self.assertGreater(alone.GetPointData().GetArray("Widening").GetRange()[1], 1.9)
             self.check_point_data(alone, ranks)
 
+    def test_factors_in_box(self):
+        """With a box, any number of particles may be far away from it."""
+        particles = read(PARTICLES)
+        box = "--box=" + ",".join(map(str, particles.GetBounds()))
+        for i in range(0, particles.GetNumberOfPoints(), 20):
+            particles.GetPoints().SetPoint(i, 1e6 + 1e3 * i, -1e6, 1e6)
+        write(particles, self.path("in.vtp"))
+        for name, run in (("alone.vtp", self.run_alone), ("ranks.vtp", self.run_ranks)):
+            self.good(run(self.path("in.vtp"), self.path(name), "--free-surface", "--smooth", box))
+        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
+        self.assertGreater(alone.GetNumberOfPoints(), 100)
+        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
+        self.check_point_data(alone, ranks)
+
     def write_series(self):
         """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""
         particles = read(PARTICLES)

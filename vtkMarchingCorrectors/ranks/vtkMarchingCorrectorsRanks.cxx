@@ -105,11 +105,11 @@ bool vtkMarchingCorrectors::WidenDistributed(vtkSharedRun& run, vtkMarchingCorre
   sums.Own = run.Own;
   sums.Options = mcor_spell_out(&run.Options);
   sums.Options.level_limit = 0;
-  std::fill(sums.Options.box, sums.Options.box + 6, 0.0);
-  if (!sums.Measure(mine, false))
+  if (!sums.Measure(mine, false)) // with the box, which tells the particles that are too far away
   {
     return false;
   }
+  std::fill(sums.Options.box, sums.Options.box + 6, 0.0);
   vtkSPHParticles* input =
     sums.Share(mine, [](vtkSPHParticles& near) { return near.CollectParticles(); });
   vtkSPHOwned<mcor_widening, mcor_free_widening> widening;

@@ -19,13 +19,9 @@ set(with_display "${PROJECT_SOURCE_DIR}/Testing/with-display.sh")
 if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
   mcor_add_example_test(python vtk "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/extract_surface.py" "${particles}" "${out}/free.vtp" "${out}/speed.vtp")
-  mcor_add_example_test(pictures vtk "${with_display}" "${MCOR_VTK_PYTHON}"
-    "${CMAKE_CURRENT_SOURCE_DIR}/readme_pictures.py" "${out}")
   mcor_add_example_test(gallery vtk "${with_display}" "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/Gallery/gallery.py" "${out}")
-  mcor_add_example_test(graded vtk "${with_display}" "${MCOR_VTK_PYTHON}"
-    "${CMAKE_CURRENT_SOURCE_DIR}/Gallery/graded.py" "${out}")
-  set_tests_properties(example.python example.pictures example.gallery example.graded PROPERTIES
+  set_tests_properties(example.python example.gallery PROPERTIES
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 

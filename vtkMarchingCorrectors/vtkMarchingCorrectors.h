@@ -113,9 +113,7 @@ public:
   vtkTypeMacro(vtkMarchingCorrectors, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * The modification time includes that of the contour values.
-   */
+  /** The modification time includes that of the contour values. */
   vtkMTimeType GetMTime() override;
 
   enum SeedModeType
@@ -150,9 +148,7 @@ public:
     SOLIDS_AUTO = 3    ///< as SOLIDS_WALL for a scalar, as SOLIDS_WEIGHT for the free surface
   };
 
-  /**
-   * Value of ScalarComponent that stands for the magnitude of a vector.
-   */
+  /** Value of ScalarComponent that stands for the magnitude of a vector. */
   enum
   {
     MAGNITUDE = -1
@@ -190,7 +186,7 @@ public:
    * Which component of the scalar array to contour; MAGNITUDE (-1, the default) is the Euclidean
    * norm. Not used for arrays with one component.
    */
-  vtkSPHValueMacro(ScalarComponent, int);
+  vtkSPHValueMacro(ScalarComponent, int, MAGNITUDE);
   void SetScalarComponentToMagnitude() { this->SetScalarComponent(MAGNITUDE); }
   ///@}
 
@@ -207,13 +203,13 @@ public:
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
    * the plain sum of the paper.
    */
-  vtkSPHFlagMacro(ShepardNormalization);
+  vtkSPHFlagMacro(ShepardNormalization, 1);
 
   /**
    * Contour the weight sum instead of a scalar: about 1 in the fluid, falling to 0 outside. Off by
    * default. When on, the scalar, the contour values and the thresholds are not used.
    */
-  vtkSPHFlagMacro(FreeSurface);
+  vtkSPHFlagMacro(FreeSurface, 0);
 
   ///@{
   /**
@@ -242,8 +238,8 @@ public:
    * unit L; 0 (the default): use CubeSizeFactor. Nodes lie at multiples of the size, from the
    * origin of the coordinates.
    */
-  vtkSPHValueMacro(CubeSizeFactor, double);
-  vtkSPHValueMacro(CubeSize, double);
+  vtkSPHValueMacro(CubeSizeFactor, double, 0.5);
+  vtkSPHValueMacro(CubeSize, double, 0.0);
   ///@}
 
   ///@{
@@ -256,10 +252,10 @@ public:
    * 24 (the default). The statistics have "CellsOfLevel", "TrianglesOfLevel", "FlatLoops" and
    * "HighestLevel", which periods may lower.
    */
-  vtkSPHClampMacro(CubeSizeMode, int, UNIFORM, ADAPTIVE);
+  vtkSPHClampMacro(CubeSizeMode, int, ADAPTIVE, UNIFORM, ADAPTIVE);
   void SetCubeSizeModeToUniform() { this->SetCubeSizeMode(UNIFORM); }
   void SetCubeSizeModeToAdaptive() { this->SetCubeSizeMode(ADAPTIVE); }
-  vtkSPHClampMacro(CubeLevelLimit, int, 0, 24);
+  vtkSPHClampMacro(CubeLevelLimit, int, 24, 0, 24);
   ///@}
 
   ///@{
@@ -273,7 +269,7 @@ public:
     BY_PARTICLES = 0,
     BY_WORK
   };
-  vtkSPHClampMacro(Partition, int, BY_PARTICLES, BY_WORK);
+  vtkSPHClampMacro(Partition, int, BY_WORK, BY_PARTICLES, BY_WORK);
   void SetPartitionToByParticles() { this->SetPartition(BY_PARTICLES); }
   void SetPartitionToByWork() { this->SetPartition(BY_WORK); }
   ///@}
@@ -285,9 +281,8 @@ public:
    * side by side make up the whole. Only the particles that reach the box are evaluated. The
    * lattice is that of all particles.
    */
-  vtkSPHFlagMacro(UseBox);
-  vtkSetVector6Macro(Box, double);
-  vtkGetVector6Macro(Box, double);
+  vtkSPHFlagMacro(UseBox, 0);
+  vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
   ///@}
 
   /**
@@ -296,7 +291,7 @@ public:
    * SOLIDS_WALL a free surface is closed at walls, too; lines that end at walls stay open. Trimming
    * may leave it open. Off by default. An error with PAIRS or Filled.
    */
-  vtkSPHFlagMacro(Capping);
+  vtkSPHFlagMacro(Capping, 0);
 
   /**
    * For particles in a plane: also fill the region above the lowest iso value, within the trimmed
@@ -304,12 +299,10 @@ public:
    * bands. The cell array "BandValue" has the iso value at which a triangle's band begins, and that
    * of a line. Off by default. An error in three dimensions.
    */
-  vtkSPHFlagMacro(Filled);
+  vtkSPHFlagMacro(Filled, 0);
 
   ///@{
-  /**
-   * Box as its lower corner and its lengths, for ParaView's box widget.
-   */
+  /** Box as its lower corner and its lengths, for ParaView's box widget. */
   void SetPanelBoxPosition(double x, double y, double z);
   void SetPanelBoxLength(double x, double y, double z);
   ///@}
@@ -321,7 +314,7 @@ public:
    * pair of particles lies on both sides of the fluid's surface. PAIRS is for comparisons with the
    * paper: an error with cubes of several sizes, a box, caps or several processes.
    */
-  vtkSPHClampMacro(SeedMode, int, COMPLETE, PAIRS);
+  vtkSPHClampMacro(SeedMode, int, COMPLETE, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }
   void SetSeedModeToPairs() { this->SetSeedMode(PAIRS); }
   ///@}
@@ -333,7 +326,7 @@ public:
    * TOPOLOGY_FIELD evaluates the field there, so that bridges and tunnels as thin as a cube are
    * those of the field. The surface is a manifold with both.
    */
-  vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
+  vtkSPHClampMacro(Topology, int, TOPOLOGY_TABLE, TOPOLOGY_TABLE, TOPOLOGY_FIELD);
   void SetTopologyToTable() { this->SetTopology(TOPOLOGY_TABLE); }
   void SetTopologyToField() { this->SetTopology(TOPOLOGY_FIELD); }
   ///@}
@@ -342,19 +335,17 @@ public:
    * Quick look: vertices by linear interpolation, no correction, normals of the triangles. Off by
    * default.
    */
-  vtkSPHFlagMacro(Preview);
+  vtkSPHFlagMacro(Preview, 0);
 
   /**
    * A compact contour: vertices of one node of the virtual grid become one, which is corrected
    * along the gradient. A quarter fewer triangles, hardly any slivers, the same pieces. Vertices at
    * borders, caps and periodic sides stay. Off by default. An error with Filled.
    */
-  vtkSPHFlagMacro(Compact);
+  vtkSPHFlagMacro(Compact, 0);
 
-  /**
-   * For pictures: Compact, and a Widening of 2 unless another one is set. Off by default.
-   */
-  vtkSPHFlagMacro(Smooth);
+  /** For pictures: Compact, and a Widening of 2 unless another one is set. Off by default. */
+  vtkSPHFlagMacro(Smooth, 0);
 
   /**
    * Above 1, each particle's smoothing length is made longer, by up to this factor, as far as the
@@ -362,7 +353,7 @@ public:
    * stay. Cubes and volumes are those of the original lengths; the array Widening is the factor.
    * From 1 (off, the default) to 4; 2 is usual.
    */
-  vtkSPHValueMacro(Widening, double);
+  vtkSPHValueMacro(Widening, double, 1.0);
 
   /**
    * The particles as a run with this filter's settings would take them, with the arrays Widening,
@@ -378,12 +369,10 @@ public:
    * default. Off keeps the triangles beyond, except for those that NodeThreshold discards. The free
    * surface is not trimmed.
    */
-  vtkSPHFlagMacro(Trim);
+  vtkSPHFlagMacro(Trim, 1);
 
-  /**
-   * Cells with a node whose weight sum is lower are discarded. No unit, 0.1 by default.
-   */
-  vtkSPHValueMacro(NodeThreshold, double);
+  /** Cells with a node whose weight sum is lower are discarded. No unit, 0.1 by default. */
+  vtkSPHValueMacro(NodeThreshold, double, 0.1);
 
   ///@{
   /**
@@ -394,7 +383,7 @@ public:
    * VertexThreshold: 0.3 trims about where a weight sum of 0.5 does; 0.75 trims inside the fluid,
    * 0.9 smoothing lengths from a flat surface. Near 0.5 the border is ragged.
    */
-  vtkSPHClampMacro(BoundaryDetection, int, WEIGHT_SUM, EIGENVALUE);
+  vtkSPHClampMacro(BoundaryDetection, int, WEIGHT_SUM, WEIGHT_SUM, EIGENVALUE);
   void SetBoundaryDetectionToWeightSum() { this->SetBoundaryDetection(WEIGHT_SUM); }
   void SetBoundaryDetectionToEigenvalue() { this->SetBoundaryDetection(EIGENVALUE); }
   ///@}
@@ -403,7 +392,7 @@ public:
    * Triangles are trimmed where the weight sum (or the eigenvalue, see BoundaryDetection) is lower.
    * No unit, 0.5 by default.
    */
-  vtkSPHValueMacro(VertexThreshold, double);
+  vtkSPHValueMacro(VertexThreshold, double, 0.5);
 
   ///@{
   /**
@@ -425,7 +414,7 @@ public:
    * weigh as much as the fluid, about half way between the particles of both; greater shares are
    * farther into the wall. GetRunStatistics() reports the share in use.
    */
-  vtkSPHValueMacro(WallShare, double);
+  vtkSPHValueMacro(WallShare, double, -1.0);
 
   ///@{
   /**
@@ -446,15 +435,15 @@ public:
    * - BoundaryFlag, "BoundaryFlag": 0 inside, 1 on the trim boundary, 2 on the trim boundary where the
    *   vertex stayed at the linear cut, 4 next to a cell that NodeThreshold discarded, 8 on a cap alone.
    */
-  vtkSPHFlagMacro(ComputeNormals);
-  vtkSPHFlagMacro(ComputeScalars);
-  vtkSPHFlagMacro(ComputeGradients);
-  vtkSPHFlagMacro(ComputeWeightSum);
-  vtkSPHFlagMacro(ComputeBoundaryEigenvalue);
-  vtkSPHFlagMacro(ComputeCurvature);
-  vtkSPHFlagMacro(ComputeCorrectionLength);
-  vtkSPHFlagMacro(ComputeResidual);
-  vtkSPHFlagMacro(ComputeBoundaryFlag);
+  vtkSPHFlagMacro(ComputeNormals, 1);
+  vtkSPHFlagMacro(ComputeScalars, 1);
+  vtkSPHFlagMacro(ComputeGradients, 0);
+  vtkSPHFlagMacro(ComputeWeightSum, 0);
+  vtkSPHFlagMacro(ComputeBoundaryEigenvalue, 0);
+  vtkSPHFlagMacro(ComputeCurvature, 0);
+  vtkSPHFlagMacro(ComputeCorrectionLength, 0);
+  vtkSPHFlagMacro(ComputeResidual, 0);
+  vtkSPHFlagMacro(ComputeBoundaryFlag, 0);
   ///@}
 
   /**
@@ -463,13 +452,14 @@ public:
    * NaN or infinite at a fluid particle is left out, with a warning, and so is one with the name of
    * a computed array or of the iso value. On by default.
    */
-  vtkSPHFlagMacro(InterpolateAttributes);
+  vtkSPHFlagMacro(InterpolateAttributes, 1);
 
   /**
    * Precision of the output points: vtkAlgorithm::DEFAULT_PRECISION (as the input points, the
    * default), SINGLE_PRECISION or DOUBLE_PRECISION.
    */
-  vtkSPHClampMacro(OutputPointsPrecision, int, SINGLE_PRECISION, DEFAULT_PRECISION);
+  vtkSPHClampMacro(
+    OutputPointsPrecision, int, DEFAULT_PRECISION, SINGLE_PRECISION, DEFAULT_PRECISION);
 
   ///@{
   /**
@@ -477,8 +467,8 @@ public:
    * of the scalar (no unit, > 0, 1e-6 by default) and the vertex is within 2e-5 cubes of the
    * surface, or after IterationLimit iterations (1 to 255, 30 by default).
    */
-  vtkSPHValueMacro(Tolerance, double);
-  vtkSPHClampMacro(IterationLimit, int, 1, 255);
+  vtkSPHValueMacro(Tolerance, double, 1e-6);
+  vtkSPHClampMacro(IterationLimit, int, 30, 1, 255);
   ///@}
 
   ///@{
@@ -528,45 +518,8 @@ protected:
 
   vtkNew<vtkContourValues> ContourValues;
   vtkNew<vtkContourValues> FreeSurfaceValues;
-  int ScalarComponent = MAGNITUDE;
-  vtkTypeBool ShepardNormalization = 1;
-  vtkTypeBool FreeSurface = 0;
 
-  double CubeSizeFactor = 0.5;
-  double CubeSize = 0.0;
-  vtkTypeBool UseBox = 0;
-  double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  vtkTypeBool Capping = 0;
-  vtkTypeBool Filled = 0;
-  int SeedMode = COMPLETE;
-  int CubeSizeMode = ADAPTIVE;
-  int CubeLevelLimit = 24;
-  int Partition = BY_WORK;
-  int Topology = TOPOLOGY_TABLE;
-  vtkTypeBool Preview = 0;
-  vtkTypeBool Trim = 1;
-  vtkTypeBool Compact = 0;
-  vtkTypeBool Smooth = 0;
-  double Widening = 1.0;
-  double NodeThreshold = 0.1;
-  int BoundaryDetection = WEIGHT_SUM;
-  double VertexThreshold = 0.5;
   int Solids = SOLIDS_AUTO;
-  double WallShare = -1.0;
-
-  vtkTypeBool ComputeNormals = 1;
-  vtkTypeBool ComputeGradients = 0;
-  vtkTypeBool ComputeScalars = 1;
-  vtkTypeBool ComputeWeightSum = 0;
-  vtkTypeBool ComputeBoundaryEigenvalue = 0;
-  vtkTypeBool ComputeCurvature = 0;
-  vtkTypeBool ComputeCorrectionLength = 0;
-  vtkTypeBool ComputeResidual = 0;
-  vtkTypeBool ComputeBoundaryFlag = 0;
-  vtkTypeBool InterpolateAttributes = 1;
-  int OutputPointsPrecision = DEFAULT_PRECISION;
-  double Tolerance = 1e-6;
-  int IterationLimit = 30;
 
   double FluidScalarRange[2] = { 0.0, 0.0 };
   std::string UsedIsoValues;
@@ -585,8 +538,8 @@ private:
   /** Finds the arrays of Widen() for this rank's particles, and statistics of them. */
   bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
     mcor_statistics& statistics);
-  void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input,
-    mcor_options options, mcor_surface& surface, vtkPolyData* output);
+  void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input, mcor_options options,
+    mcor_surface& surface, vtkPolyData* output);
   /** largestFloat: of the points of all ranks, see vtkMarchingCorrectorsOutput. */
   void WarnOf(const vtkMarchingCorrectorsInput& input, const mcor_surface& surface,
     const mcor_input& core, const mcor_options& options, double largestFloat);

@@ -56,22 +56,41 @@ class vtkSPHParticles;
 struct vtkSPHPeriod;
 struct vtkSPHRequest;
 
+///@{
 /**
- * Declares a setting of the filters by VTK's macros: SetX() and GetX(), and for a flag XOn() and
- * XOff().
+ * Declare SetX() and GetX() of a setting by VTK's macros, and for a flag XOn() and XOff(); those
+ * without Choice in their names also the member X, with its default.
  */
-#define vtkSPHValueMacro(name, type)                                                               \
+#define vtkSPHChoiceMacro(name, type)                                                              \
   vtkSetMacro(name, type);                                                                         \
   vtkGetMacro(name, type)
-#define vtkSPHClampMacro(name, type, least, most)                                                  \
-  vtkSetClampMacro(name, type, least, most);                                                       \
-  vtkGetMacro(name, type)
-#define vtkSPHTextMacro(name)                                                                      \
+#define vtkSPHChoiceTextMacro(name)                                                                \
   vtkSetStdStringFromCharMacro(name);                                                              \
   vtkGetCharFromStdStringMacro(name)
-#define vtkSPHFlagMacro(name)                                                                      \
-  vtkSPHValueMacro(name, vtkTypeBool);                                                             \
+#define vtkSPHChoiceFlagMacro(name)                                                                \
+  vtkSPHChoiceMacro(name, vtkTypeBool);                                                            \
   vtkBooleanMacro(name, vtkTypeBool)
+#define vtkSPHMemberMacro(...)                                                                     \
+protected:                                                                                         \
+  __VA_ARGS__;                                                                                     \
+                                                                                                   \
+public:
+#define vtkSPHValueMacro(name, type, usual)                                                        \
+  vtkSPHMemberMacro(type name = usual) vtkSPHChoiceMacro(name, type)
+#define vtkSPHTextMacro(name, usual)                                                               \
+  vtkSPHMemberMacro(std::string name = usual) vtkSPHChoiceTextMacro(name)
+#define vtkSPHFlagMacro(name, usual)                                                               \
+  vtkSPHMemberMacro(vtkTypeBool name = usual) vtkSPHChoiceFlagMacro(name)
+#define vtkSPHClampMacro(name, type, usual, least, most)                                           \
+  vtkSPHMemberMacro(type name = usual) vtkSetClampMacro(name, type, least, most);                  \
+  vtkGetMacro(name, type)
+#define vtkSPHVector3Macro(name, type, x, y, z)                                                    \
+  vtkSPHMemberMacro(type name[3] = { x, y, z }) vtkSetVector3Macro(name, type);                    \
+  vtkGetVector3Macro(name, type)
+#define vtkSPHVector6Macro(name, type, x0, x1, y0, y1, z0, z1)                                     \
+  vtkSPHMemberMacro(type name[6] = { x0, x1, y0, y1, z0, z1 }) vtkSetVector6Macro(name, type);     \
+  vtkGetVector6Macro(name, type)
+///@}
 
 #ifndef __VTK_WRAP__
 /** A range in which the values of a point array must be, see vtkSPHAlgorithm::AddOnly(). */
@@ -164,23 +183,21 @@ public:
     SINC_6 = 8          ///< (sin x / x)^6, x = pi r / (2 h), support radius 2 h
   };
 
-  /**
-   * The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name.
-   */
-  vtkSPHTextMacro(SmoothingLengthArrayName);
+  /** The point array of smoothing lengths (unit L, > 0). Empty (the default): found by name. */
+  vtkSPHChoiceTextMacro(SmoothingLengthArrayName);
 
   /**
    * One smoothing length for all particles, unit L. 0 (the default): use the array. If there is no
    * array, set this, or EstimateSmoothingLength.
    */
-  vtkSPHValueMacro(SmoothingLength, double);
+  vtkSPHChoiceMacro(SmoothingLength, double);
 
   /**
    * Estimate one smoothing length for all particles, 1.3 times their median spacing, for positions
    * without further data. It takes precedence over array and constant. Off by default. The
    * statistics report it as "SmoothingLengthRange".
    */
-  vtkSPHFlagMacro(EstimateSmoothingLength);
+  vtkSPHChoiceFlagMacro(EstimateSmoothingLength);
 
   enum EstimateType
   {
@@ -195,15 +212,16 @@ public:
    * over all particles x_j, d being the dimension, as Phantom, GADGET and SWIFT define it.
    * NeighborRatio: 1.3 by default, about 57 neighbours with the cubic spline.
    */
-  vtkSPHClampMacro(SmoothingLengthEstimate, int, ESTIMATE_SPACING, ESTIMATE_NEIGHBORS);
-  vtkSPHValueMacro(NeighborRatio, double);
+  vtkSetClampMacro(SmoothingLengthEstimate, int, ESTIMATE_SPACING, ESTIMATE_NEIGHBORS);
+  vtkGetMacro(SmoothingLengthEstimate, int);
+  vtkSPHChoiceMacro(NeighborRatio, double);
   ///@}
 
   /**
    * The array or constant is the support radius of the kernel (where it becomes 0) instead of the
    * smoothing length. Off by default.
    */
-  vtkSPHFlagMacro(SmoothingLengthIsSupportRadius);
+  vtkSPHChoiceFlagMacro(SmoothingLengthIsSupportRadius);
 
   ///@{
   /**
@@ -212,18 +230,18 @@ public:
    * and densities may have any units that give volumes in L^3; densities are used only with masses.
    * Mass and Density: one value for all particles; 0 (the default): use the array.
    */
-  vtkSPHTextMacro(VolumeArrayName);
-  vtkSPHTextMacro(MassArrayName);
-  vtkSPHTextMacro(DensityArrayName);
-  vtkSPHValueMacro(Mass, double);
-  vtkSPHValueMacro(Density, double);
+  vtkSPHChoiceTextMacro(VolumeArrayName);
+  vtkSPHChoiceTextMacro(MassArrayName);
+  vtkSPHChoiceTextMacro(DensityArrayName);
+  vtkSPHChoiceMacro(Mass, double);
+  vtkSPHChoiceMacro(Density, double);
   ///@}
 
   /**
    * One volume for all particles where nothing else tells volumes: neither their array, nor mass
    * and density. Unit L^3, in two dimensions L^2. 0 (the default): volumes are computed then.
    */
-  vtkSPHValueMacro(ParticleVolume, double);
+  vtkSPHChoiceMacro(ParticleVolume, double);
 
   ///@{
   /**
@@ -244,17 +262,13 @@ public:
    * processes, any of them may have the array. An error if there is none, or if processes have
    * different ones. Off by default.
    */
-  vtkSPHFlagMacro(DetectPeriod);
+  vtkSPHChoiceFlagMacro(DetectPeriod);
 
-  /**
-   * Find smoothing length, volume, mass and density arrays by their usual names. On by default.
-   */
-  vtkSPHFlagMacro(DetectArrays);
+  /** Find smoothing length, volume, mass and density arrays by their usual names. On by default. */
+  vtkSPHChoiceFlagMacro(DetectArrays);
 
   ///@{
-  /**
-   * The arrays used by the last run; empty for a constant or a computed quantity.
-   */
+  /** The arrays used by the last run; empty for a constant or a computed quantity. */
   vtkGetCharFromStdStringMacro(UsedSmoothingLengthArrayName);
   vtkGetCharFromStdStringMacro(UsedVolumeArrayName);
   vtkGetCharFromStdStringMacro(UsedMassArrayName);
@@ -268,10 +282,9 @@ public:
   vtkGetCharFromStdStringMacro(UsedVolume);
 
   ///@{
-  /**
-   * The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation.
-   */
-  vtkSPHClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
+  /** The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation. */
+  vtkSetClampMacro(Kernel, int, CUBIC_SPLINE, SINC_6);
+  vtkGetMacro(Kernel, int);
   void SetKernelToCubicSpline() { this->SetKernel(CUBIC_SPLINE); }
   void SetKernelToQuadratic() { this->SetKernel(QUADRATIC); }
   void SetKernelToMPrime4() { this->SetKernel(M_PRIME_4); }
@@ -298,7 +311,7 @@ public:
    * The kernels use this factor times the smoothing length; volumes do not change. No unit, > 0,
    * 1 by default. Less than 1 gives less smoothing.
    */
-  vtkSPHValueMacro(HScaleFactor, double);
+  vtkSPHValueMacro(HScaleFactor, double, 1.0);
 
   ///@{
   /**
@@ -312,7 +325,8 @@ public:
     DIMENSION_2 = 2,
     DIMENSION_3 = 3
   };
-  vtkSPHClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
+  vtkSetClampMacro(Dimension, int, DIMENSION_AUTO, DIMENSION_3);
+  vtkGetMacro(Dimension, int);
   ///@}
 
   /**
@@ -327,8 +341,8 @@ public:
    * uses fluid particles only. Empty (the default): all particles are fluid. FluidValue is 0 by
    * default.
    */
-  vtkSPHTextMacro(FluidArrayName);
-  vtkSPHValueMacro(FluidValue, double);
+  vtkSPHChoiceTextMacro(FluidArrayName);
+  vtkSPHChoiceMacro(FluidValue, double);
   ///@}
 
   /**
@@ -338,7 +352,7 @@ public:
    * solid. Off by default: a warning then names such arrays and blocks. GetUsedFluid() returns what
    * was found.
    */
-  vtkSPHFlagMacro(DetectFluid);
+  vtkSPHFlagMacro(DetectFluid, 0);
 
   /**
    * The array and value that marked fluid in the last run, such as "ParticleType = 0"; empty:
@@ -381,15 +395,19 @@ public:
    * Whether the blocks of composite data form one set of particles (TOGETHER, the default), or each
    * is processed by itself (APART), as the blocks of a probe's points always are.
    */
-  vtkSPHClampMacro(Blocks, int, TOGETHER, APART);
-  void SetBlocksToTogether() { this->SetBlocks(TOGETHER); }
-  void SetBlocksToApart() { this->SetBlocks(APART); }
+  vtkSPHClampMacro(Blocks, int, TOGETHER, TOGETHER, APART);
+  void SetBlocksToTogether()
+  {
+    this->SetBlocks(TOGETHER);
+  }
+  void SetBlocksToApart()
+  {
+    this->SetBlocks(APART);
+  }
   ///@}
 
   ///@{
-  /**
-   * Point arrays that are not interpolated, by name. None by default.
-   */
+  /** Point arrays that are not interpolated, by name. None by default. */
   void AddExcludedArray(const std::string& name);
   void ClearExcludedArrays();
   int GetNumberOfExcludedArrays() const;
@@ -400,13 +418,13 @@ public:
    * Precision of the field evaluation on the device: vtkAlgorithm::SINGLE_PRECISION (the default)
    * or DOUBLE_PRECISION, which some devices lack.
    */
-  vtkSPHClampMacro(Precision, int, SINGLE_PRECISION, DOUBLE_PRECISION);
+  vtkSPHClampMacro(Precision, int, SINGLE_PRECISION, SINGLE_PRECISION, DOUBLE_PRECISION);
 
   /**
    * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
    * Empty (the default): a GPU if there is one, else the built-in device.
    */
-  vtkSPHTextMacro(Device);
+  vtkSPHTextMacro(Device, "");
 
   ///@{
   /**
@@ -465,13 +483,13 @@ public:
    * Maximum device memory that this filter uses and keeps between updates, in MiB; 0 (the default):
    * no limit. An update that would need more fails, and the error says how much.
    */
-  vtkSPHClampMacro(DeviceMemoryLimit, int, 0, VTK_INT_MAX);
+  vtkSPHClampMacro(DeviceMemoryLimit, int, 0, 0, VTK_INT_MAX);
 
   /**
    * Keep the search grid and the node values on the device for the next update. On by default. Off:
    * all memory is freed as soon as an update no longer needs it.
    */
-  vtkSPHFlagMacro(KeepDeviceData);
+  vtkSPHFlagMacro(KeepDeviceData, 1);
 
 protected:
   vtkSPHAlgorithm();
@@ -496,16 +514,20 @@ protected:
     return inputClassName;
   }
 
-  /**
-   * Does the work, for the whole input or one of its blocks.
-   */
+  /** Does the work, for the whole input or one of its blocks. */
   virtual void Process(vtkDataObject* input, vtkDataObject* output) = 0;
 
   /**
    * Whether blocks at port 0 are taken together; and whether the output then has these blocks, too.
    */
-  virtual bool TakesTogether() const { return this->Blocks == TOGETHER; }
-  virtual bool KeepsBlocks() const { return false; }
+  virtual bool TakesTogether() const
+  {
+    return this->Blocks == TOGETHER;
+  }
+  virtual bool KeepsBlocks() const
+  {
+    return false;
+  }
 
   /**
    * Returns an input, or the particles in it, see vtkSPHTakeVertices(); kept while the input is
@@ -523,14 +545,10 @@ protected:
   /** Does the same with the result of TakeVertices(). */
   vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);
 
-  /**
-   * Reports an error, naming the block, and keeps its sentence.
-   */
+  /** Reports an error, naming the block, and keeps its sentence. */
   void Fail(const std::string& message);
 
-  /**
-   * Reports a warning, naming the block.
-   */
+  /** Reports a warning, naming the block. */
   void Warn(const std::string& message);
 
   /**
@@ -559,7 +577,10 @@ protected:
 
   /** Returns the input that has the particles, and its port. */
   vtkDataObject* GetParticles();
-  virtual int GetParticlesPort() { return 0; }
+  virtual int GetParticlesPort()
+  {
+    return 0;
+  }
 
   /** Names the fluid in the choice, if it is to be detected and is found. */
   void FindFluid(vtkSPHParticlesChoice& choice, vtkPointSet* particles,
@@ -576,14 +597,7 @@ protected:
   std::string UsedVolumeArrayName;
   std::string UsedMassArrayName;
   std::string UsedDensityArrayName;
-  double HScaleFactor = 1.0;
-  vtkTypeBool DetectFluid = 0;
   std::string UsedFluid;
-  int Blocks = TOGETHER;
-  int Precision = SINGLE_PRECISION;
-  std::string Device;
-  int DeviceMemoryLimit = 0;
-  vtkTypeBool KeepDeviceData = 1;
   vtkMultiProcessController* Controller = nullptr;
 
   std::string ErrorMessage;

@@ -61,9 +61,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /**
-   * The particles; may be nullptr. Blocks of composite data are one set.
-   */
+  /** The particles; may be nullptr. Blocks of composite data are one set. */
   void SetParticlesConnection(vtkAlgorithmOutput* particles)
   {
     this->SetInputConnection(1, particles);
@@ -71,26 +69,19 @@ public:
   void SetParticlesData(vtkDataObject* particles) { this->SetInputData(1, particles); }
   ///@}
 
-  /**
-   * The table, the second output.
-   */
+  /** The table, the second output. */
   vtkTable* GetTable();
 
-  ///@{
   /**
    * Lower and upper sides of one period along each axis; 0 and 0, the default, where nothing
    * repeats.
    */
-  vtkSetVector6Macro(PeriodicBounds, double);
-  vtkGetVector6Macro(PeriodicBounds, double);
-  ///@}
+  vtkSPHVector6Macro(PeriodicBounds, double, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
   ///@{
-  /**
-   * Closed pieces of a smaller volume, or with fewer particles, are left out. 0 by default.
-   */
-  vtkSPHClampMacro(LeastVolume, double, 0.0, VTK_DOUBLE_MAX);
-  vtkSPHClampMacro(LeastParticles, vtkIdType, 0, VTK_ID_MAX);
+  /** Closed pieces of a smaller volume, or with fewer particles, are left out. 0 by default. */
+  vtkSPHClampMacro(LeastVolume, double, 0.0, 0.0, VTK_DOUBLE_MAX);
+  vtkSPHClampMacro(LeastParticles, vtkIdType, 0, 0, VTK_ID_MAX);
   ///@}
 
   ///@{
@@ -98,9 +89,9 @@ public:
    * Arrays of the particles; found by their usual names where empty, the default. Mass: one for
    * all, where it is above 0.
    */
-  vtkSPHTextMacro(MassArrayName);
-  vtkSPHValueMacro(Mass, double);
-  vtkSPHTextMacro(VelocityArrayName);
+  vtkSPHTextMacro(MassArrayName, "");
+  vtkSPHValueMacro(Mass, double, 0.0);
+  vtkSPHTextMacro(VelocityArrayName, "");
   ///@}
 
   ///@{
@@ -108,14 +99,12 @@ public:
    * Particles whose FluidArrayName has another value than this are solid, and do not count. Empty
    * by default: all count.
    */
-  vtkSPHTextMacro(FluidArrayName);
-  vtkSPHValueMacro(FluidValue, double);
+  vtkSPHTextMacro(FluidArrayName, "");
+  vtkSPHValueMacro(FluidValue, double, 0.0);
   ///@}
 
   ///@{
-  /**
-   * The processes that share a run; VTK's global controller by default.
-   */
+  /** The processes that share a run; VTK's global controller by default. */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
@@ -124,7 +113,7 @@ public:
    * Where no fluid array is named, find the fluid as vtkSPHAlgorithm::SetDetectFluid() says. Off by
    * default.
    */
-  vtkSPHFlagMacro(DetectFluid);
+  vtkSPHFlagMacro(DetectFluid, 0);
 
 protected:
   vtkSPHComponents();
@@ -135,16 +124,7 @@ protected:
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
-  double PeriodicBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-  double LeastVolume = 0.0;
-  vtkIdType LeastParticles = 0;
-  std::string MassArrayName;
-  double Mass = 0.0;
-  std::string VelocityArrayName;
-  std::string FluidArrayName;
-  double FluidValue = 0.0;
   vtkMultiProcessController* Controller = nullptr;
-  vtkTypeBool DetectFluid = 0;
 
 private:
   vtkSPHComponents(const vtkSPHComponents&) = delete;

@@ -54,48 +54,40 @@ public:
   vtkTypeMacro(vtkSPHDerivatives, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * The particles with the new arrays, of the class of the input.
-   */
+  /** The particles with the new arrays, of the class of the input. */
   vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
 
-  /**
-   * Also leave solid particles out when volumes are computed from positions. Off by default.
-   */
-  vtkSPHFlagMacro(IgnoreSolids);
+  /** Also leave solid particles out when volumes are computed from positions. Off by default. */
+  vtkSPHChoiceFlagMacro(IgnoreSolids);
 
-  /**
-   * Use the corrected form of the gradient. On by default.
-   */
-  vtkSPHFlagMacro(CorrectGradients);
+  /** Use the corrected form of the gradient. On by default. */
+  vtkSPHFlagMacro(CorrectGradients, 1);
 
-  /**
-   * Add the gradient of the array, unit of the array / L. On by default.
-   */
-  vtkSPHFlagMacro(ComputeGradient);
+  /** Add the gradient of the array, unit of the array / L. On by default. */
+  vtkSPHFlagMacro(ComputeGradient, 1);
 
   /**
    * The name of the gradient's array, "Gradients" by default. The array that marks corrected
    * gradients has this name and "Corrected".
    */
-  vtkSPHTextMacro(ResultArrayName);
+  vtkSPHTextMacro(ResultArrayName, "Gradients");
 
   /**
    * Replace existing arrays of the same names. Off by default: the new ones are then called
    * NAME_SPH.
    */
-  vtkSPHFlagMacro(ReplaceArrays);
+  vtkSPHFlagMacro(ReplaceArrays, 0);
 
   ///@{
   /**
    * Add these quantities of the gradient of a vector; no effect for other arrays. On by default,
    * except the strain rate. Unit of the array / L; of Q-criterion and Lambda2, its square.
    */
-  vtkSPHFlagMacro(ComputeDivergence);
-  vtkSPHFlagMacro(ComputeVorticity);
-  vtkSPHFlagMacro(ComputeQCriterion);
-  vtkSPHFlagMacro(ComputeLambda2);
-  vtkSPHFlagMacro(ComputeStrainRate);
+  vtkSPHFlagMacro(ComputeDivergence, 1);
+  vtkSPHFlagMacro(ComputeVorticity, 1);
+  vtkSPHFlagMacro(ComputeQCriterion, 1);
+  vtkSPHFlagMacro(ComputeLambda2, 1);
+  vtkSPHFlagMacro(ComputeStrainRate, 0);
   ///@}
 
 protected:
@@ -104,16 +96,6 @@ protected:
 
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool KeepsBlocks() const override { return true; }
-
-  vtkTypeBool CorrectGradients = 1;
-  vtkTypeBool ComputeGradient = 1;
-  std::string ResultArrayName = "Gradients";
-  vtkTypeBool ReplaceArrays = 0;
-  vtkTypeBool ComputeDivergence = 1;
-  vtkTypeBool ComputeVorticity = 1;
-  vtkTypeBool ComputeQCriterion = 1;
-  vtkTypeBool ComputeLambda2 = 1;
-  vtkTypeBool ComputeStrainRate = 0;
 
 private:
   vtkSPHDerivatives(const vtkSPHDerivatives&) = delete;

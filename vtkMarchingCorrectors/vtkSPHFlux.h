@@ -48,9 +48,7 @@ public:
   vtkTypeMacro(vtkSPHFlux, vtkSPHMeter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * More sections; may be nullptr.
-   */
+  /** More sections; may be nullptr. */
   void SetSectionsConnection(vtkAlgorithmOutput* sections)
   {
     this->SetInputConnection(1, sections);
@@ -80,18 +78,16 @@ public:
    * The disc that is used if there are no other sections: centre, normal, radius. (0, 0, 0), (1, 0,
    * 0) and 1 by default.
    */
-  vtkSetVector3Macro(Origin, double);
-  vtkGetVector3Macro(Origin, double);
-  vtkSetVector3Macro(Normal, double);
-  vtkGetVector3Macro(Normal, double);
-  vtkSPHValueMacro(Radius, double);
+  vtkSPHVector3Macro(Origin, double, 0.0, 0.0, 0.0);
+  vtkSPHVector3Macro(Normal, double, 1.0, 0.0, 0.0);
+  vtkSPHValueMacro(Radius, double, 1.0);
   ///@}
 
   /**
    * The point array of velocities. Empty (the default): found by name (Velocity, vel, v, ...), also
    * as vx, vy and vz.
    */
-  vtkSPHTextMacro(VelocityArrayName);
+  vtkSPHTextMacro(VelocityArrayName, "");
 
 protected:
   vtkSPHFlux() = default;
@@ -104,11 +100,6 @@ protected:
   int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
     const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
     mcor_statistics& statistics) const override;
-
-  double Origin[3] = { 0.0, 0.0, 0.0 };
-  double Normal[3] = { 1.0, 0.0, 0.0 };
-  double Radius = 1.0;
-  std::string VelocityArrayName;
 
 private:
   vtkSPHFlux(const vtkSPHFlux&) = delete;

@@ -46,9 +46,7 @@ public:
   vtkTypeMacro(vtkSPHGauge, vtkSPHMeter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * More lines; may be nullptr.
-   */
+  /** More lines; may be nullptr. */
   void SetLinesConnection(vtkAlgorithmOutput* lines) { this->SetInputConnection(1, lines); }
   void SetLinesData(vtkDataObject* lines) { this->SetInputData(1, lines); }
 
@@ -63,13 +61,9 @@ public:
   ///@}
 
   ///@{
-  /**
-   * The line that is used if there are no others. (0, 0, 0) and (0, 0, 1) by default.
-   */
-  vtkSetVector3Macro(Point1, double);
-  vtkGetVector3Macro(Point1, double);
-  vtkSetVector3Macro(Point2, double);
-  vtkGetVector3Macro(Point2, double);
+  /** The line that is used if there are no others. (0, 0, 0) and (0, 0, 1) by default. */
+  vtkSPHVector3Macro(Point1, double, 0.0, 0.0, 0.0);
+  vtkSPHVector3Macro(Point2, double, 0.0, 0.0, 1.0);
   ///@}
 
 protected:
@@ -82,9 +76,6 @@ protected:
   int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
     const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
     mcor_statistics& statistics) const override;
-
-  double Point1[3] = { 0.0, 0.0, 0.0 };
-  double Point2[3] = { 0.0, 0.0, 1.0 };
 
 private:
   vtkSPHGauge(const vtkSPHGauge&) = delete;

@@ -40,25 +40,17 @@ public:
   vtkAbstractTypeMacro(vtkSPHMeter, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * Also leave solid particles out when volumes are computed from positions. Off by default.
-   */
-  vtkSPHFlagMacro(IgnoreSolids);
+  /** Also leave solid particles out when volumes are computed from positions. Off by default. */
+  vtkSPHChoiceFlagMacro(IgnoreSolids);
 
-  /**
-   * The table.
-   */
+  /** The table. */
   vtkTable* GetOutput();
 
-  /**
-   * The weight sum at which the fluid ends, above 0. 0.5 by default.
-   */
-  vtkSPHValueMacro(Level, double);
+  /** The weight sum at which the fluid ends, above 0. 0.5 by default. */
+  vtkSPHValueMacro(Level, double, 0.5);
 
-  /**
-   * The time in the table if the input has none. 0 by default.
-   */
-  vtkSPHValueMacro(Time, double);
+  /** The time in the table if the input has none. 0 by default. */
+  vtkSPHValueMacro(Time, double, 0.0);
 
 protected:
   vtkSPHMeter();
@@ -101,9 +93,6 @@ protected:
   virtual int Measure(mcor_context* context, const mcor_input& input, const mcor_options& options,
     const std::vector<Place>& places, vtkTable* table, std::vector<bool>& outside,
     mcor_statistics& statistics) const = 0;
-
-  double Level = 0.5;
-  double Time = 0.0;
 
 private:
   vtkSPHMeter(const vtkSPHMeter&) = delete;

@@ -55,58 +55,42 @@ public:
   vtkTypeMacro(vtkSPHProbe, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /**
-   * The data set of port 0 with the new arrays, of its class.
-   */
+  /** The data set of port 0 with the new arrays, of its class. */
   vtkDataObject* GetOutput() { return this->GetOutputDataObject(0); }
 
   ///@{
-  /**
-   * The particles, port 1: a point set, or blocks of them.
-   */
+  /** The particles, port 1: a point set, or blocks of them. */
   void SetSourceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
   void SetSourceData(vtkDataObject* source) { this->SetInputDataObject(1, source); }
   vtkDataObject* GetSource();
   ///@}
 
-  /**
-   * Also leave solid particles out when volumes are computed from positions. Off by default.
-   */
-  vtkSPHFlagMacro(IgnoreSolids);
+  /** Also leave solid particles out when volumes are computed from positions. Off by default. */
+  vtkSPHChoiceFlagMacro(IgnoreSolids);
 
-  /**
-   * Divide the SPH sums by the sum of the weights (Shepard). On by default.
-   */
-  vtkSPHFlagMacro(ShepardNormalization);
+  /** Divide the SPH sums by the sum of the weights (Shepard). On by default. */
+  vtkSPHFlagMacro(ShepardNormalization, 1);
 
-  /**
-   * Points with a lower weight are not valid. No unit, 0.1 by default.
-   */
-  vtkSPHClampMacro(WeightThreshold, double, 0.0, VTK_DOUBLE_MAX);
+  /** Points with a lower weight are not valid. No unit, 0.1 by default. */
+  vtkSPHClampMacro(WeightThreshold, double, 0.1, 0.0, VTK_DOUBLE_MAX);
 
-  /**
-   * Add the particles' arrays; off: only WeightSum and the mask. On by default.
-   */
-  vtkSPHFlagMacro(InterpolateAttributes);
+  /** Add the particles' arrays; off: only WeightSum and the mask. On by default. */
+  vtkSPHFlagMacro(InterpolateAttributes, 1);
 
-  /**
-   * Add the gradients, unit of the array / L. Off by default.
-   */
-  vtkSPHFlagMacro(ComputeGradients);
+  /** Add the gradients, unit of the array / L. Off by default. */
+  vtkSPHFlagMacro(ComputeGradients, 0);
 
   ///@{
   /**
    * The value of arrays, except WeightSum and the mask, at invalid points: NaN, or NullValue (0 by
    * default). NaNOutside is off by default.
    */
-  vtkSPHFlagMacro(NaNOutside);
-  vtkSPHValueMacro(NullValue, double);
+  vtkSPHFlagMacro(NaNOutside, 0);
+  vtkSPHValueMacro(NullValue, double, 0.0);
   ///@}
 
-  /**
-   * The name of the mask of valid points, "vtkValidPointMask" by default.
-   */
-  vtkSPHTextMacro(ValidPointMaskArrayName);
+  /** The name of the mask of valid points, "vtkValidPointMask" by default. */
+  vtkSPHTextMacro(ValidPointMaskArrayName, "vtkValidPointMask");
 
 protected:
   vtkSPHProbe();
@@ -119,14 +103,6 @@ protected:
     vtkInformationVector* outputVector) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return false; } // points do not see each other
-
-  vtkTypeBool ShepardNormalization = 1;
-  double WeightThreshold = 0.1;
-  vtkTypeBool InterpolateAttributes = 1;
-  vtkTypeBool ComputeGradients = 0;
-  vtkTypeBool NaNOutside = 0;
-  double NullValue = 0.0;
-  std::string ValidPointMaskArrayName = "vtkValidPointMask";
 
   /** Behind the points, where these are an input. */
   int GetParticlesPort() override { return this->GetNumberOfInputPorts() - 1; }

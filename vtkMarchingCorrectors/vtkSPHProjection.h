@@ -52,19 +52,14 @@ public:
   vtkTypeMacro(vtkSPHProjection, vtkSPHAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  ///@{
   /**
    * The direction of the lines of sight; its length and sign do not matter. 0, 0, 0 (the default):
    * the constant axis of particles in a plane, else z.
    */
-  vtkSetVector3Macro(Direction, double);
-  vtkGetVector3Macro(Direction, double);
-  ///@}
+  vtkSPHVector3Macro(Direction, double, 0.0, 0.0, 0.0);
 
-  /**
-   * Pixels along the longer side of the image, 1 to 32768; 512 by default.
-   */
-  vtkSPHClampMacro(Resolution, int, 1, 32768);
+  /** Pixels along the longer side of the image, 1 to 32768; 512 by default. */
+  vtkSPHClampMacro(Resolution, int, 512, 1, 32768);
 
   ///@{
   /**
@@ -73,9 +68,8 @@ public:
    * beside it that reach into it; else those in the box. Each counts with all of its kernel. Off
    * by default.
    */
-  vtkSPHFlagMacro(UseBox);
-  vtkSetVector6Macro(Box, double);
-  vtkGetVector6Macro(Box, double);
+  vtkSPHFlagMacro(UseBox, 0);
+  vtkSPHVector6Macro(Box, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
   ///@}
 
   /**
@@ -83,25 +77,21 @@ public:
    * array of masses, particles weigh what their masses are. Empty (the default): the integral
    * itself.
    */
-  vtkSPHTextMacro(WeightArrayName);
+  vtkSPHTextMacro(WeightArrayName, "");
 
   /**
    * The point array that is integrated. Empty, or "(density)" (the default): the density, or the
    * array of SetInputArrayToProcess(0, ...).
    */
-  vtkSPHTextMacro(ScalarArrayName);
+  vtkSPHTextMacro(ScalarArrayName, "");
 
   /** The component of a scalar that counts, if it has several; -1 (the default): the magnitude. */
-  vtkSPHValueMacro(ScalarComponent, int);
+  vtkSPHValueMacro(ScalarComponent, int, -1);
 
-  /**
-   * Also leave solid particles out when volumes are computed from positions. Off by default.
-   */
-  vtkSPHFlagMacro(IgnoreSolids);
+  /** Also leave solid particles out when volumes are computed from positions. Off by default. */
+  vtkSPHChoiceFlagMacro(IgnoreSolids);
 
-  /**
-   * The image.
-   */
+  /** The image. */
   vtkImageData* GetImage();
 
 protected:
@@ -115,14 +105,6 @@ protected:
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
-
-  double Direction[3] = { 0.0, 0.0, 0.0 };
-  int Resolution = 512;
-  vtkTypeBool UseBox = 0;
-  double Box[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  std::string WeightArrayName;
-  std::string ScalarArrayName;
-  int ScalarComponent = -1;
 
 private:
   vtkSPHProjection(const vtkSPHProjection&) = delete;

@@ -47,7 +47,7 @@ public:
 
   ///@{
   /** The kind of points, see ShapeType; SLICE by default. */
-  vtkSPHClampMacro(Shape, int, SLICE, VOLUME);
+  vtkSPHClampMacro(Shape, int, SLICE, SLICE, VOLUME);
   void SetShapeToSlice() { this->SetShape(SLICE); }
   void SetShapeToLine() { this->SetShape(LINE); }
   void SetShapeToVolume() { this->SetShape(VOLUME); }
@@ -57,54 +57,34 @@ public:
    * Fit Origin, Point1 and Point2, or Bounds to the fluid's particles instead of taking what is
    * set. On by default.
    */
-  vtkSPHFlagMacro(FitBounds);
+  vtkSPHFlagMacro(FitBounds, 1);
 
   ///@{
-  /**
-   * The plane of a slice: a point of it (unit L), and its normal, (0, 0, 1) by default.
-   */
-  vtkSetVector3Macro(Origin, double);
-  vtkGetVector3Macro(Origin, double);
-  vtkSetVector3Macro(Normal, double);
-  vtkGetVector3Macro(Normal, double);
+  /** The plane of a slice: a point of it (unit L), and its normal, (0, 0, 1) by default. */
+  vtkSPHVector3Macro(Origin, double, 0.0, 0.0, 0.0);
+  vtkSPHVector3Macro(Normal, double, 0.0, 0.0, 1.0);
   ///@}
 
   ///@{
-  /**
-   * The ends of a line, unit L.
-   */
-  vtkSetVector3Macro(Point1, double);
-  vtkGetVector3Macro(Point1, double);
-  vtkSetVector3Macro(Point2, double);
-  vtkGetVector3Macro(Point2, double);
+  /** The ends of a line, unit L. */
+  vtkSPHVector3Macro(Point1, double, 0.0, 0.0, 0.0);
+  vtkSPHVector3Macro(Point2, double, 1.0, 0.0, 0.0);
   ///@}
 
-  ///@{
-  /**
-   * The bounds of a volume: x0, x1, y0, y1, z0, z1, unit L.
-   */
-  vtkSetVector6Macro(Bounds, double);
-  vtkGetVector6Macro(Bounds, double);
-  ///@}
+  /** The bounds of a volume: x0, x1, y0, y1, z0, z1, unit L. */
+  vtkSPHVector6Macro(Bounds, double, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0);
 
-  /**
-   * How many points a slice has along its longer side, or a line; 2 and more, 500 by default.
-   */
-  vtkSPHClampMacro(Resolution, int, 2, 100000);
+  /** How many points a slice has along its longer side, or a line; 2 and more, 500 by default. */
+  vtkSPHClampMacro(Resolution, int, 500, 2, 100000);
 
-  ///@{
   /**
    * How many points a volume has along x, y and z. 0, the default: as many as its shape wants,
    * about a million in all, one along the axis of particles in a plane.
    */
-  vtkSetVector3Macro(Dimensions, int);
-  vtkGetVector3Macro(Dimensions, int);
-  ///@}
+  vtkSPHVector3Macro(Dimensions, int, 0, 0, 0);
 
-  /**
-   * Leave quads of a slice out that have a corner without fluid. On by default.
-   */
-  vtkSPHFlagMacro(OnlyFluid);
+  /** Leave quads of a slice out that have a corner without fluid. On by default. */
+  vtkSPHFlagMacro(OnlyFluid, 1);
 
 protected:
   vtkSPHResample();
@@ -117,17 +97,6 @@ protected:
   const char* GetOutputClassName(const char* inputClassName) override;
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
-
-  int Shape = SLICE;
-  vtkTypeBool FitBounds = 1;
-  double Origin[3] = { 0.0, 0.0, 0.0 };
-  double Normal[3] = { 0.0, 0.0, 1.0 };
-  double Point1[3] = { 0.0, 0.0, 0.0 };
-  double Point2[3] = { 1.0, 0.0, 0.0 };
-  double Bounds[6] = { 0.0, 1.0, 0.0, 1.0, 0.0, 1.0 };
-  int Resolution = 500;
-  int Dimensions[3] = { 0, 0, 0 };
-  vtkTypeBool OnlyFluid = 1;
 
 private:
   vtkSPHResample(const vtkSPHResample&) = delete;

@@ -145,9 +145,7 @@ public:
    * and mcor_derive.
    */
   virtual bool Measure(vtkSPHParticles&, bool /*forSamples*/) { return this->SetPeriod(); }
-  /**
-   * Finds the period alone, and, from all particles, the smoothing length if it is estimated.
-   */
+  /** Finds the period alone, and, from all particles, the smoothing length if it is estimated. */
   virtual bool MeasureLengths(vtkSPHParticles& particles) { return this->Measure(particles, true); }
   /** Limits the run to the box around places. */
   virtual void PlaceBox(const double[3], const double[3]) {}

@@ -68,30 +68,26 @@ public:
    * The point array of particle ids: whole numbers of any type, each occurring once. Empty (the
    * default): found by name.
    */
-  vtkSPHTextMacro(IdArrayName);
+  vtkSPHTextMacro(IdArrayName, "");
 
-  /**
-   * The point array of velocities, with three components. Empty (the default): found by name.
-   */
-  vtkSPHTextMacro(VelocityArrayName);
+  /** The point array of velocities, with three components. Empty (the default): found by name. */
+  vtkSPHTextMacro(VelocityArrayName, "");
 
-  /**
-   * Positions follow the velocities; off, they are linear in time. On by default.
-   */
-  vtkSPHFlagMacro(UseVelocities);
+  /** Positions follow the velocities; off, they are linear in time. On by default. */
+  vtkSPHFlagMacro(UseVelocities, 1);
 
   /**
    * The unit of the steps' times in the time unit of the velocities: 0.01 where steps are numbered
    * 0, 1, 2, ... and stored every 0.01 s. > 0, 1 by default.
    */
-  vtkSPHValueMacro(TimeScale, double);
+  vtkSPHValueMacro(TimeScale, double, 1.0);
 
   /**
    * The number of steps that are announced for each interval between two stored ones, as ParaView's
    * animation needs them. 1, the default: only the stored steps. Any other time can be requested,
    * too.
    */
-  vtkSPHClampMacro(ResampleFactor, int, 1, 1000000);
+  vtkSPHClampMacro(ResampleFactor, int, 1, 1, 1000000);
 
   ///@{
   /**
@@ -106,14 +102,10 @@ public:
    */
   vtkGetCharFromStdStringMacro(ErrorMessage);
 
-  /**
-   * Particles without a time, which are passed on.
-   */
+  /** Particles without a time, which are passed on. */
   void SetInputData(vtkDataObject* particles);
 
-  /**
-   * The output; nullptr if it is composite.
-   */
+  /** The output; nullptr if it is composite. */
   vtkPolyData* GetOutput();
 
 protected:
@@ -125,11 +117,6 @@ protected:
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
-  std::string IdArrayName;
-  std::string VelocityArrayName;
-  vtkTypeBool UseVelocities = 1;
-  double TimeScale = 1.0;
-  int ResampleFactor = 1;
   std::string UsedIdArrayName;
   std::string UsedVelocityArrayName;
 

@@ -463,6 +463,7 @@ class TestResample(unittest.TestCase):
         self.assertEqual(made.GetDimensions(), (20, 10, 5))
         self.assertTrue(made.GetBounds()[0] < -1 and made.GetBounds()[5] > 1)
         made, _ = run(self.made, FitBounds=0, Bounds=(0, 3, 0, 0.5, -0.5, 0.5), NaNOutside=0, NullValue=-9)
+        self.assertRegex(str(self.made), r"\n +NaN Outside: 0\n *Null Value: -9\n")
         self.assertEqual((made.GetBounds()[1], values_of(made, "Radius").min()), (3, -9))
         self.assertTrue(run(self.made, Shape=vtkSPHResample.SLICE)[0].IsA("vtkPolyData"))  # another class of output
 

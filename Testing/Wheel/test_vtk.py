@@ -91,12 +91,12 @@ class Test(unittest.TestCase):
     def test_properties_are_those_of_cxx(self):
         folder = Path(os.environ["MCOR_TEST_SOURCES"]) / "vtkMarchingCorrectors"
         headers = [(folder / name).read_text() for name in ("vtkSPHAlgorithm.h", "vtkMarchingCorrectors.h")]
-        text, public = "".join(headers), "".join(header.split("protected:")[0] for header in headers)
+        classes = [header[header.index("\nclass VTK"):] for header in headers]
+        text, public = "".join(classes), "".join(each.split("\nprotected:")[0] for each in classes)
         names = {"Set" + name for name in re.findall(r"vtkSet(?:Clamp|StdStringFromChar|Vector\d)?Macro\((\w+)", text)}
         names |= {"Get" + name for name in re.findall(r"vtkGet(?:CharFromStdString|Vector\d)?Macro\((\w+)", text)}
         for kind, name in re.findall(r"^  vtkSPH(\w+)Macro\((\w+)", text, re.M):
-            names |= {"Set" + name, "Get" + name, *([name + "On", name + "Off"] if kind == "Flag" else [])}
-        names -= {"Setname", "Getname"}  # the macros' own
+            names |= {"Set" + name, "Get" + name, *([name + "On", name + "Off"] if "Flag" in kind else [])}
         names |= set(re.findall(r"^  (?:static )?[\w:\*]+ \*?((?:Set|Get|Add|Clear|List|Release|Generate)\w+)\(",
                                 public, re.M))
         self.assertGreater(len(names), 100)
@@ -108,7 +108,10 @@ class Test(unittest.TestCase):
         self.assertEqual(constants.pop("BY_PARTICLES"), 0)  # of the partition
         self.assertGreater(len(constants), 25)
         self.assertEqual({name: getattr(vtkMarchingCorrectors, name, None) for name in constants}, constants)
-        for name, value in re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", text, re.M):
+        defaults = re.findall(r"^  (?:int|double|vtkTypeBool) (\w+) = ([-\w.]+);", "".join(headers), re.M)
+        defaults += re.findall(r"^  vtkSPH(?:Value|Clamp|Flag)Macro\((\w+),(?: \w+,)? ([-\w.]+)[,)]", text, re.M)
+        self.assertGreater(len(defaults), 50)
+        for name, value in defaults:
             if name == "NextIsoValue":  # no number where there is no input, in both
                 continue
             if value.replace(".", "").replace("e-", "").isdigit() and hasattr(vtkMarchingCorrectors, "Get" + name):

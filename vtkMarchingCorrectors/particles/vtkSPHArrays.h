@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: VTK arrays made of what the core returns.
- */
+/** Private to the module: VTK arrays made of what the core returns. */
 #ifndef vtkSPHArrays_h
 #define vtkSPHArrays_h
 

@@ -32,9 +32,7 @@ struct vtkSPHRequest
   bool OnPoints = true;
 };
 
-/**
- * A point array to be interpolated, as it was when the run began.
- */
+/** A point array to be interpolated, as it was when the run began. */
 struct vtkSPHAttribute
 {
   vtkSmartPointer<vtkAbstractArray> Array;
@@ -60,9 +58,7 @@ public:
   /** The part of it that is about smoothing lengths. */
   bool CollectSmoothingLength();
 
-  /**
-   * As mcor_find_dimension(), of all particles if nothing marks the fluid.
-   */
+  /** As mcor_find_dimension(), of all particles if nothing marks the fluid. */
   int FindDimension(const mcor_ranks* ranks, int dimension);
 
   /**
@@ -100,9 +96,7 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
-  /**
-   * The solver whose names the point arrays have, see mcor_find_layout.
-   */
+  /** The solver whose names the point arrays have, see mcor_find_layout. */
   std::string FindLayout() const;
 
   /**
@@ -125,14 +119,10 @@ public:
   static void FindFluid(
     vtkSPHParticlesChoice& choice, vtkPointSet* points, const vtkSPHMergeRanges& merge = nullptr);
 
-  /**
-   * "ParticleType = 0"; empty where all particles are fluid.
-   */
+  /** "ParticleType = 0"; empty where all particles are fluid. */
   std::string DescribeFluid() const;
 
-  /**
-   * Why no particle is fluid: "No particle has ParticleType = 0", "No particle is within ...".
-   */
+  /** Why no particle is fluid: "No particle has ParticleType = 0", "No particle is within ...". */
   std::string DescribeNoFluid() const;
 
   /**

@@ -46,7 +46,8 @@ void vtkSPHPrint(ostream& os, vtkIndent indent, const char* names, const ValueT&
     os << indent << name[0];
     for (std::size_t i = 1; i < name.size(); ++i)
     {
-      os << (name[i] >= 'A' && name[i] <= 'Z' ? " " : "") << name[i];
+      const bool isNaN = i >= 2 && name.compare(i - 2, 3, "NaN") == 0;
+      os << (name[i] >= 'A' && name[i] <= 'Z' && !isNaN ? " " : "") << name[i];
     }
     os << ":";
     vtkSPHPrintValue(os, value);

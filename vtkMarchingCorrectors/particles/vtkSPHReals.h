@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: values of arrays of any type and layout, as real numbers.
- */
+/** Private to the module: values of arrays of any type and layout, as real numbers. */
 #ifndef vtkSPHReals_h
 #define vtkSPHReals_h
 

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the project: particles among the cells of a mesh.
- */
+/** Private to the project: particles among the cells of a mesh. */
 #ifndef vtkSPHVertices_h
 #define vtkSPHVertices_h
 

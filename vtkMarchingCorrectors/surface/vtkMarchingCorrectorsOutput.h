@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-/**
- * Private to the module: makes a vtkPolyData, statistics included, of the core's surface.
- */
+/** Private to the module: makes a vtkPolyData, statistics included, of the core's surface. */
 #ifndef vtkMarchingCorrectorsOutput_h
 #define vtkMarchingCorrectorsOutput_h
 

@@ -21,7 +21,9 @@ import tempfile
 import cases
 import device_limits
 import paper_tables
+import smooth
 import tables
+import vtk
 from measure import Program, Report, Sets, count_of, machine
 
 # Sizes: particles, with --quick those behind.
@@ -42,6 +44,7 @@ CASES = {
     "probe": Case(cases.probe, "a slice against vtkSPHInterpolator, and a volume", runs=5),
     "project": Case(cases.project, "column densities against sarracen; needs the wheel, and sarracen", "10k,100k", "1k,2k"),
     "ranks": Case(cases.ranks, "what processes under mpirun exchange, and a model of it", "50k,200k"),
+    "smooth": Case(smooth.smooth, "how smooth free surfaces are, against splashsurf; with --particles processor times", runs=5),
     "walls": Case(cases.walls, "where surfaces end at walls"),
     "wheel": Case(cases.wheel, "what calling from Python costs; needs the wheel", runs=9),
 }
@@ -84,7 +87,6 @@ class Benchmark:
 
 def versions():
     """Of what is compared, as far as this Python has it."""
-    import vtk
     from importlib.metadata import PackageNotFoundError, version
     try:
         splashsurf = version("pysplashsurf")
@@ -130,8 +132,9 @@ def parse(argv):
     parser.add_argument("--paper-sizes", type=paper_counts, default={}, metavar="SET=COUNT,...",
                         help="table c: rings=10M,tsunami=1.2M,dam=670k; 0 leaves a set out")
     parser.add_argument("--particles", type=pathlib.Path, nargs="+", default=[], metavar="FILE",
-                        help="for adaptive, cancel, distance, first, probe, walls")
+                        help="for adaptive, cancel, distance, first, probe, smooth, walls")
     parser.add_argument("--runs", type=int, help="timed runs of each (default 5, or 3)")
+    parser.add_argument("--seed", type=int, default=45, help="of the scenes of smooth (default 45)")
     parser.add_argument("--limit", type=float, default=900, metavar="SECONDS",
                         help="a competitor that would take longer is left out (default 900)")
     parser.add_argument("--quick", action="store_true", help="tiny sets, one run: a test")

@@ -10,8 +10,11 @@ import tempfile
 import time
 import venv
 
-from measure import (GENERATORS, array_of, compete, exclude_others, interpolator, names_of, peak_bytes,
-                     points_of, read, text_of, write)
+import numpy as np
+import vtk
+from measure import (GENERATORS, array_of, compete, exclude_others, interpolator, names_of, particle_file, peak_bytes,
+                     points_of, read, text_of)
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 
 def medians(rows):
@@ -62,7 +65,6 @@ MASK = (1 << 21) - 1
 
 def split_bricks(positions, lengths, cube):
     """For each level from 1 on the keys of bricks that smaller ones take the place of, one number for each."""
-    import numpy as np
     sides = np.stack(np.meshgrid(*[(-1, 0, 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     level = np.floor(np.log2(lengths / lengths.min() * (1 + 1e-12))).astype(int)
     split = [np.empty(0, np.int64)]
@@ -89,9 +91,6 @@ def distance(benchmark):
     unless the finer cubes have none there. Back: from vertices on uniform cubes to the adaptive surface, in the cube of
     the place. Levels are worked out here from the particles' SmoothingLength, all of which take part; cubic spline, no
     scale."""
-    import numpy as np
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
     out, surface = benchmark.report, {}
     path = benchmark.files[0] if benchmark.files else benchmark.sets.get("graded-10", benchmark.sizes[-1])
     for mode in ("uniform", "adaptive"):
@@ -122,9 +121,9 @@ def distance(benchmark):
 IN_PYTHON = """
 import time
 begin = time.perf_counter()
-import numpy, marchingcorrectors
+import numpy as np, marchingcorrectors
 spacing = 1 / 60
-places = numpy.stack(numpy.meshgrid(*map(numpy.arange, (60, 30, 25)), indexing="ij"), -1).reshape(-1, 3)
+places = np.stack(np.meshgrid(*map(np.arange, (60, 30, 25)), indexing="ij"), -1).reshape(-1, 3)
 surface = marchingcorrectors.free_surface(places * spacing, smoothing_length=1.3 * spacing, volume=spacing ** 3)
 assert len(surface.triangles) > 1000
 print(time.perf_counter() - begin)
@@ -185,19 +184,16 @@ PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # the spacing is 1
 
 def make_plane(path, count):
     """A jittered lattice with a scalar that winds."""
-    import numpy
-    sys.path.insert(0, str(GENERATORS))
-    import particle_file
     side = round(count ** 0.5)
-    j, i = numpy.mgrid[0:side, 0:side]
-    random = numpy.random.default_rng(1)
-    x = numpy.zeros((side * side, 3), dtype=numpy.float32)
+    j, i = np.mgrid[0:side, 0:side]
+    random = np.random.default_rng(1)
+    x = np.zeros((side * side, 3), dtype=np.float32)
     for a, places in enumerate((i, j)):
         x[:, a] = places.ravel() + 0.3 * (random.random(side * side) - 0.5)
     u, v = x[:, 0] / side, x[:, 1] / side
-    swirl = numpy.sin(6 * numpy.pi * u) * numpy.sin(4 * numpy.pi * v) + 0.2 * numpy.sin(20 * u + 13 * v)
-    ones = numpy.ones(side * side, numpy.float32)
-    arrays = {"Swirl": swirl.astype(numpy.float32), "Mass": ones, "Density": ones}
+    swirl = np.sin(6 * np.pi * u) * np.sin(4 * np.pi * v) + 0.2 * np.sin(20 * u + 13 * v)
+    ones = np.ones(side * side, np.float32)
+    arrays = {"Swirl": swirl.astype(np.float32), "Mass": ones, "Density": ones}
     particle_file.write(str(path), particle_file.poly_data(x, arrays))
     return path
 
@@ -230,7 +226,6 @@ def plane(benchmark):
 
 def make_image(bounds, *dimensions):
     """An image over the particles' bounds; its last axis in the middle where it is one point thick."""
-    import vtk
     image = vtk.vtkImageData()
     image.SetDimensions(*dimensions)
     pairs = list(zip(bounds[::2], bounds[1::2], dimensions))
@@ -266,7 +261,6 @@ def probe(benchmark):
     """A slice and a volume: vtkSPHProbe beside vtkSPHInterpolator. Both evaluate Swirl (Shepard mean, cubic spline, one
     smoothing length) at the same points, in one process, in turn; reading the particles is not timed. The volume is
     vtkSPHProbe's alone; memory is the largest resident set."""
-    import numpy
     out, particles, runs, array = benchmark.report, tank_or_file(benchmark), benchmark.runs, "Swirl"
     size, side = (64, 32) if benchmark.quick else (512, 256)
     image = make_image(particles.GetBounds(), size, size, 1)
@@ -292,7 +286,7 @@ def probe(benchmark):
                  f"{beside[0] / own[0]:7.1f}{beside[1] / own[1]:7.1f}")
     inside = array_of(ours.GetOutput(), "WeightSum") > 0.9
     a, b = (array_of(f.GetOutputDataObject(0), array)[inside] for f in (ours, theirs))
-    out.text(f"  largest difference at the {inside.sum()} points inside: {numpy.abs(a - b).max() / numpy.ptp(a):.2e} of the range")
+    out.text(f"  largest difference at the {inside.sum()} points inside: {np.abs(a - b).max() / np.ptp(a):.2e} of the range")
     before, volume = peak_bytes(), make_probe(particles, make_image(particles.GetBounds(), side, side, side), array)
     used, processors = seconds_of_update(volume)
     data = volume.GetOutput().GetPointData()
@@ -410,7 +404,6 @@ def project(benchmark):
     sarracen's code for the processor. Its exact mode gives means over pixels, too; else it evaluates kernels at the
     centres of pixels, here also of finer images, which are averaged. Errors: the largest difference from ours, by the
     greatest value; the exact mode's tells how far both are right. By the clock and of processors."""
-    import numpy as np
     import marchingcorrectors
     from sarracen.interpolate.cpu_backend import CPUBackend
     from sarracen.kernels import CubicSplineKernel
@@ -459,44 +452,33 @@ class Walls:
         self.box = (solid[inside].min(axis=0), solid[inside].max(axis=0)) if inside.any() else None
 
     def tank(self, points):
-        import numpy
-        return numpy.min([*(points - self.low).T, *(self.high - points).T], axis=0)
+        return np.min([*(points - self.low).T, *(self.high - points).T], axis=0)
 
     def distance(self, points):
         """From the wall; below 0 behind it."""
-        import numpy
         tank = self.tank(points)
         if self.box is None:
             return tank
         low, high = self.box
-        low = numpy.where(numpy.arange(3) == 1, self.low, low)
-        outside = numpy.maximum(low - points, points - high)
-        beside, around = outside.max(axis=1), numpy.linalg.norm(numpy.maximum(0, outside), axis=1)
-        return numpy.minimum(tank, numpy.where(beside > 0, around, beside))
+        low = np.where(np.arange(3) == 1, self.low, low)
+        outside = np.maximum(low - points, points - high)
+        beside, around = outside.max(axis=1), np.linalg.norm(np.maximum(0, outside), axis=1)
+        return np.minimum(tank, np.where(beside > 0, around, beside))
 
 
 def add_walls(data, path):
     """Writes the particles with a layer of solids, of the fluid's volume, one particle spacing outside of it."""
-    import numpy
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk
     fluid, h = points_of(data), array_of(data, "SmoothingLength")
     spacing = h.min()
     low, high = fluid.min(axis=0) - spacing, fluid.max(axis=0) + spacing
-    counts = numpy.ceil((high - low) / spacing).astype(int)
-    grid = numpy.meshgrid(*(numpy.linspace(low[a], high[a], counts[a] + 1) for a in range(3)), indexing="ij")
-    solid = numpy.stack(grid, axis=-1).reshape(-1, 3)
+    counts = np.ceil((high - low) / spacing).astype(int)
+    grid = np.meshgrid(*(np.linspace(low[a], high[a], counts[a] + 1) for a in range(3)), indexing="ij")
+    solid = np.stack(grid, axis=-1).reshape(-1, 3)
     solid = solid[(solid == low).any(axis=1) | (solid == high).any(axis=1)]
-    made = vtk.vtkPolyData()
-    made.SetPoints(vtk.vtkPoints())
-    made.GetPoints().SetData(numpy_to_vtk(numpy.concatenate([fluid, solid]), deep=1))
-    for name, values, of_solids in (
-            ("SmoothingLength", h, spacing), ("Volume", array_of(data, "Mass") / 1000, spacing ** 3),
-            ("Speed", array_of(data, "Speed"), 0), ("ParticleType", numpy.zeros(len(fluid)), 1)):
-        column = numpy_to_vtk(numpy.concatenate([values, numpy.full(len(solid), of_solids)]), deep=1)
-        column.SetName(name)
-        made.GetPointData().AddArray(column)
-    write(made, path)
+    arrays = {"SmoothingLength": (h, spacing), "Volume": (array_of(data, "Mass") / 1000, spacing ** 3),
+              "Speed": (array_of(data, "Speed"), 0), "ParticleType": (np.zeros(len(fluid)), 1)}
+    particle_file.write(str(path), particle_file.poly_data(np.concatenate([fluid, solid]), {
+        name: np.concatenate([values, np.full(len(solid), of_solids)]) for name, (values, of_solids) in arrays.items()}))
 
 
 WALL_CHOICES = {
@@ -510,8 +492,6 @@ def walls(benchmark):
     """Where surfaces end at walls, for each choice of --solids: distance of their border from the first layer of wall
     particles, in smoothing lengths (below 0: behind it), and the share of points behind it. A file without solids gets
     a layer of them."""
-    import numpy
-    import vtk
     out, near = benchmark.report, 1.5  # what of the border is so near to a wall, in smoothing lengths, ends there
     edges = vtk.vtkFeatureEdges()  # those that one triangle alone has
     edges.FeatureEdgesOff()
@@ -525,7 +505,7 @@ def walls(benchmark):
             data = read(path)
         out.text(f"{given}{', with walls' if path != given else ''}")
         solid = array_of(data, "ParticleType") != 0
-        h = numpy.median(array_of(data, "SmoothingLength")[~solid])
+        h = np.median(array_of(data, "SmoothingLength")[~solid])
         at = Walls(points_of(data)[solid], h)
         pressure = data.GetPointData().HasArray("Pressure")
         for what in (["--scalar", "Pressure", "--iso", "1000"] if pressure else ["--scalar", "Speed", "--iso", "1.5"],
@@ -539,10 +519,10 @@ def walls(benchmark):
                 edges.SetInputData(surface)
                 edges.Update()
                 border = edges.GetOutput()
-                ends = at.distance(points_of(border)) / h if border.GetNumberOfPoints() else numpy.zeros(0)
+                ends = at.distance(points_of(border)) / h if border.GetNumberOfPoints() else np.zeros(0)
                 ends = ends[ends < near]
                 behind = 100 * (at.distance(points_of(surface)) < -0.01 * h).mean()
-                words = "%+.2f (%+.2f to %+.2f)" % tuple(numpy.percentile(ends, [50, 5, 95])) if len(ends) else \
+                words = "%+.2f (%+.2f to %+.2f)" % tuple(np.percentile(ends, [50, 5, 95])) if len(ends) else \
                     "no border there"
                 out.text(f"    {name:18} border at {words:28} {behind:5.1f} % of the points behind")
 

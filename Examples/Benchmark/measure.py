@@ -3,6 +3,7 @@
 """Shared by all cases of the benchmark: particle sets, runs of the program and of its competitors, tables."""
 import functools
 import hashlib
+import importlib.util
 import json
 import os
 import pathlib
@@ -13,7 +14,12 @@ import subprocess
 import sys
 import time
 
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
 GENERATORS = pathlib.Path(__file__).resolve().parent.parent / "Data"
+sys.path.insert(0, str(GENERATORS))
+import particle_file  # noqa: E402
 PHASES = ("input", "search_grid", "seeds", "extraction", "correction", "trimming", "output")
 CUBE_FACTOR = 0.5
 THRESHOLD = 0.5  # of the weight sum, at the free surface
@@ -91,25 +97,15 @@ class Sets:
             for name in names_of(data):
                 if name != array:
                     data.RemoveArray(name)
-            write(particles, path)
+            particle_file.write(str(path), particles)
         return path, options
 
 
 def read(path):
-    import vtk
     reader = vtk.vtkXMLPolyDataReader()
     reader.SetFileName(str(path))
     reader.Update()
     return reader.GetOutput()
-
-
-def write(particles, path):
-    import vtk
-    writer = vtk.vtkXMLPolyDataWriter()
-    writer.SetFileName(str(path))
-    writer.SetInputData(particles)
-    writer.SetDataModeToBinary()  # appended data cannot be read by every ParaView
-    writer.Write()
 
 
 def names_of(data):
@@ -117,12 +113,10 @@ def names_of(data):
 
 
 def points_of(data):
-    from vtk.util.numpy_support import vtk_to_numpy
     return vtk_to_numpy(data.GetPoints().GetData()).astype(float)
 
 
 def array_of(data, name):
-    from vtk.util.numpy_support import vtk_to_numpy
     return vtk_to_numpy(data.GetPointData().GetArray(name)).astype(float)
 
 
@@ -192,7 +186,6 @@ def sum_of(result, *names):
 
 def lattice(particles, cube, dimension):
     """An image of nodes at whole multiples of the cube size, around the particles; in two dimensions in the plane z = 0."""
-    import vtk
     low = [int(b // cube) - 2 for b in particles.GetBounds()[:2 * dimension:2]]
     high = [int(b // cube) + 3 for b in particles.GetBounds()[1:2 * dimension:2]]
     image = vtk.vtkImageData()
@@ -210,7 +203,6 @@ def exclude_others(filter_, particles, *kept):
 
 def interpolator(particles, image, h, dimension, *kept):
     """vtkSPHInterpolator of some arrays, not run yet."""
-    import vtk
     kernel = vtk.vtkSPHCubicKernel()
     kernel.SetSpatialStep(h)
     kernel.SetDimension(dimension)
@@ -228,7 +220,6 @@ def interpolator(particles, image, h, dimension, *kept):
 
 def run_vtk(path, iso="0", dimension="3", length=None):
     """vtkSPHInterpolator of one scalar to an image of the particles' bounds, then vtkFlyingEdges."""
-    import vtk
     particles, dimension = read(path), int(dimension)
     h = float(length) if length else particles.GetPointData().GetArray("SmoothingLength").GetRange()[1]
     image = lattice(particles, CUBE_FACTOR * h, dimension)
@@ -263,7 +254,29 @@ def run_splashsurf(path):
             "name": "splashsurf " + version("pysplashsurf")}
 
 
-COMPETITORS = {"vtk": run_vtk, "splashsurf": run_splashsurf}
+def has_splashsurf():
+    return importlib.util.find_spec("pysplashsurf") is not None
+
+
+def smoothed_by_splashsurf(points, spacing, cube=0.5):
+    """The mesh, with its normals, of splashsurf's recommended settings; cubes are in particle radii."""
+    import pysplashsurf
+    return pysplashsurf.reconstruction_pipeline(
+        points.astype("float32"), particle_radius=spacing / 2, smoothing_length=2.0, cube_size=cube, iso_surface_threshold=0.6,
+        mesh_smoothing_weights=True, mesh_smoothing_weights_normalization=13.0, mesh_smoothing_iters=25,
+        normals_smoothing_iters=10, mesh_cleanup=True, compute_normals=True)[0]
+
+
+def run_smooth_splashsurf(path):
+    particles = read(path)
+    spacing = statistics.median(array_of(particles, "Mass") / array_of(particles, "Density")) ** (1 / 3)
+    begin = time.perf_counter()
+    made = smoothed_by_splashsurf(points_of(particles), spacing)
+    return {"name": "splashsurf", "seconds": time.perf_counter() - begin, "triangles": len(made.mesh.triangles),
+            "bytes": peak_bytes()}
+
+
+COMPETITORS = {"vtk": run_vtk, "splashsurf": run_splashsurf, "splashsurf, smooth": run_smooth_splashsurf}
 
 
 def available_bytes():

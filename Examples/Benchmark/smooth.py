@@ -1,27 +1,16 @@
-#!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How smooth surfaces are, and what that costs: smooth.py PROGRAM [--seed N] [--smoothing-length 1.3] [--time PARTICLES.vtp].
+"""How smooth surfaces are, and what that costs.
 
 Two scenes with particles one apart, moved at random by a share of that: a tank at rest; and a crown, a splash with a sheet of one
-layer, threads at its rim and 40 lone drops. For each surface the tilt of its triangles against the true surface (root of the mean
-square, degrees), drops and pieces, triangles, how many have an angle below 20 degrees, the volume over N V, and seconds. With
---time only the processor's seconds of whole runs, in turn, and their medians. Needs numpy and vtk; splashsurf is compared where
-pysplashsurf can be imported.
+layer, threads at its rim and 40 lone drops.
 """
-import argparse
-import json
-import pathlib
-import resource
 import statistics
-import subprocess
-import sys
-import tempfile
 import time
 
 import numpy as np
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-import vtk
+from measure import (compete, has_splashsurf, particle_file, points_of, processor_seconds, read, smoothed_by_splashsurf,
+                     vtk_to_numpy)
 
 DROPS, RADIUS, HEIGHT = 40, 13, 13  # of the crown
 WAYS = {"as it is": [], "--compact": ["--compact"], "--widen 2": ["--widen", "2"], "--smooth": ["--smooth"],
@@ -63,24 +52,7 @@ def crown(jitter, random):
     return np.concatenate([x + random.normal(0, jitter, x.shape), drops])
 
 
-def write_particles(path, x):
-    data, points = vtk.vtkPolyData(), vtk.vtkPoints()
-    points.SetData(numpy_to_vtk(x, deep=1))
-    data.SetPoints(points)
-    writer = vtk.vtkXMLPolyDataWriter()
-    writer.SetFileName(str(path))
-    writer.SetInputData(data)
-    writer.SetDataModeToBinary()
-    writer.Write()
-
-
-def read_surface(path):
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    mesh = reader.GetOutput()
-    return vtk_to_numpy(mesh.GetPoints().GetData()).astype(float), \
-        vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+SCENES = {"tank, jitter 0.12": (tank, 0.12), "tank, jitter 0.18": (tank, 0.18), "crown, jitter 0.10": (crown, 0.10)}
 
 
 def pieces_of(points, triangles):
@@ -110,111 +82,56 @@ def measure(scene, x, points, triangles):
     volumes = np.bincount(pieces_of(points, triangles), (a * np.cross(b, c)).sum(1) / 6)
     least = np.min([np.degrees(np.arctan2(np.linalg.norm(np.cross(v - u, w - u), axis=1), ((v - u) * (w - u)).sum(1)))
                     for u, v, w in ((a, b, c), (b, c, a), (c, a, b))], 0)
-    row = {"triangles": len(triangles), "pieces": len(volumes), "angles": 100 * np.mean(least < 20),
-           "volume": abs(volumes.sum()) / len(x)}
-    if scene == "tank":
+    if scene is tank:
         top = (np.abs(middle[:, :2] - 18) < 13).all(1) & (middle[:, 2] > 7)
-        row["tilt"] = tilt(normals[top], np.array([0.0, 0, 1]))
-        return row
-    r, z = np.hypot(middle[:, 0], middle[:, 1]), middle[:, 2]
-    sheet = (np.abs(r - radius_at(z)) < 1.5) & (z > 3) & (z < HEIGHT - 2.5)
-    slope = 6 * z / HEIGHT ** 2
-    outwards = np.stack([middle[:, 0] / r, middle[:, 1] / r, -slope], 1)
-    row["tilt"] = tilt(normals[sheet], outwards[sheet])
-    near = np.linalg.norm(points[:, None, :] - x[None, -DROPS:], axis=2).min(0) < 1.2
-    row["drops"] = int(near.sum())
-    return row
+        off, drops = tilt(normals[top], np.array([0.0, 0, 1])), "-"
+    else:
+        r, z = np.hypot(middle[:, 0], middle[:, 1]), middle[:, 2]
+        sheet = (np.abs(r - radius_at(z)) < 1.5) & (z > 3) & (z < HEIGHT - 2.5)
+        outwards = np.stack([middle[:, 0] / r, middle[:, 1] / r, -6 * z / HEIGHT ** 2], 1)
+        off = tilt(normals[sheet], outwards[sheet])
+        drops = int((np.linalg.norm(points[:, None, :] - x[None, -DROPS:], axis=2).min(0) < 1.2).sum())
+    return [f"{off:.1f}", drops, len(volumes), len(triangles), f"{100 * np.mean(least < 20):.2f} %",
+            f"{abs(volumes.sum()) / len(x):.3f}"]
 
 
-def run_program(program, folder, x, length, words):
-    output, statistics = folder / "surface.vtp", folder / "statistics.json"
-    write_particles(folder / "particles.vtp", x)
-    done = subprocess.run([program, folder / "particles.vtp", output, "--free-surface", "--smoothing-length", str(length),
-                           *words, "--stats", statistics, "--repeat", "2", "--no-attributes", "--quiet"], capture_output=True, text=True)
-    if done.returncode:
-        return None
-    told = json.loads(statistics.read_text())
-    return (*read_surface(output), told["runs"][-1]["wall_seconds"], told["statistics"]["residual_max"])
-
-
-def time_runs(program, particles, rounds=5):
+def times(benchmark):
     """Each run is a process of its own, so that what it takes can be told."""
-    with tempfile.TemporaryDirectory() as folder:
-        plain = [program, particles, pathlib.Path(folder) / "surface.vtp", "--free-surface", "--no-attributes", "--quiet"]
-        runs = {"as it is": plain, "--compact": [*plain, "--compact"], "--smooth": [*plain, "--smooth"],
-                "splashsurf, cubes 0.5 r": [sys.executable, __file__, "-", "--splashsurf", particles]}
-        seconds = {name: [] for name in runs}
-        for _ in range(rounds):
-            for name, command in runs.items():
-                before = resource.getrusage(resource.RUSAGE_CHILDREN)
-                subprocess.run(command, check=True)
-                after = resource.getrusage(resource.RUSAGE_CHILDREN)
-                seconds[name].append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    plain = statistics.median(seconds["as it is"])
-    for name, taken in seconds.items():
-        print(f"| {name} | {statistics.median(taken):.2f} s | {statistics.median(taken) / plain:.2f} |")
+    path, taken = benchmark.files[0], {}
+    for _ in range(benchmark.runs):
+        for name in ("as it is", "--compact", "--smooth"):
+            options = ["--free-surface", "--no-attributes", *WAYS[name], *benchmark.more]
+            taken.setdefault(name, []).append(benchmark.program.start(path, options, 0)[2])
+        before = processor_seconds()
+        if "left_out" not in compete("splashsurf, smooth", path, 0, 1, benchmark.limit):
+            taken.setdefault("splashsurf, cubes 0.5 r", []).append(processor_seconds() - before)
+    seconds = {name: statistics.median(each) for name, each in taken.items()}
+    benchmark.report.table(["", "s of a processor", "times"],
+                           [[name, f"{each:.2f}", f"{each / seconds['as it is']:.2f}"] for name, each in seconds.items()])
 
 
-def read_spaced(path):
-    """Positions, with particles one apart."""
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(path)
-    reader.Update()
-    data = reader.GetOutput()
-    mass, density = (vtk_to_numpy(data.GetPointData().GetArray(name)) for name in ("Mass", "Density"))
-    return vtk_to_numpy(data.GetPoints().GetData()) / np.median(mass / density) ** (1 / 3)
-
-
-def run_splashsurf(x, cube):
-    import pysplashsurf
-
-    begin = time.time()
-    mesh, _ = pysplashsurf.reconstruction_pipeline(
-        x.astype(np.float32), particle_radius=0.5, smoothing_length=2.0, cube_size=cube, iso_surface_threshold=0.6,
-        mesh_smoothing_weights=True, mesh_smoothing_weights_normalization=13.0, mesh_smoothing_iters=25, normals_smoothing_iters=10,
-        mesh_cleanup=True, compute_normals=True, subdomain_grid=True)
-    seconds = time.time() - begin
-    mesh = getattr(mesh, "mesh", mesh)
-    return np.asarray(mesh.vertices, float), np.asarray(mesh.triangles, int), seconds, np.nan
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program")
-    parser.add_argument("--seed", type=int, default=45)
-    parser.add_argument("--smoothing-length", type=float, default=1.0)
-    parser.add_argument("--time", metavar="PARTICLES.vtp")
-    parser.add_argument("--splashsurf", help=argparse.SUPPRESS)
-    given = parser.parse_args()
-    if given.time:
-        time_runs(given.program, given.time)
-        return
-    if given.splashsurf:
-        run_splashsurf(read_spaced(given.splashsurf), 0.5)
-        return
-    random = np.random.default_rng(given.seed)
-    scenes = [("tank", "tank, jitter 0.12", tank(0.12, random)), ("tank", "tank, jitter 0.18", tank(0.18, random)),
-              ("crown", "crown, jitter 0.10", crown(0.10, random))]
-    try:
-        import pysplashsurf  # noqa: F401
-        competitors = SPLASHSURF
-    except ImportError:
-        competitors = {}
-    for scene, title, x in scenes:
-        print(f"\n| {title}: {len(x)} particles | tilt | drops | pieces | triangles | angles < 20 | volume / N V | residual | s |\n"
-              "|---|---|---|---|---|---|---|---|---|")
-        for name, way in {**WAYS, **competitors}.items():
-            with tempfile.TemporaryDirectory() as folder:
-                found = run_program(given.program, pathlib.Path(folder), x, given.smoothing_length, way) if isinstance(way, list) \
-                    else run_splashsurf(x, way)
-            if found is None:
-                print(f"| {name} | not in this program |")
-                continue
-            points, triangles, seconds, residual = found
-            row = measure(scene, x, points, triangles)
-            print(f"| {name} | {row['tilt']:.1f} | {row.get('drops', '-')} | {row['pieces']} | {row['triangles']} | "
-                  f"{row['angles']:.2f} % | {row['volume']:.3f} | {residual:.1e} | {seconds:.2f} |", flush=True)
-
-
-if __name__ == "__main__":
-    main()
+def smooth(benchmark):
+    """For each surface the tilt of its triangles against the true surface (root of the mean square, degrees), drops and pieces,
+    triangles, how many have an angle below 20 degrees, the volume over N V, and seconds. With particles only the
+    processor's seconds of whole runs, in turn, and their medians."""
+    if benchmark.files:
+        return times(benchmark)
+    random, path = np.random.default_rng(benchmark.arguments.seed), benchmark.folder / "scene.vtp"
+    for title, (scene, jitter) in SCENES.items():
+        x, rows = scene(jitter, random), []
+        particle_file.write(str(path), particle_file.poly_data(x, {}))
+        for name, options in WAYS.items():
+            report = benchmark.program.start(path, ["--free-surface", "--no-attributes", *options,
+                                                    *(benchmark.more or ["--smoothing-length", 1])], 2)[0]
+            made = read(benchmark.program.surface)
+            triangles = vtk_to_numpy(made.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            rows.append([name, *measure(scene, x, points_of(made), triangles),
+                         f"{report['statistics']['residual_max']:.1e}", f"{report['runs'][1]['wall_seconds']:.2f}"])
+        for name, cube in SPLASHSURF.items() if has_splashsurf() else ():
+            begin = time.perf_counter()
+            made = smoothed_by_splashsurf(x, 1, cube).mesh
+            taken = time.perf_counter() - begin
+            rows.append([name, *measure(scene, x, np.asarray(made.vertices, float), np.asarray(made.triangles, int)), "-",
+                         f"{taken:.2f}"])
+        benchmark.report.table([f"{title}: {len(x)} particles", "tilt", "drops", "pieces", "triangles", "angles < 20",
+                                "volume / N V", "residual", "s"], rows)

@@ -8,6 +8,7 @@ import tempfile
 import time
 
 import device_limits
+import numpy as np
 from measure import (CUBE_FACTOR, PHASES, THRESHOLD, array_of, compete, mebibytes, need_surface, points_of, ratio, read,
                      seconds_of, sum_of, text_of)
 
@@ -235,7 +236,6 @@ GROWTH = {
 
 
 def growth(benchmark):
-    import numpy
     out, results, exponents = benchmark.report, [], {}
     out.heading("Growth with the number of particles",
                 "The tank, Swirl = 0. Device memory without a surface is that of a run whose iso value no particle has. "
@@ -258,7 +258,7 @@ def growth(benchmark):
     for key, (_, _, size) in GROWTH.items() if len(results) > 1 else ():
         values = [row[key] for row in results]
         # The slope of the logarithms' least squares line.
-        exponents[f"{key} in {size}"] = float(numpy.polyfit(numpy.log([row[size] for row in results]), numpy.log(values), 1)[0]) \
+        exponents[f"{key} in {size}"] = float(np.polyfit(np.log([row[size] for row in results]), np.log(values), 1)[0]) \
             if size and min(values) > 0 else None
     if exponents:
         rows.append(["exponent", "", *(f"{slope:.2f} in {name.split()[-1]}" if slope is not None else "-"

@@ -20,7 +20,10 @@ import vtk
 
 import marchingcorrectors as mc
 
-DATA = Path(__file__).resolve().parent.parent / "Data"
+EXAMPLES = Path(__file__).resolve().parent.parent
+DATA = EXAMPLES / "Data"
+sys.path.insert(0, str(EXAMPLES / "Benchmark"))
+from measure import smoothed_by_splashsurf  # noqa: E402
 FLUID = ("ParticleType", 0)
 
 
@@ -209,26 +212,15 @@ def plane_bands(values=(-1, 1000, 2000, 3000)):
     return plotter.screenshot(return_img=True)
 
 
-def splashsurf(particles):
-    """With its recommended settings, and cubes of half a particle radius."""
-    import pysplashsurf
-
-    fluid = particles["ParticleType"] == 0
-    radius = 0.5 * float(np.median(particles["Mass"][fluid] / particles["Density"][fluid])) ** (1 / 3)
-    made, _ = pysplashsurf.reconstruction_pipeline(
-        particles.points[fluid].astype(np.float32), particle_radius=radius, smoothing_length=2.0, cube_size=0.5,
-        iso_surface_threshold=0.6, mesh_smoothing_weights=True, mesh_smoothing_weights_normalization=13.0,
-        mesh_smoothing_iters=25, normals_smoothing_iters=10, mesh_cleanup=True, compute_normals=True)
-    mesh = pyvista.PolyData.from_regular_faces(np.asarray(made.mesh.vertices), np.asarray(made.mesh.triangles))
-    mesh.point_data.active_normals = np.asarray(made.point_attributes["normals"])
-    return mesh
-
-
 def smooth():
-    """The free surface as it is, smooth, and splashsurf's."""
+    """The free surface as it is, smooth, and splashsurf's, with cubes of half a particle radius."""
     particles = dam_break()
+    water = particles.extract_points(particles["ParticleType"] == 0)
+    made = smoothed_by_splashsurf(water.points, float(np.median(water["Mass"] / water["Density"])) ** (1 / 3))
+    theirs = pyvista.PolyData.from_regular_faces(np.asarray(made.mesh.vertices), np.asarray(made.mesh.triangles))
+    theirs.point_data.active_normals = np.asarray(made.point_attributes["normals"])
     meshes = {"as it is": particles.sph.free_surface(fluid=FLUID),
-              "--smooth": particles.sph.free_surface(fluid=FLUID, smooth=True), "splashsurf": splashsurf(particles)}
+              "--smooth": particles.sph.free_surface(fluid=FLUID, smooth=True), "splashsurf": theirs}
     x, y, z = np.reshape(meshes["as it is"].bounds, (3, 2))
     size, focus = x[1] - x[0], np.array([0.3 * x[0] + 0.7 * x[1], 0.6 * y[0] + 0.4 * y[1], z.mean()])
     plotter = plotter_of((1680, 520), shape=(1, 3), border=False)

@@ -85,8 +85,8 @@ static double ramp(double x, double from, double to)
   return t * t * (3 - 2 * t);
 }
 
-/* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides, and
- * less than the iso value where many are on one. */
+/* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides, more
+ * where few are on one, and less than the iso value where many are. */
 static double expected_factor(const core_set* set, int64_t j, double iso)
 {
   double crowd = 0, offset[3] = { 0 };
@@ -103,8 +103,9 @@ static double expected_factor(const core_set* set, int64_t j, double iso)
   const double middle = sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]) /
     fmax(crowd, 1) / set->smoothing_length[j];
   double upper = WIDEST, above = weight_with(set, j, upper);
-  const double least = iso + 0.1 -
-    (0.1 + 0.08 * ramp(above, iso - 0.16, iso - 0.08)) * ramp(middle, 0.4, 0.6) * ramp(crowd, 4.5, 6);
+  const double sided = ramp(middle, 0.4, 0.6) * (1.5 * ramp(crowd, 4.5, 6) - 0.5);
+  const double least =
+    iso + 0.1 * (1 - sided) - 0.08 * fmax(sided, 0) * ramp(above, iso - 0.16, iso - 0.08);
   double s = above >= least ? upper : 1;
   for (int step = 4; step >= 0 && above < least; --step)
   {

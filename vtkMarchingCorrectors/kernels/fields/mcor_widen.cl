@@ -12,11 +12,16 @@
  *
  * `least` is the iso value and a margin, without which sheets would get holes. At the surface of
  * deep water, where all neighbours are on one side, there is no margin, and a particle may even be
- * outside a little: each one that must be inside there would raise a bump. */
+ * outside a little: each one that must be inside there would raise a bump. At the rim of a sheet,
+ * where few are on one side, the margin is wider: their own lengths may be longer, and a thread
+ * that hangs there would part. */
 #define MCOR_WIDEN_STEP ((real)0.2f)
 
 /* Most by which the weight sum may be below the iso value at the surface of deep water. */
 #define MCOR_WIDEN_OUTSIDE ((real)0.08f)
+
+/* What a margin gains at a rim, as a share of it. */
+#define MCOR_WIDEN_RIM ((real)0.5f)
 
 /* Distance of the neighbours' middle, in smoothing lengths: below the first there is water on
  * both sides, beyond the second on one. */
@@ -186,8 +191,9 @@ __kernel void mcor_widen_try(MCOR_GRID_PARAMS, const int plane, const real wides
   const realv taper = mcor_widen_ramp(others, crowd_from, crowd_to);
   const realv middle = mcor_sqrt(mcor_square(crowd.offset[0], crowd.offset[1], crowd.offset[2])) *
     at.scale / fmax(others, (realv)1);
+  const realv deep = mcor_widen_ramp(others, crowd_to, (real)(4 / 3.0f) * crowd_to);
   const realv sided = mcor_widen_ramp(middle, MCOR_SIDED_FROM, MCOR_SIDED_TO) *
-    mcor_widen_ramp(others, crowd_to, (real)(4 / 3.0f) * crowd_to);
+    MCOR_FMA((realv)(1 + MCOR_WIDEN_RIM), deep, (realv)-MCOR_WIDEN_RIM);
   const realv needed = MCOR_FMA((realv)margin, 1 - sided, (realv)iso);
   const fixv known = c >= needed || taper <= (realv)0;
   const realv result = known ? MCOR_FMA((realv)(widest - 1), taper, (realv)1) : taper;
@@ -239,7 +245,7 @@ __kernel void mcor_widen_solve(MCOR_GRID_PARAMS, const int plane, const real wid
   realv needed = MCOR_WIDEN_LANES(sum), with_widest = 0;
   mcor_widen_sum(
     &grid, sizes, &at, 1, &widest, MCOR_SUPPORT * widest, &with_widest, NULL);
-  const realv sided = (iso + margin - needed) / margin;
+  const realv sided = fmax((iso + margin - needed) / margin, (realv)0);
   needed -= sided * MCOR_WIDEN_OUTSIDE *
     mcor_widen_ramp(with_widest, iso - 2 * MCOR_WIDEN_OUTSIDE, iso - MCOR_WIDEN_OUTSIDE);
   fixv found = mcor_lane_index() >= (fixv)count || with_widest >= needed;

@@ -41,6 +41,30 @@ static inline int mcor_cluster_bit(const int brick[3])
   return (brick[0] & 3) | (brick[1] & 3) << 2 | (brick[2] & 3) << 4;
 }
 
+/* Returns the mask of the first `count` of a cluster's four layers across an axis. */
+static inline uint64_t mcor_layers(int axis, int count)
+{
+  static const uint64_t layers[3][5] = { { 0, 0x1111111111111111, 0x3333333333333333,
+                                           0x7777777777777777, UINT64_MAX },
+    { 0, 0x000f000f000f000f, 0x00ff00ff00ff00ff, 0x0fff0fff0fff0fff, UINT64_MAX },
+    { 0, 0xffff, 0xffffffff, 0xffffffffffff, UINT64_MAX } };
+  return layers[axis][count];
+}
+/* Returns the bricks from `first` to `last` of the cluster with the first brick `cluster`; some are
+ * in it. */
+static inline uint64_t mcor_bricks_between(
+  const int first[3], const int last[3], const int cluster[3])
+{
+  uint64_t bricks = UINT64_MAX;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int low = first[a] - cluster[a], end = last[a] - cluster[a] + 1;
+    bricks &=
+      mcor_layers(a, end < MCOR_CLUSTER ? end : MCOR_CLUSTER) & ~mcor_layers(a, low > 0 ? low : 0);
+  }
+  return bricks;
+}
+
 /* Finds the first brick of the cluster with a key. */
 static inline void mcor_first_of_cluster(const mcor_rung* rung, uint64_t key, int brick[3])
 {

@@ -46,16 +46,6 @@ static bool mcor_split_cluster(
   return made;
 }
 
-/* Returns the mask of the first `count` of a cluster's four layers across an axis. */
-static uint64_t mcor_layers(int axis, int count)
-{
-  static const uint64_t layers[3][5] = { { 0, 0x1111111111111111, 0x3333333333333333,
-                                           0x7777777777777777, UINT64_MAX },
-    { 0, 0x000f000f000f000f, 0x00ff00ff00ff00ff, 0x0fff0fff0fff0fff, UINT64_MAX },
-    { 0, 0xffff, 0xffffffff, 0xffffffffffff, UINT64_MAX } };
-  return layers[axis][count];
-}
-
 /* Adds 4^3 bricks, given as bits, from any brick `first` on. */
 static bool mcor_split_cube(
   const mcor_tree* tree, int level, const int first[3], uint64_t bricks, mcor_brick_set* set)
@@ -100,33 +90,24 @@ typedef struct mcor_splitter
   int level, first[3], last[3];
 } mcor_splitter;
 
-/* Returns the bricks of a cluster that a particle reaches, in the layers from low to before end
- * along each axis. */
-static uint64_t mcor_reached_bricks(const mcor_tree_job* job, const mcor_splitter* p,
-  const int cluster[3], const int low[3], const int end[3])
+/* Returns the bricks of a cluster that a particle reaches. */
+static uint64_t mcor_reached_bricks(
+  const mcor_tree_job* job, const mcor_splitter* p, const int cluster[3])
 {
   double square[3][MCOR_CLUSTER];
-  for (int a = 0; a < 3; ++a)
+  for (int i = 0; i < 3 * MCOR_CLUSTER; ++i)
   {
-    for (int i = low[a]; i < end[a]; ++i)
-    {
-      const double edge = job->edge[p->level][a], below = (cluster[a] + i) * edge - p->x[a];
-      const double above = p->x[a] - (cluster[a] + i + 1) * edge;
-      const double d = below > 0 ? below : above > 0 ? above : 0;
-      square[a][i] = d * d;
-    }
+    const int a = i / MCOR_CLUSTER, layer = i % MCOR_CLUSTER;
+    const double edge = job->edge[p->level][a], below = (cluster[a] + layer) * edge - p->x[a];
+    const double above = p->x[a] - (cluster[a] + layer + 1) * edge;
+    const double d = below > 0 ? below : above > 0 ? above : 0;
+    square[a][layer] = d * d;
   }
   uint64_t bricks = 0;
-  for (int z = low[2]; z < end[2]; ++z)
+  for (int i = 0; i < 64; ++i)
   {
-    for (int y = low[1]; y < end[1]; ++y)
-    {
-      for (int x = low[0]; x < end[0]; ++x)
-      {
-        const bool in = square[0][x] + square[1][y] + square[2][z] <= p->reach * p->reach;
-        bricks |= (uint64_t)in << (x + 4 * y + 16 * z);
-      }
-    }
+    const double distance = square[0][i & 3] + square[1][i >> 2 & 3] + square[2][i >> 4];
+    bricks |= (uint64_t)(distance <= p->reach * p->reach) << i;
   }
   return bricks;
 }
@@ -148,18 +129,11 @@ static bool mcor_split_reached(
       {
         const bool stored = mcor_has_cluster(tree, p->level, c);
         const uint64_t key = mcor_cluster_key(&tree->lattice->rungs[p->level], c);
-        uint64_t bricks =
-          stored ? ~mcor_table_find(&tree->split[p->level].clusters, key) : UINT64_MAX;
-        int low[3], end[3];
-        for (int a = 0; a < 3; ++a)
-        {
-          low[a] = p->first[a] > c[a] ? p->first[a] - c[a] : 0;
-          end[a] = p->last[a] - c[a] < MCOR_CLUSTER ? p->last[a] - c[a] + 1 : MCOR_CLUSTER;
-          bricks &= mcor_layers(a, end[a]) & ~mcor_layers(a, low[a]);
-        }
+        uint64_t bricks = mcor_bricks_between(p->first, p->last, c);
+        bricks &= stored ? ~mcor_table_find(&tree->split[p->level].clusters, key) : UINT64_MAX;
         *all = *all && bricks == 0;
         bricks &= bricks && stored ? ~mcor_table_find(&set->clusters, key) : UINT64_MAX;
-        bricks &= bricks && !job->is_cube ? mcor_reached_bricks(job, p, c, low, end) : UINT64_MAX;
+        bricks &= bricks && !job->is_cube ? mcor_reached_bricks(job, p, c) : UINT64_MAX;
         made = bricks == 0 || mcor_split_cluster(tree, p->level, c, bricks, set);
       }
     }

@@ -7,7 +7,6 @@
  * lines of the others. See mcor_fill_lines.c. */
 
 #include "mcor_cap.h"
-#include "mcor_table.h"
 
 /* The lines of one iso value, after trimming. */
 typedef struct mcor_fill_line
@@ -45,12 +44,10 @@ typedef struct mcor_filling
 {
   mcor_fill_line* lines; /* [line_count], ascending by iso value, without repetitions */
   int line_count;
-  /* The nodes of the plane as those of a cap's side, seen from above; MCOR_CAP_VALID is in
-   * face.within. */
-  mcor_cap_face face;
-  double* value;   /* [face.node_count] */
-  int32_t* band;   /* [face.node_count]: number of levels that the node reaches */
-  int32_t* number; /* points of the surface, of nodes, then of cuts; -1: none */
+  mcor_cap_nodes nodes; /* of the plane, as those of a cap's side, seen from above */
+  double* value;        /* [nodes.node_count] */
+  int32_t* band;        /* [nodes.node_count]: number of levels that the node reaches */
+  int32_t* number;      /* points of the surface, of nodes, then of cuts; -1: none */
   mcor_table cut_of;
   MCOR_LIST(mcor_fill_cut) cuts;
   MCOR_LIST(mcor_fill_triangle) triangles;

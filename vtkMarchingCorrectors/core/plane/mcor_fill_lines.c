@@ -23,8 +23,9 @@ static void mcor_take_fill_node(
   mcor_filling* fill = data;
   const int64_t to = points->to[i];
   fill->value[to] = mcor_get_real(context, points->value, i);
-  fill->face.margin[to] = mcor_cap_margin(context, points, i);
-  fill->face.within[to] = mcor_cap_is_valid(context, points, i) ? MCOR_CAP_VALID : 0;
+  fill->nodes.margin[to] = mcor_cap_margin(context, points, i);
+  fill->nodes.bricks.of[to / MCOR_SIDE_NODES].valid |=
+    (cl_ulong)mcor_cap_is_valid(context, points, i) << to % MCOR_SIDE_NODES;
 }
 
 mcor_status mcor_begin_fill(mcor_context* context)
@@ -62,20 +63,19 @@ mcor_status mcor_begin_fill(mcor_context* context)
     "Use a node threshold, or iso values above 0, to fill it.",
     least);
   const mcor_box* box = &context->box;
-  mcor_cap_face* face = &fill->face;
-  *face = (mcor_cap_face){ .axis = 2, .upper = 1, .across = { 0, 1 } };
+  mcor_cap_nodes* nodes = &fill->nodes;
+  *nodes = (mcor_cap_nodes){ .axis = 2, .upper = 1, .across = { 0, 1 } };
   for (int a = 0; a < 2; ++a)
   {
-    face->first[a] = box->first[a];
-    face->count[a] = box->last[a] - box->first[a] + 1;
+    nodes->range[a][0] = box->first[a];
+    nodes->range[a][1] = box->last[a];
   }
-  MCOR_TRY(mcor_note_cap_tiles(context, 1, face));
-  MCOR_TRY(mcor_make_cap_nodes(context, face));
-  fill->value = calloc((size_t)face->node_count, sizeof *fill->value);
-  fill->band = calloc((size_t)face->node_count, sizeof *fill->band);
+  MCOR_TRY(mcor_find_cap_bricks(context, 1, nodes));
+  fill->value = calloc((size_t)nodes->node_count, sizeof *fill->value);
+  fill->band = calloc((size_t)nodes->node_count, sizeof *fill->band);
   MCOR_TRY(mcor_allocated(context, fill->value && fill->band));
   mcor_cap_points points = { .take = mcor_take_fill_node, .data = fill };
-  const mcor_status status = mcor_ask_cap_nodes(context, face, false, &points);
+  const mcor_status status = mcor_ask_cap_nodes(context, nodes, false, &points);
   mcor_free_cap_points(context, &points);
   return status;
 }
@@ -141,15 +141,20 @@ mcor_status mcor_take_lines(mcor_context* context)
     return MCOR_OK;
   }
   MCOR_TRY(context->mesh.march_count > 0 ? mcor_take_vertices(context, line) : MCOR_OK);
-  mcor_cap_face* face = &fill->face;
-  memset(face->state, 0, (size_t)face->node_count);
-  MCOR_TRY(mcor_take_cap_masks(context, face));
-  for (int64_t n = MCOR_CAP_TILE_NODES; n < face->node_count; ++n)
+  mcor_cap_nodes* nodes = &fill->nodes;
+  for (int64_t b = 0; b < nodes->bricks.count; ++b)
   {
-    const int state = face->state[n];
-    const bool known = state & MCOR_CAP_KNOWN, joined = state & MCOR_CAP_JOINED;
-    fill->band[n] += known ? (state & MCOR_CAP_ABOVE) != 0 : fill->value[n] >= line->iso;
-    face->within[n] = known ? (uint8_t)(state & MCOR_CAP_VALID) : face->within[n];
+    mcor_cap_brick* brick = &nodes->bricks.of[b];
+    brick->is_known = false;
+    brick->joined[2] = 0;
+  }
+  MCOR_TRY(mcor_take_cap_masks(context, nodes));
+  for (int64_t n = MCOR_SIDE_NODES; n < nodes->node_count; ++n)
+  {
+    const mcor_cap_brick* brick = &nodes->bricks.of[n / MCOR_SIDE_NODES];
+    const int bit = (int)(n % MCOR_SIDE_NODES);
+    const bool above = brick->above >> bit & 1, joined = brick->joined[2] >> bit & 1;
+    fill->band[n] += brick->is_known ? above : fill->value[n] >= line->iso;
     MCOR_TRY(
       mcor_allocated(context, !joined || mcor_table_number(&line->joined, (uint64_t)n, 0) >= 0));
   }
@@ -180,7 +185,7 @@ void mcor_end_fill(mcor_context* context)
   }
   if (fill)
   {
-    mcor_free_cap_face(&fill->face);
+    mcor_free_cap_nodes(&fill->nodes);
     mcor_table_free(&fill->cut_of);
     free(fill->lines);
     free(fill->value);

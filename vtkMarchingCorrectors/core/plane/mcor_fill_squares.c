@@ -36,11 +36,11 @@ typedef struct mcor_fill_job
   mcor_context* context;
   mcor_filling* fill;
   uint64_t square;
-  int64_t lowest;           /* index of its lowest node */
+  int64_t lowest;           /* number of its lowest node */
+  cl_int node[2];           /* the lowest node */
   mcor_fill_corner* border; /* [4 + 4 * line_count] */
   int count;
   int band; /* of the polygon under way */
-  cl_int u, v;
 } mcor_fill_job;
 
 static mcor_status mcor_does_not_fit(mcor_context* context, const mcor_fill_corner* at)
@@ -63,22 +63,21 @@ static uint64_t mcor_edge_part(const mcor_fill_corner* corner, int part)
 static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
 {
   const mcor_filling* fill = job->fill;
-  const mcor_cap_face* face = &fill->face;
-  const int64_t begin = mcor_corner_index(face, job->u, job->v, s),
-                end = mcor_corner_index(face, job->u, job->v, (s + 1) % 4);
+  const int64_t begin = mcor_corner_index(&fill->nodes, job->lowest, s),
+                end = mcor_corner_index(&fill->nodes, job->lowest, (s + 1) % 4);
   const int first = fill->band[begin], last = fill->band[end], parts = abs(last - first);
   for (int i = 0; i <= parts; ++i)
   {
     mcor_fill_corner* corner = &job->border[job->count++];
-    *corner =
-      (mcor_fill_corner){ .corner = { .vertex = (int32_t)begin, .margin = face->margin[begin] },
-        .level = -1,
-        .falls = last < first,
-        .band = last < first ? first - i : first + i,
-        .node = { face->first[0] + job->u + (s == 1), face->first[1] + job->v + (s == 2), 0 },
-        .axis = s & 1,
-        .part = s < 2 ? i : parts - i,
-        .from = s < 2 ? 0 : 1 };
+    *corner = (mcor_fill_corner){ .corner = { .vertex = (int32_t)begin,
+                                    .margin = fill->nodes.margin[begin] },
+      .level = -1,
+      .falls = last < first,
+      .band = last < first ? first - i : first + i,
+      .node = { job->node[0] + (s == 1), job->node[1] + (s == 2), 0 },
+      .axis = s & 1,
+      .part = s < 2 ? i : parts - i,
+      .from = s < 2 ? 0 : 1 };
     if (i > 0) /* a line's vertex */
     {
       corner->level = last < first ? first - i : first + i - 1;
@@ -148,7 +147,7 @@ static mcor_status mcor_cut_fill_side(
   const int32_t index =
     mcor_table_number(&fill->cut_of, mcor_edge_part(p, p->part), (int32_t)fill->cuts.count);
   MCOR_TRY(mcor_allocated(job->context, index >= 0));
-  cut->vertex = (int32_t)(fill->face.node_count + index);
+  cut->vertex = (int32_t)(fill->nodes.node_count + index);
   if (index == fill->cuts.count)
   {
     const bool inside = from->margin > 0;
@@ -197,20 +196,21 @@ static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
 /* ---- Squares ---- */
 
 /* A square is filled if all nodes are valid, and any is above the lowest level. */
-static mcor_status mcor_visit_fill_square(void* data, const mcor_cap_face* face, int u, int v)
+static mcor_status mcor_visit_fill_square(
+  void* data, const mcor_cap_nodes* nodes, int64_t lowest, const cl_int node[3])
 {
   mcor_fill_job* job = data;
   bool valid = true, above = false;
-  for (int c = 0; c < 4; ++c)
+  for (int k = 0; k < 4; ++k)
   {
-    const int64_t node = mcor_cap_index(face, u + (c & 1), v + (c >> 1));
-    valid = valid && (face->within[node] & MCOR_CAP_VALID);
-    above = above || job->fill->band[node] > 0;
+    const int64_t at = mcor_corner_index(nodes, lowest, k);
+    valid = valid && (nodes->bricks.of[at / MCOR_SIDE_NODES].valid >> at % MCOR_SIDE_NODES & 1);
+    above = above || job->fill->band[at] > 0;
   }
-  job->u = u;
-  job->v = v;
-  job->square = (uint64_t)(face->first[1] + v) << 21 | (uint64_t)(face->first[0] + u);
-  job->lowest = mcor_cap_index(face, u, v);
+  job->square = (uint64_t)node[1] << 21 | (uint64_t)node[0];
+  job->lowest = lowest;
+  job->node[0] = node[0];
+  job->node[1] = node[1];
   job->count = 0;
   for (int s = 0; s < 4 && valid && above; ++s)
   {
@@ -289,31 +289,18 @@ static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fil
 
 /* ---- Points ---- */
 
-/* Lists the marked nodes, by squares of 4 x 4, and numbers them. */
+/* Lists the marked nodes, brick by brick, and numbers them. */
 static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertex)
 {
-  int32_t* number = fill->number;
-  const mcor_cap_face* face = &fill->face;
-  const int *first = face->first, *size = face->count;
-  for (int v = first[1] >> 2; v <= (first[1] + size[1] - 1) >> 2; ++v)
+  for (int64_t n = MCOR_SIDE_NODES; n < fill->nodes.node_count; ++n)
   {
-    for (int u = first[0] >> 2; u <= (first[0] + size[0] - 1) >> 2; ++u)
+    if (fill->number[n] == 0)
     {
-      for (int n = 0; n < 16; ++n)
-      {
-        const int x = 4 * u + (n & 3) - first[0], y = 4 * v + (n >> 2) - first[1];
-        const bool within = x >= 0 && x < size[0] && y >= 0 && y < size[1];
-        const int64_t node = within ? mcor_cap_index(face, x, y) : 0;
-        if (number[node] == 0)
-        {
-          number[node] = (int32_t)base++;
-          *vertex = (mcor_cap_vertex){ .node = { first[0] + x, first[1] + y, 0 },
-            .band = fill->band[node],
-            .flag = MCOR_CAP_FLAG };
-          vertex->key[0] = mcor_fill_node_key(vertex->node);
-          ++vertex;
-        }
-      }
+      fill->number[n] = (int32_t)base++;
+      *vertex = (mcor_cap_vertex){ .band = fill->band[n], .flag = MCOR_CAP_FLAG };
+      mcor_cap_node(&fill->nodes, n, vertex->node);
+      vertex->key[0] = mcor_fill_node_key(vertex->node);
+      ++vertex;
     }
   }
 }
@@ -324,7 +311,7 @@ static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_ver
 static mcor_status mcor_make_fill_points(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const size_t refs = (size_t)(fill->face.node_count + fill->cuts.count);
+  const size_t refs = (size_t)(fill->nodes.node_count + fill->cuts.count);
   fill->number = malloc(refs * sizeof *fill->number);
   MCOR_TRY(mcor_allocated(context, fill->number));
   memset(fill->number, 0xff, refs * sizeof *fill->number);
@@ -333,7 +320,7 @@ static mcor_status mcor_make_fill_points(
   for (int64_t i = 0; i < 3 * fill->triangles.count; ++i)
   {
     const int32_t ref = fill->triangles.of[i / 3].corner[i % 3];
-    if (ref >= 0 && ref < fill->face.node_count && fill->number[ref] < 0)
+    if (ref >= 0 && ref < fill->nodes.node_count && fill->number[ref] < 0)
     {
       fill->number[ref] = 0;
       ++nodes;
@@ -357,7 +344,7 @@ static mcor_status mcor_make_fill_points(
     *vertex = cut->vertex;
     vertex->flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2;
     vertex->offset[cut->axis] = cut->at;
-    fill->number[fill->face.node_count + cut->index] = (int32_t)(base + nodes + i);
+    fill->number[fill->nodes.node_count + cut->index] = (int32_t)(base + nodes + i);
   }
   mcor_mesh* mesh = &context->mesh;
   mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
@@ -429,7 +416,7 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
   job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
   MCOR_TRY(mcor_allocated(context, job.border));
   const mcor_status status =
-    mcor_visit_cap_squares(context, &fill->face, mcor_visit_fill_square, &job);
+    mcor_visit_cap_squares(context, &fill->nodes, mcor_visit_fill_square, &job);
   free(job.border);
   MCOR_TRY(status);
   MCOR_TRY(mcor_place_fill_cuts(context, fill));

@@ -7,6 +7,7 @@
  * two dimensions use the same nodes and points. */
 
 #include "mcor_plane.h"
+#include "mcor_table.h"
 
 /* Boundary flag of vertices that only caps have. */
 #define MCOR_CAP_FLAG 8
@@ -133,7 +134,7 @@ typedef mcor_status (*mcor_add_clipped)(
 mcor_status mcor_clip_polygon(const mcor_cap_corner* const corners[], int count, int first,
   mcor_clip_side cut, mcor_add_clipped add, void* data);
 
-/* ---- mcor_cap_face.c: the nodes of one side ---- */
+/* ---- mcor_cap_nodes.c: the nodes where caps may be ---- */
 
 /* Corners of a square; side k goes from corner k to the next one. */
 static inline int mcor_corner_u(int k)
@@ -145,59 +146,59 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-enum
+/* A brick of nodes that particles reach, on a side or one node further in; or near walls, where both
+ * fluid and solids reach it. Bits of masks are those of a brick. */
+typedef struct mcor_cap_brick
 {
-  MCOR_CAP_KNOWN = 1, /* marching has evaluated it */
-  MCOR_CAP_ABOVE = 2,
-  MCOR_CAP_VALID = 4,
-  /* Flags of the cell beside the side, and of the square, whose lowest node this is. */
-  MCOR_CAP_USED = 8,
-  MCOR_CAP_JOINED = 16 /* an ambiguous square joins its nodes above */
-};
+  uint64_t key; /* the first member: by the side's second axis, then the first; of its first cell */
+  cl_int at[3]; /* in bricks */
+  int32_t up[8]; /* numbers of itself and the bricks up from it, bits x, y, z; 0: none */
+  int32_t inner; /* number of the brick that has the nodes one further in; 0: none */
+  bool is_known; /* marching has evaluated its nodes */
+  cl_ulong above, valid;
+  /* Used cells, and ambiguous faces that join their nodes above, whose lowest node is here. */
+  cl_ulong used, joined[3];
+} mcor_cap_brick;
 
-typedef struct mcor_cap_face
+/* Nodes of a side have numbers MCOR_SIDE_NODES * brick + 0 to 15. The first brick stands for all
+ * that no particle reaches. */
+#define MCOR_SIDE_NODES (MCOR_BRICK * MCOR_BRICK)
+typedef struct mcor_cap_nodes
 {
-  int axis, upper; /* upper: of the two sides, the higher one */
-  int plane;       /* number of its nodes along the axis; the nodes further in are one beside it */
-  int across[2];   /* the other two axes, so that across[0], across[1], axis are right-handed */
-  int first[2], count[2]; /* nodes along these */
-  /* Tiles have MCOR_CAP_TILE nodes along an edge. tiles: places for them along the two axes;
-   * tile: the number at each place, 0 where no particle reaches; place: where each number is. */
-  int tiles[2];
-  int32_t* tile; /* [tiles[1]][tiles[0]] */
-  int tile_count;
-  int32_t* place; /* [tile_count + 1] */
-  /* States of the nodes, and of the nodes one further in; see mcor_cap_index. */
-  int64_t node_count;
-  uint8_t *state, *within;
-  double* margin; /* trim margin of nodes above */
-} mcor_cap_face;
+  int axis, upper;  /* axis: -1 near walls; upper: of the two sides, the higher one */
+  int plane, inner; /* numbers along the axis: of the side's nodes, and of those one further in */
+  int across[2];    /* the other two axes, so that across[0], across[1], axis are right-handed */
+  int range[3][2];  /* first and last node along each axis */
+  mcor_table index; /* numbers of bricks by place */
+  MCOR_LIST(mcor_cap_brick) bricks; /* those on the side come first */
+  int64_t side_count, node_count;   /* bricks on the side; nodes there, or near walls all */
+  double* margin;                   /* [node_count], trim margins of nodes above */
+} mcor_cap_nodes;
 
-#define MCOR_CAP_TILE 16
-#define MCOR_CAP_TILE_NODES (MCOR_CAP_TILE * MCOR_CAP_TILE)
-
-/* Finds the index of a node. Below MCOR_CAP_TILE_NODES: no particle reaches it, and others share
- * the index. */
-static inline int64_t mcor_cap_index(const mcor_cap_face* face, int u, int v)
+/* Returns the bit of node number `at` of a side in its brick's masks, or of the one at another place
+ * along the axis. */
+static inline int mcor_side_bit(const mcor_cap_nodes* nodes, int along, int64_t at)
 {
-  const int64_t tile =
-    face->tile[(int64_t)(v / MCOR_CAP_TILE) * face->tiles[0] + u / MCOR_CAP_TILE];
-  return tile * MCOR_CAP_TILE_NODES + (v % MCOR_CAP_TILE) * MCOR_CAP_TILE + u % MCOR_CAP_TILE;
+  return (along & 3) << 2 * nodes->axis | (int)(at & 3) << 2 * nodes->across[0] |
+    (int)(at >> 2 & 3) << 2 * nodes->across[1];
 }
 
-static inline int64_t mcor_corner_index(const mcor_cap_face* face, int u, int v, int k)
+/* Finds the place of node number `at` of a side. */
+static inline void mcor_cap_node(const mcor_cap_nodes* nodes, int64_t at, cl_int node[3])
 {
-  return mcor_cap_index(face, u + mcor_corner_u(k), v + mcor_corner_v(k));
+  const cl_int* brick = nodes->bricks.of[at / MCOR_SIDE_NODES].at;
+  node[nodes->axis] = nodes->plane;
+  node[nodes->across[0]] = brick[nodes->across[0]] * MCOR_BRICK + (cl_int)(at & 3);
+  node[nodes->across[1]] = brick[nodes->across[1]] * MCOR_BRICK + (cl_int)(at >> 2 & 3);
 }
 
-/* Finds where node (u, v) is; in two dimensions nodes above each other are one. */
-static inline void mcor_cap_node(
-  const mcor_context* context, const mcor_cap_face* face, int u, int v, cl_int node[3])
+/* Returns the number of corner k of the square with lowest node `at`. */
+static inline int64_t mcor_corner_index(const mcor_cap_nodes* nodes, int64_t at, int k)
 {
-  node[face->axis] = face->plane;
-  node[face->across[0]] = face->first[0] + u;
-  node[face->across[1]] = face->first[1] + v;
-  node[2] = context->space.flat ? 0 : node[2];
+  const int64_t u = (at & 3) + mcor_corner_u(k), v = (at >> 2 & 3) + mcor_corner_v(k);
+  const int up = (int)(u >> 2) << nodes->across[0] | (int)(v >> 2) << nodes->across[1];
+  return (int64_t)nodes->bricks.of[at / MCOR_SIDE_NODES].up[up] * MCOR_SIDE_NODES + (u & 3) +
+    MCOR_BRICK * (v & 3);
 }
 
 /* mcor_cap_points.c. Returns the number of nodes along an axis to its lower or upper side if a
@@ -206,45 +207,28 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper);
 bool mcor_makes_caps(const mcor_context* context);
 /* Whether that side is one of this call's box. */
 bool mcor_has_cap_side(const mcor_context* context, int axis, int upper);
-/* Returns the nodes that caps cover along an axis, [range[0], range[1]]: those of the box and
- * its ring. */
-void mcor_cap_range(const mcor_context* context, int axis, int range[2]);
 /* Fails where caps would need too many nodes. */
 mcor_status mcor_check_caps(mcor_context* context);
 
-/* Marks the tiles of a face of known extent; fails where there are too many. iso_value: in the
- * caller's unit. */
-mcor_status mcor_note_cap_tiles(mcor_context* context, double iso_value, mcor_cap_face* face);
-/* Numbers the marked tiles, and allocates their nodes. */
-mcor_status mcor_make_cap_nodes(mcor_context* context, mcor_cap_face* face);
+/* Finds the bricks of nodes whose axes and ranges are set; fails where they are too many.
+ * iso_value: in the caller's unit. */
+mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes);
 /* Takes the masks of the marched bricks. */
-mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_face* face);
+mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes);
 /* Asks for the field at the nodes that need it: those of the side, or those one further in. */
 mcor_status mcor_ask_cap_nodes(
-  mcor_context* context, const mcor_cap_face* face, bool within, mcor_cap_points* points);
-/* Calls `visit` for the squares of all tiles, each by its lower node. */
-mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_face* face,
-  mcor_status (*visit)(void* data, const mcor_cap_face* face, int u, int v), void* data);
+  mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points);
+/* Calls `visit` for the squares of all bricks, by number and place of their lowest nodes. */
+mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
+  mcor_status (*visit)(void* data, const mcor_cap_nodes* nodes, int64_t at, const cl_int node[3]),
+  void* data);
 /* Loads the nodes of axis a's lower or upper side. opposite: the other side of a period, if it
  * is loaded. */
-mcor_status mcor_load_cap_face(mcor_context* context, int axis, int upper,
-  const mcor_cap_face* opposite, mcor_cap_points* points, mcor_cap_face* face);
-void mcor_free_cap_face(mcor_cap_face* face);
-
-/* A marched brick: where it is, and masks of its nodes, and of the cells and faces whose lowest
- * node is in it. */
-typedef struct mcor_seen_brick
-{
-  const cl_int* at; /* in bricks */
-  cl_ulong known, above, valid, used, joined[3];
-} mcor_seen_brick;
-typedef void (*mcor_see_brick)(const mcor_seen_brick* brick, void* data);
-mcor_status mcor_see_bricks(mcor_context* context, mcor_see_brick see, void* data);
-
-/* Calls `visit` for each particle on the device: x: in nodes from the lattice's origin; reach:
- * in cubes, rounded up a little. */
-typedef mcor_status (*mcor_visit_particle)(
-  mcor_context* context, const double x[3], double reach, bool is_solid, void* data);
-mcor_status mcor_visit_particles(mcor_context* context, mcor_visit_particle visit, void* data);
+mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
+  const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes);
+/* Loads the nodes near walls. Of these, those above are known by marching, or are evaluated. */
+mcor_status mcor_load_cap_walls(
+  mcor_context* context, mcor_cap_points* points, mcor_cap_nodes* nodes);
+void mcor_free_cap_nodes(mcor_cap_nodes* nodes);
 
 #endif

@@ -6,7 +6,6 @@
 /* Private to the caps: what the host makes before the mesh gets it. */
 
 #include "mcor_cap.h"
-#include "mcor_table.h"
 
 /* The line on which a cut is moved, from one end (0) to the other (1). at: the cut. */
 typedef struct mcor_cap_line

@@ -44,33 +44,39 @@ static mcor_status mcor_index_cap_edges(mcor_cap_job* job)
 }
 
 /* Caps one square. Its number is above the keys of all cells; numbers ascend. */
-static mcor_status mcor_visit_cap_square(void* data, const mcor_cap_face* face, int u, int v)
+static mcor_status mcor_visit_cap_square(
+  void* data, const mcor_cap_nodes* nodes, int64_t lowest, const cl_int node[3])
 {
   mcor_cap_job* job = data;
-  const int state = face->state[mcor_cap_index(face, u, v)];
-  mcor_cap_square square = {
-    .axis = face->axis, .upper = face->upper, .is_joined = state & MCOR_CAP_JOINED
-  };
-  int64_t at[4];
+  const mcor_cap_brick *of = nodes->bricks.of, *own = &of[lowest / MCOR_SIDE_NODES];
+  const int face = mcor_side_bit(nodes, nodes->plane, lowest);
+  mcor_cap_square square = { .axis = nodes->axis,
+    .upper = nodes->upper,
+    .node = { node[0], node[1], node[2] },
+    .is_joined = own->joined[nodes->axis] >> face & 1 };
+  const int cell = mcor_side_bit(nodes, nodes->plane - nodes->upper, lowest);
+  const bool used = of[nodes->upper ? own->inner : lowest / MCOR_SIDE_NODES].used >> cell & 1;
   int total = 0;
   bool valid = true; /* the cell beside the square is, where the surface does not meet it */
   for (int k = 0; k < 4; ++k)
   {
-    at[k] = mcor_corner_index(face, u, v, k);
-    square.above[k] = face->state[at[k]] & MCOR_CAP_ABOVE;
-    square.margin[k] = face->margin[at[k]];
+    const int64_t at = mcor_corner_index(nodes, lowest, k);
+    const mcor_cap_brick* brick = &of[at / MCOR_SIDE_NODES];
+    const int bit = mcor_side_bit(nodes, nodes->plane, at);
+    square.above[k] = brick->above >> bit & 1;
+    square.margin[k] = nodes->margin[at];
     total += square.above[k];
-    valid = valid && (face->state[at[k]] & face->within[at[k]] & MCOR_CAP_VALID);
+    valid = valid && (brick->valid >> bit & 1) &&
+      (of[brick->inner].valid >> mcor_side_bit(nodes, nodes->inner, at) & 1);
   }
-  if (total == 0 || (total == 4 ? !valid : !(state & MCOR_CAP_USED)))
+  if (total == 0 || (total == 4 ? !valid : !used))
   {
     return MCOR_OK;
   }
-  mcor_cap_node(job->context, face, u, v, square.node);
-  const cl_ulong side = (cl_ulong)(2 * face->axis + face->upper);
+  const cl_ulong side = (cl_ulong)(2 * nodes->axis + nodes->upper);
   mcor_begin_cap_square(job,
-    side << 42 | (cl_ulong)(face->first[1] + v) << 21 | (cl_ulong)(face->first[0] + u), square.node,
-    face->axis);
+    side << 42 | (cl_ulong)node[nodes->across[1]] << 21 | (cl_ulong)node[nodes->across[0]],
+    square.node, nodes->axis);
   return mcor_add_cap_square(job, &square);
 }
 
@@ -81,20 +87,20 @@ static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
   const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
   const bool are_one =
     mcor_has_cap_side(context, axis, 0) && apart == context->lattice.period[axis];
-  mcor_cap_face faces[2] = { { 0 }, { 0 } };
+  mcor_cap_nodes sides[2] = { { 0 }, { 0 } };
   mcor_status status = MCOR_OK;
   for (int upper = 0; upper < 2 && status == MCOR_OK; ++upper)
   {
     if (mcor_has_cap_side(context, axis, upper))
     {
-      mcor_cap_face* face = &faces[upper];
-      status = mcor_load_cap_face(
-        job->context, axis, upper, upper && are_one ? &faces[0] : NULL, &job->points, face);
-      MCOR_THEN(status, mcor_visit_cap_squares(job->context, face, mcor_visit_cap_square, job));
+      mcor_cap_nodes* nodes = &sides[upper];
+      status = mcor_load_cap_side(
+        job->context, axis, upper, upper && are_one ? &sides[0] : NULL, &job->points, nodes);
+      MCOR_THEN(status, mcor_visit_cap_squares(job->context, nodes, mcor_visit_cap_square, job));
     }
   }
-  mcor_free_cap_face(&faces[0]);
-  mcor_free_cap_face(&faces[1]);
+  mcor_free_cap_nodes(&sides[0]);
+  mcor_free_cap_nodes(&sides[1]);
   return status;
 }
 

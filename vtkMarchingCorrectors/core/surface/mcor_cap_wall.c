@@ -15,31 +15,9 @@
 #include "mcor_vector.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Marks the key of a cell as that of a cap at a wall. */
 #define MCOR_WALL_CELL ((cl_ulong)1 << 61)
-
-#define MCOR_WALL_LIMIT (1 << 20) /* bricks */
-
-/* A brick of nodes near both fluid and solids. */
-typedef struct mcor_wall_brick
-{
-  cl_ulong key; /* the first member: of its first cell */
-  cl_int at[3]; /* in bricks */
-  bool has_fluid, is_known;
-  /* Masks of nodes, and of the cells and faces whose lowest node is here. */
-  cl_ulong above, used, joined[3];
-  double margin[MCOR_BRICK_NODES]; /* trim margins of nodes above */
-} mcor_wall_brick;
-
-typedef struct mcor_wall
-{
-  mcor_table index; /* numbers of bricks by place */
-  MCOR_LIST(mcor_wall_brick) bricks;
-  bool has_bricks; /* all that solids reach are listed */
-  int range[3][2]; /* first and last node along each axis: of the box and its ring */
-} mcor_wall;
 
 /* An edge that trimming has made, in the direction of its triangle, and its cell. */
 typedef struct mcor_wall_edge
@@ -52,7 +30,7 @@ typedef struct mcor_wall_edge
 typedef struct mcor_wall_job
 {
   mcor_cap_job* cap;
-  mcor_wall wall;
+  mcor_cap_nodes nodes;
   mcor_wall_edge* edges;    /* sorted by cell, then triangle */
   int64_t edge_count, edge; /* edge: the first one of a cell that is still to come */
 } mcor_wall_job;
@@ -68,137 +46,6 @@ typedef struct mcor_wall_cell
   bool above[8], joined[3][2];
   double margin[8];
 } mcor_wall_cell;
-
-/* ---- The bricks near both fluid and solids ---- */
-
-static mcor_status mcor_add_wall_brick(mcor_context* context, mcor_wall* wall, const int at[3])
-{
-  const int32_t next = (int32_t)wall->bricks.count;
-  const int32_t number = mcor_table_number(&wall->index, mcor_cap_key(at), next);
-  if (number != next)
-  {
-    return mcor_allocated(context, number >= 0);
-  }
-  MCOR_RETURN_IF(next >= MCOR_WALL_LIMIT, context, MCOR_OUT_OF_CAPACITY,
-    "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. Use "
-    "a larger cube size, or turn capping off.",
-    MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
-  const cl_int node[4] = { at[0] * MCOR_BRICK, at[1] * MCOR_BRICK, at[2] * MCOR_BRICK, 0 };
-  const uint64_t key = mcor_node_key(&context->lattice, node);
-  MCOR_APPEND(
-    context, &wall->bricks, (mcor_wall_brick){ .key = key, .at = { at[0], at[1], at[2] } });
-  return MCOR_OK;
-}
-
-/* Visits a particle at x (in nodes), in two passes: the first one adds the bricks that solids
- * reach, the second one marks those that fluid reaches, too. Reach is widened by one node,
- * because a cell is looked up by its lowest node, and by another one for rounding. */
-static mcor_status mcor_reach_wall(
-  mcor_context* context, const double x[3], double reach, bool is_solid, void* data)
-{
-  mcor_wall* wall = data;
-  int from[3], to[3], at[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const int* range = wall->range[a];
-    const double nodes = reach / mcor_edge_of(&context->lattice, a) + 2;
-    from[a] = (int)fmax(floor(x[a] - nodes), range[0]) / MCOR_BRICK;
-    to[a] = (int)fmin(ceil(x[a] + nodes), range[1]);
-    to[a] = to[a] < range[0] || is_solid == wall->has_bricks ? -1 : to[a] / MCOR_BRICK;
-  }
-  for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
-  {
-    for (at[1] = from[1]; at[1] <= to[1]; ++at[1])
-    {
-      for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
-      {
-        const int32_t found = is_solid ? -1 : mcor_find_number(&wall->index, mcor_cap_key(at));
-        MCOR_TRY(is_solid ? mcor_add_wall_brick(context, wall, at) : MCOR_OK);
-        if (found >= 0)
-        {
-          wall->bricks.of[found].has_fluid = true;
-        }
-      }
-    }
-  }
-  return MCOR_OK;
-}
-
-static void mcor_take_wall_masks(const mcor_seen_brick* seen, void* data)
-{
-  const mcor_wall* wall = data;
-  const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(seen->at));
-  if (number >= 0)
-  {
-    mcor_wall_brick* brick = &wall->bricks.of[number];
-    brick->is_known = seen->known != 0;
-    brick->above = seen->above;
-    brick->used = seen->used;
-    memcpy(brick->joined, seen->joined, sizeof seen->joined);
-  }
-}
-
-/* Takes the field at node points->to[i], which counts the nodes of all bricks. */
-static void mcor_take_wall_node(
-  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
-{
-  const mcor_wall* wall = data;
-  mcor_wall_brick* brick = &wall->bricks.of[points->to[i] / MCOR_BRICK_NODES];
-  const int n = (int)(points->to[i] % MCOR_BRICK_NODES);
-  const bool is_above = brick->is_known || mcor_get_real(context, points->value, i) >= 0;
-  brick->above |= (cl_ulong)is_above << n;
-  brick->margin[n] = mcor_cap_margin(context, points, i);
-}
-
-/* Lists the bricks where there may be caps, by key. Of their nodes those above are known to be by
- * marching, or are evaluated, for their trim margins. */
-static mcor_status mcor_load_wall(mcor_context* context, mcor_cap_points* points, mcor_wall* wall)
-{
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_cap_range(context, a, wall->range[a]);
-  }
-  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
-  wall->has_bricks = true;
-  MCOR_TRY(mcor_visit_particles(context, mcor_reach_wall, wall));
-  int64_t count = 0;
-  for (int64_t i = 0; i < wall->bricks.count; ++i)
-  {
-    if (wall->bricks.of[i].has_fluid)
-    {
-      wall->bricks.of[count++] = wall->bricks.of[i];
-    }
-  }
-  wall->bricks.count = count;
-  if (count > 0)
-  {
-    qsort(wall->bricks.of, (size_t)count, sizeof *wall->bricks.of, mcor_compare_keys);
-  }
-  mcor_table_free(&wall->index);
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const uint64_t key = mcor_cap_key(wall->bricks.of[i].at);
-    MCOR_TRY(mcor_allocated(context, mcor_table_number(&wall->index, key, (int32_t)i) >= 0));
-  }
-  MCOR_TRY(mcor_see_bricks(context, mcor_take_wall_masks, wall));
-  points->take = mcor_take_wall_node;
-  points->data = wall;
-  for (int64_t i = 0; i < count * MCOR_BRICK_NODES; ++i)
-  {
-    const mcor_wall_brick* brick = &wall->bricks.of[i / MCOR_BRICK_NODES];
-    const int n = (int)(i % MCOR_BRICK_NODES);
-    if (!brick->is_known || (brick->above >> n & 1))
-    {
-      cl_int node[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        node[a] = brick->at[a] * MCOR_BRICK + (n >> 2 * a & 3);
-      }
-      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, i));
-    }
-  }
-  return mcor_take_cap_points(context, points);
-}
 
 /* ---- Edges that trimming has made ---- */
 
@@ -242,53 +89,41 @@ static mcor_status mcor_load_wall_edges(mcor_wall_job* job)
 
 /* ---- Cells ---- */
 
-/* Loads a cell. Returns false where a corner is not near both fluid and solids, or the cell is
- * not marched. */
+/* Loads a cell. Returns false where a corner is not near both fluid and solids. */
 static bool mcor_load_wall_cell(
-  const mcor_wall_job* job, const mcor_wall_brick* brick, int inner, mcor_wall_cell* cell)
+  const mcor_cap_nodes* nodes, const mcor_cap_brick* brick, int inner, mcor_wall_cell* cell)
 {
-  const mcor_wall* wall = &job->wall;
-  const mcor_wall_brick* near[8] = { NULL };
+  bool near = true;
   *cell =
     (mcor_wall_cell){ .key = brick->key | (cl_ulong)inner, .is_used = brick->used >> inner & 1 };
   for (int a = 0; a < 3; ++a)
   {
     cell->node[a] = brick->at[a] * MCOR_BRICK + (inner >> 2 * a & 3);
-    if (cell->node[a] < wall->range[a][0] || cell->node[a] + 1 > wall->range[a][1])
-    {
-      return false;
-    }
+    near = near && cell->node[a] >= nodes->range[a][0] && cell->node[a] < nodes->range[a][1];
   }
   for (int c = 0; c < 8; ++c)
   {
-    int at[3], bit = 0, which = 0;
+    int bit = 0, up = 0;
     for (int a = 0; a < 3; ++a)
     {
-      const int node = cell->node[a] + (c >> a & 1);
-      at[a] = node / MCOR_BRICK;
-      which |= (at[a] != brick->at[a]) << a;
-      bit |= node % MCOR_BRICK << 2 * a;
+      const int at = (inner >> 2 * a & 3) + (c >> a & 1);
+      up |= at >> 2 << a;
+      bit |= (at & 3) << 2 * a;
     }
-    if (!near[which])
-    {
-      const int32_t number = mcor_find_number(&wall->index, mcor_cap_key(at));
-      near[which] = !which ? brick : number < 0 ? NULL : &wall->bricks.of[number];
-    }
-    if (!near[which])
-    {
-      return false;
-    }
-    cell->above[c] = near[which]->above >> bit & 1;
-    cell->margin[c] = near[which]->margin[bit];
+    const int32_t number = brick->up[up];
+    const mcor_cap_brick* of = &nodes->bricks.of[number];
+    near = near && number > 0;
+    cell->above[c] = of->above >> bit & 1;
+    cell->margin[c] = nodes->margin[(int64_t)number * MCOR_BRICK_NODES + bit];
     for (int a = 0; a < 3; ++a)
     {
       if (c == 0 || c == 1 << a)
       {
-        cell->joined[a][c != 0] = near[which]->joined[a] >> bit & 1;
+        cell->joined[a][c != 0] = of->joined[a] >> bit & 1;
       }
     }
   }
-  return true;
+  return near;
 }
 
 /* Whether the surface ends in a cell: corners above, or vertices on its edges, lie on both sides
@@ -422,15 +257,15 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap)
 {
   mcor_wall_job job = { .cap = cap };
   mcor_cap_border border = { .count = 0 };
-  mcor_status status = mcor_load_wall(cap->context, &cap->points, &job.wall);
+  mcor_status status = mcor_load_cap_walls(cap->context, &cap->points, &job.nodes);
   MCOR_THEN(status, mcor_load_wall_edges(&job));
   cap->border = &border;
-  for (int64_t i = 0; i < job.wall.bricks.count * MCOR_BRICK_NODES && status == MCOR_OK; ++i)
+  for (int64_t i = MCOR_BRICK_NODES; i < job.nodes.node_count && status == MCOR_OK; ++i)
   {
-    const mcor_wall_brick* brick = &job.wall.bricks.of[i / MCOR_BRICK_NODES];
+    const mcor_cap_brick* brick = &job.nodes.bricks.of[i / MCOR_BRICK_NODES];
     const int inner = (int)(i % MCOR_BRICK_NODES);
     mcor_wall_cell cell;
-    if (mcor_load_wall_cell(&job, brick, inner, &cell) && mcor_is_wall_cell(&job, &cell))
+    if (mcor_load_wall_cell(&job.nodes, brick, inner, &cell) && mcor_is_wall_cell(&job, &cell))
     {
       status = mcor_cap_wall_cell(&job, &cell);
     }
@@ -440,8 +275,7 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap)
   }
   MCOR_THEN(status, mcor_place_cap_cuts(cap));
   cap->border = NULL;
-  mcor_table_free(&job.wall.index);
-  free(job.wall.bricks.of);
+  mcor_free_cap_nodes(&job.nodes);
   free(job.edges);
   return status;
 }

@@ -1,0 +1,470 @@
+/* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The nodes where caps may be: those of one side of a period or box, those of a plane that is
+ * filled, and those near walls. They are kept in the bricks that some particle reaches. Where no
+ * particle reaches there is nothing to close, so memory and time go with what is there, not with
+ * the area of a side. Where marching has evaluated a brick its answer is taken, so that the cap
+ * fits the surface. */
+
+#include "mcor_box.h"
+#include "mcor_cap.h"
+#include "mcor_tree.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool mcor_has_cap_side(const mcor_context* context, int axis, int upper)
+{
+  const int plane = mcor_cap_plane(context, axis, upper);
+  return plane >= 0 && plane == (upper ? context->box.last : context->box.first)[axis];
+}
+
+bool mcor_makes_caps(const mcor_context* context)
+{
+  bool makes = false;
+  for (int i = 0; i < 6; ++i)
+  {
+    makes = makes || mcor_cap_plane(context, i / 2, i % 2) >= 0;
+  }
+  return makes || mcor_caps_walls(context);
+}
+
+void mcor_free_cap_nodes(mcor_cap_nodes* nodes)
+{
+  mcor_table_free(&nodes->index);
+  free(nodes->bricks.of);
+  free(nodes->margin);
+}
+
+/* Places a side, or, with axis -1, the nodes near walls: those of the box and its ring. */
+static void mcor_set_cap_extent(
+  const mcor_context* context, int axis, int upper, mcor_cap_nodes* nodes)
+{
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_box* box = &context->box;
+  *nodes = (mcor_cap_nodes){ .axis = axis,
+    .upper = upper,
+    .plane = axis < 0 ? -1 : mcor_cap_plane(context, axis, upper),
+    .across = { (axis + 1) % 3, (axis + 2) % 3 } };
+  nodes->inner = nodes->plane + (upper ? -1 : 1);
+  for (int a = 0; a < 3; ++a)
+  {
+    const int lower = mcor_cap_plane(context, a, 0), higher = mcor_cap_plane(context, a, 1);
+    const int first = lower >= 0 ? lower : (int)lattice->first[a];
+    const int last = higher >= 0 ? higher : (int)lattice->last[a];
+    const int low = box->first[a] - box->ring, high = box->last[a] + box->ring;
+    int* range = nodes->range[a];
+    range[0] = a == axis ? nodes->plane - upper : low > first ? low : first;
+    range[1] = a == axis ? range[0] + 1 : high < last ? high : last;
+    if (a >= context->space.axes) /* the edges of a plane's side: one row of squares */
+    {
+      range[0] = 0;
+      range[1] = 1;
+    }
+  }
+}
+
+/* ---- Bricks ---- */
+
+/* Most bricks near walls. */
+#define MCOR_WALL_LIMIT (1 << 20)
+
+/* Fails where particles reach more clusters of a side than that; with 16^2 nodes each, these are 4 to
+ * 64 million nodes. Where few particles reach more, a smoothing length or the cube size is a
+ * mistake. */
+static mcor_status mcor_limit_side(
+  mcor_context* context, const mcor_cap_nodes* nodes, size_t clusters)
+{
+  const int particles = context->grid.count / 2, least = 1 << 14, most = 1 << 18;
+  const int limit = particles < least ? least : particles < most ? particles : most;
+  const int edge = MCOR_CLUSTER * MCOR_BRICK,
+            layers = nodes->plane / edge == nodes->inner / edge ? 1 : 2;
+  const bool is_much = clusters > (size_t)layers * (size_t)limit;
+  MCOR_RETURN_IF(is_much && context->run.options->filled, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes are within reach of particles, with cube size %g: too many to be filled. "
+    "Use a larger cube size, or turn filling off.",
+    limit * edge * edge, context->lattice.cube);
+  MCOR_RETURN_IF(is_much, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes of a side along %c are within reach of particles, with cube size "
+    "%g: too many for a cap. Use a larger cube size, or turn capping off.",
+    limit * edge * edge, mcor_axis_letter(context, nodes->axis), context->lattice.cube);
+  return MCOR_OK;
+}
+
+/* Adds the bricks between two places, in nodes, to a set of clusters: masks by their first brick. */
+static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nodes* nodes,
+  const double low[3], const double high[3], mcor_table* clusters)
+{
+  int from[3], to[3], c[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    from[a] = (int)fmax(low[a], nodes->range[a][0]) / MCOR_BRICK;
+    to[a] = (int)fmin(high[a], nodes->range[a][1]) / MCOR_BRICK;
+  }
+  for (c[2] = from[2] & ~3; c[2] <= to[2]; c[2] += MCOR_CLUSTER)
+  {
+    for (c[1] = from[1] & ~3; c[1] <= to[1]; c[1] += MCOR_CLUSTER)
+    {
+      for (c[0] = from[0] & ~3; c[0] <= to[0]; c[0] += MCOR_CLUSTER)
+      {
+        uint64_t* bricks = mcor_table_add(clusters, mcor_cap_key(c));
+        MCOR_TRY(mcor_allocated(context, bricks));
+        *bricks |= mcor_bricks_between(from, to, c);
+        MCOR_TRY(nodes->axis < 0 ? MCOR_OK : mcor_limit_side(context, nodes, clusters->count));
+      }
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Adds the bricks that particles may reach: near walls to one set for fluid and one for solids; all
+ * to the first set else. A support lies within a cube, whose half edge is rounded up a little. It
+ * is widened by one node, because a square or cell is looked up by its lowest node, and by another
+ * one for rounding. Most particles are far from a side, which its axis tells first. */
+static mcor_status mcor_add_reached(
+  mcor_context* context, const mcor_cap_nodes* nodes, mcor_table clusters[2])
+{
+  const mcor_grid* g = &context->grid;
+  const mcor_lattice* lattice = &context->lattice;
+  const size_t bytes = (size_t)g->count *
+    context->cl.real_size; /* positions are fixed-point numbers of the same size */
+  void* views[5] = { NULL };
+  const mcor_mapping mappings[5] = { { &g->px, bytes, &views[0] }, { &g->py, bytes, &views[1] },
+    { &g->pz, bytes, &views[2] }, { &g->inv_h, bytes, &views[3] },
+    { &g->fluid_weight, bytes, &views[4] } };
+  const bool parts = nodes->axis < 0; /* there are solids then */
+  const int count = parts ? 5 : 4, first_axis = parts ? 0 : nodes->axis;
+  const bool is_long = context->cl.real_size == sizeof(cl_double);
+  double reach_of[3], per_step[3]; /* in nodes */
+  for (int a = 0; a < 3; ++a)
+  {
+    reach_of[a] =
+      1.001 * mcor_support_factor(context->run.options->sph_kernel) / mcor_edge_of(lattice, a);
+    per_step[a] = 1 / (double)lattice->step[a];
+  }
+  mcor_status status = mcor_map_all(context, mappings, count);
+  for (int64_t i = 0; i < g->count && status == MCOR_OK; ++i)
+  {
+    const double h = 1 / mcor_get_real(context, views[3], i);
+    double low[3], high[3];
+    bool is_near = true;
+    for (int k = 0; k < 3 && is_near; ++k)
+    {
+      const int a = (first_axis + k) % 3, *range = nodes->range[a];
+      const double x = per_step[a] *
+        (is_long ? (double)((const cl_long*)views[a])[i] : (double)((const cl_int*)views[a])[i]);
+      low[a] = x - h * reach_of[a] - 2;
+      high[a] = x + h * reach_of[a] + 2;
+      is_near = low[a] <= range[1] && high[a] >= range[0];
+    }
+    const bool is_solid = parts && mcor_get_real(context, views[4], i) == 0;
+    status =
+      is_near ? mcor_add_cap_bricks(context, nodes, low, high, &clusters[is_solid]) : MCOR_OK;
+  }
+  return mcor_unmap_all(context, mappings, count, status);
+}
+
+/* Lists the bricks of clusters: near walls those near both fluid and solids. */
+static mcor_status mcor_list_cap_bricks(
+  mcor_context* context, const mcor_table clusters[2], mcor_cap_nodes* nodes)
+{
+  MCOR_APPEND(context, &nodes->bricks, (mcor_cap_brick){ .key = 0 });
+  for (size_t i = 0; i < clusters[0].capacity; ++i)
+  {
+    const mcor_entry cluster = clusters[0].entries[i];
+    uint64_t rest = cluster.value;
+    rest &= nodes->axis < 0 ? mcor_table_find(&clusters[1], cluster.key) : UINT64_MAX;
+    for (int bit = 0; rest; ++bit, rest >>= 1)
+    {
+      mcor_cap_brick brick = { .key = 0 };
+      for (int a = 0; a < 3; ++a)
+      {
+        brick.at[a] = (cl_int)(cluster.key >> 21 * a & 0x1fffff) + (bit >> 2 * a & 3);
+      }
+      if (!(rest & 1))
+      {
+        continue;
+      }
+      MCOR_RETURN_IF(nodes->axis < 0 && nodes->bricks.count > MCOR_WALL_LIMIT, context,
+        MCOR_OUT_OF_CAPACITY,
+        "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. "
+        "Use a larger cube size, or turn capping off.",
+        MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
+      const cl_int node[4] = { brick.at[0] * MCOR_BRICK, brick.at[1] * MCOR_BRICK,
+        brick.at[2] * MCOR_BRICK, 0 };
+      const bool on_side = nodes->axis >= 0 && brick.at[nodes->axis] == nodes->plane / MCOR_BRICK;
+      nodes->side_count += on_side;
+      brick.key = nodes->axis < 0 ? mcor_node_key(&context->lattice, node)
+                                  : (uint64_t)!on_side << 63 |
+          (uint64_t)brick.at[nodes->across[1]] << 32 | (uint64_t)brick.at[nodes->across[0]];
+      MCOR_APPEND(context, &nodes->bricks, brick);
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Returns the number of a brick, 0 if no particle reaches it. */
+static int32_t mcor_cap_brick_at(const mcor_cap_nodes* nodes, const cl_int at[3])
+{
+  const int32_t number = mcor_find_number(&nodes->index, mcor_cap_key(at));
+  return number < 0 ? 0 : number;
+}
+
+/* Sorts and numbers the bricks, and finds those beside each. */
+static mcor_status mcor_number_cap_bricks(mcor_context* context, mcor_cap_nodes* nodes)
+{
+  mcor_cap_brick* of = nodes->bricks.of;
+  const int32_t count = (int32_t)nodes->bricks.count;
+  const int per_brick = nodes->axis < 0 ? MCOR_BRICK_NODES : MCOR_SIDE_NODES;
+  nodes->node_count =
+    nodes->axis < 0 ? (int64_t)count * per_brick : (1 + nodes->side_count) * per_brick;
+  nodes->margin = calloc((size_t)nodes->node_count, sizeof *nodes->margin);
+  MCOR_TRY(mcor_allocated(context, nodes->margin));
+  qsort(of + 1, (size_t)count - 1, sizeof *of, mcor_compare_keys);
+  for (int32_t i = 1; i < count; ++i)
+  {
+    MCOR_TRY(
+      mcor_allocated(context, mcor_table_number(&nodes->index, mcor_cap_key(of[i].at), i) >= 0));
+  }
+  for (int32_t i = 1; i < count; ++i)
+  {
+    for (int d = 0; d < 8; ++d)
+    {
+      const cl_int up[3] = { of[i].at[0] + (d & 1), of[i].at[1] + (d >> 1 & 1),
+        of[i].at[2] + (d >> 2) };
+      of[i].up[d] = d == 0 ? i : mcor_cap_brick_at(nodes, up);
+    }
+    cl_int inner[3] = { of[i].at[0], of[i].at[1], of[i].at[2] };
+    if (nodes->axis >= 0)
+    {
+      inner[nodes->axis] = nodes->inner / MCOR_BRICK;
+    }
+    of[i].inner = mcor_cap_brick_at(nodes, inner);
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_cap_nodes* nodes)
+{
+  const bool empty_is_above = context->run.options->field != MCOR_SHEPARD && iso_value <= 0;
+  double low[3], high[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    low[a] = nodes->range[a][0];
+    high[a] = nodes->range[a][1];
+  }
+  mcor_table clusters[2] = { { 0 }, { 0 } };
+  mcor_status status = empty_is_above ? mcor_add_cap_bricks(context, nodes, low, high, &clusters[0])
+                                      : mcor_add_reached(context, nodes, clusters);
+  MCOR_THEN(status, mcor_list_cap_bricks(context, clusters, nodes));
+  MCOR_THEN(status, mcor_number_cap_bricks(context, nodes));
+  mcor_table_free(&clusters[0]);
+  mcor_table_free(&clusters[1]);
+  return status;
+}
+
+mcor_status mcor_check_caps(mcor_context* context)
+{
+  const mcor_options* options = context->run.options;
+  double least = INFINITY;
+  for (int i = 0; i < options->iso_count; ++i)
+  {
+    least = fmin(least, options->iso_values[i]);
+  }
+  mcor_status status = MCOR_OK;
+  for (int a = 0; mcor_makes_caps(context) && a < 3 && status == MCOR_OK; ++a)
+  {
+    const bool has_lower = mcor_has_cap_side(context, a, 0);
+    if (!context->box.is_empty && (has_lower || mcor_has_cap_side(context, a, 1)))
+    {
+      mcor_cap_nodes nodes;
+      mcor_set_cap_extent(context, a, !has_lower, &nodes);
+      status = mcor_find_cap_bricks(context, least, &nodes);
+      mcor_free_cap_nodes(&nodes);
+    }
+  }
+  return status;
+}
+
+/* ---- Nodes ---- */
+
+mcor_status mcor_take_cap_masks(mcor_context* context, mcor_cap_nodes* nodes)
+{
+  const mcor_brick_data* now = &context->bricks.now;
+  const size_t n = (size_t)now->count, mask = n * sizeof(cl_ulong);
+  const bool resolved = mcor_is_resolved(context);
+  void *bricks = NULL, *known = NULL, *above = NULL, *valid = NULL, *used = NULL, *joined = NULL;
+  const mcor_mapping mappings[] = { { &now->bricks, 4 * n * sizeof(cl_int), &bricks },
+    { &now->known, mask, &known }, { &now->above, mask, &above }, { &now->valid, mask, &valid },
+    { &context->mesh.used, mask, &used },
+    { &context->topology.decisions, MCOR_DECISION_MASKS * mask, &joined } };
+  const int count = n == 0 ? 0 : resolved ? 6 : 5;
+  const mcor_status status = mcor_map_all(context, mappings, count);
+  for (size_t slot = 0; slot < n && status == MCOR_OK; ++slot)
+  {
+    const int32_t number = mcor_cap_brick_at(nodes, (const cl_int*)bricks + 4 * slot);
+    mcor_cap_brick* brick = &nodes->bricks.of[number];
+    if (number > 0)
+    {
+      brick->used = ((const cl_ulong*)used)[slot];
+      brick->is_known = ((const cl_ulong*)known)[slot] != 0;
+    }
+    if (number > 0 && brick->is_known)
+    {
+      brick->above = ((const cl_ulong*)above)[slot];
+      brick->valid = ((const cl_ulong*)valid)[slot];
+    }
+    if (number > 0 && resolved)
+    {
+      memcpy(
+        brick->joined, (const cl_ulong*)joined + slot * MCOR_DECISION_MASKS, sizeof brick->joined);
+    }
+  }
+  return mcor_unmap_all(context, mappings, count, status);
+}
+
+/* Takes the field at node number points->to[i] of a side, or at the one further in. */
+static void mcor_take_cap_node(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
+{
+  mcor_cap_nodes* nodes = data;
+  const int64_t to = points->to[i];
+  const bool is_inner = points->node[4 * i + nodes->axis] != nodes->plane;
+  mcor_cap_brick* brick = &nodes->bricks.of[to / MCOR_SIDE_NODES];
+  brick = is_inner ? &nodes->bricks.of[brick->inner] : brick;
+  const int bit = mcor_side_bit(nodes, is_inner ? nodes->inner : nodes->plane, to);
+  if (!brick->is_known)
+  {
+    brick->above |= (cl_ulong)(mcor_get_real(context, points->value, i) >= 0) << bit;
+    brick->valid |= (cl_ulong)mcor_cap_is_valid(context, points, i) << bit;
+  }
+  if (!is_inner)
+  {
+    nodes->margin[to] = mcor_cap_margin(context, points, i);
+  }
+}
+
+/* Goes brick by brick, so that successive points are near each other. On the side, nodes above
+ * need their margin, unknown ones their side, too. Nodes further in need their validity, where a
+ * cell has no vertex on the side. */
+mcor_status mcor_ask_cap_nodes(
+  mcor_context* context, const mcor_cap_nodes* nodes, bool is_inner, mcor_cap_points* points)
+{
+  for (int64_t at = MCOR_SIDE_NODES; at < nodes->node_count; ++at)
+  {
+    const mcor_cap_brick* brick = &nodes->bricks.of[at / MCOR_SIDE_NODES];
+    const int bit = mcor_side_bit(nodes, nodes->plane, at);
+    const bool above = brick->above >> bit & 1, valid = brick->valid >> bit & 1;
+    cl_int node[3];
+    mcor_cap_node(nodes, at, node);
+    bool wanted = is_inner ? above && valid && !nodes->bricks.of[brick->inner].is_known
+                           : above || !brick->is_known;
+    for (int i = 0; i < 2; ++i)
+    {
+      const int a = nodes->across[i];
+      wanted = wanted && node[a] >= nodes->range[a][0] && node[a] <= nodes->range[a][1];
+    }
+    if (wanted)
+    {
+      node[nodes->axis] = is_inner ? nodes->inner : nodes->plane;
+      node[2] = context->space.flat ? 0 : node[2];
+      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, at));
+    }
+  }
+  return mcor_take_cap_points(context, points);
+}
+
+mcor_status mcor_visit_cap_squares(mcor_context* context, const mcor_cap_nodes* nodes,
+  mcor_status (*visit)(void* data, const mcor_cap_nodes* nodes, int64_t at, const cl_int node[3]),
+  void* data)
+{
+  const int u = nodes->across[0], v = nodes->across[1];
+  const mcor_cap_brick* of = nodes->bricks.of;
+  for (int64_t first = 1, end; first <= nodes->side_count; first = end)
+  {
+    for (end = first; end <= nodes->side_count && of[end].at[v] == of[first].at[v];)
+    {
+      ++end;
+    }
+    MCOR_TRY(mcor_report_launch(context));
+    for (int64_t row = 0; row < MCOR_BRICK; ++row)
+    {
+      for (int64_t i = MCOR_BRICK * first; i < MCOR_BRICK * end; ++i)
+      {
+        const int64_t at = i / MCOR_BRICK * MCOR_SIDE_NODES + MCOR_BRICK * row + i % MCOR_BRICK;
+        cl_int node[3];
+        mcor_cap_node(nodes, at, node);
+        if (node[u] >= nodes->range[u][0] && node[u] < nodes->range[u][1] &&
+          node[v] >= nodes->range[v][0] && node[v] < nodes->range[v][1])
+        {
+          MCOR_TRY(visit(data, nodes, at, node));
+        }
+      }
+    }
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_load_cap_side(mcor_context* context, int axis, int upper,
+  const mcor_cap_nodes* opposite, mcor_cap_points* points, mcor_cap_nodes* nodes)
+{
+  points->take = mcor_take_cap_node;
+  points->data = nodes;
+  mcor_set_cap_extent(context, axis, upper, nodes);
+  MCOR_TRY(mcor_find_cap_bricks(context, context->run.iso.value, nodes));
+  MCOR_TRY(mcor_take_cap_masks(context, nodes));
+  MCOR_TRY(opposite ? MCOR_OK : mcor_ask_cap_nodes(context, nodes, false, points));
+  /* Copies what the opposite side of a period knows: a period apart, sums have the same bits. */
+  for (int64_t to = MCOR_SIDE_NODES; opposite && to < nodes->node_count; ++to)
+  {
+    mcor_cap_brick* brick = &nodes->bricks.of[to / MCOR_SIDE_NODES];
+    cl_int at[3] = { brick->at[0], brick->at[1], brick->at[2] };
+    at[axis] = opposite->plane / MCOR_BRICK;
+    const int32_t number = mcor_cap_brick_at(opposite, at);
+    const mcor_cap_brick* from = &opposite->bricks.of[number];
+    const int bit = mcor_side_bit(nodes, nodes->plane, to),
+              from_bit = mcor_side_bit(opposite, opposite->plane, to);
+    if (!brick->is_known)
+    {
+      brick->above |= (from->above >> from_bit & 1) << bit;
+      brick->valid |= (from->valid >> from_bit & 1) << bit;
+    }
+    nodes->margin[to] = opposite->margin[(int64_t)number * MCOR_SIDE_NODES + to % MCOR_SIDE_NODES];
+  }
+  return mcor_ask_cap_nodes(context, nodes, true, points);
+}
+
+/* Takes the field at node points->to[i] near walls, which counts the nodes of all bricks. */
+static void mcor_take_wall_node(
+  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
+{
+  mcor_cap_nodes* nodes = data;
+  const int64_t to = points->to[i];
+  mcor_cap_brick* brick = &nodes->bricks.of[to / MCOR_BRICK_NODES];
+  const bool is_above = brick->is_known || mcor_get_real(context, points->value, i) >= 0;
+  brick->above |= (cl_ulong)is_above << to % MCOR_BRICK_NODES;
+  nodes->margin[to] = mcor_cap_margin(context, points, i);
+}
+
+mcor_status mcor_load_cap_walls(
+  mcor_context* context, mcor_cap_points* points, mcor_cap_nodes* nodes)
+{
+  points->take = mcor_take_wall_node;
+  points->data = nodes;
+  mcor_set_cap_extent(context, -1, 0, nodes);
+  MCOR_TRY(mcor_find_cap_bricks(context, INFINITY, nodes));
+  MCOR_TRY(mcor_take_cap_masks(context, nodes));
+  for (int64_t i = MCOR_BRICK_NODES; i < nodes->node_count; ++i)
+  {
+    const mcor_cap_brick* brick = &nodes->bricks.of[i / MCOR_BRICK_NODES];
+    const int n = (int)(i % MCOR_BRICK_NODES);
+    if (!brick->is_known || (brick->above >> n & 1))
+    {
+      const cl_int node[3] = { brick->at[0] * MCOR_BRICK + (n & 3),
+        brick->at[1] * MCOR_BRICK + (n >> 2 & 3), brick->at[2] * MCOR_BRICK + (n >> 4) };
+      MCOR_TRY(mcor_add_cap_point(context, points, node, NULL, i));
+    }
+  }
+  return mcor_take_cap_points(context, points);
+}

@@ -12,7 +12,7 @@ import venv
 
 import numpy as np
 import vtk
-from measure import (GENERATORS, array_of, compete, exclude_others, interpolator, names_of, particle_file, peak_bytes,
+from measure import (DATA, array_of, compete, exclude_others, interpolator, make_particles, names_of, peak_bytes,
                      points_of, read, text_of)
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
@@ -149,7 +149,7 @@ def first(benchmark):
             os.mkdir(os.path.join(folder, "pocl"))
             environment = {"POCL_CACHE_DIR": os.path.join(folder, "pocl"), "XDG_CACHE_HOME": os.path.join(folder, "cache")}
             for name, options in (("first", []), ("next", ["--kernel", "wendland"]), ("warm", [])):
-                path = (benchmark.files or [GENERATORS / "dam_break_45k.vtp"])[0]
+                path = (benchmark.files or [DATA / "dam_break_45k.vtp"])[0]
                 taken.setdefault(name, []).append(program.start(
                     path, ["--free-surface", "--fluid", "ParticleType=0", *device, *options], 0, environment)[1])
     for name, seconds in taken.items():
@@ -194,7 +194,7 @@ def make_plane(path, count):
     swirl = np.sin(6 * np.pi * u) * np.sin(4 * np.pi * v) + 0.2 * np.sin(20 * u + 13 * v)
     ones = np.ones(side * side, np.float32)
     arrays = {"Swirl": swirl.astype(np.float32), "Mass": ones, "Density": ones}
-    particle_file.write(str(path), particle_file.poly_data(x, arrays))
+    make_particles.write(path, make_particles.poly_data(x, arrays))
     return path
 
 
@@ -477,7 +477,7 @@ def add_walls(data, path):
     solid = solid[(solid == low).any(axis=1) | (solid == high).any(axis=1)]
     arrays = {"SmoothingLength": (h, spacing), "Volume": (array_of(data, "Mass") / 1000, spacing ** 3),
               "Speed": (array_of(data, "Speed"), 0), "ParticleType": (np.zeros(len(fluid)), 1)}
-    particle_file.write(str(path), particle_file.poly_data(np.concatenate([fluid, solid]), {
+    make_particles.write(path, make_particles.poly_data(np.concatenate([fluid, solid]), {
         name: np.concatenate([values, np.full(len(solid), of_solids)]) for name, (values, of_solids) in arrays.items()}))
 
 
@@ -497,7 +497,7 @@ def walls(benchmark):
     edges.FeatureEdgesOff()
     edges.NonManifoldEdgesOff()
     edges.ManifoldEdgesOff()
-    for path in benchmark.files or [GENERATORS / "double_dam_break_small.vtp"]:
+    for path in benchmark.files or [DATA / "double_dam_break_small.vtp"]:
         data, given = read(path), path
         if not data.GetPointData().HasArray("ParticleType"):
             path = benchmark.folder / pathlib.Path(path).name

@@ -17,28 +17,28 @@ import time
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-GENERATORS = pathlib.Path(__file__).resolve().parent.parent / "Data"
-sys.path.insert(0, str(GENERATORS))
-import particle_file  # noqa: E402
+DATA = pathlib.Path(__file__).resolve().parent.parent / "Data"
+sys.path.insert(0, str(DATA))
+import make_particles  # noqa: E402
 PHASES = ("input", "search_grid", "seeds", "extraction", "correction", "trimming", "output")
 CUBE_FACTOR = 0.5
 THRESHOLD = 0.5  # of the weight sum, at the free surface
 ENOUGH_SECONDS = 120.0  # no further repetition once a competitor has had this much
 
-# Generators with their arguments, and what the program is to be told of the particles.
+# Sets of make_particles.py with further arguments, and what the program is to be told of the particles.
 SETS = {
     # 70 neighbours, constant h: for comparisons with other software.
-    "tank": ("make_tank.py", ("COUNT", "OUT"), ()),
+    "tank": ("tank", (), ()),
     # 200 neighbours, constant h: stands for the paper's tsunami.
-    "dense-tank": ("make_tank.py", ("COUNT", "OUT", "--ratio", "1.814"), ("--kernel", "quadratic")),
+    "dense-tank": ("tank", ("--ratio", "1.814"), ("--kernel", "quadratic")),
     # 70 neighbours, variable h: stands for the paper's dam break.
-    "dam-break": ("make_dam_break.py", ("COUNT", "OUT"), ()),
+    "dam-break": ("dam_break", (), ()),
     # A full lattice: stands for the paper's vortex rings. There is no free surface, so nothing is trimmed: with a
     # shortened kernel, weights between the particles of a lattice are low.
-    "vortex-rings": ("make_vortex_rings.py", ("OUT", "-n", "COUNT", "--keep-all"),
+    "vortex-rings": ("vortex_rings", ("--keep-all",),
                      ("--kernel", "mprime4", "--node-threshold", 0, "--vertex-threshold", 0)),
     # Smoothing lengths 1:10, 1:100, 1:1000.
-    **{f"graded-{ratio}": ("make_graded.py", ("COUNT", "OUT", "--ratio", str(ratio)), ()) for ratio in (10, 100, 1000)},
+    **{f"graded-{ratio}": ("graded", ("--ratio", str(ratio)), ()) for ratio in (10, 100, 1000)},
 }
 
 
@@ -68,15 +68,14 @@ class Sets:
         self.path.mkdir(parents=True, exist_ok=True)
 
     def get(self, kind, count):
-        script, arguments, _ = SETS[kind]
-        arguments = [str(count) if a == "COUNT" else a for a in arguments]
-        version = hashlib.sha1((GENERATORS / script).read_bytes() + repr(arguments).encode()).hexdigest()[:8]
+        name, arguments, _ = SETS[kind]
+        script = DATA / "make_particles.py"
+        version = hashlib.sha1(script.read_bytes() + repr((name, count, *arguments)).encode()).hexdigest()[:8]
         path = self.path / f"{kind}-{text_of(count)}-{version}.vtp"
         if not path.exists():
             print(f"making {path.name}", file=sys.stderr)
             part = path.with_suffix(".part.vtp")
-            subprocess.run([sys.executable, GENERATORS / script, *(str(part) if a == "OUT" else a for a in arguments)],
-                           check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([sys.executable, script, name, str(count), part, *arguments], check=True, stdout=subprocess.DEVNULL)
             part.rename(path)
         return path
 
@@ -97,7 +96,7 @@ class Sets:
             for name in names_of(data):
                 if name != array:
                     data.RemoveArray(name)
-            particle_file.write(str(path), particles)
+            make_particles.write(path, particles)
         return path, options
 
 

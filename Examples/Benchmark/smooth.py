@@ -9,7 +9,7 @@ import statistics
 import time
 
 import numpy as np
-from measure import (compete, has_splashsurf, particle_file, points_of, processor_seconds, read, smoothed_by_splashsurf,
+from measure import (compete, has_splashsurf, make_particles, points_of, processor_seconds, read, smoothed_by_splashsurf,
                      vtk_to_numpy)
 
 DROPS, RADIUS, HEIGHT = 40, 13, 13  # of the crown
@@ -119,7 +119,7 @@ def smooth(benchmark):
     random, path = np.random.default_rng(benchmark.arguments.seed), benchmark.folder / "scene.vtp"
     for title, (scene, jitter) in SCENES.items():
         x, rows = scene(jitter, random), []
-        particle_file.write(str(path), particle_file.poly_data(x, {}))
+        make_particles.write(path, make_particles.poly_data(x, {}))
         for name, options in WAYS.items():
             report = benchmark.program.start(path, ["--free-surface", "--no-attributes", *options,
                                                     *(benchmark.more or ["--smoothing-length", 1])], 2)[0]

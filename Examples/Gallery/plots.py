@@ -182,7 +182,7 @@ def plane_bands(values=(-1, 1000, 2000, 3000)):
     """Bands of pressure in a flume, and those of vtkSPHInterpolator, on squares as large, below."""
     with tempfile.TemporaryDirectory() as folder:
         flume = Path(folder) / "flume.vtp"
-        subprocess.run([sys.executable, DATA / "make_wave.py", "20000", flume], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([sys.executable, DATA / "make_particles.py", "wave", "20000", flume], check=True, stdout=subprocess.DEVNULL)
         particles = pyvista.read(flume)
     ours = particles.sph.isosurface("Pressure", list(values), fluid=("Type", 0), filled=True)
     fluid = particles.extract_points(particles["Type"] == 0).extract_surface(algorithm=None)

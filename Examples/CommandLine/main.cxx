@@ -235,7 +235,7 @@ bool Execute(int argc, char* argv[])
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   if (job.ListArrays)
   {
-    std::cout << DescribeArrays(*ReadParticles(job.Inputs.front(), messages));
+    std::cout << DescribeArrays(*ReadParticles({ job.Inputs.front() }, messages));
     return true;
   }
   if (job.Has("--list-devices"))

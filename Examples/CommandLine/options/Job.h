@@ -92,8 +92,8 @@ struct Job
   std::string GaugeFile; ///< more of them
   GaugeGrid Grid;        ///< no others then
   std::vector<Place> Fluxes;
-  std::string FluxFile;  ///< more of them
-  std::string Derive;    ///< array whose gradient, and what is made of it, the particles get
+  std::string FluxFile; ///< more of them
+  std::string Derive;   ///< array whose gradient, and what is made of it, the particles get
 
   std::string Scalar;
   /// A quantity is an array name or one value for all particles; the input decides which of the two

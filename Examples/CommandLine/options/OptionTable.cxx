@@ -21,12 +21,12 @@ using Filter = vtkMarchingCorrectors;
 using Text = const std::string&;
 
 /// Sets a property of all filters.
-template <typename T>
-void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T), T value)
+template <typename... T>
+void SetAll(const Job& job, void (vtkSPHAlgorithm::*set)(T...), T... values)
 {
   for (vtkSPHAlgorithm* filter : job.All())
   {
-    (filter->*set)(value);
+    (filter->*set)(values...);
   }
 }
 
@@ -53,10 +53,7 @@ void AddOnly(Job& job, Text option, Text text)
   const double low = ToNumber(option, text.substr(equals + 1, colon - equals - 1));
   const double high = colon == std::string::npos ? low : ToNumber(option, text.substr(colon + 1));
   Need(low <= high, option, "the lower value first", text);
-  for (vtkSPHAlgorithm* filter : job.All())
-  {
-    filter->AddOnly(name.c_str(), low, high);
-  }
+  SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), low, high);
 }
 
 void SetWithin(Job& job, Text option, Text text)
@@ -88,11 +85,12 @@ void SetSolids(Job& job, Text option, Text text)
   const int solids = ToChoice(option, text,
     { { "auto", Filter::SOLIDS_AUTO }, { "weight", Filter::SOLIDS_WEIGHT },
       { "ignore", Filter::SOLIDS_IGNORE }, { "wall", Filter::SOLIDS_WALL } });
-  job.Derivatives->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
-  job.Probe->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
-  job.Gauge->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
-  job.Flux->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
-  job.Projection->SetIgnoreSolids(solids == Filter::SOLIDS_IGNORE);
+  const bool ignores = solids == Filter::SOLIDS_IGNORE;
+  job.Derivatives->SetIgnoreSolids(ignores);
+  job.Probe->SetIgnoreSolids(ignores);
+  job.Gauge->SetIgnoreSolids(ignores);
+  job.Flux->SetIgnoreSolids(ignores);
+  job.Projection->SetIgnoreSolids(ignores);
   job.Surface->SetSolids(solids);
 }
 
@@ -127,24 +125,18 @@ std::string DescribeKernels()
   for (const auto& kernel : ListKernels())
   {
     text +=
-      (text.empty() ? "" : ", ") + std::string(kernel.first) + (text.empty() ? " (default)" : "");
+      text.empty() ? kernel.first + std::string(" (default)") : ", " + std::string(kernel.first);
   }
   return text;
 }
 
 void SetProjection(Job& job, Text option, Text text)
 {
-  std::vector<double> direction(3, 0.0);
-  const std::size_t axis = std::string("xyz").find(text);
-  if (text.size() == 1 && axis != std::string::npos)
-  {
-    direction[axis] = 1.0;
-  }
-  else
-  {
-    direction = ToDirection(option, text);
-  }
-  job.Projection->SetDirection(direction.data());
+  static const std::map<std::string, std::string> axes = { { "x", "1,0,0" }, { "y", "0,1,0" },
+    { "z", "0,0,1" } };
+  const auto axis = axes.find(text);
+  job.Projection->SetDirection(
+    ToDirection(option, axis == axes.end() ? text : axis->second).data());
 }
 
 void SetBoundary(Job& job, Text option, Text text)

@@ -9,23 +9,17 @@
 #include <cmath>
 #include <sstream>
 
-namespace
-{
-
 using Text = const std::string&;
 
-/// Texts between commas.
-std::vector<std::string> ItemsOf(Text text)
+std::vector<std::string> ItemsOf(Text text, char sign)
 {
   std::vector<std::string> items;
-  std::istringstream stream(text + ",");
-  for (std::string item; std::getline(stream, item, ',');)
+  std::istringstream stream(text + sign);
+  for (std::string item; std::getline(stream, item, sign);)
   {
     items.push_back(item);
   }
   return items;
-}
-
 }
 
 void Need(bool isGood, Text option, Text words, Text text)

@@ -20,6 +20,9 @@ public:
 void Need(
   bool isGood, const std::string& option, const std::string& words, const std::string& text);
 
+/// Texts between these signs.
+std::vector<std::string> ItemsOf(const std::string& text, char sign = ',');
+
 /// True, and the value, if the whole text is one finite number.
 bool ParseNumber(const std::string& text, double& value);
 

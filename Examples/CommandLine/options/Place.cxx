@@ -22,19 +22,22 @@ const char* const GaugeForm = "NAME=X,Y,Z:X,Y,Z";
 const char* const FluxForm = "NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:X,Y,Z:NX,NY,NZ:R, "
                              "NAME=box:X0,X1,Y0,Y1,Z0,Z1 or NAME=FILE";
 
-/// Appends the numbers. False if the text has not exactly so many.
-bool ParseNumbers(Text option, Text text, std::size_t count, std::vector<double>& numbers)
+/// Appends the numbers of a text like X,Y,Z:X,Y,Z, which has so many in each of its parts; false if
+/// it has others.
+bool ParsePlaces(Text text, const std::vector<std::size_t>& counts, std::vector<double>& numbers)
 {
-  try
+  const std::vector<std::string> parts = ItemsOf(text, ':');
+  bool isGood = parts.size() == counts.size();
+  for (std::size_t p = 0; isGood && p < parts.size(); ++p)
   {
-    const std::vector<double> found = ToNumbers(option, text);
-    numbers.insert(numbers.end(), found.begin(), found.end());
-    return found.size() == count;
+    const std::vector<std::string> items = ItemsOf(parts[p], ',');
+    isGood = items.size() == counts[p];
+    for (std::size_t i = 0; isGood && i < items.size(); ++i)
+    {
+      isGood = ParseNumber(items[i], numbers.emplace_back());
+    }
   }
-  catch (const UsageError&)
-  {
-    return false; // the whole text is to be named, not a part of it
-  }
+  return isGood;
 }
 
 /// The name of a table's row. noun: what has it.
@@ -50,8 +53,8 @@ std::string ToRowName(Text option, Text noun, Text text)
 }
 
 /// Adds the places of a file, one in each line that is not empty and does not begin with #.
-void AddOfFile(Text option, Text file, Text nouns, Text form, Place (*parse)(Text option, Text text),
-  std::vector<Place>& places)
+void AddOfFile(Text option, Text file, Text nouns, Text form,
+  Place (*parse)(Text option, Text text), std::vector<Place>& places)
 {
   const std::size_t most = std::size_t(64) << 20; // a device has no end
   std::ifstream source(file, std::ios::binary);
@@ -101,12 +104,11 @@ void CheckNames(const std::vector<Place>& places, Text nouns)
 
 Place ToGauge(Text option, Text text)
 {
-  const std::size_t equals = text.rfind('='), colon = text.rfind(':');
+  const std::size_t equals = text.rfind('=');
   Place gauge;
   std::vector<double>& ends = gauge.Numbers;
-  Need(equals != std::string::npos && equals > 0 && colon != std::string::npos && colon > equals &&
-      ParseNumbers(option, text.substr(equals + 1, colon - equals - 1), 3, ends) &&
-      ParseNumbers(option, text.substr(colon + 1), 3, ends),
+  Need(equals != std::string::npos && equals > 0 &&
+      ParsePlaces(text.substr(equals + 1), { 3, 3 }, ends),
     option, std::string("a name and two places, ") + GaugeForm, text);
   gauge.Shape = Place::Line;
   gauge.Name = ToRowName(option, "gauge", text.substr(0, equals));
@@ -120,19 +122,15 @@ Place ToGauge(Text option, Text text)
 
 GaugeGrid ToGaugeGrid(Text option, Text text)
 {
-  const std::size_t colon = text.find(':');
   GaugeGrid grid;
-  std::vector<double> counts, b;
-  Need(colon != std::string::npos && ParseNumbers(option, text.substr(0, colon), 2, counts) &&
-      ParseNumbers(option, text.substr(colon + 1), 6, b) && b[0] <= b[1] && b[2] <= b[3] &&
-      b[4] < b[5],
-    option, "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
-  std::copy(b.begin(), b.end(), grid.Bounds.begin());
+  std::vector<double> n;
+  Need(ParsePlaces(text, { 2, 6 }, n) && n[2] <= n[3] && n[4] <= n[5] && n[6] < n[7], option,
+    "two counts and bounds with z0 below z1, NX,NY:X0,X1,Y0,Y1,Z0,Z1", text);
+  std::copy(n.begin() + 2, n.end(), grid.Bounds.begin());
   for (std::size_t a = 0; a < 2; ++a)
   {
-    grid.Counts[a] = static_cast<int>(std::clamp(counts[a], 0.0, 1e6));
-    Need(counts[a] >= 1.0 && counts[a] == grid.Counts[a], option,
-      "whole numbers of gauges, 1 or more", text);
+    grid.Counts[a] = static_cast<int>(std::clamp(n[a], 0.0, 1e6));
+    Need(n[a] >= 1.0 && n[a] == grid.Counts[a], option, "whole numbers of gauges, 1 or more", text);
   }
   if (static_cast<double>(grid.Counts[0]) * grid.Counts[1] > 1e6)
   {
@@ -145,15 +143,16 @@ GaugeGrid ToGaugeGrid(Text option, Text text)
 
 Place ToFlux(Text option, Text text)
 {
+  static const struct
+  {
+    const char* Begin;
+    Place::Kind Shape;
+    std::vector<std::size_t> Counts;
+  } forms[] = { { "disc:", Place::Disc, { 3, 3, 1 } }, { "box:", Place::Box, { 6 } },
+    { "", Place::Line, { 3, 3 } }, { "", Place::Rectangle, { 3, 3, 3 } } };
   const std::size_t equals = text.find('=');
   const bool isNamed = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
   Need(isNamed, option, std::string("a section with a name, ") + FluxForm, text);
-  std::vector<std::string> parts;
-  std::istringstream stream(text.substr(equals + 1));
-  for (std::string part; std::getline(stream, part, ':');)
-  {
-    parts.push_back(part);
-  }
   Place section;
   section.Name = ToRowName(option, "section", text.substr(0, equals));
   for (const char* ending : { ".vtp", ".vtu", ".vtk", ".stl", ".ply", ".obj" })
@@ -164,23 +163,18 @@ Place ToFlux(Text option, Text text)
       return section;
     }
   }
-  const bool isDisc = parts[0] == "disc", isBox = parts[0] == "box";
-  section.Shape = isDisc ? Place::Disc
-    : isBox              ? Place::Box
-    : parts.size() == 2  ? Place::Line
-                         : Place::Rectangle;
-  const std::vector<std::size_t> counts = isDisc ? std::vector<std::size_t>{ 3, 3, 1 }
-    : isBox                                      ? std::vector<std::size_t>{ 6 }
-                                                 : std::vector<std::size_t>(parts.size(), 3);
-  parts.erase(parts.begin(), parts.begin() + (isDisc || isBox ? 1 : 0));
-  bool isGood =
-    parts.size() == counts.size() && (isDisc || isBox || parts.size() == 2 || parts.size() == 3);
-  for (std::size_t i = 0; i < counts.size() && isGood; ++i)
+  for (const auto& form : forms)
   {
-    isGood = ParseNumbers(option, parts[i], counts[i], section.Numbers);
+    const std::string begin = form.Begin;
+    section.Shape = form.Shape;
+    section.Numbers.clear();
+    if (text.compare(equals + 1, begin.size(), begin) == 0 &&
+      ParsePlaces(text.substr(equals + 1 + begin.size()), form.Counts, section.Numbers))
+    {
+      return section;
+    }
   }
-  Need(isGood, option, std::string("a section with a name, ") + FluxForm, text);
-  return section;
+  throw UsageError(option + " needs a section with a name, " + FluxForm + ", not '" + text + "'");
 }
 
 std::vector<Place> ListGauges(const Job& job)

@@ -61,53 +61,45 @@ std::string Escape(const char* format, unsigned code)
   return digits;
 }
 
-}
-
-std::string Printable(const std::string& text)
+/// The text, each character as `written` has it; as it is where that is empty.
+std::string Rewritten(const std::string& text, std::string (*written)(const Character& c))
 {
   std::string result;
   for (std::size_t i = 0; i < text.size();)
   {
     const Character c = At(text, i);
-    if (!c.Valid || IsControl(c.Code))
-    {
-      result += Escape("\\x%02x", c.Code);
-    }
-    else if (IsInvisible(c.Code))
-    {
-      result += Escape("\\u%04x", c.Code);
-    }
-    else
-    {
-      result.append(text, i, c.Bytes);
-    }
+    const std::string other = written(c);
+    result += other.empty() ? text.substr(i, c.Bytes) : other;
     i += c.Bytes;
   }
   return result;
 }
 
+}
+
+std::string Printable(const std::string& text)
+{
+  return Rewritten(text,
+    [](const Character& c)
+    {
+      return !c.Valid || IsControl(c.Code) ? Escape("\\x%02x", c.Code)
+        : IsInvisible(c.Code)              ? Escape("\\u%04x", c.Code)
+                                           : "";
+    });
+}
+
 std::string QuotedForJson(const std::string& text)
 {
-  std::string quoted = "\"";
-  for (std::size_t i = 0; i < text.size();)
+  const auto written = [](const Character& c) -> std::string
   {
-    const Character c = At(text, i);
-    if (!c.Valid)
-    {
-      quoted += "\\ufffd";
-    }
-    else if (IsControl(c.Code) || (IsInvisible(c.Code) && c.Code < 0x10000))
-    {
-      quoted += Escape("\\u%04x", c.Code);
-    }
-    else
-    {
-      quoted += c.Code == '"' || c.Code == '\\' ? "\\" : "";
-      quoted.append(text, i, c.Bytes);
-    }
-    i += c.Bytes;
-  }
-  return quoted + "\"";
+    const bool isCode = IsControl(c.Code) || (IsInvisible(c.Code) && c.Code < 0x10000);
+    return !c.Valid    ? "\\ufffd"
+      : isCode         ? Escape("\\u%04x", c.Code)
+      : c.Code == '"'  ? "\\\""
+      : c.Code == '\\' ? "\\\\"
+                       : "";
+  };
+  return '"' + Rewritten(text, written) + '"';
 }
 
 void Say(const std::string& sentence)

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CollectionFile.h"
 
-#include "Ending.h"
 #include "FileName.h"
-#include "MessageCapture.h"
+#include "Formats.h"
 #include "OptionValue.h"
 #include "SafeText.h"
 
@@ -13,11 +12,8 @@
 #include "vtkXMLUtilities.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 namespace
 {
@@ -34,24 +30,13 @@ std::string AttributeOf(vtkXMLDataElement* element, const char* name)
 vtkSmartPointer<vtkXMLDataElement> ReadElement(
   const std::string& file, const char* name, MessageCapture* messages)
 {
-  std::error_code error;
-  if (fs::is_directory(file, error))
-  {
-    FailToRead(file, "it is a directory");
-  }
-  if (!std::ifstream(file, std::ios::binary))
-  {
-    FailToRead(file, std::strerror(errno));
-  }
-  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
-  const Silence silence;
-  messages->Clear();
+  CheckRegularFile(file);
   vtkSmartPointer<vtkXMLDataElement> root;
-  root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
-  if (!root || !messages->GetErrors().empty())
+  ReadWithCare(file, messages,
+    [&file, &root] { root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str())); });
+  if (!root)
   {
-    FailToRead(file,
-      messages->GetErrors().empty() ? "it is not XML, or damaged" : messages->GetErrors().front());
+    FailToRead(file, "it is not XML, or damaged");
   }
   vtkXMLDataElement* found = root->FindNestedElementWithName(name);
   if (!found)
@@ -61,15 +46,16 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(
   return found;
 }
 
+std::string TextOf(double time)
+{
+  char text[32];
+  return { text, std::to_chars(text, text + sizeof(text), time).ptr };
+}
+
 std::string Resolved(const std::string& list, const std::string& file)
 {
   return (fs::path(list).parent_path() / file).string(); // an absolute name stays as it is
 }
-
-}
-
-namespace
-{
 
 /// A run that was repeated into the same folder adds its steps to the list: the last ones count.
 std::vector<CollectionEntry> TakeRepeated(const std::vector<CollectionEntry>& entries,
@@ -97,11 +83,9 @@ std::vector<CollectionEntry> TakeRepeated(const std::vector<CollectionEntry>& en
   }
   if (again > 0)
   {
-    char time[32];
-    const auto end = std::to_chars(time, time + sizeof(time), first);
     warnings.push_back(file + " lists " + std::to_string(again) +
       (again == 1 ? " file" : " files") +
-      " of a time and a part that it had before, the first at time " + std::string(time, end.ptr) +
+      " of a time and a part that it had before, the first at time " + TextOf(first) +
       "; the later ones were taken");
   }
   return kept;
@@ -154,9 +138,7 @@ std::string CollectionText(const std::vector<CollectionEntry>& entries)
                      "  <Collection>\n";
   for (const CollectionEntry& entry : entries)
   {
-    char time[32];
-    const auto end = std::to_chars(time, time + sizeof(time), entry.Time);
-    text += "    <DataSet timestep=\"" + std::string(time, end.ptr) + "\" part=\"0\" file=\"" +
+    text += "    <DataSet timestep=\"" + TextOf(entry.Time) + "\" part=\"0\" file=\"" +
       EscapedForXml(fs::path(entry.File).filename().string()) + "\"/>\n";
   }
   return text + "  </Collection>\n</VTKFile>\n";

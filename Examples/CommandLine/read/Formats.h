@@ -6,50 +6,50 @@
 #include "vtkSmartPointer.h"
 
 #include <cstddef>
+#include <functional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 class MessageCapture;
 class vtkDataObject;
 
+// How files are read, for ParticleFile.cxx. All throw std::runtime_error with one sentence.
+
+/// Whether this is a file at all, and one that can be opened and sought in.
+void CheckRegularFile(const std::string& file);
+
+/// Lets libraries read a file: the sentence where they crash over it, ask for more memory than
+/// there is, or say that they failed. After errors VTK goes on, with arrays of zeros.
+void ReadWithCare(
+  const std::string& file, MessageCapture* messages, const std::function<void()>& read);
+
+/// Files of VTK. Its readers ask for memory, and go round in loops, by the counts that a file
+/// declares: one below 0, or greater than a file of its size can hold, means that it is damaged.
+///@{
+vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t);
+vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
+/// The time that the field data at the beginning tell of (TimeValue, TIME, time), or nothing.
+/// Points and their arrays are not read.
+std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* messages);
+///@}
+
 /// Particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between
 /// blanks with comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Numbers in columns of one
-/// name and :0, :1, :2, or _x, _y, _z, ... are vectors. Throws std::runtime_error with one
-/// sentence.
+/// name and :0, :1, :2, or _x, _y, _z, ... are vectors. The times of steps are numbers from 0 on
+/// where a file tells of none; a table has none.
+///@{
+vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step);
+std::vector<double> ListTimesInText(const std::string& file, MessageCapture*);
+///@}
 
-/// The first step of a file that may hold several, or that of this number.
-vtkSmartPointer<vtkDataObject> ReadCsv(const std::string& file);
-vtkSmartPointer<vtkDataObject> ReadColumns(const std::string& file, std::size_t step = 0);
-vtkSmartPointer<vtkDataObject> ReadXyz(const std::string& file, std::size_t step = 0);
-vtkSmartPointer<vtkDataObject> ReadLammps(const std::string& file, std::size_t step = 0);
-
-/// The times of the steps in an .xyz file or a dump; numbers from 0 on where it tells of none.
-std::vector<double> ListTimesInText(const std::string& file);
-
-// Snapshots of GADGET's binary formats 1 and 2, of any name.
-
-/// Whether a file begins as one does.
+/// Snapshots of GADGET's binary formats 1 and 2, of any name: whether a file begins as one does,
+/// the files of its snapshot, its time, and the gas in one file. SmoothingLength is half of
+/// GADGET's, which is the support radius.
+///@{
 bool IsGadget(const std::string& file);
-
-/// The files of its snapshot. Throws std::runtime_error.
-std::vector<std::string> ListGadget(const std::string& file);
-
-/// The gas in a file. SmoothingLength is half of GADGET's, which is the support radius. Throws
-/// std::runtime_error.
-vtkSmartPointer<vtkDataObject> ReadGadget(const std::string& file);
-
-double TimeOfGadget(const std::string& file);
-
-/// Whether the field data at the beginning of a VTK file tell of its time (TimeValue, TIME, time).
-/// Points and their arrays are not read.
-bool ReadTime(const std::string& file, MessageCapture* messages, double& time);
-
-/// VTK's readers ask for memory, and go round in loops, by the counts that a file declares. Throws
-/// std::runtime_error with one sentence where one is below 0, or greater than a file of its size
-/// can hold: so it is damaged. Knows VTK's XML and legacy files.
-void CheckDeclaredSizes(const std::string& file);
-/// Checks a part of the file.
-void CheckDeclaredSizes(const std::string& file, std::string_view text);
+std::vector<std::string> ListGadget(const std::string& file, MessageCapture*);
+std::vector<double> ListTimesOfGadget(const std::string& file, MessageCapture*);
+vtkSmartPointer<vtkDataObject> ReadGadget(const std::string& file, std::size_t);
+///@}
 
 #endif

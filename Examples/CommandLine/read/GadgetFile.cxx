@@ -80,10 +80,7 @@ public:
     const auto get = [this, &data](std::size_t at, void* to, std::size_t count, std::size_t width)
     {
       std::memcpy(to, data.data() + at, count * width);
-      if (this->IsSwapped)
-      {
-        vtkByteSwap::SwapVoidRange(to, count, width);
-      }
+      this->Order(to, count, width);
     };
     get(0, this->Counts, 6, 4);
     get(24, this->Masses, 6, 8);
@@ -160,14 +157,20 @@ public:
   double Time = 0.0;
 
 private:
+  /// Turns the bytes of numbers round where the file has them in the other order.
+  void Order(void* numbers, std::size_t count, std::size_t width) const
+  {
+    if (this->IsSwapped)
+    {
+      vtkByteSwap::SwapVoidRange(numbers, count, width);
+    }
+  }
+
   std::uint32_t ReadSize()
   {
     std::uint32_t size = 0;
     this->Stream.read(reinterpret_cast<char*>(&size), 4);
-    if (this->IsSwapped)
-    {
-      vtkByteSwap::SwapVoidRange(&size, 1, 4);
-    }
+    this->Order(&size, 1, 4);
     return size;
   }
 
@@ -228,16 +231,12 @@ private:
     const auto count = static_cast<std::size_t>(array->GetNumberOfValues());
     void* to = array->GetVoidPointer(0);
     this->Stream.read(static_cast<char*>(to), static_cast<std::streamsize>(count * width));
-    if (this->IsSwapped)
-    {
-      vtkByteSwap::SwapVoidRange(to, count, width);
-    }
+    this->Order(to, count, width);
     array->SetName(known.Name);
-    if (std::strcmp(known.Label, "POS ") == 0)
+    if (&known == Arrays) // of positions
     {
-      vtkNew<vtkPoints> points;
-      points->SetData(array);
-      gas->SetPoints(points);
+      gas->SetPoints(vtkNew<vtkPoints>());
+      gas->GetPoints()->SetData(array);
       return;
     }
     for (vtkIdType i = 0; std::strcmp(known.Label, "HSML") == 0 && i < array->GetNumberOfTuples();
@@ -265,14 +264,14 @@ bool IsGadget(const std::string& file)
   return std::filesystem::is_regular_file(file, error) && File(file).IsGadget;
 }
 
-double TimeOfGadget(const std::string& name)
+std::vector<double> ListTimesOfGadget(const std::string& name, MessageCapture*)
 {
   File file(name);
   file.ReadHeader();
-  return file.Time;
+  return { file.Time };
 }
 
-std::vector<std::string> ListGadget(const std::string& name)
+std::vector<std::string> ListGadget(const std::string& name, MessageCapture*)
 {
   File file(name);
   file.ReadHeader();
@@ -291,7 +290,7 @@ std::vector<std::string> ListGadget(const std::string& name)
   return files;
 }
 
-vtkSmartPointer<vtkDataObject> ReadGadget(const std::string& name)
+vtkSmartPointer<vtkDataObject> ReadGadget(const std::string& name, std::size_t)
 {
   File file(name);
   file.ReadHeader();

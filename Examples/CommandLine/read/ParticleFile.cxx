@@ -13,242 +13,115 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
-#include "vtkGenericDataObjectReader.h"
 #include "vtkNew.h"
-#include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHFound.h"
 #include "vtkSPHVertices.h"
-#include "vtkXMLDataParser.h"
-#include "vtkXMLImageDataReader.h"
-#include "vtkXMLPolyDataReader.h"
-#include "vtkXMLRectilinearGridReader.h"
-#include "vtkXMLStructuredGridReader.h"
-#include "vtkXMLUnstructuredGridReader.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <new>
 #include <stdexcept>
-#include <vector>
-
-#include <dlfcn.h>
 
 namespace
 {
 
 namespace fs = std::filesystem;
 
-/// Damage that VTK's readers pass over in silence: an appended data section that ends too early is
-/// read as far as it goes, and the rest of the arrays keeps whatever memory held.
-bool EndsLikeXmlFile(const std::string& file)
+/// All that is known of a format.
+struct Kind
 {
-  std::ifstream stream(file, std::ios::binary);
-  std::string tail(256, '\0');
-  stream.seekg(0, std::ios::end);
-  const std::streamoff size = stream.tellg();
-  const std::streamoff start = size > 256 ? size - 256 : 0;
-  stream.seekg(start);
-  stream.read(&tail[0], size - start);
-  tail.resize(static_cast<std::size_t>(stream.gcount()));
-  return tail.find("</VTKFile>") != std::string::npos;
-}
-
-/// Expat puts off the parsing of what may be an incomplete token, since 2.6 and in the security
-/// updates of older ones. VTK's parser, where it does not know this yet (ParaView 5.11 of Debian
-/// 12), then overlooks the place where XML ends and appended data begin, and cannot read such
-/// files.
-class PromptParser : public vtkXMLDataParser
-{
-public:
-  static PromptParser* New();
-  vtkTypeMacro(PromptParser, vtkXMLDataParser);
-
-protected:
-  int CreateParser() override
-  {
-    const int result = this->Superclass::CreateParser();
-    using SwitchType = unsigned char (*)(void*, unsigned char);
-    const auto setDeferral =
-      reinterpret_cast<SwitchType>(dlsym(RTLD_DEFAULT, "XML_SetReparseDeferralEnabled"));
-    if (result && setDeferral)
-    {
-      setDeferral(this->Parser, 0);
-    }
-    return result;
-  }
+  vtkSmartPointer<vtkDataObject> (*Read)(const std::string& file, std::size_t step);
+  /// Lists the times of a file's steps; null where it is one step, and tells no time.
+  std::vector<double> (*ListTimes)(const std::string& file, MessageCapture* messages) = nullptr;
+  /// Lists the files that hold parts of the particles; null where that is the file itself.
+  std::vector<std::string> (*ListParts)(
+    const std::string& file, MessageCapture* messages) = nullptr;
 };
-vtkStandardNewMacro(PromptParser);
-
-template <typename ReaderT>
-class PromptReader : public ReaderT
-{
-public:
-  static PromptReader* New() { VTK_STANDARD_NEW_BODY(PromptReader); }
-
-protected:
-  void CreateXMLParser() override
-  {
-    if (this->XMLParser)
-    {
-      this->XMLParser->Delete();
-    }
-    this->XMLParser = PromptParser::New();
-  }
-};
-
-vtkSmartPointer<vtkDataObject> ReadXml(vtkXMLReader* reader, const std::string& file)
-{
-  if (!EndsLikeXmlFile(file))
-  {
-    throw std::runtime_error(file + " is not a complete VTK XML file: its end is missing");
-  }
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  return reader->GetOutputDataObject(0);
-}
-
-vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file)
-{
-  vtkNew<vtkGenericDataObjectReader> reader;
-  reader->SetFileName(file.c_str());
-  // By default only the first array of each kind is read.
-  reader->ReadAllScalarsOn();
-  reader->ReadAllVectorsOn();
-  reader->ReadAllFieldsOn();
-  reader->Update();
-  return reader->GetOutput();
-}
+using Formats = std::vector<FileFormat<Kind>>;
 
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step)
 {
   return LoadExtra().ReadHdf(file, step);
 }
 
-vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file)
+std::vector<double> ListTimesOfHdf(const std::string& file, MessageCapture* messages)
+{
+  std::vector<double> times;
+  ReadWithCare(file, messages, [&file, &times] { times = LoadExtra().ListHdfTimes(file); });
+  return times;
+}
+
+vtkSmartPointer<vtkDataObject> ReadSurface(const std::string& file, std::size_t)
 {
   return LoadExtra().ReadSurface(file);
 }
 
-template <typename ReaderT>
-vtkSmartPointer<vtkDataObject> ReadXmlWith(const std::string& file)
-{
-  vtkNew<PromptReader<ReaderT>> reader;
-  return ReadXml(reader, file);
-}
-
-/// Every format that is read, with all that is known of it. A format without a function is a list
-/// of files that hold parts of the particles.
-using Reader =
-  std::function<vtkSmartPointer<vtkDataObject>(const std::string& file, std::size_t step)>;
-
-/// A reader of files that hold one step.
-template <vtkSmartPointer<vtkDataObject> (*read)(const std::string&)>
-vtkSmartPointer<vtkDataObject> ReadOne(const std::string& file, std::size_t)
-{
-  return read(file);
-}
-
-const std::vector<FileFormat<Reader>> Formats = {
-  { ".vtp", ReadOne<ReadXmlWith<vtkXMLPolyDataReader>> },
-  { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
-  { ".pvtp", {} },
-  { ".pvtu", {} },
-  { ".vtkhdf", ReadHdf },
-  { ".vtk", ReadOne<ReadLegacy> },
-  { ".csv", ReadOne<ReadCsv> },
-  { ".tsv", ReadOne<ReadCsv> },
-  { ".txt", ReadColumns },
-  { ".dat", ReadColumns },
-  { ".xyz", ReadXyz },
-  { ".extxyz", ReadXyz },
-  { ".lammpstrj", ReadLammps },
-  { ".dump", ReadLammps },
+const Formats ParticleFormats = {
+  { ".vtp", { ReadXml, ListTimesOfVtk } },
+  { ".vtu", { ReadXml, ListTimesOfVtk } },
+  { ".pvtp", { nullptr, ListTimesOfVtk, ReadPieces } },
+  { ".pvtu", { nullptr, ListTimesOfVtk, ReadPieces } },
+  { ".vtkhdf", { ReadHdf, ListTimesOfHdf } },
+  { ".vtk", { ReadLegacy, ListTimesOfVtk } },
+  { ".csv", { ReadText } },
+  { ".tsv", { ReadText } },
+  { ".txt", { ReadText, ListTimesInText } },
+  { ".dat", { ReadText, ListTimesInText } },
+  { ".xyz", { ReadText, ListTimesInText } },
+  { ".extxyz", { ReadText, ListTimesInText } },
+  { ".lammpstrj", { ReadText, ListTimesInText } },
+  { ".dump", { ReadText, ListTimesInText } },
 };
 
 /// Formats of data sets of any class.
-const std::vector<FileFormat<Reader>> DataFormats = {
-  { ".vti", ReadOne<ReadXmlWith<vtkXMLImageDataReader>> },
-  { ".vtr", ReadOne<ReadXmlWith<vtkXMLRectilinearGridReader>> },
-  { ".vts", ReadOne<ReadXmlWith<vtkXMLStructuredGridReader>> },
-  { ".vtp", ReadOne<ReadXmlWith<vtkXMLPolyDataReader>> },
-  { ".vtu", ReadOne<ReadXmlWith<vtkXMLUnstructuredGridReader>> },
-  { ".vtk", ReadOne<ReadLegacy> },
-  { ".csv", ReadOne<ReadCsv> },
-  { ".stl", ReadOne<ReadSurface> },
-  { ".ply", ReadOne<ReadSurface> },
-  { ".obj", ReadOne<ReadSurface> },
+const Formats DataFormats = {
+  { ".vti", { ReadXml } },
+  { ".vtr", { ReadXml } },
+  { ".vts", { ReadXml } },
+  { ".vtp", { ReadXml } },
+  { ".vtu", { ReadXml } },
+  { ".vtk", { ReadLegacy } },
+  { ".csv", { ReadText } },
+  { ".stl", { ReadSurface } },
+  { ".ply", { ReadSurface } },
+  { ".obj", { ReadSurface } },
 };
 
-const FileFormat<Reader> Gadget = { "", ReadOne<ReadGadget> };
+/// Particles that a file's beginning tells, whatever its ending.
+const Kind Gadget = { ReadGadget, ListTimesOfGadget, ListGadget };
 
-/// Finds a format by the ending, or, for particles, by the beginning of the file; nullptr if there
-/// is none.
-const FileFormat<Reader>* FormatOf(
-  const std::vector<FileFormat<Reader>>& formats, const std::string& file)
+/// Nullptr where it is none of these.
+const Kind* KindOf(const Formats& formats, const std::string& file)
 {
-  return &formats == &Formats && IsGadget(file) ? &Gadget : FindFormat(formats, file);
+  if (&formats == &ParticleFormats && IsGadget(file))
+  {
+    return &Gadget;
+  }
+  const FileFormat<Kind>* format = FindFormat(formats, file);
+  return format ? &format->Process : nullptr;
 }
 
 /// The greatest number of points or particles.
 const vtkIdType MostPoints = VTK_INT_MAX;
 
-/// VTK's readers seek in the file, so it must be a regular one.
-void CheckReadable(
-  const std::string& file, const std::vector<FileFormat<Reader>>& formats = Formats)
+vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* messages,
+  const Formats& formats = ParticleFormats, std::size_t step = 0)
 {
-  std::error_code error;
-  if (fs::is_directory(file, error))
-  {
-    FailToRead(file, "it is a directory");
-  }
-  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
-  {
-    FailToRead(file, "it is not a regular file");
-  }
-  if (!std::ifstream(file, std::ios::binary))
-  {
-    FailToRead(file, std::strerror(errno));
-  }
-  if (!FormatOf(formats, file))
+  CheckRegularFile(file);
+  const Kind* kind = KindOf(formats, file);
+  if (!kind)
   {
     throw std::runtime_error(file + " is not a " + ListEndings(formats) + " file");
   }
-}
-
-/// VTK's reader at work. Its exceptions are those of the standard library where it asks for memory
-/// by sizes that a damaged file gave it. After errors VTK goes on, with arrays of zeros; such data
-/// would give a wrong surface.
-vtkSmartPointer<vtkDataObject> ReadWithCare(const std::string& file, MessageCapture* messages,
-  const std::vector<FileFormat<Reader>>& formats = Formats, std::size_t step = 0)
-{
-  CheckReadable(file, formats);
-  messages->Clear();
-  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
-  const Silence silence;
-  CheckDeclaredSizes(file);
-  try
-  {
-    const vtkSmartPointer<vtkDataObject> data = FormatOf(formats, file)->Process(file, step);
-    if (!messages->GetErrors().empty())
-    {
-      FailToRead(file, messages->GetErrors().front());
-    }
-    return data;
-  }
-  catch (const std::bad_alloc&)
-  {
-  }
-  catch (const std::length_error&)
-  {
-  }
-  FailToRead(file, "it needs more memory than is available; it may be damaged");
+  vtkSmartPointer<vtkDataObject> data;
+  ReadWithCare(file, messages, [kind, &data, &file, step] { data = kind->Read(file, step); });
+  return data;
 }
 
 /// Makes names fit for sentences and for the surface's file; a legacy file can hold bytes that
@@ -306,16 +179,16 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   {
     particles->GetPointData()->AddArray(arrays->GetAbstractArray(i));
   }
-  PassPeriod(data, particles);
+  vtkFieldData* field = data->GetFieldData();
+  for (int i = 0; field && i < field->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = field->GetArray(i);
+    if (array && vtkSPHTellsOfPeriod(array->GetName()))
+    {
+      particles->GetFieldData()->AddArray(array);
+    }
+  }
   return particles;
-}
-
-vtkSmartPointer<vtkPointSet> NoParticles()
-{
-  auto none = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  none->SetPoints(points);
-  return none;
 }
 
 /// NAME#N is step N of the file NAME, unless a file has that name.
@@ -337,7 +210,7 @@ void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
 {
   std::size_t step = 0;
   TakeStep(file, step);
-  const vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, messages, Formats, step);
+  const vtkSmartPointer<vtkDataObject> data = Read(file, messages, ParticleFormats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
   if (!points)
   {
@@ -360,19 +233,19 @@ void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
 
 bool IsList(const std::string& file)
 {
-  const auto* format = FindFormat(Formats, file);
-  return format && !format->Process;
+  const FileFormat<Kind>* format = FindFormat(ParticleFormats, file);
+  return format && format->Process.ListParts;
 }
 
 /// The pieces of a list of them, or the file itself.
 std::vector<std::string> ListParts(const std::string& file, MessageCapture* messages)
 {
-  if (!IsList(file))
+  const Kind* kind = KindOf(ParticleFormats, file);
+  if (!kind || !kind->ListParts)
   {
-    return IsGadget(file) ? ListGadget(file) : std::vector<std::string>{ file };
+    return { file };
   }
-  CheckReadable(file);
-  const std::vector<std::string> parts = ReadPieces(file, messages);
+  const std::vector<std::string> parts = kind->ListParts(file, messages);
   for (const std::string& part : parts)
   {
     if (IsList(part))
@@ -385,14 +258,50 @@ std::vector<std::string> ListParts(const std::string& file, MessageCapture* mess
 
 }
 
-std::string ParticleFileEndings()
+void CheckRegularFile(const std::string& file)
 {
-  return ListEndings(Formats);
+  std::error_code error;
+  if (fs::is_directory(file, error))
+  {
+    FailToRead(file, "it is a directory");
+  }
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+  {
+    FailToRead(file, "it is not a regular file");
+  }
+  if (!std::ifstream(file, std::ios::binary))
+  {
+    FailToRead(file, std::strerror(errno));
+  }
 }
 
-vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages)
+void ReadWithCare(
+  const std::string& file, MessageCapture* messages, const std::function<void()>& read)
 {
-  return ReadParticles(std::vector<std::string>{ file }, messages);
+  messages->Clear();
+  const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
+  const Silence silence;
+  try
+  {
+    read();
+    if (!messages->GetErrors().empty())
+    {
+      FailToRead(file, messages->GetErrors().front());
+    }
+    return;
+  }
+  catch (const std::bad_alloc&)
+  {
+  }
+  catch (const std::length_error&)
+  {
+  }
+  FailToRead(file, "it needs more memory than is available; it may be damaged");
+}
+
+std::string ParticleFileEndings()
+{
+  return ListEndings(ParticleFormats);
 }
 
 vtkSmartPointer<vtkPointSet> ReadParticles(
@@ -414,23 +323,10 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   return JoinSets(sets);
 }
 
-std::vector<double> ListTimes(const std::string& file)
+std::vector<double> ListTimes(const std::string& file, MessageCapture* messages)
 {
-  const auto ends = [&file](const char* ending) { return EndsWith(file, ending); };
-  if (IsGadget(file))
-  {
-    return { TimeOfGadget(file) };
-  }
-  if (ends(".vtkhdf"))
-  {
-    const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
-    const Silence silence;
-    return LoadExtra().ListHdfTimes(file);
-  }
-  return ends(".xyz") || ends(".extxyz") || ends(".lammpstrj") || ends(".dump") || ends(".txt") ||
-      ends(".dat")
-    ? ListTimesInText(file)
-    : std::vector<double>();
+  const Kind* kind = KindOf(ParticleFormats, file);
+  return kind && kind->ListTimes ? kind->ListTimes(file, messages) : std::vector<double>();
 }
 
 vtkSmartPointer<vtkPointSet> ReadWalls(
@@ -484,14 +380,18 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
       parts.push_back(part);
     }
   }
-  return parts.empty()                ? NoParticles()
-    : sets.IsList || parts.size() > 1 ? JoinParts(parts)
-                                      : parts.front();
+  if (parts.empty())
+  {
+    const auto none = vtkSmartPointer<vtkPolyData>::New();
+    none->SetPoints(vtkNew<vtkPoints>());
+    return none;
+  }
+  return sets.IsList || parts.size() > 1 ? JoinParts(parts) : parts.front();
 }
 
 vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)
 {
-  const vtkSmartPointer<vtkDataObject> data = ReadWithCare(file, messages, DataFormats);
+  const vtkSmartPointer<vtkDataObject> data = Read(file, messages, DataFormats);
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
   if (set && set->GetNumberOfPoints() > MostPoints)
   {

@@ -17,20 +17,17 @@ struct vtkSPHPeriod;
 /// ".vtp, .vtu, ... or .vtk": the endings of the files that ReadParticles knows.
 std::string ParticleFileEndings();
 
-/// Reads particles and their arrays. Throws std::runtime_error with one sentence if the file cannot
-/// be read, is damaged, or holds no points; where VTK's reader crashes over it, the program ends
-/// with a sentence. Names of arrays are made fit to print.
-vtkSmartPointer<vtkPointSet> ReadParticles(const std::string& file, MessageCapture* messages);
-
-/// As ReadParticles() above, for files that each hold a part of the particles. Arrays that are not
+/// Reads particles and their arrays from files that each hold a part of them. Arrays that are not
 /// in all of them are left out, and so are particles that a part marks as another one's
-/// (vtkGhostType). A step of a film may have no points.
+/// (vtkGhostType). Throws std::runtime_error with one sentence if a file cannot be read, is damaged,
+/// or there are no points, which a step of a film may lack; where VTK's reader crashes over it, the
+/// program ends with a sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty = false);
 
-/// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ...; none where it
-/// is a format of one step. Throws std::runtime_error.
-std::vector<double> ListTimes(const std::string& file);
+/// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ... where there
+/// are several; none where it tells of none. Throws std::runtime_error.
+std::vector<double> ListTimes(const std::string& file, MessageCapture* messages);
 
 /// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
 vtkSmartPointer<vtkPointSet> ReadWalls(
@@ -72,11 +69,6 @@ extern const char* const WallArrayName;
 /// field, so only the smoothing length, and what volumes are made of, count. Throws
 /// std::runtime_error.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
-
-// The period that particles' field data tell of.
-
-/// Gives the field data that may tell of a period, and no other.
-void PassPeriod(vtkDataObject* from, vtkDataObject* to);
 
 /// The period that was found, if there is no problem. Throws std::runtime_error where nothing was.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);

@@ -4,7 +4,6 @@
 
 #include "CollectionFile.h"
 #include "FileName.h"
-#include "Formats.h"
 #include "Job.h"
 #include "ParticleFile.h"
 
@@ -44,54 +43,44 @@ Steps ListedSteps(
   return steps;
 }
 
-/// A file's name as what stands between numbers, and these.
-struct NumberedName
+/// A file's name as what stands between numbers, and these: without zeros in front, each behind its
+/// number of digits, so that they compare as numbers do.
+using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, std::string>>>;
+
+NumberedName Numbered(const std::string& name)
 {
-  std::string Words;
-  std::vector<std::string> Numbers; ///< without zeros in front
-
-  explicit NumberedName(const std::string& name)
+  NumberedName numbered;
+  auto& [words, numbers] = numbered;
+  for (const char c : name)
   {
-    for (std::size_t i = 0; i < name.size(); ++i)
+    if (c < '0' || c > '9')
     {
-      const bool isDigit = name[i] >= '0' && name[i] <= '9';
-      if (!isDigit)
-      {
-        this->Words += name[i];
-        continue;
-      }
-      if (this->Words.empty() || this->Words.back() != '\0')
-      {
-        this->Words += '\0';
-        this->Numbers.emplace_back();
-      }
-      if (name[i] != '0' || !this->Numbers.back().empty())
-      {
-        this->Numbers.back() += name[i];
-      }
+      words += c;
+      continue;
     }
+    if (words.empty() || words.back() != '\0')
+    {
+      words += '\0';
+      numbers.emplace_back();
+    }
+    auto& [size, digits] = numbers.back();
+    digits += c == '0' && size == 0 ? "" : std::string(1, c);
+    size = digits.size();
   }
-
-  bool IsBefore(const NumberedName& other) const
-  {
-    return std::lexicographical_compare(this->Numbers.begin(), this->Numbers.end(),
-      other.Numbers.begin(), other.Numbers.end(),
-      [](const std::string& a, const std::string& b)
-      { return a.size() != b.size() ? a.size() < b.size() : a < b; });
-  }
-};
+  return numbered;
+}
 
 /// Sorts files by the numbers in their names, if the names differ in nothing else: shells list
 /// tank_10 before tank_9.
 std::vector<std::string> InOrder(std::vector<std::string> files)
 {
-  const NumberedName first(files.front());
+  const std::string words = Numbered(files.front()).first;
   if (std::all_of(files.begin(), files.end(),
-        [&first](const std::string& file) { return NumberedName(file).Words == first.Words; }))
+        [&words](const std::string& file) { return Numbered(file).first == words; }))
   {
     std::stable_sort(files.begin(), files.end(),
       [](const std::string& a, const std::string& b)
-      { return NumberedName(a).IsBefore(NumberedName(b)); });
+      { return Numbered(a).second < Numbered(b).second; });
   }
   return files;
 }
@@ -103,21 +92,15 @@ Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::stri
   std::vector<double> times;
   for (const std::string& file : InOrder(job.Inputs))
   {
-    const std::vector<double> steps = ListTimes(file);
-    for (std::size_t k = 0; k < steps.size() && steps.size() > 1; ++k)
+    const std::vector<double> steps = ListTimes(file, messages);
+    const bool isFilm = steps.size() > 1;
+    for (std::size_t k = 0; k < (isFilm ? steps.size() : 1); ++k)
     {
-      files.push_back(file + "#" + std::to_string(k));
+      files.push_back(isFilm ? file + "#" + std::to_string(k) : file);
     }
-    if (steps.size() > 1)
+    if (isFilm || job.Inputs.size() > 1)
     {
       times.insert(times.end(), steps.begin(), steps.end());
-      continue;
-    }
-    files.push_back(file);
-    double time = 0.0;
-    if (job.Inputs.size() > 1 && (!steps.empty() || ReadTime(file, messages, time)))
-    {
-      times.push_back(steps.empty() ? time : steps.front());
     }
   }
   if (job.Has("--time-step"))

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Formats.h"
 
+#include "FileName.h"
 #include "SafeText.h"
 
 #include "vtkDoubleArray.h"
@@ -22,7 +23,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <set>
@@ -52,18 +52,19 @@ std::string Small(View text)
 /// A number as it stands in tables: with a leading plus, a D of Fortran, or a comma; nan, inf.
 bool ToNumber(View text, double& value)
 {
-  std::string copy;
   if (text.size() > 1 && text[0] == '+' && text[1] != '-')
   {
     text.remove_prefix(1);
   }
+  std::string copy;
   auto end = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end.ec != std::errc::result_out_of_range && end.ptr != text.data() + text.size())
   {
     copy = std::string(text);
-    std::replace_if(
-      copy.begin(), copy.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
-    std::replace(copy.begin(), copy.end(), ',', '.');
+    for (char& c : copy)
+    {
+      c = c == 'd' || c == 'D' ? 'e' : c == ',' ? '.' : c;
+    }
     text = copy;
     end = std::from_chars(text.data(), text.data() + text.size(), value);
   }
@@ -233,38 +234,30 @@ bool IsIdentifier(const std::string& name)
   letters.erase(std::remove_if(
                   letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
     letters.end());
-  const std::initializer_list<View> ends = { "id", "ids", "idp", "type", "types", "index", "mk",
-    "tag", "mol", "iorig" };
+  const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
   return std::any_of(ends.begin(), ends.end(),
-    [&letters](View end)
-    { return letters.size() >= end.size() && letters.substr(letters.size() - end.size()) == end; });
+    [&letters](const char* end) { return letters == end || EndsWith(letters, end); });
 }
 
-/// A name without what makes it a component, and which one it is; below 0: it is none.
+/// A name without what makes it a component (v:0, v_x, v.x, v[0], v(0), VelX), and which one it is;
+/// below 0: it is none.
 int ComponentOf(const std::string& name, std::string& base)
 {
   const std::size_t n = name.size();
-  const auto number = [](char c) { return c >= '0' && c <= '8' ? c - '0' : -1; };
-  const auto letter = [](char c) {
-    return c == 'x' || c == 'X' ? 0 : c == 'y' || c == 'Y' ? 1 : c == 'z' || c == 'Z' ? 2 : -1;
-  };
-  if (n > 3 && (name[n - 3] == '[' || name[n - 3] == '(') && number(name[n - 2]) >= 0)
+  const bool isInBrackets = n > 3 && (name[n - 3] == '[' || name[n - 3] == '(');
+  const bool isMarked = n > 2 && (name[n - 2] == ':' || name[n - 2] == '_' || name[n - 2] == '.');
+  const bool isCapital = n > 3 && std::islower(static_cast<unsigned char>(name[n - 2])) &&
+    std::isupper(static_cast<unsigned char>(name[n - 1]));
+  if (!isInBrackets && !isMarked && !isCapital)
   {
-    base = name.substr(0, n - 3);
-    return number(name[n - 2]);
+    return -1;
   }
-  if (n > 2 && (name[n - 2] == ':' || name[n - 2] == '_' || name[n - 2] == '.'))
-  {
-    base = name.substr(0, n - 2);
-    return std::max(number(name[n - 1]), letter(name[n - 1]));
-  }
-  if (n > 3 && std::islower(static_cast<unsigned char>(name[n - 2])) && name[n - 1] >= 'X' &&
-    name[n - 1] <= 'Z') // VelX
-  {
-    base = name.substr(0, n - 1);
-    return letter(name[n - 1]);
-  }
-  return -1;
+  base = name.substr(0, n - (isInBrackets ? 3 : isMarked ? 2 : 1));
+  const std::size_t axis = View("xyzXYZ").find(name[n - 1]);
+  const char digit = name[isInBrackets ? n - 2 : n - 1];
+  return digit >= '0' && digit <= '8'    ? digit - '0'
+    : isInBrackets || axis == View::npos ? -1
+                                         : static_cast<int>(axis % 3);
 }
 
 /// Columns that are the components of a vector, by its name.
@@ -276,7 +269,7 @@ std::map<std::string, std::vector<std::size_t>> FindVectors(const Table& table)
   {
     std::string base;
     const int component = ComponentOf(table[c].Name, base);
-    if (component >= 0 && !base.empty())
+    if (component >= 0)
     {
       parts[base].emplace(component, c);
     }
@@ -286,10 +279,11 @@ std::map<std::string, std::vector<std::size_t>> FindVectors(const Table& table)
   for (const auto& [base, columns] : parts)
   {
     const std::size_t count = columns.size();
-    if ((count == 2 || count == 3 || count == 6 || count == 9) && !names.count(base) &&
-      columns.rbegin()->first == static_cast<int>(count) - 1)
+    const bool isUsual = count == 2 || count == 3 || count == 6 || count == 9;
+    const bool isWhole = columns.rbegin()->first == static_cast<int>(count) - 1;
+    for (const auto& column : columns)
     {
-      for (const auto& column : columns)
+      if (isUsual && isWhole && !names.count(base))
       {
         vectors[base].push_back(column.second);
       }
@@ -358,16 +352,14 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
   if (columns.size() == 1 && !first.Words.empty())
   {
     auto words = vtkSmartPointer<vtkStringArray>::New();
-    for (const std::string& word : first.Words)
-    {
-      words->InsertNextValue(word);
-    }
+    words->SetNumberOfValues(static_cast<vtkIdType>(first.Words.size()));
+    std::copy(first.Words.begin(), first.Words.end(), words->GetPointer(0));
     return words;
   }
   if (columns.size() == 1 && !first.Whole.empty() && IsIdentifier(first.Name))
   {
     auto whole = vtkSmartPointer<vtkTypeInt64Array>::New();
-    whole->SetNumberOfTuples(static_cast<vtkIdType>(first.Whole.size()));
+    whole->SetNumberOfValues(static_cast<vtkIdType>(first.Whole.size()));
     std::copy(first.Whole.begin(), first.Whole.end(), whole->GetPointer(0));
     return whole;
   }
@@ -396,10 +388,9 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
   points->SetData(JoinColumns(table, positions, 3));
   particles->SetPoints(points);
   std::vector<std::pair<std::string, std::vector<std::size_t>>> arrays; // where a first column is
-  arrays.resize(table.size());
-  for (std::size_t c = 0; c < table.size(); ++c)
+  for (const Column& column : table)
   {
-    arrays[c] = { table[c].Name, { c } };
+    arrays.push_back({ column.Name, { arrays.size() } });
   }
   for (const auto& vector : FindVectors(table))
   {
@@ -483,28 +474,16 @@ std::vector<View> WordsOf(View comment)
   return words;
 }
 
-/// The sign between the columns of a table with this line; blanks, which may be tabs, count as one.
-char SeparatorOf(View line, bool isBlankTab)
-{
-  for (const char sign : { ';', '\t', ',' })
-  {
-    if (line.find(sign) != View::npos && !(sign == '\t' && isBlankTab))
-    {
-      return sign;
-    }
-  }
-  return ' ';
-}
-
 /// Rows of values, after one of names, which may stand in a comment.
-vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, bool isBlankTab)
+vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
 {
   constexpr std::size_t mostColumns = 10000;
+  const bool isBlankTab = !EndsWith(file, ".csv") && !EndsWith(file, ".tsv");
   Lines lines(file);
   Table table;
   std::vector<View> cells;
   std::string comment;
-  char separator = 0;
+  char separator = 0; // blanks, which may be tabs, count as one
   while (lines.Next())
   {
     View line = Trimmed(lines.Get());
@@ -514,7 +493,11 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, bool isBlankTab
       comment = line.empty() ? comment : std::string(line.substr(std::min(begin, line.size())));
       continue;
     }
-    separator = separator == 0 ? SeparatorOf(line, isBlankTab) : separator;
+    if (separator == 0)
+    {
+      const auto has = [line](char sign) { return line.find(sign) != View::npos; };
+      separator = has(';') ? ';' : has('\t') && !isBlankTab ? '\t' : has(',') ? ',' : ' ';
+    }
     line = separator == ' ' ? line.substr(0, line.find('#')) : lines.Get();
     Split(line, separator, cells);
     if (table.empty())
@@ -540,8 +523,8 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file, bool isBlankTab
     FailToRead(file, "it has no row of values");
   }
   std::vector<std::size_t> positions = FindPositions(table);
-  for (std::size_t c = 0; c < 3 && c < table.size() && separator == ' ' && positions.size() <= c;
-       ++c)
+  for (std::size_t c = 0;
+       c < std::min<std::size_t>(3, table.size()) && separator == ' ' && positions.size() == c; ++c)
   {
     positions.push_back(c); // the first ones
   }
@@ -552,10 +535,8 @@ void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<doub
 {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name);
-  for (const double value : values)
-  {
-    array->InsertNextValue(value);
-  }
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
   particles->GetFieldData()->AddArray(array);
 }
 
@@ -766,6 +747,18 @@ std::vector<std::size_t> PositionsOf(Table& table, const Step& step)
   return positions;
 }
 
+/// How the steps of a file are found; null where it is a table, which is one.
+StepFinder FinderOf(const std::string& file)
+{
+  Lines lines(file);
+  const View first = lines.Next() ? lines.Get() : View();
+  const bool isCounted = EndsWith(file, "xyz") && CountOf(first) >= 0; // and no table of positions
+  return StartsWith(first, "ITEM:") || EndsWith(file, ".lammpstrj") || EndsWith(file, ".dump")
+    ? FindDumpStep
+    : isCounted ? FindXyzStep
+                : nullptr;
+}
+
 /// Where steps begin, as ListTimesInText() has found them in a file of this size: a film does not
 /// go through all steps before each.
 struct Steps
@@ -780,23 +773,20 @@ vtkSmartPointer<vtkDataObject> ReadStep(
 {
   Lines lines(file);
   Step step;
-  const Steps& known = KnownSteps[file];
-  const bool isKnown =
-    number < known.Places.size() && known.Size == std::filesystem::file_size(file);
-  if (isKnown)
+  bool isThere = number == 0;
+  if (!isThere)
   {
-    lines.GoTo(known.Places[number]);
+    if (KnownSteps[file].Size != std::filesystem::file_size(file))
+    {
+      ListTimesInText(file, nullptr);
+    }
+    const std::vector<Lines::Place>& places = KnownSteps[file].Places;
+    isThere = number < places.size();
+    lines.GoTo(isThere ? places[number] : lines.Here());
   }
-  for (std::size_t k = isKnown ? number : 0; k <= number; ++k)
+  if (!isThere || !find(lines, step))
   {
-    for (vtkTypeInt64 i = 0; i < step.Count; ++i)
-    {
-      lines.Need("all particles of a step");
-    }
-    if (!find(lines, step))
-    {
-      FailToRead(file, "it has no step " + std::to_string(number));
-    }
+    FailToRead(file, "it has no step " + std::to_string(number));
   }
   Table table = TableOf(step.Names);
   std::vector<View> cells;
@@ -806,12 +796,9 @@ vtkSmartPointer<vtkDataObject> ReadStep(
     Split(lines.Get(), ' ', cells);
     if (table.empty())
     {
-      std::vector<std::string> names = NumberedNames(cells.size());
-      if (cells.size() > 3)
-      {
-        names = NumberedNames(cells.size() - 1);
-        names.insert(names.begin(), "species");
-      }
+      const bool hasSpecies = cells.size() > 3;
+      std::vector<std::string> names = NumberedNames(cells.size() - hasSpecies);
+      names.insert(names.begin(), hasSpecies, "species");
       table = TableOf(names);
     }
     AddRow(table, lines, cells);
@@ -827,7 +814,7 @@ vtkSmartPointer<vtkDataObject> ReadStep(
       period[2 * a + 1] = step.Bounds[2 * a + 1];
     }
   }
-  if (std::any_of(period.begin(), period.end(), [](double side) { return side != 0.0; }))
+  if (period != std::vector<double>(6))
   {
     AddNumbers(particles, "PeriodicBounds", period);
   }
@@ -838,56 +825,23 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   return particles;
 }
 
-bool IsDump(const std::string& file)
+}
+
+vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step)
 {
-  std::ifstream stream(file, std::ios::binary);
-  char begin[5] = {};
-  stream.read(begin, 5);
-  return View(begin, 5) == "ITEM:";
+  const StepFinder find = FinderOf(file);
+  return find ? ReadStep(file, find, step) : ReadRows(file);
 }
 
-/// Whether a file begins with a count of particles, and is no table of positions.
-bool HasCount(const std::string& file)
-{
-  Lines lines(file);
-  return lines.Next() && CountOf(lines.Get()) >= 0;
-}
-
-}
-
-vtkSmartPointer<vtkDataObject> ReadCsv(const std::string& file)
-{
-  return ReadRows(file, false);
-}
-
-vtkSmartPointer<vtkDataObject> ReadColumns(const std::string& file, std::size_t step)
-{
-  return IsDump(file) ? ReadLammps(file, step) : ReadRows(file, true);
-}
-
-vtkSmartPointer<vtkDataObject> ReadXyz(const std::string& file, std::size_t step)
-{
-  return HasCount(file) ? ReadStep(file, FindXyzStep, step) : ReadRows(file, true);
-}
-
-vtkSmartPointer<vtkDataObject> ReadLammps(const std::string& file, std::size_t step)
-{
-  return ReadStep(file, FindDumpStep, step);
-}
-
-std::vector<double> ListTimesInText(const std::string& file)
+std::vector<double> ListTimesInText(const std::string& file, MessageCapture*)
 {
   std::vector<double> times;
-  const bool isDump = IsDump(file);
-  if (!isDump && !HasCount(file))
-  {
-    return times;
-  }
+  const StepFinder find = FinderOf(file);
   Lines lines(file);
   Step step;
-  Steps known = { std::filesystem::file_size(file), {} };
-  for (Lines::Place place = lines.Here();
-       isDump ? FindDumpStep(lines, step) : FindXyzStep(lines, step); place = lines.Here())
+  std::error_code error; // which is told where the file is read
+  Steps known = { std::filesystem::file_size(file, error), {} };
+  for (Lines::Place place = lines.Here(); find && find(lines, step); place = lines.Here())
   {
     known.Places.push_back(place);
     times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);

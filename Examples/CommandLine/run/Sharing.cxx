@@ -29,7 +29,7 @@ int Number(std::initializer_list<const char*> names, int otherwise)
 vtkSmartPointer<vtkPointSet> Sharing::Read(
   const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages)
 {
-  return AddWalls(ReadParticles(file, messages), ReadWalls(walls, messages));
+  return AddWalls(ReadParticles({ file }, messages), ReadWalls(walls, messages));
 }
 
 vtkSmartPointer<vtkPointSet> Sharing::Read(

@@ -11,11 +11,9 @@
 #include "vtkPointSet.h"
 #include "vtkSPHFound.h"
 
-#include <algorithm>
-#include <cmath>
 #include <iomanip>
-#include <limits>
 #include <sstream>
+#include <stdexcept>
 
 namespace
 {
@@ -25,28 +23,24 @@ std::string DescribeRange(vtkDataArray* array)
 {
   const int count = array->GetNumberOfComponents();
   std::ostringstream ends[2];
-  bool isKnown = true;
   for (int c = 0; c < count; ++c)
   {
-    const double infinity = std::numeric_limits<double>::infinity();
-    double range[2] = { infinity, -infinity };
-    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+    double range[2];
+    array->GetFiniteRange(range, c);
+    if (!(range[0] <= range[1]))
     {
-      const double value = array->GetComponent(i, c);
-      range[0] = std::isfinite(value) ? std::min(range[0], value) : range[0];
-      range[1] = std::isfinite(value) ? std::max(range[1], value) : range[1];
+      return "no finite values";
     }
-    isKnown = isKnown && range[0] <= range[1];
     for (int e = 0; e < 2; ++e)
     {
       ends[e] << std::setprecision(9)
-              << (c              ? ", "
+              << (c > 0          ? ", "
                      : count > 1 ? "("
                                  : "")
               << range[e] << (c > 0 && c == count - 1 ? ")" : "");
     }
   }
-  return isKnown ? ends[0].str() + " .. " + ends[1].str() : "no finite values";
+  return ends[0].str() + " .. " + ends[1].str();
 }
 
 std::string DescribeVolume(const vtkSPHFound& found)
@@ -57,16 +51,15 @@ std::string DescribeVolume(const vtkSPHFound& found)
                           : "computed from the positions";
 }
 
-std::string DescribePeriod(vtkPointSet& particles)
+/// "1,1,0", or nothing.
+std::string TextOf(const vtkSPHPeriod& found)
 {
-  const vtkSPHPeriod found = vtkSPHFindPeriod(particles.GetFieldData());
   std::ostringstream text;
-  for (std::size_t i = 0; i < found.Period.size(); ++i)
+  for (const double number : found.Period)
   {
-    text << (i ? "," : "") << found.Period[i];
+    text << (text.tellp() > 0 ? "," : "") << number;
   }
-  return found.Period.empty() ? "none"
-                              : text.str() + " (field data " + found.Array + "; --periodic auto)";
+  return text.str();
 }
 
 }
@@ -87,6 +80,7 @@ std::string DescribeArrays(vtkPointSet& particles)
          << (numbers ? DescribeRange(numbers) : "not numbers") << "\n";
   }
   const vtkSPHFound found = vtkSPHFindArrays(&particles);
+  const vtkSPHPeriod period = vtkSPHFindPeriod(particles.GetFieldData());
   const auto orNone = [](const std::string& name, const char* none)
   { return name.empty() ? none : name; };
   text << "smoothing length  "
@@ -102,7 +96,34 @@ std::string DescribeArrays(vtkPointSet& particles)
     text << found.Fluid << " = " << found.FluidValue << " (give --fluid " << found.Fluid << "="
          << found.FluidValue << ")";
   }
-  text << "\nperiod            " << DescribePeriod(particles) << "\ndimension         "
-       << vtkNew<vtkMarchingCorrectors>()->FindDimension(&particles) << "\n";
+  text << "\nperiod            " << orNone(TextOf(period), "none")
+       << (period.Period.empty() ? "" : " (field data " + period.Array + "; --periodic auto)")
+       << "\ndimension         " << vtkNew<vtkMarchingCorrectors>()->FindDimension(&particles)
+       << "\n";
   return text.str();
+}
+
+std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem)
+{
+  if (!problem.empty() || found.Period.empty())
+  {
+    const std::string none = "The field data of the particles give no period: there is no array "
+                             "PeriodicBounds, BoxSize, or box with boundaryType.";
+    throw std::runtime_error((problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
+  }
+  return found.Period;
+}
+
+std::vector<double> DetectPeriod(vtkDataObject* particles)
+{
+  return CheckedPeriod(vtkSPHFindPeriod(particles->GetFieldData()), "");
+}
+
+std::string HintOfPeriod(vtkDataObject* particles)
+{
+  const vtkSPHPeriod found = vtkSPHFindPeriod(particles->GetFieldData());
+  return found.Period.empty()
+    ? ""
+    : "the field data array " + Printable(found.Array) + " may be a period (" + TextOf(found) +
+      "), but was not used; --periodic auto uses it, --periodic 0,0,0 confirms that there is none";
 }

@@ -1,0 +1,440 @@
+// SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Formats.h"
+
+#include "FileName.h"
+#include "MessageCapture.h"
+#include "OptionValue.h"
+#include "SafeText.h"
+
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkGenericDataObjectReader.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkXMLDataParser.h"
+#include "vtkXMLImageDataReader.h"
+#include "vtkXMLPolyDataReader.h"
+#include "vtkXMLRectilinearGridReader.h"
+#include "vtkXMLStructuredGridReader.h"
+#include "vtkXMLUnstructuredGridReader.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace
+{
+
+using View = std::string_view;
+
+// The counts that a file declares.
+
+/// Shows a check the file's bytes, as they lie there.
+void Inspect(const std::string& file, void (*check)(const std::string& file, View text))
+{
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status = {};
+  const bool isThere = descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  const std::shared_ptr<void> memory(
+    isThere ? mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0) : MAP_FAILED,
+    [size](void* mapped)
+    {
+      if (mapped != MAP_FAILED)
+      {
+        munmap(mapped, size);
+      }
+    });
+  if (descriptor >= 0)
+  {
+    close(descriptor);
+  }
+  const bool isMapped = memory.get() != MAP_FAILED;
+  check(file, isMapped ? View(static_cast<char*>(memory.get()), size) : View());
+}
+
+/// Returns the whole numbers of a text, up to the first word that is none.
+std::vector<double> Numbers(View text)
+{
+  std::vector<double> numbers;
+  const std::string copy(text.substr(0, 200));
+  const char* next = copy.c_str();
+  for (char* end = nullptr;; next = end)
+  {
+    const double number = std::strtod(next, &end);
+    if (end == next)
+    {
+      return numbers;
+    }
+    numbers.push_back(number);
+  }
+}
+
+/// Refuses `count` times the value of what stands as `name` in a file that can hold `most`.
+void CheckSize(const std::string& file, double most, View name, double value, double count = 1.0)
+{
+  if (!(value >= 0.0) || !(value * count <= most))
+  {
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), "%.15g", value);
+    FailToRead(file,
+      std::string(name) + " is " + digits +
+        (value >= 0.0 ? ", more than a file of its size can hold" : "") + "; it may be damaged");
+  }
+}
+
+/// The attributes of a tag.
+std::map<View, View> AttributesOf(View tag)
+{
+  std::map<View, View> attributes;
+  std::size_t equals = 0;
+  while ((equals = tag.find('=', equals + 1)) != View::npos)
+  {
+    const std::size_t name = tag.find_last_of(" \t\r\n", equals) + 1;
+    const std::size_t open = tag.find_first_of("\"'", equals);
+    const std::size_t close = open == View::npos ? open : tag.find(tag[open], open + 1);
+    if (close == View::npos)
+    {
+      break;
+    }
+    attributes[tag.substr(name, equals - name)] = tag.substr(open + 1, close - open - 1);
+    equals = close;
+  }
+  return attributes;
+}
+
+/// Counts are attributes of tags: of pieces, and of their arrays, which have so many numbers for
+/// each point or cell.
+void CheckXmlSizes(const std::string& file, View text)
+{
+  const bool isPacked = text.substr(0, 1000).find("compressor") != View::npos;
+  // Eight bits a byte; of all that VTK reads, LZMA packs zeros closest, 7,000 to 1.
+  const double most = static_cast<double>(text.size()) * (isPacked ? 1e4 : 8.0);
+  double elements = 0.0;
+  for (std::size_t begin = 0; (begin = text.find('<', begin)) != View::npos;)
+  {
+    const std::size_t end = std::min(text.find('>', begin), text.size());
+    const View tag = text.substr(begin, end - begin);
+    begin = end;
+    if (tag.substr(0, 13) == "<AppendedData")
+    {
+      return;
+    }
+    for (const auto& [name, value] : AttributesOf(tag))
+    {
+      const std::vector<double> numbers = Numbers(value);
+      if (name.substr(0, 8) == "NumberOf" && !numbers.empty())
+      {
+        const bool isWidth = name == "NumberOfComponents";
+        CheckSize(file, most, name, numbers[0], isWidth ? std::max(elements, 1.0) : 1.0);
+        elements = name == "NumberOfPoints" ? numbers[0] : elements;
+      }
+      for (std::size_t a = 1; a < numbers.size() && (name == "Extent" || name == "WholeExtent");
+           a += 2)
+      {
+        CheckSize(file, most, name, std::min(numbers[a] - numbers[a - 1] + 1.0, 0.0));
+      }
+    }
+  }
+}
+
+/// An appended data section that ends too early is read as far as it goes, in silence, and the rest
+/// of the arrays keeps whatever memory held.
+void CheckXml(const std::string& file, View text)
+{
+  CheckXmlSizes(file, text);
+  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 256)).find("</VTKFile>") ==
+    View::npos)
+  {
+    throw std::runtime_error(file + " is not a complete VTK XML file: its end is missing");
+  }
+}
+
+/// The words of a line, in small letters; none where it has values, as text or not.
+std::vector<std::string> DeclaringWords(View line)
+{
+  const auto isPrinted = [](char c) { return (c >= ' ' && c <= '~') || c == '\t' || c == '\r'; };
+  std::vector<std::string> words;
+  if (line.empty() || line.size() >= 300 || std::strchr("0123456789-. \r", line[0]) ||
+    !std::all_of(line.begin(), line.end(), isPrinted))
+  {
+    return words;
+  }
+  std::istringstream stream{ std::string(line) };
+  for (std::string word; stream >> word;)
+  {
+    std::transform(word.begin(), word.end(), word.begin(),
+      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    words.push_back(word);
+  }
+  return words;
+}
+
+/// Counts stand behind words at the beginning of a line, and those of attributes in a line before
+/// them. The arrays of a field have lines with a name, two counts and a type.
+void CheckLegacy(const std::string& file, View text)
+{
+  static const std::set<std::string> counted = { "points", "vertices", "lines", "polygons",
+    "triangle_strips", "cells", "cell_types", "x_coordinates", "y_coordinates", "z_coordinates",
+    "field", "lookup_table" };
+  static const std::set<std::string> attributes = { "scalars", "vectors", "normals", "tensors",
+    "color_scalars", "texture_coordinates" };
+  const double most = 8.0 * static_cast<double>(text.size());
+  std::string section = "point_data"; // that the attributes are in
+  double elements = 0.0;              // values of each
+  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1)
+  {
+    end = std::min(text.find('\n', begin), text.size());
+    const std::vector<std::string> words = DeclaringWords(text.substr(begin, end - begin));
+    const std::string first = words.empty() ? "" : words.front();
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i < words.size(); ++i)
+    {
+      const std::vector<double> number = Numbers(words[i]);
+      numbers.insert(numbers.end(), number.begin(), number.end());
+    }
+    const bool isSection = first == "point_data" || first == "cell_data";
+    const bool hasAttribute = attributes.count(first) > 0;
+    for (const double number : numbers)
+    {
+      if (isSection || first == "dimensions") // of an image, which may have no values
+      {
+        CheckSize(file, most, first, std::min(number, 0.0));
+      }
+      if (hasAttribute || counted.count(first))
+      {
+        CheckSize(file, most, first, number);
+      }
+      section = isSection ? first : section;
+      elements = isSection ? number : elements;
+    }
+    if (hasAttribute)
+    {
+      CheckSize(file, most, section, elements, numbers.empty() ? 1.0 : numbers.back());
+    }
+    else if (words.size() == 4 && numbers.size() == 2 && Numbers(words[3]).empty())
+    {
+      CheckSize(file, most, first, numbers[0], std::max(numbers[1], 1.0));
+      CheckSize(file, most, first, numbers[1]);
+    }
+  }
+}
+
+// Reading.
+
+/// Expat puts off the parsing of what may be an incomplete token, since 2.6 and in the security
+/// updates of older ones. VTK's parser, where it does not know this yet (ParaView 5.11 of Debian
+/// 12), then overlooks the place where XML ends and appended data begin, and cannot read such
+/// files.
+class PromptParser : public vtkXMLDataParser
+{
+public:
+  static PromptParser* New();
+  vtkTypeMacro(PromptParser, vtkXMLDataParser);
+
+protected:
+  int CreateParser() override
+  {
+    const int result = this->Superclass::CreateParser();
+    using SwitchType = unsigned char (*)(void*, unsigned char);
+    const auto setDeferral =
+      reinterpret_cast<SwitchType>(dlsym(RTLD_DEFAULT, "XML_SetReparseDeferralEnabled"));
+    if (result && setDeferral)
+    {
+      setDeferral(this->Parser, 0);
+    }
+    return result;
+  }
+};
+vtkStandardNewMacro(PromptParser);
+
+template <typename ReaderT>
+class PromptReader : public ReaderT
+{
+public:
+  static vtkSmartPointer<vtkXMLReader> New()
+  {
+    auto* reader = new PromptReader;
+    reader->InitializeObjectBase();
+    return vtk::TakeSmartPointer<vtkXMLReader>(reader);
+  }
+
+protected:
+  void CreateXMLParser() override
+  {
+    if (this->XMLParser)
+    {
+      this->XMLParser->Delete();
+    }
+    this->XMLParser = PromptParser::New();
+  }
+};
+
+const std::vector<FileFormat<vtkSmartPointer<vtkXMLReader> (*)()>> XmlReaders = {
+  { ".vtp", PromptReader<vtkXMLPolyDataReader>::New },
+  { ".vtu", PromptReader<vtkXMLUnstructuredGridReader>::New },
+  { ".vti", PromptReader<vtkXMLImageDataReader>::New },
+  { ".vtr", PromptReader<vtkXMLRectilinearGridReader>::New },
+  { ".vts", PromptReader<vtkXMLStructuredGridReader>::New },
+};
+
+// Times.
+
+const char* const TimeNames[] = { "TimeValue", "TIME", "Time", "time" };
+
+/// An empty data set with the field data of a file's beginning, as text, in the file's own format:
+/// VTK's readers read them alone.
+std::string FieldOfXml(const std::string& head)
+{
+  const std::size_t tag = head.find("<VTKFile"), begin = head.find("<FieldData"),
+                    close = head.find("</FieldData>");
+  const std::size_t tagEnd = tag == std::string::npos ? tag : head.find('>', tag);
+  if (tagEnd == std::string::npos || begin == std::string::npos || close == std::string::npos ||
+    begin < tagEnd || close < begin)
+  {
+    return "";
+  }
+  std::string file = head.substr(tag, tagEnd + 1 - tag);
+  const std::size_t type = file.find("type=");
+  const std::size_t typeEnd =
+    type == std::string::npos ? type : file.find(file[type + 5], type + 6);
+  if (typeEnd == std::string::npos)
+  {
+    return "";
+  }
+  file.replace(type, typeEnd + 1 - type, "type=\"PolyData\"");
+  return file + "<PolyData>" + head.substr(begin, close - begin) +
+    "</FieldData><Piece NumberOfPoints=\"0\"><Points></Points></Piece></PolyData></VTKFile>";
+}
+
+std::string FieldOfLegacy(const std::string& head)
+{
+  const std::size_t set = head.find("\nDATASET "), field = head.find("\nFIELD ", set);
+  const std::size_t points = head.find("\nPOINTS ", field);
+  if (set == std::string::npos || points == std::string::npos)
+  {
+    return "";
+  }
+  return head.substr(0, set) + "\nDATASET POLYDATA" + head.substr(field, points - field) +
+    "\nPOINTS 0 float\n";
+}
+
+std::vector<double> TimesOf(vtkDataObject* data)
+{
+  for (const char* name : TimeNames)
+  {
+    vtkDataArray* array = data ? data->GetFieldData()->GetArray(name) : nullptr;
+    if (array && array->GetNumberOfValues() == 1 && std::isfinite(array->GetComponent(0, 0)))
+    {
+      return { array->GetComponent(0, 0) };
+    }
+  }
+  return {};
+}
+
+/// The time in an XML file whose field data are at its end: the least and greatest value stand at
+/// its beginning.
+std::vector<double> TimesInRanges(const std::string& head)
+{
+  for (const char* name : TimeNames)
+  {
+    const std::size_t at = head.find("Name=\"" + std::string(name) + "\"");
+    const std::size_t end = at == std::string::npos ? at : head.find('>', at);
+    const std::size_t low = end == std::string::npos ? end : head.find("RangeMin=\"", at);
+    if (low < end && end != std::string::npos)
+    {
+      double time = 0.0;
+      const std::string text = head.substr(low + 10, head.find('"', low + 10) - low - 10);
+      return ParseNumber(text, time) ? std::vector<double>{ time } : std::vector<double>();
+    }
+  }
+  return {};
+}
+
+}
+
+vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t)
+{
+  Inspect(file, CheckXml);
+  const vtkSmartPointer<vtkXMLReader> reader = FindFormat(XmlReaders, file)->Process();
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  return reader->GetOutputDataObject(0);
+}
+
+vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t)
+{
+  Inspect(file, CheckLegacy);
+  vtkNew<vtkGenericDataObjectReader> reader;
+  reader->SetFileName(file.c_str());
+  // By default only the first array of each kind is read.
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllFieldsOn();
+  reader->Update();
+  return reader->GetOutput();
+}
+
+std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* messages)
+{
+  std::string head(1 << 16, '\0'); // field data behind it are not looked at
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(&head[0], static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const bool isLegacy = head.compare(0, 5, "# vtk") == 0;
+  const std::string text = isLegacy ? FieldOfLegacy(head) : FieldOfXml(head);
+  std::vector<double> times;
+  const auto read = [&file, &text, isLegacy, &times]
+  {
+    if (isLegacy)
+    {
+      CheckLegacy(file, text);
+      vtkNew<vtkGenericDataObjectReader> reader;
+      reader->ReadFromInputStringOn();
+      reader->SetBinaryInputString(text.data(), static_cast<int>(text.size()));
+      reader->ReadAllFieldsOn();
+      reader->Update();
+      times = TimesOf(reader->GetOutput());
+    }
+    else if (text.find("\"appended\"") == std::string::npos)
+    {
+      CheckXmlSizes(file, text);
+      vtkNew<vtkXMLPolyDataReader> reader;
+      reader->ReadFromInputStringOn();
+      reader->SetInputString(text);
+      reader->Update();
+      times = TimesOf(reader->GetOutput());
+    }
+  };
+  try
+  {
+    if (!text.empty())
+    {
+      ReadWithCare(file, messages, read);
+    }
+  }
+  catch (const std::exception&)
+  {
+    // A fault is told where all of the file is read.
+  }
+  messages->Clear();
+  return times.empty() ? TimesInRanges(text) : times;
+}

@@ -6,7 +6,7 @@
 /* Filling, in two dimensions: triangles of the region above the lowest iso value, divided by the
  * lines of the others. See mcor_fill_lines.c. */
 
-#include "mcor_cap.h"
+#include "mcor_cap_job.h"
 
 /* The lines of one iso value, after trimming. */
 typedef struct mcor_fill_line
@@ -20,17 +20,6 @@ typedef struct mcor_fill_line
   cl_ulong* cuts;          /* [cut_count], see mcor_trim.cl; ascending */
   int32_t* number;         /* [vertex_count + cut_count], points of the surface; -1: dropped */
 } mcor_fill_line;
-
-/* A point where trimming ends the filled region: on a lattice edge, between two corners of
- * polygons. */
-typedef struct mcor_fill_cut
-{
-  mcor_cap_vertex vertex; /* its key: its node, then axis << 32 | part of the edge */
-  int axis;
-  mcor_bracket bracket; /* along the edge, from inside to outside */
-  double at, margin;    /* the best place so far, and its margin */
-  int index;            /* the one that triangles use */
-} mcor_fill_cut;
 
 /* corner: a node's index; node_count + a cut's index; or -1 - a point of the surface. */
 typedef struct mcor_fill_triangle
@@ -48,8 +37,7 @@ typedef struct mcor_filling
   double* value;        /* [nodes.node_count] */
   int32_t* band;        /* [nodes.node_count]: number of levels that the node reaches */
   int32_t* number;      /* points of the surface, of nodes, then of cuts; -1: none */
-  mcor_table cut_of;
-  MCOR_LIST(mcor_fill_cut) cuts;
+  mcor_cap_job cap;     /* vertices: points where trimming ends the region */
   MCOR_LIST(mcor_fill_triangle) triangles;
 } mcor_filling;
 

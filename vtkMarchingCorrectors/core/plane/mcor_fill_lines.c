@@ -38,6 +38,7 @@ mcor_status mcor_begin_fill(mcor_context* context)
   mcor_filling* fill = context->run.fill = calloc(1, sizeof *fill);
   context->run.iso = (mcor_iso){ .number = 0 };
   MCOR_TRY(mcor_allocated(context, fill));
+  fill->cap.context = context;
   fill->lines = calloc((size_t)options->iso_count, sizeof *fill->lines);
   MCOR_TRY(mcor_allocated(context, fill->lines));
   for (int i = 0; i < options->iso_count; ++i) /* by iso value; equal values become one line */
@@ -186,12 +187,11 @@ void mcor_end_fill(mcor_context* context)
   if (fill)
   {
     mcor_free_cap_nodes(&fill->nodes);
-    mcor_table_free(&fill->cut_of);
+    mcor_free_cap_job(&fill->cap);
     free(fill->lines);
     free(fill->value);
     free(fill->band);
     free(fill->number);
-    free(fill->cuts.of);
     free(fill->triangles.of);
   }
   free(fill);

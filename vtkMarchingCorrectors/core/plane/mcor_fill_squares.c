@@ -8,11 +8,8 @@
 #include "mcor_box.h"
 #include "mcor_fill.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define MCOR_FILL_STEPS 10 /* evaluations of a cut */
 
 /* A node, or a line's vertex, on the border of a square; and the part of the border from there
  * to the next one. */
@@ -25,10 +22,9 @@ typedef struct mcor_fill_corner
   bool falls; /* the border goes from above the line to below */
   int band;   /* the part's */
   bool done;  /* a polygon has it */
-  /* Where the part is: number `part` on the edge of this lower node; its ends along the edge. */
+  /* The part is number `part` on the edge of this lower node. */
   cl_int node[3];
   int axis, part;
-  double from, to;
 } mcor_fill_corner;
 
 typedef struct mcor_fill_job
@@ -69,15 +65,17 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
   for (int i = 0; i <= parts; ++i)
   {
     mcor_fill_corner* corner = &job->border[job->count++];
-    *corner = (mcor_fill_corner){ .corner = { .vertex = (int32_t)begin,
-                                    .margin = fill->nodes.margin[begin] },
+    *corner = (mcor_fill_corner){
+      .corner = { .vertex = (int32_t)begin,
+        .at = { job->node[0] + mcor_corner_u(s), job->node[1] + mcor_corner_v(s) },
+        .margin = fill->nodes.margin[begin] },
       .level = -1,
       .falls = last < first,
       .band = last < first ? first - i : first + i,
       .node = { job->node[0] + (s == 1), job->node[1] + (s == 2), 0 },
       .axis = s & 1,
-      .part = s < 2 ? i : parts - i,
-      .from = s < 2 ? 0 : 1 };
+      .part = s < 2 ? i : parts - i
+    };
     if (i > 0) /* a line's vertex */
     {
       corner->level = last < first ? first - i : first + i - 1;
@@ -90,9 +88,8 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
       corner->corner.vertex = -1 - line->number[v];
       corner->corner.margin = line->margin[v];
       corner->vertex = v;
-      corner->from = corner[-1].to = line->offset[v];
+      corner->corner.at[corner->axis] = corner->node[corner->axis] + line->offset[v];
     }
-    corner->to = s < 2 ? 1 : 0;
   }
   return MCOR_OK;
 }
@@ -144,23 +141,25 @@ static mcor_status mcor_cut_fill_side(
     cut->vertex = -1 - number;
     return number >= 0 ? MCOR_OK : mcor_does_not_fit(job->context, p);
   }
-  const int32_t index =
-    mcor_table_number(&fill->cut_of, mcor_edge_part(p, p->part), (int32_t)fill->cuts.count);
+  mcor_cap_job* cap = &fill->cap;
+  const int32_t next = (int32_t)cap->vertices.count;
+  const int32_t index = mcor_table_number(&cap->cuts, mcor_edge_part(p, p->part), next);
   MCOR_TRY(mcor_allocated(job->context, index >= 0));
-  cut->vertex = (int32_t)(fill->nodes.node_count + index);
-  if (index == fill->cuts.count)
+  cut->vertex = (int32_t)fill->nodes.node_count + index;
+  if (index == next)
   {
     const bool inside = from->margin > 0;
-    MCOR_APPEND(job->context, &fill->cuts,
-      (mcor_fill_cut){ .vertex = { .node = { p->node[0], p->node[1], 0 },
-                         .band = p->band,
-                         .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
-                           (uint64_t)p->axis << 32 | (uint32_t)p->part } },
-        .axis = p->axis,
-        .bracket = { { inside ? p->from : p->to, inside ? p->to : p->from },
-          { inside ? from->margin : to->margin, inside ? to->margin : from->margin }, -1 },
-        .margin = INFINITY,
-        .index = index });
+    mcor_cap_line line;
+    mcor_begin_cap_line(inside ? from : to, inside ? to : from, &line, cut->at);
+    line.vertex = next;
+    mcor_cap_vertex vertex = { .band = p->band,
+      .number = cut->vertex,
+      .key = { mcor_fill_node_key(p->node) | UINT64_C(1) << 62,
+        (uint64_t)p->axis << 32 | (uint32_t)p->part },
+      .flag = 2 };
+    mcor_put_cap_vertex(&vertex, cut->at);
+    MCOR_APPEND(job->context, &cap->lines, line);
+    MCOR_APPEND(job->context, &cap->vertices, vertex);
   }
   return MCOR_OK;
 }
@@ -223,86 +222,13 @@ static mcor_status mcor_visit_fill_square(
   return MCOR_OK;
 }
 
-/* ---- Cuts ---- */
-
-/* Chooses the next place of a cut: where a linear margin would be 0; the middle where that would
- * not halve the bracket. */
-static double mcor_next_place(const mcor_bracket* bracket, bool halve)
-{
-  const double s = mcor_bracket_share(bracket);
-  const double part = halve || !(s >= 0 && s <= 1)
-    ? 0.5
-    : fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
-  return bracket->at[0] + part * (bracket->at[1] - bracket->at[0]);
-}
-
-static void mcor_narrow_cut(
-  const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
-{
-  mcor_fill_cut* cut = &((mcor_filling*)data)->cuts.of[points->to[i]];
-  const double at = mcor_get_real(context, points->offset, 4 * i + cut->axis);
-  const double margin = mcor_cap_margin(context, points, i);
-  if (fabs(margin) < fabs(cut->margin))
-  {
-    cut->at = at;
-    cut->margin = margin;
-  }
-  mcor_narrow_bracket(&cut->bracket, at, margin);
-}
+/* ---- Points ---- */
 
 static int mcor_compare_cuts(const void* x, const void* y)
 {
-  const uint64_t *a = ((const mcor_fill_cut*)x)->vertex.key,
-                 *b = ((const mcor_fill_cut*)y)->vertex.key;
+  const uint64_t *a = ((const mcor_cap_vertex*)x)->key, *b = ((const mcor_cap_vertex*)y)->key;
   const int i = a[0] == b[0];
   return (a[i] > b[i]) - (a[i] < b[i]);
-}
-
-/* Sorts the cuts, and moves them to where the margin is 0; in a preview, to the linear estimate. */
-static mcor_status mcor_place_fill_cuts(mcor_context* context, mcor_filling* fill)
-{
-  mcor_cap_points points = { .take = mcor_narrow_cut, .data = fill };
-  mcor_status status = MCOR_OK;
-  if (fill->cuts.count > 0)
-  {
-    qsort(fill->cuts.of, (size_t)fill->cuts.count, sizeof *fill->cuts.of, mcor_compare_cuts);
-  }
-  for (int64_t i = 0; i < fill->cuts.count; ++i)
-  {
-    fill->cuts.of[i].at = mcor_next_place(&fill->cuts.of[i].bracket, false);
-  }
-  const int steps = context->run.options->preview ? 0 : MCOR_FILL_STEPS;
-  for (int step = 0; step < steps && status == MCOR_OK; ++step)
-  {
-    for (int64_t i = 0; i < fill->cuts.count && status == MCOR_OK; ++i)
-    {
-      const mcor_fill_cut* cut = &fill->cuts.of[i];
-      double offset[3] = { 0, 0, 0 };
-      offset[cut->axis] = mcor_next_place(&cut->bracket, step == 4);
-      status = mcor_add_cap_point(context, &points, cut->vertex.node, offset, i);
-    }
-    MCOR_THEN(status, mcor_take_cap_points(context, &points));
-  }
-  mcor_free_cap_points(context, &points);
-  return status;
-}
-
-/* ---- Points ---- */
-
-/* Lists the marked nodes, brick by brick, and numbers them. */
-static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_vertex* vertex)
-{
-  for (int64_t n = MCOR_SIDE_NODES; n < fill->nodes.node_count; ++n)
-  {
-    if (fill->number[n] == 0)
-    {
-      fill->number[n] = (int32_t)base++;
-      *vertex = (mcor_cap_vertex){ .band = fill->band[n], .flag = MCOR_CAP_FLAG };
-      mcor_cap_node(&fill->nodes, n, vertex->node);
-      vertex->key[0] = mcor_fill_node_key(vertex->node);
-      ++vertex;
-    }
-  }
 }
 
 /* Makes the points that lines lack, and numbers them in the surface: first the nodes that
@@ -311,7 +237,8 @@ static void mcor_list_nodes(const mcor_filling* fill, int64_t base, mcor_cap_ver
 static mcor_status mcor_make_fill_points(
   mcor_context* context, mcor_filling* fill, const mcor_input* input, mcor_surface* surface)
 {
-  const size_t refs = (size_t)(fill->nodes.node_count + fill->cuts.count);
+  mcor_cap_job* cap = &fill->cap;
+  const size_t refs = (size_t)(fill->nodes.node_count + cap->vertices.count);
   fill->number = malloc(refs * sizeof *fill->number);
   MCOR_TRY(mcor_allocated(context, fill->number));
   memset(fill->number, 0xff, refs * sizeof *fill->number);
@@ -326,7 +253,7 @@ static mcor_status mcor_make_fill_points(
       ++nodes;
     }
   }
-  const int64_t count = nodes + fill->cuts.count;
+  const int64_t count = nodes + cap->vertices.count;
   MCOR_RETURN_IF(count > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The filled region would have %lld points; the limit is %d. Use a larger cube size.",
     (long long)count, MCOR_COUNT_LIMIT);
@@ -334,17 +261,26 @@ static mcor_status mcor_make_fill_points(
   {
     return MCOR_OK;
   }
-  mcor_cap_vertex* vertices = malloc((size_t)count * sizeof *vertices);
+  mcor_cap_vertex *vertices = malloc((size_t)count * sizeof *vertices), *vertex = vertices;
   MCOR_TRY(mcor_allocated(context, vertices));
-  mcor_list_nodes(fill, base, vertices);
-  for (int64_t i = 0; i < fill->cuts.count; ++i)
+  for (int32_t n = 0; vertex < vertices + nodes; ++n)
   {
-    const mcor_fill_cut* cut = &fill->cuts.of[i];
-    mcor_cap_vertex* vertex = &vertices[nodes + i];
-    *vertex = cut->vertex;
-    vertex->flag = fabs(cut->margin) < MCOR_CAP_ROOT ? 1 : 2;
-    vertex->offset[cut->axis] = cut->at;
-    fill->number[fill->nodes.node_count + cut->index] = (int32_t)(base + nodes + i);
+    if (fill->number[n] == 0)
+    {
+      *vertex = (mcor_cap_vertex){ .band = fill->band[n], .number = n, .flag = MCOR_CAP_FLAG };
+      mcor_cap_node(&fill->nodes, n, vertex->node);
+      vertex->key[0] = mcor_fill_node_key(vertex->node);
+      ++vertex;
+    }
+  }
+  for (int64_t i = 0; i < cap->vertices.count; ++i)
+  {
+    *vertex++ = cap->vertices.of[i];
+  }
+  qsort(vertices + nodes, (size_t)cap->vertices.count, sizeof *vertices, mcor_compare_cuts);
+  for (int64_t i = 0; i < count; ++i)
+  {
+    fill->number[vertices[i].number] = (int32_t)(base + i);
   }
   mcor_mesh* mesh = &context->mesh;
   mesh->march_count = mesh->vertex_count = mesh->cap_first = mesh->triangle_count = 0;
@@ -419,7 +355,7 @@ mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor
     mcor_visit_cap_squares(context, &fill->nodes, mcor_visit_fill_square, &job);
   free(job.border);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_place_fill_cuts(context, fill));
+  MCOR_TRY(context->run.options->preview ? MCOR_OK : mcor_place_cap_cuts(&fill->cap));
   MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
   return mcor_append_fill_triangles(context, fill, surface);
 }

@@ -62,7 +62,7 @@ bool mcor_cap_is_valid(const mcor_context* context, const mcor_cap_points* point
 typedef struct mcor_cap_vertex
 {
   cl_int node[3];
-  int32_t band; /* of a filled region */
+  int32_t band, number; /* of a filled region; number: the one that triangles use */
   double offset[3];
   uint64_t key[2]; /* of a cap: the first square that met it, and its turn there */
   uint8_t flag;    /* the surface's: MCOR_CAP_FLAG; of cuts 2, or 1 where they are exact */

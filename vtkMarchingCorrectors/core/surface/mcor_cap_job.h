@@ -3,7 +3,7 @@
 #ifndef mcor_cap_job_h
 #define mcor_cap_job_h
 
-/* Private to the caps: what the host makes before the mesh gets it. */
+/* Private to caps and filled regions: what the host makes before the mesh gets it. */
 
 #include "mcor_cap.h"
 
@@ -73,8 +73,15 @@ void mcor_begin_cap_square(mcor_cap_job* job, cl_ulong number, const cl_int node
 mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square);
 mcor_status mcor_add_cap_triangle(mcor_cap_job* job, int32_t a, int32_t b, int32_t c);
 mcor_status mcor_add_cap_border(mcor_cap_job* job, int32_t from, int32_t to);
+/* Splits a place, in cubes, into a node and an offset. */
+void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3]);
+/* Makes the line from one corner to another, and finds the place on it where a linear margin would
+ * be 0. */
+void mcor_begin_cap_line(
+  const mcor_cap_corner* low, const mcor_cap_corner* high, mcor_cap_line* line, double at[3]);
 /* Moves the cuts to where the trim margin is 0. */
 mcor_status mcor_place_cap_cuts(mcor_cap_job* job);
+void mcor_free_cap_job(mcor_cap_job* job);
 
 /* mcor_cap_wall.c. Adds caps where the surface ends at solids. */
 mcor_status mcor_cap_walls(mcor_cap_job* job);

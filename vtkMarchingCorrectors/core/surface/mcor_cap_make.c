@@ -126,6 +126,21 @@ static mcor_status mcor_append_caps(mcor_cap_job* job)
   return mcor_append_cap_vertices(context, job->vertices.of, job->vertices.count);
 }
 
+void mcor_free_cap_job(mcor_cap_job* job)
+{
+  mcor_free_cap_points(job->context, &job->points);
+  for (int a = 0; a < 3; ++a)
+  {
+    mcor_table_free(&job->edges[a]);
+  }
+  mcor_table_free(&job->nodes);
+  mcor_table_free(&job->cuts);
+  free(job->vertices.of);
+  free(job->lines.of);
+  free(job->triangles.of);
+  free(job->cells.of);
+}
+
 mcor_status mcor_cap(mcor_context* context)
 {
   mcor_end_caps(context);
@@ -156,17 +171,7 @@ mcor_status mcor_cap(mcor_context* context)
   status = status == MCOR_OK && places ? mcor_place_cap_cuts(&job) : status;
   status = status == MCOR_OK && mcor_caps_walls(context) ? mcor_cap_walls(&job) : status;
   status = mcor_unmap_all(context, views, mapped, status);
-  mcor_free_cap_points(context, &job.points);
   MCOR_THEN(status, mcor_append_caps(&job));
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_table_free(&job.edges[a]);
-  }
-  mcor_table_free(&job.nodes);
-  mcor_table_free(&job.cuts);
-  free(job.vertices.of);
-  free(job.lines.of);
-  free(job.triangles.of);
-  free(job.cells.of);
+  mcor_free_cap_job(&job);
   return status;
 }

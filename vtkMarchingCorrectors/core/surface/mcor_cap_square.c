@@ -13,8 +13,7 @@
 
 /* ---- Vertices ---- */
 
-/* Splits a place, in cubes, into a node and an offset. */
-static void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
+void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
 {
   for (int a = 0; a < 3; ++a)
   {
@@ -97,6 +96,17 @@ static mcor_status mcor_cap_edge_corner(
   return MCOR_OK;
 }
 
+void mcor_begin_cap_line(
+  const mcor_cap_corner* low, const mcor_cap_corner* high, mcor_cap_line* line, double at[3])
+{
+  *line = (mcor_cap_line){ .bracket = { { 0, 1 }, { low->margin, high->margin }, -1 } };
+  memcpy(line->from, low->at, sizeof low->at);
+  memcpy(line->to, high->at, sizeof high->at);
+  line->at =
+    fmin(fmax(mcor_bracket_share(&line->bracket), MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
+  mcor_point_between(line->from, line->to, line->at, at);
+}
+
 /* Finds the vertex where trimming cuts the line between two corners: the surface's own cut, else
  * one of the cap's, with the line along which it will be moved. */
 static mcor_status mcor_cap_cut(
@@ -115,10 +125,8 @@ static mcor_status mcor_cap_cut(
     cut->vertex = mesh->march_count + own;
     return MCOR_OK;
   }
-  const mcor_bracket bracket = { { 0, 1 }, { low->margin, high->margin }, -1 };
-  const double s =
-    fmin(fmax(mcor_bracket_share(&bracket), MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);
-  mcor_point_between(low->at, high->at, s, cut->at);
+  mcor_cap_line line;
+  mcor_begin_cap_line(low, high, &line, cut->at);
   const int64_t before = job->vertices.count;
   const uint64_t key = (uint64_t)low->vertex << 32 | (uint64_t)high->vertex;
   MCOR_TRY(mcor_find_cap_vertex(
@@ -127,9 +135,7 @@ static mcor_status mcor_cap_cut(
   {
     return MCOR_OK;
   }
-  mcor_cap_line line = { .vertex = before, .at = s, .bracket = bracket };
-  memcpy(line.from, low->at, sizeof low->at);
-  memcpy(line.to, high->at, sizeof high->at);
+  line.vertex = before;
   MCOR_APPEND(job->context, &job->lines, line);
   return MCOR_OK;
 }

@@ -4,9 +4,6 @@
 
 #include "FileName.h"
 #include "Picture.h"
-#ifdef MCOR_HAS_VTKHDF
-#include "HdfFile.h"
-#endif
 
 #include "vtkNew.h"
 #include "vtkOBJReader.h"
@@ -15,9 +12,6 @@
 #include "vtkSTLReader.h"
 
 #include <stdexcept>
-
-namespace
-{
 
 #ifndef MCOR_HAS_VTKHDF
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t)
@@ -30,6 +24,9 @@ std::vector<double> ListHdfTimes(const std::string&)
   return {};
 }
 #endif
+
+namespace
+{
 
 template <typename ReaderT>
 vtkSmartPointer<vtkDataObject> ReadWith(const std::string& file)

@@ -30,6 +30,12 @@ struct Extra
 
 extern "C" __attribute__((visibility("default"))) const Extra MarchingCorrectorsExtra;
 
+// The functions of a .vtkhdf file, in that library. An unstructured grid without steps is read as a
+// whole by VTK's reader, whose older versions know nothing else. Files whose values lie in other
+// files, too, are refused; the times are none where there are no steps.
+vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step);
+std::vector<double> ListHdfTimes(const std::string& file);
+
 /// Loads the library. Throws std::runtime_error where it cannot be loaded.
 const Extra& LoadExtra();
 

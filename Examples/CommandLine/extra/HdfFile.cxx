@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HdfFile.h"
+#include "Extra.h"
 
 #include "SafeText.h"
 
@@ -18,71 +18,13 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
+#include <type_traits>
 
 namespace
 {
 
-const herr_t IsFound = 1;     ///< ends a visit
 const long DeepestGroup = 64; ///< a damaged file may hold a circle of groups
-
-/// Whether values of a data set lie in other files.
-bool LiesElsewhere(hid_t group, const char* name)
-{
-  const hid_t data = H5Oopen(group, name, H5P_DEFAULT);
-  bool isElsewhere = false;
-  if (data >= 0 && H5Iget_type(data) == H5I_DATASET)
-  {
-    const hid_t list = H5Dget_create_plist(data);
-    isElsewhere = H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
-    H5Pclose(list);
-  }
-  if (data >= 0)
-  {
-    H5Oclose(data);
-  }
-  return isElsewhere;
-}
-
-herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* found)
-{
-  const bool isInFile = link->type == H5L_TYPE_HARD || link->type == H5L_TYPE_SOFT;
-  if (!isInFile || (link->type == H5L_TYPE_HARD && LiesElsewhere(root, name)))
-  {
-    *static_cast<std::string*>(found) = std::string("its '") + name +
-      "' lies in another file, which is not opened; give a file that holds all of its data";
-    return IsFound;
-  }
-  if (std::count(name, name + std::strlen(name), '/') > DeepestGroup)
-  {
-    *static_cast<std::string*>(found) = "its groups lie too deep in each other; it may be damaged";
-    return IsFound;
-  }
-  return 0;
-}
-
-/// Refuses files that lead to others: nobody has named these. Throws std::runtime_error.
-void RefuseLinks(const std::string& file)
-{
-  H5open();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hid_t opened = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (opened < 0)
-  {
-    return;
-  }
-  std::string found;
-  const herr_t result =
-    H5Lvisit(opened, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, static_cast<void*>(&found));
-  H5Fclose(opened);
-  if (result < 0)
-  {
-    found = "its groups cannot be listed; it may be damaged";
-  }
-  if (!found.empty())
-  {
-    FailToRead(file, found);
-  }
-}
 
 /// Closes an object of HDF5.
 class Handle
@@ -108,6 +50,51 @@ private:
   hid_t Id;
 };
 
+/// Whether values of a data set lie in other files.
+bool LiesElsewhere(hid_t group, const char* name)
+{
+  const Handle data(H5Oopen(group, name, H5P_DEFAULT));
+  if (data < 0 || H5Iget_type(data) != H5I_DATASET)
+  {
+    return false;
+  }
+  const Handle list(H5Dget_create_plist(data));
+  return H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
+}
+
+herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* found)
+{
+  std::string& sentence = *static_cast<std::string*>(found);
+  const bool isHard = link->type == H5L_TYPE_HARD;
+  if ((!isHard && link->type != H5L_TYPE_SOFT) || (isHard && LiesElsewhere(root, name)))
+  {
+    sentence = std::string("its '") + name +
+      "' lies in another file, which is not opened; give a file that holds all of its data";
+  }
+  else if (std::count(name, name + std::strlen(name), '/') > DeepestGroup)
+  {
+    sentence = "its groups lie too deep in each other; it may be damaged";
+  }
+  return sentence.empty() ? 0 : 1; // which ends the visit
+}
+
+/// Refuses files that lead to others: nobody has named these. Throws std::runtime_error.
+void RefuseLinks(const std::string& file)
+{
+  H5open();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  std::string found;
+  if (opened >= 0 && H5Lvisit(opened, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, &found) < 0)
+  {
+    found = "its groups cannot be listed; it may be damaged";
+  }
+  if (!found.empty())
+  {
+    FailToRead(file, found);
+  }
+}
+
 struct Kind
 {
   int Vtk;
@@ -117,27 +104,21 @@ struct Kind
 /// Numbers as VTK holds them; VTK_VOID: not numbers.
 Kind KindOf(hid_t data)
 {
+  const Kind wholes[] = { { VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR },
+    { VTK_UNSIGNED_SHORT, H5T_NATIVE_USHORT }, { VTK_UNSIGNED_INT, H5T_NATIVE_UINT },
+    { VTK_UNSIGNED_LONG_LONG, H5T_NATIVE_ULLONG }, { VTK_SIGNED_CHAR, H5T_NATIVE_SCHAR },
+    { VTK_SHORT, H5T_NATIVE_SHORT }, { VTK_INT, H5T_NATIVE_INT },
+    { VTK_LONG_LONG, H5T_NATIVE_LLONG } };
   const Handle type(H5Dget_type(data));
-  const H5T_class_t group = H5Tget_class(type);
-  const std::size_t size = H5Tget_size(type);
-  if (group == H5T_FLOAT)
+  if (H5Tget_class(type) == H5T_FLOAT)
   {
-    return size <= 4 ? Kind{ VTK_FLOAT, H5T_NATIVE_FLOAT } : Kind{ VTK_DOUBLE, H5T_NATIVE_DOUBLE };
+    return H5Tget_size(type) <= 4 ? Kind{ VTK_FLOAT, H5T_NATIVE_FLOAT }
+                                  : Kind{ VTK_DOUBLE, H5T_NATIVE_DOUBLE };
   }
-  const Kind whole[2][4] = {
-    { { VTK_UNSIGNED_CHAR, H5T_NATIVE_UCHAR }, { VTK_UNSIGNED_SHORT, H5T_NATIVE_USHORT },
-      { VTK_UNSIGNED_INT, H5T_NATIVE_UINT }, { VTK_UNSIGNED_LONG_LONG, H5T_NATIVE_ULLONG } },
-    { { VTK_SIGNED_CHAR, H5T_NATIVE_SCHAR }, { VTK_SHORT, H5T_NATIVE_SHORT },
-      { VTK_INT, H5T_NATIVE_INT }, { VTK_LONG_LONG, H5T_NATIVE_LLONG } }
-  };
-  for (std::size_t i = 0; i < 4 && group == H5T_INTEGER; ++i)
-  {
-    if (size == std::size_t{ 1 } << i)
-    {
-      return whole[H5Tget_sign(type) != H5T_SGN_NONE][i];
-    }
-  }
-  return { VTK_VOID, -1 };
+  const Handle native(H5Tget_native_type(type, H5T_DIR_ASCEND));
+  const auto whole = std::find_if(std::begin(wholes), std::end(wholes),
+    [&native](const Kind& each) { return native >= 0 && H5Tequal(native, each.Hdf) > 0; });
+  return whole == std::end(wholes) ? Kind{ VTK_VOID, -1 } : *whole;
 }
 
 /// The group VTKHDF of a file.
@@ -222,23 +203,19 @@ public:
     return array;
   }
 
-  /// Returns whole numbers.
-  std::vector<long long> Numbers(const std::string& name) const
+  /// All values of an array, as numbers of another one's type.
+  template <typename ArrayT>
+  std::vector<typename ArrayT::ValueType> Values(const std::string& name) const
   {
     const vtkSmartPointer<vtkDataArray> read = this->Read(name);
-    if (!read || read->GetDataType() == VTK_FLOAT || read->GetDataType() == VTK_DOUBLE)
+    const bool isWhole =
+      read && read->GetDataType() != VTK_FLOAT && read->GetDataType() != VTK_DOUBLE;
+    if (!isWhole && !std::is_floating_point<typename ArrayT::ValueType>::value)
     {
       this->Fail("'" + name + "' does not hold whole numbers");
     }
-    vtkNew<vtkTypeInt64Array> values;
+    vtkNew<ArrayT> values;
     values->DeepCopy(read);
-    return { values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues() };
-  }
-
-  std::vector<double> Times() const
-  {
-    vtkNew<vtkDoubleArray> values;
-    values->DeepCopy(this->Read("Steps/Values"));
     return { values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues() };
   }
 
@@ -274,7 +251,8 @@ std::vector<double> ListHdfTimes(const std::string& name)
 {
   RefuseLinks(name);
   const HdfFile file(name);
-  return file.IsGood() && file.Has("Steps/Values") ? file.Times() : std::vector<double>();
+  return file.IsGood() && file.Has("Steps/Values") ? file.Values<vtkDoubleArray>("Steps/Values")
+                                                   : std::vector<double>();
 }
 
 vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step)
@@ -295,13 +273,13 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
     reader->Update();
     return reader->GetOutputDataObject(0);
   }
-  std::vector<long long> parts = file.Numbers("NumberOfPoints");
+  std::vector<vtkTypeInt64> parts = file.Values<vtkTypeInt64Array>("NumberOfPoints");
   long long offset = 0;
   if (hasSteps)
   {
     const auto of = [&file, step](const std::string& list)
     {
-      const std::vector<long long> numbers = file.Numbers(list);
+      const std::vector<vtkTypeInt64> numbers = file.Values<vtkTypeInt64Array>(list);
       if (step >= numbers.size())
       {
         file.Fail("it has no step " + std::to_string(step));
@@ -337,7 +315,7 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
   {
     const std::string own = "Steps/PointDataOffsets/" + array;
     const long long begin = hasSteps && file.Has("Steps/PointDataOffsets") && file.Has(own)
-      ? file.Numbers(own).at(step)
+      ? file.Values<vtkTypeInt64Array>(own).at(step)
       : offset;
     if (const vtkSmartPointer<vtkDataArray> values = file.Read("PointData/" + array, begin, total))
     {

@@ -28,6 +28,8 @@
 #include "vtkScalarBarActor.h"
 #include "vtkTextProperty.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkVector.h"
+#include "vtkVectorOperators.h"
 #include "vtkWindowToImageFilter.h"
 
 #include <algorithm>
@@ -82,20 +84,13 @@ private:
 
 const double WidthOfBar = 0.13; ///< of the picture, where there is one
 
-using Vector = std::array<double, 3>;
+using Vector = vtkVector3d;
 
 Vector AxisOf(const std::string& name)
 {
-  Vector axis = { 0.0, 0.0, 0.0 };
-  axis[std::string("xyz").find(name.back())] = name[0] == '-' ? -1.0 : 1.0;
+  Vector axis(0.0);
+  axis[static_cast<int>(std::string("xyz").find(name.back()))] = name[0] == '-' ? -1.0 : 1.0;
   return axis;
-}
-
-Vector Cross(const Vector& a, const Vector& b)
-{
-  Vector product;
-  vtkMath::Cross(a.data(), b.data(), product.data());
-  return product;
 }
 
 /// A view: three directions at right angles.
@@ -109,42 +104,34 @@ struct View
 /// Looks from `toEye`; if that is along `up`, the next axis points upwards.
 View MakeView(Vector up, Vector toEye)
 {
-  View view;
-  vtkMath::Normalize(toEye.data());
-  if (std::abs(vtkMath::Dot(up.data(), toEye.data())) > 0.999)
+  vtkMath::Normalize(toEye.GetData());
+  if (std::abs(up.Dot(toEye)) > 0.999)
   {
     up = { up[1], up[2], up[0] };
   }
-  view.ToEye = toEye;
-  view.Right = Cross(up, toEye);
-  vtkMath::Normalize(view.Right.data());
-  view.Up = Cross(toEye, view.Right);
-  return view;
+  Vector right = up.Cross(toEye);
+  vtkMath::Normalize(right.GetData());
+  return { right, toEye.Cross(right), toEye };
 }
 
 /// Looks from the front, a little from above and from the left.
 View ObliqueView(const Vector& up)
 {
-  const Vector right = { std::abs(up[1]) + std::abs(up[2]), std::abs(up[0]), 0.0 };
-  const Vector front = Cross(right, up);
+  const Vector right(std::abs(up[1]) + std::abs(up[2]), std::abs(up[0]), 0.0);
+  const Vector front = right.Cross(up);
   const double azimuth = vtkMath::RadiansFromDegrees(-25.0);
   const double elevation = vtkMath::RadiansFromDegrees(22.0);
-  Vector toEye;
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    toEye[c] = std::cos(elevation) * (std::sin(azimuth) * right[c] + std::cos(azimuth) * front[c]) +
-      std::sin(elevation) * up[c];
-  }
-  return MakeView(up, toEye);
+  return MakeView(up,
+    std::cos(elevation) * (std::sin(azimuth) * right + std::cos(azimuth) * front) +
+      std::sin(elevation) * up);
 }
 
 /// Looks straight at a slice.
 View ViewOfSlice(const Vector& up, int axis)
 {
-  Vector toEye = { 0.0, 0.0, 0.0 };
-  toEye[static_cast<std::size_t>(axis)] =
-    axis == 1 ? -1.0 : 1.0; // so that z is upwards and x to the right
-  return MakeView(axis == 1 && up[1] != 0.0 ? Vector{ 0.0, 0.0, 1.0 } : up, toEye);
+  Vector toEye(0.0);
+  toEye[axis] = axis == 1 ? -1.0 : 1.0; // so that z is upwards and x to the right
+  return MakeView(axis == 1 && up[1] != 0.0 ? Vector(0.0, 0.0, 1.0) : up, toEye);
 }
 
 /// The constant one of lines in a plane; -1: there is none.
@@ -162,21 +149,6 @@ int AxisOfLines(vtkDataSet* data)
   return -1;
 }
 
-/// Corners as the eye sees them: to the right, upwards, towards it; from the middle of the box.
-std::array<Vector, 8> CornersIn(const View& view, const vtkBoundingBox& box, const Vector& center)
-{
-  std::array<Vector, 8> seen;
-  for (int i = 0; i < 8; ++i)
-  {
-    Vector corner;
-    box.GetCorner(i, corner.data());
-    vtkMath::Subtract(corner.data(), center.data(), corner.data());
-    seen[static_cast<std::size_t>(i)] = { vtkMath::Dot(corner.data(), view.Right.data()),
-      vtkMath::Dot(corner.data(), view.Up.data()), vtkMath::Dot(corner.data(), view.ToEye.data()) };
-  }
-  return seen;
-}
-
 /// Places the camera as near as possible with all corners of the box in the picture, and as much
 /// space below as above.
 void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& box, double aspect)
@@ -185,37 +157,36 @@ void PlaceCamera(vtkRenderer* renderer, const View& view, const vtkBoundingBox& 
   const double slope = std::tan(vtkMath::RadiansFromDegrees(0.5 * camera->GetViewAngle()));
   const double margin = 1.04;
   Vector center;
-  box.GetCenter(center.data());
+  box.GetCenter(center.GetData());
   for (int round = 0; round < 10; ++round)
   {
+    std::array<Vector, 8> seen; // corners as the eye sees them: to the right, upwards, towards it
     double distance = 1e-6 * box.GetDiagonalLength();
-    const std::array<Vector, 8> corners = CornersIn(view, box, center);
-    for (const Vector& c : corners)
+    for (int i = 0; i < 8; ++i)
     {
+      Vector corner;
+      box.GetCorner(i, corner.GetData());
+      corner = corner - center;
+      Vector& c = seen[static_cast<std::size_t>(i)];
+      c = Vector(corner.Dot(view.Right), corner.Dot(view.Up), corner.Dot(view.ToEye));
       distance = std::max(
         distance, c[2] + margin * std::max(std::abs(c[1]), std::abs(c[0]) / aspect) / slope);
     }
     distance = distance > 0.0 ? distance : 1.0; // of a single point
-    camera->SetFocalPoint(center.data());
-    camera->SetPosition(center[0] + distance * view.ToEye[0], center[1] + distance * view.ToEye[1],
-      center[2] + distance * view.ToEye[2]);
-    const std::size_t axes[] = { 0, 1 };
-    for (const std::size_t a : axes) // what is near looks larger: the middle is another one
+    camera->SetFocalPoint(center.GetData());
+    camera->SetPosition((center + distance * view.ToEye).GetData());
+    for (int a = 0; a < 2; ++a) // what is near looks larger: the middle is another one
     {
       double lowest = VTK_DOUBLE_MAX, highest = -VTK_DOUBLE_MAX;
-      for (const Vector& c : corners)
+      for (const Vector& c : seen)
       {
         lowest = std::min(lowest, c[a] / (distance - c[2]));
         highest = std::max(highest, c[a] / (distance - c[2]));
       }
-      const Vector& direction = a == 0 ? view.Right : view.Up;
-      for (std::size_t i = 0; i < 3; ++i)
-      {
-        center[i] += 0.5 * (lowest + highest) * distance * direction[i];
-      }
+      center = center + 0.5 * (lowest + highest) * distance * (a == 0 ? view.Right : view.Up);
     }
   }
-  camera->SetViewUp(view.Up.data());
+  camera->SetViewUp(view.Up.GetData());
   renderer->ResetCameraClippingRange();
 }
 
@@ -261,10 +232,11 @@ public:
     }
     const Vector up = AxisOf(this->Options.Up);
     const std::vector<double>& given = this->Options.View;
-    this->Place(!given.empty() ? MakeView(up, { given[0], given[1], given[2] })
-        : isSlice              ? ViewOfSlice(up, axis)
-                               : ObliqueView(up),
-      this->Seen);
+    PlaceCamera(this->Renderer,
+      !given.empty() ? MakeView(up, { given[0], given[1], given[2] })
+        : isSlice    ? ViewOfSlice(up, axis)
+                     : ObliqueView(up),
+      this->Seen, (this->HasBar ? 1.0 - WidthOfBar : 1.0) * Width / Height);
     std::string bytes = this->Render();
     if (bytes.empty() || !messages->GetErrors().empty())
     {
@@ -307,6 +279,20 @@ private:
     }
   }
 
+  /// Lines of one shade, which no light changes.
+  void ShowLines(vtkPolyData* lines, double shade, double width, const double position[3])
+  {
+    vtkNew<vtkPolyDataMapper> mapper;
+    mapper->SetInputData(lines);
+    vtkNew<vtkActor> actor;
+    actor->SetMapper(mapper);
+    actor->SetPosition(position[0], position[1], position[2]);
+    actor->GetProperty()->SetColor(shade, shade, shade);
+    actor->GetProperty()->SetLineWidth(static_cast<float>(width));
+    actor->GetProperty()->LightingOff();
+    this->Renderer->AddActor(actor);
+  }
+
   /// The lines between what is filled, on both sides of it.
   void ShowBorders(vtkPolyData* filled)
   {
@@ -317,16 +303,9 @@ private:
     const double off = 1e-3 * filled->GetLength();
     for (const double side : { -off, off })
     {
-      vtkNew<vtkPolyDataMapper> mapper;
-      mapper->SetInputData(lines);
-      vtkNew<vtkActor> actor;
-      actor->SetMapper(mapper);
-      actor->SetPosition(bounds[0] == bounds[1] ? side : 0.0, bounds[2] == bounds[3] ? side : 0.0,
-        bounds[4] == bounds[5] ? side : 0.0);
-      actor->GetProperty()->SetColor(0.1, 0.1, 0.1);
-      actor->GetProperty()->SetLineWidth(2.0);
-      actor->GetProperty()->LightingOff();
-      this->Renderer->AddActor(actor);
+      const double position[3] = { bounds[0] == bounds[1] ? side : 0.0,
+        bounds[2] == bounds[3] ? side : 0.0, bounds[4] == bounds[5] ? side : 0.0 };
+      this->ShowLines(lines, 0.1, 2.0, position);
     }
   }
 
@@ -336,13 +315,9 @@ private:
     box.GetBounds(bounds);
     vtkNew<vtkOutlineSource> outline;
     outline->SetBounds(bounds);
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputConnection(outline->GetOutputPort());
-    vtkNew<vtkActor> actor;
-    actor->SetMapper(mapper);
-    actor->GetProperty()->SetColor(0.45, 0.45, 0.45);
-    actor->GetProperty()->LightingOff();
-    this->Renderer->AddActor(actor);
+    outline->Update();
+    const double position[3] = { 0.0, 0.0, 0.0 };
+    this->ShowLines(outline->GetOutput(), 0.45, 1.0, position);
   }
 
   /// Shows the colour bar beside the picture, in a place of its own.
@@ -373,12 +348,6 @@ private:
     this->Bars->AddActor2D(bar);
     this->Window->AddRenderer(this->Bars);
     this->HasBar = true;
-  }
-
-  void Place(const View& view, const vtkBoundingBox& box)
-  {
-    const double share = this->HasBar ? 1.0 - WidthOfBar : 1.0;
-    PlaceCamera(this->Renderer, view, box, share * Width / Height);
   }
 
   std::string Render()

@@ -17,9 +17,33 @@
 namespace
 {
 
+/// What is made of the particles, for rules that hold for some of it.
+enum Modes : unsigned
+{
+  Gauges = 1,
+  Fluxes = 2,
+  Probes = 4,
+  Projections = 8,
+  Surfaces = 16,
+  Tables = Gauges | Fluxes,
+  Films = Projections | Surfaces, ///< of which there may be several
+  Others = Probes | Films,
+  All = Tables | Others
+};
+
+Modes ModeOf(const Job& job)
+{
+  return job.Has("--project") ? Projections
+    : job.IsFlux()            ? Fluxes
+    : job.IsGauge()           ? Gauges
+    : job.IsProbe()           ? Probes
+                              : Surfaces;
+}
+
 /// A reason to refuse a command line before the input is looked at.
 struct Rule
 {
+  Modes Of;
   bool (*Holds)(const Job& j);
   const char* Sentence; ///< with {mode}, {output}, {endings} and {--option}, see Filled()
   std::vector<const char*> Excluded = {}; ///< only where one of these is given, which is named
@@ -37,126 +61,111 @@ bool IsTo(const Job& j, const char* ending)
   return EndsWith(j.Output, ending);
 }
 
-const std::vector<Rule> OfAll = {
-  { IF(j.Times.empty()), "particles are matched between steps, which only --times asks for",
+const std::vector<Rule> Rules = {
+  { All, IF(j.Times.empty()), "particles are matched between steps, which only --times asks for",
     { "--ids" } },
-  { IF(!j.Walls.empty()), "--walls tells which particles are fluid", { "--fluid" } },
-};
+  { All, IF(!j.Walls.empty()), "--walls tells which particles are fluid", { "--fluid" } },
 
-const std::vector<Rule> OfGauges = {
-  { IsAny, "{mode} makes no surface",
+  { Tables, IsAny, "{mode} makes no surface",
     { "--scalar", "--stats", "--repeat", "--components", "--screenshot", "--probe", "--slice",
-      "--line", "--box", "--widening" } },
-  { IF(j.Surface->GetNumberOfContours() > 1),
+      "--line", "--box", "--widening", "--numbers" } },
+  { Fluxes, IsAny, "{mode} writes a table of its own", { "--gauge", "--gauges", "--gauge-grid" } },
+  { Tables, IF(j.Surface->GetNumberOfContours() > 1),
     "{mode} makes no surface; leave out all but one --iso value" },
-  { IF(j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL),
-    "gauges do not end at walls; leave out --solids wall" },
-  { IF(j.Has("--gauge-grid")), "--gauge-grid makes its own gauges", { "--gauge", "--gauges" } },
-  { IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),
+  { Tables, IF(j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL),
+    "{mode} does not end at walls; leave out --solids wall" },
+  { Gauges, IF(j.Has("--gauge-grid")), "--gauge-grid makes its own gauges",
+    { "--gauge", "--gauges" } },
+  { Gauges, IF(j.Has("--gauge-grid") && !IsTo(j, ".vti")),
     "the output of {mode} is a .vti file, not '{output}'" },
-  { IF(!j.Has("--gauge-grid") && !IsTo(j, ".csv")),
+  { Tables, IF(!(j.IsGauge() && j.Has("--gauge-grid")) && !IsTo(j, ".csv")),
     "the output of {mode} is a .csv file, not '{output}'" },
-  { IF(!(j.Gauge->GetLevel() > 0.0)),
-    "gauges need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
-};
+  { Tables, IF(!(j.Gauge->GetLevel() > 0.0)),
+    "{mode} needs an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
 
-const std::vector<Rule> OfFluxes = {
-  { IsAny, "{mode} makes no surface",
-    { "--scalar", "--stats", "--repeat", "--components", "--screenshot", "--probe", "--slice",
-      "--line", "--box", "--numbers" } },
-  { IsAny, "{mode} writes a table of its own", { "--gauge", "--gauges", "--gauge-grid" } },
-  { IF(j.Surface->GetNumberOfContours() > 1),
-    "{mode} makes no surface; leave out all but one --iso value" },
-  { IF(j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL),
-    "fluxes do not end at walls; leave out --solids wall" },
-  { IF(!IsTo(j, ".csv")), "the output of {mode} is a .csv file, not '{output}'" },
-  { IF(!(j.Flux->GetLevel() > 0.0)),
-    "fluxes need an --iso value above 0, the weight at which the fluid ends; 0.5 is usual" },
-};
-
-/// Rules of all modes but tables.
-const std::vector<Rule> OfOthers = {
-  { IF(!j.Has("--screenshot")), "without --screenshot there is no picture", { "--view", "--up" } },
-  { IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
+  { Others, IF(!j.Has("--screenshot")), "without --screenshot there is no picture",
+    { "--view", "--up" } },
+  { Others, IF(!j.Has("--screenshot") && !IsTo(j, ".ply")),
     "without --screenshot or a .ply file there are no colours", { "--color-by", "--color-range" } },
-  { IF(!j.IsProbe() && !j.Has("--project") && !j.Has("--color-by") && j.Has("--color-range")),
+  { Others,
+    IF(!j.IsProbe() && !j.Has("--project") && !j.Has("--color-by") && j.Has("--color-range")),
     "--color-range needs --color-by NAME" },
-  { IF(j.Has("--screenshot") && !EndsWith(j.Picture.File, ".png")),
+  { Others, IF(j.Has("--screenshot") && !EndsWith(j.Picture.File, ".png")),
     "--screenshot writes a .png file, not '{--screenshot}'" },
-  { IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
+  { Others, IF(j.Has("--screenshot") && j.IsFilm() && !HasStepNumber(j.Picture.File)),
     "a film has a picture of each step: --screenshot frame_%04d.png, not '{--screenshot}'" },
-  { IF(!(j.Surface->GetWidening() > 1.0 || j.Surface->GetSmooth())),
+  { Others, IF(!(j.Surface->GetWidening() > 1.0 || j.Surface->GetSmooth())),
     "without --widen there are no factors", { "--widening" } },
-  { IF(j.Has("--widening") && !EndsWith(j.WideningFile, ".vtp")),
+  { Others, IF(j.Has("--widening") && !EndsWith(j.WideningFile, ".vtp")),
     "--widening writes a .vtp file, not '{--widening}'" },
-  { IF(j.IsFilm()), "--widening is for one surface", { "--widening" } },
-  { IF(!j.Has("--slice") && !j.Has("--line") && !j.Has("--project")),
+  { Others, IF(j.IsFilm()), "--widening is for one surface", { "--widening" } },
+  { Others, IF(!j.Has("--slice") && !j.Has("--line") && !j.Has("--project")),
     "--resolution is for --slice, --line and --project", { "--resolution" } },
-  { IF(!j.Has("--project")), "--weighted-by is for --project", { "--weighted-by" } },
-  { IF(!j.Has("--components")), "without --components there are no pieces to remove",
+  { Others, IF(!j.Has("--project")), "--weighted-by is for --project", { "--weighted-by" } },
+  { Others, IF(!j.Has("--components")), "without --components there are no pieces to remove",
     { "--least-volume", "--least-particles" } },
-  { IF(j.Has("--components")), "--components needs a surface", { "--probe", "--slice", "--line" } },
-  { IF(j.Has("--components") && !EndsWith(j.ComponentFile, ".csv")),
+  { Others, IF(j.Has("--components")), "--components needs a surface",
+    { "--probe", "--slice", "--line" } },
+  { Others, IF(j.Has("--components") && !EndsWith(j.ComponentFile, ".csv")),
     "--components writes a .csv file, not '{--components}'" },
-  { IF(j.Has("--numbers") && !EndsWith(j.NumbersFile, ".csv")),
+  { Others, IF(j.Has("--numbers") && !EndsWith(j.NumbersFile, ".csv")),
     "--numbers writes a .csv file, not '{--numbers}'" },
-  { IF(j.Has("--numbers") && !j.IsFilm()),
+  { Others, IF(j.Has("--numbers") && !j.IsFilm()),
     "--numbers writes the table of a film, which is a .pvd file or has %04d in its name; for one "
     "surface use --stats" },
-  { IF(j.Has("--numbers")), "a film cannot have an image of levels", { "--gauge-grid" } },
-};
+  { Others, IF(j.Has("--numbers")), "a film cannot have an image of levels", { "--gauge-grid" } },
 
-const std::vector<Rule> OfProbes = {
-  { IF(j.Inputs.size() > 1 || IsCollectionFile(j.Inputs.front()) || !j.Times.empty() ||
+  { Probes,
+    IF(j.Inputs.size() > 1 || IsCollectionFile(j.Inputs.front()) || !j.Times.empty() ||
       j.TimeStep != 1.0),
     "{mode} takes one INPUT of one time" },
-  { IsAny, "{mode} makes no surface",
+  { Probes, IsAny, "{mode} makes no surface",
     { "--scalar", "--iso", "--free-surface", "--stats", "--repeat", "--widening" } },
-  { IF(j.Has("--probe")), "{mode} has points already", { "--slice", "--line" } },
-  { IF(j.Has("--slice")), "{mode} has points already", { "--line" } },
-  { IF(!j.Has("--probe") && j.Has("--line")), "--line makes data for a plot", { "--screenshot" } },
-  { IF(!j.Has("--probe") && j.Has("--slice") && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+  { Probes, IF(j.Has("--probe")), "{mode} has points already", { "--slice", "--line" } },
+  { Probes, IF(j.Has("--slice")), "{mode} has points already", { "--line" } },
+  { Probes, IF(!j.Has("--probe") && j.Has("--line")), "--line makes data for a plot",
+    { "--screenshot" } },
+  { Probes, IF(!j.Has("--probe") && j.Has("--slice") && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
     "the output of {mode} is a .vti or .vtk file, not '{output}'" },
-  { IF(!j.Has("--probe") && j.Has("--line") && !IsTo(j, ".vtp") && !IsTo(j, ".vtk")),
+  { Probes, IF(!j.Has("--probe") && j.Has("--line") && !IsTo(j, ".vtp") && !IsTo(j, ".vtk")),
     "the output of {mode} is a .vtp or .vtk file, not '{output}'" },
-};
 
-/// Rules of surfaces and projections, of which there may be films.
-const std::vector<Rule> OfFilms = {
-  { IF(!j.IsFilm()), "the output is not a film, which is a .pvd file or has %04d in its name",
+  { Films, IF(!j.IsFilm()),
+    "the output is not a film, which is a .pvd file or has %04d in its name",
     { "--times", "--time-step" } },
-  { IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsCollectionFile)),
+  { Films,
+    IF(j.Inputs.size() > 1 && std::any_of(j.Inputs.begin(), j.Inputs.end(), IsCollectionFile)),
     "a .pvd file must be the only INPUT, because it lists the steps" },
-  { IF(IsCollectionFile(j.Inputs.front()) && j.TimeStep != 1.0),
+  { Films, IF(IsCollectionFile(j.Inputs.front()) && j.TimeStep != 1.0),
     "--time-step is for a list of particle files; a .pvd file has times of its own" },
-};
 
-const std::vector<Rule> OfProjections = {
-  { IsAny, "{mode} makes no surface",
+  { Projections, IsAny, "{mode} makes no surface",
     { "--iso", "--free-surface", "--stats", "--repeat", "--components", "--numbers", "--probe",
       "--slice", "--line", "--gauge", "--gauges", "--gauge-grid", "--flux", "--fluxes" } },
-  { IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
+  { Projections, IF(!IsCollectionFile(j.Output) && !IsTo(j, ".vti") && !IsTo(j, ".vtk")),
     "the output of {mode} is a .vti or .vtk file, or .pvd for a film, not '{output}'" },
-  { IF(j.IsFilm() && !IsCollectionFile(j.Output) && !HasStepNumber(j.Output)),
+  { Projections, IF(j.IsFilm() && !IsCollectionFile(j.Output) && !HasStepNumber(j.Output)),
     "the output of several steps is a .pvd file, or has %04d in its name, unlike '{output}'" },
-};
 
-const std::vector<Rule> OfSurfaces = {
-  { IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
+  { Surfaces,
+    IF(j.IsFilm() && !IsCollectionFile(j.Output) &&
       !(HasStepNumber(j.Output) && IsSurfaceFile(j.Output))),
     "the output of several steps is a .pvd file, or a {endings} file with %04d in its name, not "
     "'{output}'" },
-  { IF(j.IsFilm() && j.Repeat > 1), "--repeat is for one surface, not for a film" },
-  { IF(!j.IsFilm() && !IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
+  { Surfaces, IF(j.IsFilm() && j.Repeat > 1), "--repeat is for one surface, not for a film" },
+  { Surfaces,
+    IF(!j.IsFilm() && !IsSurfaceFile(j.Output) && !(LaunchedCount() > 1 && IsTo(j, ".pvtp"))),
     "the output is a {endings} file, or .pvd for a film, not '{output}'" },
-  { IF(j.Surface->GetCapping() && !j.Has("--periodic") && !j.Has("--box") &&
+  { Surfaces,
+    IF(j.Surface->GetCapping() && !j.Has("--periodic") && !j.Has("--box") &&
       !(j.Surface->GetFreeSurface() &&
         j.Surface->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL)),
     "--capping closes the surface at the sides of a period or a box, and the free surface at "
     "walls; add --periodic, --box or --solids wall" },
-  { IF(j.Has("--free-surface") && j.Has("--scalar")),
+  { Surfaces, IF(j.Has("--free-surface") && j.Has("--scalar")),
     "--free-surface contours the weight sum; leave out --scalar" },
-  { IF(!j.Has("--free-surface") && !j.Has("--scalar")), "needs --scalar NAME, or --free-surface" },
+  { Surfaces, IF(!j.Has("--free-surface") && !j.Has("--scalar")),
+    "needs --scalar NAME, or --free-surface" },
 };
 #undef IF
 
@@ -189,21 +198,6 @@ std::string Filled(std::string sentence, const Job& job)
   return sentence;
 }
 
-void Enforce(const std::vector<Rule>& rules, const Job& job)
-{
-  for (const Rule& rule : rules)
-  {
-    const auto found = std::find_if(rule.Excluded.begin(), rule.Excluded.end(),
-      [&job](const char* option) { return IsAsked(job, option); });
-    const bool isNamed = found != rule.Excluded.end();
-    if (rule.Holds(job) && (rule.Excluded.empty() || isNamed))
-    {
-      throw UsageError(
-        Filled(rule.Sentence, job) + (isNamed ? std::string("; leave out ") + *found : ""));
-    }
-  }
-}
-
 /// Refuses what can be refused without looking at the input.
 void Check(const Job& job)
 {
@@ -226,28 +220,26 @@ void Check(const Job& job)
   {
     return;
   }
-  Enforce(OfAll, job);
-  if (job.IsTable() && !job.Has("--project"))
-  {
-    Enforce(job.IsFlux() ? OfFluxes : OfGauges, job);
-    return;
-  }
   for (const std::string& walls : job.Walls)
   {
-    if (!job.IsFilm() && (IsCollectionFile(walls) || HasStepNumber(walls)))
+    const Modes mode = ModeOf(job);
+    if ((mode & Others) && !job.IsFilm() && (IsCollectionFile(walls) || HasStepNumber(walls)))
     {
       throw UsageError("--walls " + walls +
         " has walls for each step, which only films, gauges and fluxes can use; give one file");
     }
   }
-  Enforce(OfOthers, job);
-  if (job.IsProbe() && !job.Has("--project"))
+  for (const Rule& rule : Rules)
   {
-    Enforce(OfProbes, job);
-    return;
+    const auto found = std::find_if(rule.Excluded.begin(), rule.Excluded.end(),
+      [&job](const char* option) { return IsAsked(job, option); });
+    const bool isNamed = found != rule.Excluded.end();
+    if ((rule.Of & ModeOf(job)) && rule.Holds(job) && (rule.Excluded.empty() || isNamed))
+    {
+      throw UsageError(
+        Filled(rule.Sentence, job) + (isNamed ? std::string("; leave out ") + *found : ""));
+    }
   }
-  Enforce(OfFilms, job);
-  Enforce(job.Has("--project") ? OfProjections : OfSurfaces, job);
 }
 
 const Option& FindOption(const std::string& name)

@@ -260,36 +260,50 @@ int ComponentOf(const std::string& name, std::string& base)
                                          : static_cast<int>(axis % 3);
 }
 
-/// Columns that are the components of a vector, by its name.
-std::map<std::string, std::vector<std::size_t>> FindVectors(const Table& table)
+/// An array, and the columns of its components.
+struct Array
 {
-  std::map<std::string, std::map<int, std::size_t>> parts;
-  std::set<std::string> names;
-  for (std::size_t c = 0; c < table.size(); ++c)
+  std::string Name;
+  std::vector<std::size_t> Columns; ///< none: they are positions, or belong to another array
+};
+
+/// Each array at its first column: columns alone, and vectors, whose names tell their components.
+std::vector<Array> FindArrays(const Table& table, const std::vector<std::size_t>& positions = {})
+{
+  std::vector<Array> arrays;
+  std::map<std::string, std::map<int, std::size_t>> vectors; // columns by name and component
+  for (const Column& column : table)
   {
     std::string base;
-    const int component = ComponentOf(table[c].Name, base);
-    if (component >= 0)
+    const int component = ComponentOf(column.Name, base);
+    const std::size_t c = arrays.size();
+    const bool isFree = std::find(positions.begin(), positions.end(), c) == positions.end();
+    if (component >= 0 && isFree)
     {
-      parts[base].emplace(component, c);
+      vectors[base].emplace(component, c);
     }
-    names.insert(table[c].Name);
+    arrays.push_back({ column.Name, std::vector<std::size_t>(isFree ? 1 : 0, c) });
   }
-  std::map<std::string, std::vector<std::size_t>> vectors;
-  for (const auto& [base, columns] : parts)
+  for (const Column& column : table)
   {
-    const std::size_t count = columns.size();
+    vectors.erase(column.Name);
+  }
+  for (const auto& [base, components] : vectors)
+  {
+    const std::size_t count = components.size();
     const bool isUsual = count == 2 || count == 3 || count == 6 || count == 9;
-    const bool isWhole = columns.rbegin()->first == static_cast<int>(count) - 1;
-    for (const auto& column : columns)
+    if (isUsual && components.rbegin()->first == static_cast<int>(count) - 1)
     {
-      if (isUsual && isWhole && !names.count(base))
+      Array vector = { base, {} };
+      for (const auto& component : components)
       {
-        vectors[base].push_back(column.second);
+        vector.Columns.push_back(component.second);
+        arrays[component.second].Columns.clear();
       }
+      arrays[*std::min_element(vector.Columns.begin(), vector.Columns.end())] = vector;
     }
   }
-  return vectors;
+  return arrays;
 }
 
 /// The columns called x, y and z, with these letters behind; one of them is none.
@@ -311,15 +325,16 @@ std::vector<std::size_t> FindAxes(const Table& table, const std::string& behind)
 /// The columns of positions, two or three; none where no name tells.
 std::vector<std::size_t> FindPositions(const Table& table)
 {
-  const auto vectors = FindVectors(table);
+  const std::vector<Array> arrays = FindArrays(table);
   for (const char* usual : { "points", "point", "position", "positions", "pos", "coordinates",
          "coordinate", "coords", "coord", "xyz", "r" })
   {
-    for (const auto& [name, columns] : vectors)
+    for (const Array& array : arrays)
     {
-      if (Small(name) == usual && columns.size() <= 3)
+      const std::size_t count = array.Columns.size();
+      if ((count == 2 || count == 3) && Small(array.Name) == usual)
       {
-        return columns;
+        return array.Columns;
       }
     }
   }
@@ -345,23 +360,26 @@ vtkSmartPointer<vtkDoubleArray> JoinColumns(
   return array;
 }
 
+template <typename ArrayT, typename ValueT>
+vtkSmartPointer<ArrayT> ArrayWith(const std::vector<ValueT>& values)
+{
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
 vtkSmartPointer<vtkAbstractArray> ArrayOf(
   const Table& table, const std::vector<std::size_t>& columns)
 {
   const Column& first = table[columns[0]];
   if (columns.size() == 1 && !first.Words.empty())
   {
-    auto words = vtkSmartPointer<vtkStringArray>::New();
-    words->SetNumberOfValues(static_cast<vtkIdType>(first.Words.size()));
-    std::copy(first.Words.begin(), first.Words.end(), words->GetPointer(0));
-    return words;
+    return ArrayWith<vtkStringArray>(first.Words);
   }
   if (columns.size() == 1 && !first.Whole.empty() && IsIdentifier(first.Name))
   {
-    auto whole = vtkSmartPointer<vtkTypeInt64Array>::New();
-    whole->SetNumberOfValues(static_cast<vtkIdType>(first.Whole.size()));
-    std::copy(first.Whole.begin(), first.Whole.end(), whole->GetPointer(0));
-    return whole;
+    return ArrayWith<vtkTypeInt64Array>(first.Whole);
   }
   return JoinColumns(table, columns, static_cast<int>(columns.size()));
 }
@@ -387,33 +405,12 @@ vtkSmartPointer<vtkPolyData> ParticlesOf(
   vtkNew<vtkPoints> points;
   points->SetData(JoinColumns(table, positions, 3));
   particles->SetPoints(points);
-  std::vector<std::pair<std::string, std::vector<std::size_t>>> arrays; // where a first column is
-  for (const Column& column : table)
+  for (const Array& each : FindArrays(table, positions))
   {
-    arrays.push_back({ column.Name, { arrays.size() } });
-  }
-  for (const auto& vector : FindVectors(table))
-  {
-    const auto& columns = vector.second;
-    if (std::find(positions.begin(), positions.end(), columns[0]) == positions.end())
+    if (!each.Columns.empty())
     {
-      for (const std::size_t column : columns)
-      {
-        arrays[column].second.clear();
-      }
-      arrays[*std::min_element(columns.begin(), columns.end())] = vector;
-    }
-  }
-  for (const std::size_t column : positions)
-  {
-    arrays[column].second.clear();
-  }
-  for (const auto& [name, columns] : arrays)
-  {
-    if (!columns.empty())
-    {
-      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(table, columns);
-      array->SetName(name.c_str());
+      const vtkSmartPointer<vtkAbstractArray> array = ArrayOf(table, each.Columns);
+      array->SetName(each.Name.c_str());
       particles->GetPointData()->AddArray(array);
     }
   }
@@ -533,10 +530,8 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
 
 void AddNumbers(vtkPolyData* particles, const char* name, const std::vector<double>& values)
 {
-  vtkNew<vtkDoubleArray> array;
+  const auto array = ArrayWith<vtkDoubleArray>(values);
   array->SetName(name);
-  array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
   particles->GetFieldData()->AddArray(array);
 }
 
@@ -547,23 +542,22 @@ vtkTypeInt64 CountOf(View line)
   return ToInteger(Trimmed(line), count) ? count : -1;
 }
 
-/// The text behind KEY= in the second line of extended XYZ, with or without quotes.
-std::string ValueOf(const std::string& comment, const std::string& key)
+/// The texts behind KEY= in the second line of extended XYZ, with or without quotes, by the keys in
+/// small letters.
+std::map<std::string, std::string> ValuesOf(View comment)
 {
-  const std::string small = Small(comment);
-  std::size_t at = 0;
-  while ((at = small.find(key + "=", at)) != std::string::npos && at > 0 && small[at - 1] != ' ')
+  std::map<std::string, std::string> values;
+  std::vector<View> words;
+  Split(comment, ' ', words);
+  for (const View word : words)
   {
-    ++at;
+    const std::size_t equals = word.find('=');
+    if (equals != View::npos)
+    {
+      values.emplace(Small(word.substr(0, equals)), Trimmed(word.substr(equals + 1)));
+    }
   }
-  if (at == std::string::npos)
-  {
-    return "";
-  }
-  at += key.size() + 1;
-  const bool quoted = at < comment.size() && comment[at] == '"';
-  const std::size_t end = comment.find(quoted ? '"' : ' ', at + 1);
-  return comment.substr(at + quoted, end == std::string::npos ? end : end - at - quoted);
+  return values;
 }
 
 std::vector<double> NumbersOf(View text)
@@ -634,15 +628,14 @@ bool FindXyzStep(Lines& lines, Step& step)
     FailToRead(lines.File, lines.Where() + " does not say how many particles a step has");
   }
   lines.Need("the second line of a step");
-  const std::string comment(lines.Get());
-  step.Names = PropertiesOf(lines.File, ValueOf(comment, "properties"));
-  const std::vector<double> side = NumbersOf(ValueOf(comment, "lattice"));
+  std::map<std::string, std::string> values = ValuesOf(lines.Get());
+  step.Names = PropertiesOf(lines.File, values["properties"]);
+  const std::vector<double> side = NumbersOf(values["lattice"]);
   const bool isBox = side.size() == 9 && side[1] == 0.0 && side[2] == 0.0 && side[3] == 0.0 &&
     side[5] == 0.0 && side[6] == 0.0 && side[7] == 0.0;
   std::vector<View> words;
-  const std::string periodic = ValueOf(comment, "pbc");
-  Split(periodic, ' ', words);
-  const std::vector<double> origin = NumbersOf(ValueOf(comment, "origin"));
+  Split(values["pbc"], ' ', words);
+  const std::vector<double> origin = NumbersOf(values["origin"]);
   for (std::size_t a = 0; a < 3 && isBox; ++a)
   {
     step.Periodic[a] =
@@ -650,7 +643,7 @@ bool FindXyzStep(Lines& lines, Step& step)
     step.Bounds[2 * a] = origin.size() == 3 ? origin[a] : 0.0;
     step.Bounds[2 * a + 1] = step.Bounds[2 * a] + side[4 * a];
   }
-  const std::vector<double> time = NumbersOf(ValueOf(comment, "time"));
+  const std::vector<double> time = NumbersOf(values["time"]);
   step.Time = time.size() == 1 ? time[0] : step.Time;
   return true;
 }

@@ -41,16 +41,19 @@ static void test_turns_and_shares(void** state)
   core_free_set(&set);
 }
 
-/* A device that is asked for by name is taken. */
+/* A device that is asked for by number is taken; those of one name are taken in turn. */
 static void test_named_device(void** state)
 {
   mcor_context* context = *state;
-  const int second = context->cl.device_number + 1;
-  const char name[] = { (char)('0' + second), '\0' };
+  const int first = context->cl.device_number;
+  const char number[] = { (char)('0' + first + 1), '\0' };
   for (int place = 0; place < 3; ++place)
   {
-    CORE_OK(context, mcor_create_shared_context(name, place, 3, &context));
-    assert_int_equal(context->cl.device_number, second);
+    CORE_OK(context, mcor_create_shared_context(number, place, 3, &context));
+    assert_int_equal(context->cl.device_number, first + 1);
+    mcor_free_context(context);
+    CORE_OK(context, mcor_create_shared_context("pocl", place, 3, &context));
+    assert_int_equal(context->cl.device_number, first + place % 2);
     mcor_free_context(context);
   }
 }

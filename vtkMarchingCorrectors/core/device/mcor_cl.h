@@ -11,6 +11,7 @@
 #include <stdbool.h>
 
 #define MCOR_KEPT_BUFFERS 32 /* at most */
+#define MCOR_LOCKED_LIMIT 32 /* at most */
 
 /* A device buffer that grows; its content is undefined after it grew. All zero: no buffer yet. */
 typedef struct mcor_buffer
@@ -18,6 +19,15 @@ typedef struct mcor_buffer
   cl_mem mem;
   size_t size; /* bytes */
 } mcor_buffer;
+
+/* Memory of the host that a driver has locked, for a mapped buffer of a device that has memory of
+ * its own. */
+typedef struct mcor_locked
+{
+  cl_mem mem, of; /* of: the buffer that is mapped; NULL: none */
+  void* host;
+  size_t size, written; /* written: bytes to copy to the buffer when it is unmapped */
+} mcor_locked;
 
 /* One variant of the programs: everything that their compilation depends on. */
 typedef struct mcor_build
@@ -68,6 +78,7 @@ typedef struct mcor_cl
   int place, count;               /* this process' number, and how many share the devices */
   bool is_default, is_replaced;   /* no device was named; the first choice lacked a build */
   bool is_cpu;                    /* kernels have the form for CPUs */
+  bool is_apart;                  /* memory is not the host's, see mcor_locked */
   bool has_fp64, rounds_division; /* divisions and roots can be exact to the last bit */
   int lanes;              /* evaluation points that a work-item treats at once */
   int segments;           /* segments into which scans and sorts cut their arrays */
@@ -77,6 +88,7 @@ typedef struct mcor_cl
   int64_t bytes, bytes_peak;           /* in all buffers, kept ones included */
   mcor_buffer kept[MCOR_KEPT_BUFFERS]; /* see mcor_release */
   int kept_count;
+  mcor_locked locked[MCOR_LOCKED_LIMIT];
   int64_t kept_bytes, used_peak,
     used_before; /* used_peak: bytes without kept buffers; used_before: that of the last call */
   double build_seconds;   /* in the call under way */
@@ -145,7 +157,7 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
  * of memory takes longer than most of what is done in it, and successive phases and calls have
  * arrays of like sizes. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
-/* Frees kept buffers until at most `most` bytes are held. */
+/* Frees kept buffers until at most `most` bytes are held; with 0, all locked memory, too. */
 void mcor_drop_kept(mcor_context* context, int64_t most);
 /* Called where a call begins: keeps no more than the last call needed. */
 void mcor_begin_buffers(mcor_context* context);

@@ -127,11 +127,12 @@ static bool mcor_contains(const char* text, const char* part)
 }
 
 /* Finds the device that the user named; returns its index in the list, or -1. */
-static int mcor_find_device(const mcor_device_list* list, const char* wanted)
+static int mcor_find_device(const mcor_device_list* list, const char* wanted, bool* by_number)
 {
   char* end = NULL;
   const long number = strtol(wanted, &end, 10);
-  if (*end == '\0')
+  *by_number = *end == '\0';
+  if (*by_number)
   {
     return number >= 0 && number < list->count ? (int)number : -1;
   }
@@ -173,6 +174,7 @@ static bool mcor_has_cpu_form(const mcor_cl* cl)
 static void mcor_query_device(mcor_cl* cl)
 {
   cl_uint units = 1;
+  cl_bool unified = CL_FALSE;
   cl_device_fp_config fp32 = 0, fp64 = 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_SINGLE_FP_CONFIG, sizeof fp32, &fp32, NULL);
@@ -182,7 +184,10 @@ static void mcor_query_device(mcor_cl* cl)
   cl->memory_limit = cl->device_memory;
   clGetDeviceInfo(
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
+  clGetDeviceInfo(cl->device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
   cl->is_cpu = mcor_has_cpu_form(cl);
+  /* A CPU that is made to work as a GPU tests this, too. */
+  cl->is_apart = !cl->is_cpu && (!unified || (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   cl->units = (int)units;
@@ -239,14 +244,14 @@ static void mcor_take_share(mcor_cl* cl, int place, int count)
   free(made);
 }
 
-/* Ranks devices where none is named: a GPU is best, then the built-in one, then PoCL, then any
- * other. */
+/* Ranks devices where none is named: the built-in one is best, which starts at once, then a GPU,
+ * then PoCL, then any other. */
 static int mcor_rank_device(cl_platform_id platform, cl_device_id device)
 {
   char name[128], platform_name[128];
   mcor_device_names(platform, device, name, platform_name, sizeof name);
-  return (mcor_type_of(device) & CL_DEVICE_TYPE_GPU) != 0 ? 4
-    : platform == mcor_native_platform()                  ? 3
+  return platform == mcor_native_platform()               ? 4
+    : (mcor_type_of(device) & CL_DEVICE_TYPE_GPU) != 0    ? 3
     : strcmp(platform_name, MCOR_DEFAULT_PLATFORM) == 0   ? 2
                                                           : 1;
 }
@@ -356,21 +361,23 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 {
   mcor_cl* cl = &context->cl;
   const char* wanted = device && *device ? device : getenv("MCOR_DEVICE");
+  const mcor_build usual = { 0 };
   mcor_device_list list;
+  bool by_number = false;
   cl->place = place;
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
-  mcor_find_devices(&list, cl->is_default);
-  if (cl->is_default)
-  {
-    const mcor_build usual = { 0 };
-    return mcor_start_default(context, &list, &usual);
-  }
-  int chosen = mcor_find_device(&list, wanted);
+  mcor_find_devices(&list, false);
+  int chosen =
+    cl->is_default ? mcor_choose_device(&list, &usual) : mcor_find_device(&list, wanted, &by_number);
   if (chosen < 0)
   {
     mcor_find_devices(&list, true);
-    chosen = mcor_find_device(&list, wanted);
+    chosen = cl->is_default ? -1 : mcor_find_device(&list, wanted, &by_number);
+  }
+  if (cl->is_default)
+  {
+    return mcor_start_default(context, &list, &usual);
   }
   if (chosen < 0)
   {
@@ -380,7 +387,8 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
       "There is no OpenCL device \"%s\". Give the number of a device, or part of its name: %s.%s",
       wanted, devices, mcor_driver_fault(&list));
   }
-  return mcor_start_device(context, &list, chosen, place, count);
+  const int own = by_number ? chosen : mcor_take_turn(&list, chosen, &place, &count);
+  return mcor_start_device(context, &list, own, place, count);
 }
 
 void mcor_close_device(mcor_context* context)

@@ -422,7 +422,7 @@ public:
 
   /**
    * The OpenCL device: a number or a part of a device's or platform's name as in ListDevices().
-   * Empty (the default): a GPU if there is one, else the built-in device.
+   * Empty (the default): the built-in device if it can do the run, else a GPU, else another.
    */
   vtkSPHTextMacro(Device, "");
 

@@ -22,8 +22,8 @@ class Context:
 
     Example: with Context() as context: isosurface(x, speed, 1.0, smoothing_length=h, context=context, particles_version=1)
 
-    device: a number or part of a name as in `devices()`; None: a GPU if there is one, else the built-in
-    device. Calls on one context from several threads wait for each other; contexts of their own run side by side.
+    device: a number or part of a name as in `devices()`; None: the built-in
+    device if it can do the run. Calls on one context from several threads wait for each other; contexts of their own run side by side.
 
     Particles that stay the same between calls can stay on the device: give them equal nonzero
     numbers as `particles_version` (and `scalar_version`).

@@ -510,8 +510,8 @@ extern "C"
 
   typedef struct mcor_context mcor_context;
 
-  /* device: NULL or "" for the default (a GPU if there is one, else the built-in device), a
-   * number as listed by mcor_list_devices, or part of the name of a device or platform. On
+  /* device: NULL or "" for the default (the built-in device if it can do the run, else a GPU, else
+   * another), a number as listed by mcor_list_devices, or part of the name of a device or platform. On
    * failure *context is still a context, whose mcor_last_error says why (NULL only if host
    * memory ran out). */
   mcor_status mcor_create_context(const char* device, mcor_context** context);

@@ -102,9 +102,9 @@ extern "C"
   };
 
   /* mcor_create_context for one of `count` processes or threads that run side by side on a
-   * machine; place: its number, from 0. If no device is named, they take turns among the devices
-   * of the default one's platform and kind, and those that share a CPU take a share of its
-   * processors each. The result does not depend on this. */
+   * machine; place: its number, from 0. Unless a number names the device, they take turns among
+   * those of its platform and kind, and those that share a CPU take a share of its processors
+   * each. The result does not depend on this. */
   mcor_status mcor_create_shared_context(
     const char* device, int place, int count, mcor_context** context);
 

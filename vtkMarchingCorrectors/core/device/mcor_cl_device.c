@@ -250,10 +250,10 @@ static int mcor_rank_device(cl_platform_id platform, cl_device_id device)
 {
   char name[128], platform_name[128];
   mcor_device_names(platform, device, name, platform_name, sizeof name);
-  return platform == mcor_native_platform()               ? 4
-    : (mcor_type_of(device) & CL_DEVICE_TYPE_GPU) != 0    ? 3
-    : strcmp(platform_name, MCOR_DEFAULT_PLATFORM) == 0   ? 2
-                                                          : 1;
+  return platform == mcor_native_platform()             ? 4
+    : (mcor_type_of(device) & CL_DEVICE_TYPE_GPU) != 0  ? 3
+    : strcmp(platform_name, MCOR_DEFAULT_PLATFORM) == 0 ? 2
+                                                        : 1;
 }
 
 /* Whether a device has what a build needs. The built-in one has the kernels that were compiled
@@ -368,8 +368,8 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
   mcor_find_devices(&list, false);
-  int chosen =
-    cl->is_default ? mcor_choose_device(&list, &usual) : mcor_find_device(&list, wanted, &by_number);
+  int chosen = cl->is_default ? mcor_choose_device(&list, &usual)
+                              : mcor_find_device(&list, wanted, &by_number);
   if (chosen < 0)
   {
     mcor_find_devices(&list, true);

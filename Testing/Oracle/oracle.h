@@ -5,10 +5,10 @@
 
 /* An independent, brute-force reference in double precision.
  *
- * It answers one question: which lattice edges does the isosurface of an SPH field cross? Every
- * node of the bounding box is evaluated, nothing is excluded, no code is shared with the library
- * under test. Written for being obviously right, not for speed: particles are scattered to the
- * lattice one after the other, points are evaluated through a kd-tree.
+ * It answers one question: which lattice edges does the isosurface of an SPH field cross, and how are
+ * they joined? Every node that a particle reaches is evaluated, nothing is excluded, no code is shared with
+ * the library under test. Written for being obviously right, not for speed: nodes sum over all particles of
+ * their brick (oracle_lattice.h), points are evaluated through a kd-tree.
  *
  * Field (V: volume, A: scalar, W: kernel with h_scale * own smoothing length, fluid particles
  * only): Shepard  sum V A W / sum V W        sum  sum V A W        weight  sum V W The trimming
@@ -124,75 +124,6 @@ extern "C"
   /* A bound on what evaluation in floating point with unit roundoff `unit` may do to the value at a
    * point: relative errors of a few units in W and in the offset to each particle. */
   double oracle_rounding(const oracle_field* field, const double point[3], double unit);
-
-  /* ---- the lattice ---- */
-
-  enum
-  {
-    ORACLE_NODE_ABOVE = 1, /* value >= iso */
-    ORACLE_NODE_VALID = 2, /* may be a corner of a cell that is used */
-    ORACLE_NODE_CLOSE = 4, /* value within rounding of iso */
-    ORACLE_NODE_MARGIN = 8 /* weight within rounding of the threshold */
-  };
-
-  /* Nodes at integer multiples of `edge`, along each axis, covering every point where a particle has
-   * influence. Node (i,j,k), 0 <= i < size[0], lies at (origin + (i,j,k)) * edge; index (k * size[1] + j) *
-   * size[0] + i. */
-  typedef struct oracle_lattice
-  {
-    double cube, edge[3]; /* the shortest of the edges */
-    int64_t origin[3], size[3];
-    int64_t first[3], end[3]; /* cells whose lowest node is not in between do not exist */
-    double* value;
-    double* weight;
-    double* trim_weight; /* the same pointer as weight where no solids count */
-    uint8_t* flags;      /* ORACLE_NODE_*; set by oracle_classify */
-  } oracle_lattice;
-
-  /* Evaluates all nodes. 0 if memory ran out or there would be more than node_limit nodes. */
-  int oracle_create_lattice(
-    oracle_lattice* lattice, const oracle_field* field, const double edge[3], int64_t node_limit);
-  void oracle_free_lattice(oracle_lattice* lattice);
-  int64_t oracle_node_count(const oracle_lattice* lattice);
-  int64_t oracle_node_index(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
-  void oracle_node_position(const oracle_lattice* lattice, int64_t node, double position[3]);
-
-  typedef struct oracle_limits
-  {
-    double iso;
-    double node_threshold;    /* not applied to ORACLE_WEIGHT */
-    double least_weight;      /* fluid weight below which a Shepard mean has no meaning, > 0 */
-    double least_at_vertices; /* the same of vertices */
-    double close;  /* |value - iso| up to which a node is excused, in the scalar's unit */
-    double margin; /* |weight - threshold| up to which a node is excused */
-  } oracle_limits;
-
-  void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_limits* limits);
-
-  /* 1 if the cell whose lowest node is (i,j,k) exists and all its nodes are valid. possible: valid,
-   * or all its invalid nodes are within the margin. certain: valid without any within the margin.
-   */
-  int oracle_cell_valid(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
-  int oracle_cell_possible(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
-  int oracle_cell_certain(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k);
-
-  /* An edge is named by 3 * index of its lower node + axis. */
-  typedef struct oracle_surface
-  {
-    int64_t edge_count, cell_count, component_count;
-    int64_t* edge;           /* [edge_count], ascending */
-    int64_t* edge_component; /* [edge_count], 0 .. component_count - 1 */
-    int64_t* cell;           /* [cell_count], index of the lowest node, ascending */
-  } oracle_surface;
-
-  /* Edges with ends on different sides and at least one valid cell; components by union of valid
-   * crossed cells over faces that have both sides. 0 if memory ran out. */
-  int oracle_create_surface(oracle_surface* surface, const oracle_lattice* lattice);
-  void oracle_free_surface(oracle_surface* surface);
-  int64_t oracle_find_edge(const oracle_surface* surface, int64_t edge); /* its number or -1 */
-  /* The four cells of an edge as lowest nodes (i,j,k), some possibly outside the lattice. */
-  void oracle_edge_cells(const oracle_lattice* lattice, int64_t edge, int64_t cells[4][3]);
-  void oracle_edge_ends(const oracle_lattice* lattice, int64_t edge, int64_t nodes[2]);
 #ifdef __cplusplus
 }
 #endif

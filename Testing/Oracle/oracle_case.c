@@ -159,7 +159,7 @@ static void case_check_seam(case_run* run)
     return;
   }
   const int enough =
-    oracle_check_seam(&run->options, &run->reference->lattice, &run->surface, &run->mesh, &seam);
+    oracle_check_seam(&run->options, run->reference->lattice.edge, &run->surface, &run->mesh, &seam);
   case_expect(run, enough, "out of memory");
   case_expect(run, seam.open == 0, "%lld edges at faces without their like", (long long)seam.open);
   case_expect(run, seam.torn == 0, "%lld edges at faces do not fit", (long long)seam.torn);

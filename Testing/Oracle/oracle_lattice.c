@@ -1,122 +1,117 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "oracle.h"
+
+/* Levels, bricks and nodes. */
+
+#include "oracle_lattice.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-int64_t oracle_node_count(const oracle_lattice* lattice)
+/* Cells of the smallest cubes along an edge of a brick. */
+static int64_t lattice_brick_size(int level)
 {
-  return lattice->size[0] * lattice->size[1] * lattice->size[2];
+  return (int64_t)LATTICE_BRICK << level;
 }
 
-int64_t oracle_node_index(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k)
+/* ---- levels from particles ---- */
+
+/* One descent from a box around everything: with all particles that reach the brick. */
+typedef struct lattice_descent
 {
-  return (k * lattice->size[1] + j) * lattice->size[0] + i;
+  oracle_lattice* lattice;
+  const oracle_field* field;
+  int* level; /* [particle count], -1: of no account */
+  int listing;
+  int64_t node_limit;
+} lattice_descent;
+
+static int lattice_counts(const oracle_particles* p, int64_t j)
+{
+  return !p->solid[j] || !p->ignore_solids;
 }
 
-static void oracle_node_ijk(const oracle_lattice* lattice, int64_t node, int64_t ijk[3])
+/* The highest level at which cubes are fine enough for each particle. */
+static void lattice_set_levels(lattice_descent* descent, int level_limit)
 {
-  ijk[0] = node % lattice->size[0];
-  ijk[1] = node / lattice->size[0] % lattice->size[1];
-  ijk[2] = node / lattice->size[0] / lattice->size[1];
-}
-
-void oracle_node_position(const oracle_lattice* lattice, int64_t node, double position[3])
-{
-  int64_t ijk[3];
-  oracle_node_ijk(lattice, node, ijk);
-  for (int axis = 0; axis < 3; ++axis)
+  const oracle_particles* p = descent->field->particles;
+  const double least = oracle_smallest_h(p);
+  oracle_lattice* lattice = descent->lattice;
+  for (int64_t j = 0; j < p->count; ++j)
   {
-    position[axis] = (double)(lattice->origin[axis] + ijk[axis]) * lattice->edge[axis];
-  }
-}
-
-void oracle_free_lattice(oracle_lattice* lattice)
-{
-  if (lattice->trim_weight != lattice->weight)
-  {
-    free(lattice->trim_weight);
-  }
-  free(lattice->value);
-  free(lattice->weight);
-  free(lattice->flags);
-  memset(lattice, 0, sizeof(*lattice));
-}
-
-/* Bounds of all supports, one node further out on every side. */
-static int oracle_set_extent(oracle_lattice* lattice, const oracle_field* field, int64_t node_limit)
-{
-  double nodes = 1.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double low = INFINITY;
-    double high = -INFINITY;
-    for (int64_t j = 0; j < field->particles->count; ++j)
+    int level = 0;
+    while (level < level_limit && p->smoothing_length[j] >= ldexp(least, level + 1))
     {
-      const double reach =
-        oracle_support(field->kernel) * field->h_scale * field->particles->smoothing_length[j];
-      low = fmin(low, field->particles->position[3 * j + axis] - reach);
-      high = fmax(high, field->particles->position[3 * j + axis] + reach);
+      ++level;
     }
-    if (!(high >= low))
+    descent->level[j] = lattice_counts(p, j) ? level : -1;
+    lattice->top = !p->solid[j] && level > lattice->top ? level : lattice->top;
+  }
+}
+
+static int lattice_reaches(const lattice_descent* descent, int64_t j, const lattice_brick* brick)
+{
+  const oracle_field* field = descent->field;
+  const double support =
+    oracle_support(field->kernel) * field->h_scale * field->particles->smoothing_length[j];
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double x = field->particles->position[3 * j + axis];
+    const double edge = descent->lattice->edge[axis];
+    const double low = (double)brick->at[axis] * edge;
+    const double high = (double)(brick->at[axis] + lattice_brick_size(brick->level)) * edge;
+    const double d = fmax(0.0, fmax(low - x, x - high));
+    if (d > support)
     {
       return 0;
     }
-    lattice->origin[axis] = (int64_t)floor(low / lattice->edge[axis]) - 1;
-    lattice->size[axis] = (int64_t)ceil(high / lattice->edge[axis]) + 2 - lattice->origin[axis];
-    lattice->end[axis] = lattice->size[axis] - 1;
-    nodes *= (double)lattice->size[axis];
+    square += d * d;
   }
-  return nodes <= (double)node_limit;
+  return field->kernel == ORACLE_M_PRIME_4 || square <= support * support;
 }
 
-static void oracle_scatter(oracle_lattice* lattice, const oracle_field* field, int64_t j)
+static int lattice_is_split(oracle_lattice* lattice, const lattice_brick* brick)
 {
-  const oracle_particles* p = field->particles;
-  const double h = field->h_scale * p->smoothing_length[j];
-  const double reach = oracle_support(field->kernel) * h;
-  const double volume = p->volume[j];
-  int64_t low[3];
-  int64_t high[3];
-  for (int axis = 0; axis < 3; ++axis)
+  return oracle_map_find(&lattice->split, brick->at, brick->level, 0) != NULL;
+}
+
+static void lattice_split(oracle_lattice* lattice, const lattice_brick* brick)
+{
+  *oracle_map_find(&lattice->split, brick->at, brick->level, 1) = 1;
+}
+
+/* ---- nodes ---- */
+
+static int64_t lattice_node_at(oracle_lattice* lattice, const int64_t at[3], int add)
+{
+  int64_t* index = oracle_map_find(&lattice->node_map, at, 0, add);
+  if (index && *index < 0)
   {
-    const double x = p->position[3 * j + axis];
-    low[axis] = (int64_t)floor((x - reach) / lattice->edge[axis]) - lattice->origin[axis];
-    high[axis] = (int64_t)ceil((x + reach) / lattice->edge[axis]) - lattice->origin[axis];
+    lattice->nodes = oracle_grow(
+      lattice->nodes, lattice->node_count, &lattice->node_capacity, sizeof(lattice_node));
+    memcpy(lattice->nodes[lattice->node_count].at, at, 3 * sizeof(int64_t));
+    *index = lattice->node_count++;
   }
-  for (int64_t k = low[2]; k <= high[2]; ++k)
+  return index ? *index : -1;
+}
+
+/* Whether bricks of half the size touch the point of the brick's border: sides[axis] says on which
+ * side of the brick it lies, 0: on neither. */
+static int lattice_finer(oracle_lattice* lattice, const lattice_brick* brick, const int sides[3])
+{
+  for (int some = 1; some < 8; ++some)
   {
-    for (int64_t i_j = low[1]; i_j <= high[1]; ++i_j)
+    lattice_brick beside = *brick;
+    int there = 1;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      for (int64_t i = low[0]; i <= high[0]; ++i)
-      {
-        const int64_t node = oracle_node_index(lattice, i, i_j, k);
-        const double offset[3] = { (double)(lattice->origin[0] + i) * lattice->edge[0] -
-            p->position[3 * j],
-          (double)(lattice->origin[1] + i_j) * lattice->edge[1] - p->position[3 * j + 1],
-          (double)(lattice->origin[2] + k) * lattice->edge[2] - p->position[3 * j + 2] };
-        const double w = volume * oracle_kernel_value(field->kernel, h, offset, NULL);
-        if (p->solid[j])
-        {
-          lattice->trim_weight[node] += w;
-        }
-        else
-        {
-          lattice->weight[node] += w;
-          lattice->value[node] += p->scalar[j] * w;
-        }
-      }
+      const int step = some >> axis & 1 ? sides[axis] : 0;
+      there = there && (step != 0 || !(some >> axis & 1));
+      beside.at[axis] += step * lattice_brick_size(brick->level);
     }
-  }
-}
-
-static int oracle_counts_solids(const oracle_particles* particles)
-{
-  for (int64_t j = 0; !particles->ignore_solids && j < particles->count; ++j)
-  {
-    if (particles->solid[j])
+    if (there && lattice_is_split(lattice, &beside))
     {
       return 1;
     }
@@ -124,156 +119,290 @@ static int oracle_counts_solids(const oracle_particles* particles)
   return 0;
 }
 
-/* Turns the sums at the nodes into the field and the trimming weight. */
-static void oracle_finish_nodes(oracle_lattice* lattice, oracle_kind kind)
+/* On which sides of the brick a place of one of its cells lies, of 3 x 3 x 3 half a cell apart, and where that is. */
+static void lattice_sides(
+  const lattice_brick* brick, const int64_t at[3], const int place[3], int64_t p[3], int sides[3])
 {
-  const int64_t nodes = oracle_node_count(lattice);
-  for (int64_t n = 0; n < nodes; ++n)
+  const int64_t size = lattice_brick_size(brick->level);
+  for (int axis = 0; axis < 3; ++axis)
   {
-    if (lattice->trim_weight != lattice->weight)
+    p[axis] = at[axis] + (((int64_t)place[axis] << brick->level) >> 1);
+    sides[axis] = place[axis] == 1 ? 0
+      : p[axis] == brick->at[axis] ? -1
+                                   : p[axis] == brick->at[axis] + size;
+  }
+}
+
+int oracle_is_plain(oracle_lattice* lattice, int level, const int64_t at[3])
+{
+  const int64_t size = lattice_brick_size(level);
+  lattice_brick brick = { { at[0] & -size, at[1] & -size, at[2] & -size }, level };
+  lattice_brick larger = { { at[0] & -2 * size, at[1] & -2 * size, at[2] & -2 * size }, level + 1 };
+  int plain = !lattice_is_split(lattice, &brick) &&
+    (level >= lattice->top || lattice_is_split(lattice, &larger));
+  for (int n = 0; n < 27 && plain && level > 0; ++n)
+  {
+    const int place[3] = { n % 3, n / 3 % 3, n / 9 };
+    int64_t p[3];
+    int sides[3];
+    lattice_sides(&brick, at, place, p, sides);
+    plain = !lattice_finer(lattice, &brick, sides);
+  }
+  return plain;
+}
+
+void oracle_cell_at(oracle_lattice* lattice, int64_t b, int c, int add, lattice_cell* cell)
+{
+  const lattice_brick* brick = &lattice->bricks[b];
+  const int xyz[3] = { c & 3, c >> 2 & 3, c >> 4 };
+  memset(cell, 0, sizeof(*cell));
+  cell->level = brick->level;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cell->at[axis] = brick->at[axis] + ((int64_t)xyz[axis] << brick->level);
+  }
+  for (int n = 0; n < 27; ++n)
+  {
+    const int place[3] = { n % 3, n / 3 % 3, n / 9 };
+    const int middles = (place[0] == 1) + (place[1] == 1) + (place[2] == 1);
+    int64_t p[3];
+    int sides[3];
+    cell->node[n] = -1;
+    if (middles == 0)
     {
-      lattice->trim_weight[n] += lattice->weight[n];
+      cell->node[n] = lattice->corners[LATTICE_CORNERS * b + xyz[0] + place[0] / 2 +
+        5 * (xyz[1] + place[1] / 2) + 25 * (xyz[2] + place[2] / 2)];
     }
-    if (kind == ORACLE_WEIGHT)
+    else if (middles < 3 && brick->level > 0)
     {
-      lattice->value[n] = lattice->weight[n];
-    }
-    else if (kind == ORACLE_SHEPARD)
-    {
-      lattice->value[n] = lattice->weight[n] > 0.0 ? lattice->value[n] / lattice->weight[n] : 0.0;
+      lattice_sides(brick, cell->at, place, p, sides);
+      cell->node[n] = lattice_finer(lattice, brick, sides) ? lattice_node_at(lattice, p, add) : -1;
     }
   }
 }
 
-int oracle_create_lattice(
-  oracle_lattice* lattice, const oracle_field* field, const double edge[3], int64_t node_limit)
+void oracle_place(const oracle_lattice* lattice, const int64_t at[3], double point[3])
 {
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    point[axis] = (double)at[axis] * lattice->edge[axis];
+  }
+}
+
+/* The sums at a new node, over the particles that reach its brick. */
+static void lattice_evaluate(oracle_lattice* lattice, const oracle_field* field, lattice_node* node,
+  const int64_t* list, int64_t count)
+{
+  const oracle_particles* p = field->particles;
+  const double support = oracle_support(field->kernel) * (1.0 + 1e-12);
+  double point[3];
+  double fluid = 0.0;
+  double solid = 0.0;
+  double value = 0.0;
+  oracle_place(lattice, node->at, point);
+  for (int64_t n = 0; n < count; ++n)
+  {
+    const int64_t j = list[n];
+    const double* x = &p->position[3 * j];
+    const double offset[3] = { point[0] - x[0], point[1] - x[1], point[2] - x[2] };
+    const double h = field->h_scale * p->smoothing_length[j];
+    if (fmax(fabs(offset[0]), fmax(fabs(offset[1]), fabs(offset[2]))) > support * h)
+    {
+      continue; /* most of a brick's particles reach few of its nodes */
+    }
+    const double w = p->volume[j] * oracle_kernel_value(field->kernel, h, offset, NULL);
+    *(p->solid[j] ? &solid : &fluid) += w;
+    value += p->solid[j] ? 0.0 : p->scalar[j] * w;
+  }
+  node->weight = fluid;
+  node->trim_weight = fluid + solid;
+  node->value = field->kind == ORACLE_WEIGHT ? fluid
+    : field->kind == ORACLE_SUM              ? value
+    : fluid > 0.0                            ? value / fluid
+                                             : 0.0;
+}
+
+static void lattice_add_brick(
+  lattice_descent* descent, const lattice_brick* brick, const int64_t* list, int64_t count)
+{
+  oracle_lattice* lattice = descent->lattice;
+  const int64_t first = lattice->node_count;
+  if (first > descent->node_limit)
+  {
+    return;
+  }
+  int64_t capacity = lattice->brick_capacity;
+  lattice->corners = oracle_grow(
+    lattice->corners, lattice->brick_count, &capacity, LATTICE_CORNERS * sizeof(int64_t));
+  lattice->bricks = oracle_grow(
+    lattice->bricks, lattice->brick_count, &lattice->brick_capacity, sizeof(lattice_brick));
+  lattice->bricks[lattice->brick_count] = *brick;
+  for (int n = 0; n < LATTICE_CORNERS; ++n)
+  {
+    const int64_t at[3] = { brick->at[0] + ((int64_t)(n % 5) << brick->level),
+      brick->at[1] + ((int64_t)(n / 5 % 5) << brick->level),
+      brick->at[2] + ((int64_t)(n / 25) << brick->level) };
+    lattice->corners[LATTICE_CORNERS * lattice->brick_count + n] = lattice_node_at(lattice, at, 1);
+  }
+  for (int c = 0; c < 64 && brick->level > 0; ++c)
+  {
+    lattice_cell cell;
+    oracle_cell_at(lattice, lattice->brick_count, c, 1, &cell);
+  }
+  ++lattice->brick_count;
+  for (int64_t node = first; node < lattice->node_count; ++node)
+  {
+    lattice_evaluate(lattice, descent->field, &lattice->nodes[node], list, count);
+  }
+}
+
+/* ---- the descent ---- */
+
+static void lattice_descend(
+  lattice_descent* descent, const lattice_brick* brick, const int64_t* above, int64_t count)
+{
+  oracle_lattice* lattice = descent->lattice;
+  int64_t reaching = 0;
+  int least = LATTICE_LEVELS;
+  int64_t* list = malloc(((size_t)count + 1) * sizeof(int64_t));
+  for (int64_t n = 0; list && n < count; ++n)
+  {
+    if (lattice_reaches(descent, above[n], brick))
+    {
+      list[reaching++] = above[n];
+      least = descent->level[above[n]] < least ? descent->level[above[n]] : least;
+    }
+  }
+  const int split = descent->listing
+    ? brick->level > lattice->top || lattice_is_split(lattice, brick)
+    : brick->level > lattice->top || least < brick->level;
+  if (reaching > 0 && split)
+  {
+    if (!descent->listing && brick->level <= lattice->top)
+    {
+      lattice_split(lattice, brick);
+    }
+    const int64_t half = lattice_brick_size(brick->level) / 2;
+    for (int part = 0; part < 8; ++part)
+    {
+      const lattice_brick lower = { { brick->at[0] + half * (part & 1),
+                                      brick->at[1] + half * (part >> 1 & 1),
+                                      brick->at[2] + half * (part >> 2) },
+        brick->level - 1 };
+      lattice_descend(descent, &lower, list, reaching);
+    }
+  }
+  else if (reaching > 0 && descent->listing)
+  {
+    lattice_add_brick(descent, brick, list, reaching);
+  }
+  free(list);
+}
+
+/* From the eight bricks around the origin of a level at which they hold all supports. */
+static void lattice_descend_all(lattice_descent* descent)
+{
+  const oracle_particles* p = descent->field->particles;
+  int64_t* all = malloc(((size_t)p->count + 1) * sizeof(int64_t));
+  int64_t count = 0;
+  int level = descent->lattice->top;
+  for (int64_t j = 0; all && j < p->count; ++j)
+  {
+    const double support =
+      oracle_support(descent->field->kernel) * descent->field->h_scale * p->smoothing_length[j];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      while ((double)lattice_brick_size(level) * descent->lattice->edge[axis] <=
+        fabs(p->position[3 * j + axis]) + support)
+      {
+        ++level;
+      }
+    }
+    all[count] = j;
+    count += descent->level[j] >= 0;
+  }
+  for (int part = 0; part < 8; ++part)
+  {
+    const int64_t size = lattice_brick_size(level);
+    const lattice_brick brick = {
+      { part & 1 ? -size : 0, part >> 1 & 1 ? -size : 0, part >> 2 ? -size : 0 }, level
+    };
+    lattice_descend(descent, &brick, all, count);
+  }
+  free(all);
+}
+
+/* Where a brick is split, its halves have level - 1 at most, so all that touch it must be smaller
+ * than twice its size: the bricks twice as large, of which one holds it, are split. */
+static void lattice_balance(oracle_lattice* lattice)
+{
+  for (int level = 1; level < lattice->top; ++level)
+  {
+    const int64_t size = lattice_brick_size(level);
+    int64_t count = 0;
+    lattice_brick* split = malloc((size_t)lattice->split.count * sizeof(lattice_brick) + 1);
+    for (int64_t n = 0; split && n < lattice->split.capacity; ++n)
+    {
+      const int64_t* held = &lattice->split.slots[5 * n];
+      if (held[4] >= 0 && held[3] == level)
+      {
+        memcpy(split[count].at, held, 3 * sizeof(int64_t));
+        split[count++].level = level;
+      }
+    }
+    for (int64_t n = 0; n < 27 * count; ++n)
+    {
+      const int64_t side[3] = { n % 3 - 1, n / 3 % 3 - 1, n / 9 % 3 - 1 };
+      lattice_brick larger = split[n / 27];
+      larger.level = level + 1;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const int64_t at = larger.at[axis] + side[axis] * size;
+        larger.at[axis] = at & ~(2 * size - 1);
+      }
+      lattice_split(lattice, &larger);
+    }
+    free(split);
+  }
+}
+
+int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field, const double edge[3],
+  int level_limit, int64_t node_limit)
+{
+  lattice_descent descent = { lattice, field,
+    malloc(((size_t)field->particles->count + 1) * sizeof(int)), 0, node_limit };
   memset(lattice, 0, sizeof(*lattice));
-  memcpy(lattice->edge, edge, sizeof(lattice->edge));
+  if (!descent.level)
+  {
+    return 0;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    lattice->edge[axis] = edge[axis];
+    lattice->first[axis] = INT64_MIN;
+    lattice->end[axis] = INT64_MAX;
+  }
   lattice->cube = fmin(edge[0], fmin(edge[1], edge[2]));
-  if (!oracle_set_extent(lattice, field, node_limit))
-  {
-    return 0;
-  }
-  const int solids = oracle_counts_solids(field->particles);
-  const size_t nodes = (size_t)oracle_node_count(lattice);
-  lattice->value = calloc(nodes, sizeof(double));
-  lattice->weight = calloc(nodes, sizeof(double));
-  lattice->trim_weight = solids ? calloc(nodes, sizeof(double)) : lattice->weight;
-  lattice->flags = calloc(nodes, 1);
-  if (!lattice->value || !lattice->weight || !lattice->trim_weight || !lattice->flags)
-  {
-    oracle_free_lattice(lattice);
-    return 0;
-  }
-  for (int64_t j = 0; j < field->particles->count; ++j)
-  {
-    if (solids || !field->particles->solid[j])
-    {
-      oracle_scatter(lattice, field, j);
-    }
-  }
-  oracle_finish_nodes(lattice, field->kind);
-  return 1;
+  lattice_set_levels(&descent, level_limit);
+  lattice_descend_all(&descent);
+  lattice_balance(lattice);
+  descent.listing = 1;
+  lattice_descend_all(&descent);
+  free(descent.level);
+  return lattice->node_count <= node_limit;
 }
 
-void oracle_classify(oracle_lattice* lattice, oracle_kind kind, const oracle_limits* limits)
+void oracle_free_lattice(oracle_lattice* lattice)
 {
-  const int64_t nodes = oracle_node_count(lattice);
-  for (int64_t n = 0; n < nodes; ++n)
-  {
-    const double difference = lattice->value[n] - limits->iso;
-    int flags = difference >= 0.0 ? ORACLE_NODE_ABOVE : 0;
-    if (fabs(difference) <= limits->close)
-    {
-      flags |= ORACLE_NODE_CLOSE;
-    }
-    if (kind == ORACLE_WEIGHT)
-    {
-      flags |= ORACLE_NODE_VALID;
-    }
-    else
-    {
-      const double weight = lattice->trim_weight[n];
-      const double fluid = lattice->weight[n];
-      if (weight >= limits->node_threshold && (kind == ORACLE_SUM || fluid >= limits->least_weight))
-      {
-        flags |= ORACLE_NODE_VALID;
-      }
-      if (fabs(weight - limits->node_threshold) <= limits->margin ||
-        (kind == ORACLE_SHEPARD && fabs(fluid - limits->least_weight) <= limits->margin))
-      {
-        flags |= ORACLE_NODE_MARGIN;
-      }
-    }
-    lattice->flags[n] = (uint8_t)flags;
-  }
-}
-
-/* The flags of the 8 nodes combined: all of them and any of them; 0 if outside the lattice. */
-static int oracle_cell_flags(
-  const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k, int corners[8])
-{
-  if (i < lattice->first[0] || j < lattice->first[1] || k < lattice->first[2] ||
-    i >= lattice->end[0] || j >= lattice->end[1] || k >= lattice->end[2])
-  {
-    return 0;
-  }
-  for (int c = 0; c < 8; ++c)
-  {
-    corners[c] =
-      lattice->flags[oracle_node_index(lattice, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))];
-  }
-  return 1;
-}
-
-int oracle_cell_valid(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k)
-{
-  int corners[8];
-  int valid = oracle_cell_flags(lattice, i, j, k, corners);
-  for (int c = 0; valid && c < 8; ++c)
-  {
-    valid = (corners[c] & ORACLE_NODE_VALID) != 0;
-  }
-  return valid;
-}
-
-int oracle_cell_possible(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k)
-{
-  int corners[8];
-  int possible = oracle_cell_flags(lattice, i, j, k, corners);
-  for (int c = 0; possible && c < 8; ++c)
-  {
-    possible = (corners[c] & (ORACLE_NODE_VALID | ORACLE_NODE_MARGIN)) != 0;
-  }
-  return possible;
-}
-
-int oracle_cell_certain(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k)
-{
-  int corners[8];
-  int certain = oracle_cell_flags(lattice, i, j, k, corners);
-  for (int c = 0; certain && c < 8; ++c)
-  {
-    certain = (corners[c] & ORACLE_NODE_VALID) && !(corners[c] & ORACLE_NODE_MARGIN);
-  }
-  return certain;
-}
-
-void oracle_edge_ends(const oracle_lattice* lattice, int64_t edge, int64_t nodes[2])
-{
-  const int64_t step[3] = { 1, lattice->size[0], lattice->size[0] * lattice->size[1] };
-  nodes[0] = edge / 3;
-  nodes[1] = nodes[0] + step[edge % 3];
-}
-
-void oracle_edge_cells(const oracle_lattice* lattice, int64_t edge, int64_t cells[4][3])
-{
-  const int axis = (int)(edge % 3);
-  for (int c = 0; c < 4; ++c)
-  {
-    oracle_node_ijk(lattice, edge / 3, cells[c]);
-    cells[c][(axis + 1) % 3] -= c & 1;
-    cells[c][(axis + 2) % 3] -= c >> 1;
-  }
+  oracle_map_free(&lattice->split);
+  oracle_map_free(&lattice->node_map);
+  oracle_map_free(&lattice->edge_map);
+  oracle_map_free(&lattice->doubts);
+  free(lattice->nodes);
+  free(lattice->bricks);
+  free(lattice->corners);
+  free(lattice->cells);
+  free(lattice->edges);
+  free(lattice->segments);
+  memset(lattice, 0, sizeof(*lattice));
 }

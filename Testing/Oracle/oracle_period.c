@@ -163,16 +163,16 @@ int oracle_add_images(oracle_particles* particles, const mcor_options* options, 
   return 1;
 }
 
-void oracle_own_period(oracle_lattice* lattice, const mcor_options* options)
+void oracle_own_period(
+  const mcor_options* options, const double edge[3], int64_t first[3], int64_t end[3])
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double first = ceil(options->periodic[2 * axis] / lattice->edge[axis] - 0.5);
-    if (period_length(options, axis) > 0.0)
+    const double length = period_length(options, axis);
+    if (length > 0.0)
     {
-      lattice->first[axis] = (int64_t)first - lattice->origin[axis];
-      lattice->end[axis] =
-        lattice->first[axis] + (int64_t)round(period_length(options, axis) / lattice->edge[axis]);
+      first[axis] = (int64_t)ceil(options->periodic[2 * axis] / edge[axis] - 0.5);
+      end[axis] = first[axis] + (int64_t)round(length / edge[axis]);
     }
   }
 }
@@ -212,19 +212,17 @@ static int seam_compare_edges(const void* x, const void* y)
   return p->a != q->a ? (p->a < q->a ? -1 : 1) : (p->b > q->b) - (p->b < q->b);
 }
 
-static seam_point seam_place(const mcor_options* options, const oracle_lattice* lattice,
-  const mcor_surface* surface, int32_t point)
+static seam_point seam_place(
+  const mcor_options* options, const double edge[3], const mcor_surface* surface, int32_t point)
 {
   seam_point place = { { 0 }, point };
+  int64_t first[3] = { 0 }, end[3] = { 0 };
+  oracle_own_period(options, edge, first, end);
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double low = (double)(lattice->origin[axis] + lattice->first[axis]);
-    const double cubes = (double)(lattice->end[axis] - lattice->first[axis]);
-    double u = surface->points[3 * (int64_t)point + axis] / lattice->edge[axis];
-    if (period_length(options, axis) > 0.0)
-    {
-      u -= floor((u - low + 1e-9) / cubes) * cubes;
-    }
+    const double low = (double)first[axis], cubes = (double)(end[axis] - first[axis]);
+    double u = surface->points[3 * (int64_t)point + axis] / edge[axis];
+    u -= cubes > 0.0 ? floor((u - low + 1e-9) / cubes) * cubes : 0.0;
     place.at[axis] = (int64_t)floor((u - low) * 0x1p27 + 0.5);
   }
   return place;
@@ -295,7 +293,7 @@ static void seam_count(seam_edge* edges, int64_t count, oracle_seam* seam)
   }
 }
 
-int oracle_check_seam(const mcor_options* options, const oracle_lattice* lattice,
+int oracle_check_seam(const mcor_options* options, const double edge[3],
   const mcor_surface* surface, const mesh_report* mesh, oracle_seam* seam)
 {
   const size_t n = (size_t)mesh->boundary_edges + 1;
@@ -313,8 +311,8 @@ int oracle_check_seam(const mcor_options* options, const oracle_lattice* lattice
       const uint8_t* flag = surface->boundary_flag;
       edges[count] =
         (seam_edge){ side->a, side->b, side->forward, flag && flag[side->a] && flag[side->b] };
-      places[2 * count] = seam_place(options, lattice, surface, side->a);
-      places[2 * count + 1] = seam_place(options, lattice, surface, side->b);
+      places[2 * count] = seam_place(options, edge, surface, side->a);
+      places[2 * count + 1] = seam_place(options, edge, surface, side->b);
       ++count;
     }
   }

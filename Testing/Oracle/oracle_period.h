@@ -28,8 +28,9 @@ extern "C"
   int oracle_add_images(oracle_particles* particles, const mcor_options* options, double support,
     double margin, double cube, int64_t** source);
 
-  /* Leaves one period's cells: those with their centres in it. */
-  void oracle_own_period(oracle_lattice* lattice, const mcor_options* options);
+  /* One period's cells: those with their centres in it. Axes without a period stay as they are. */
+  void oracle_own_period(
+    const mcor_options* options, const double edge[3], int64_t first[3], int64_t end[3]);
 
   typedef struct oracle_seam
   {
@@ -39,9 +40,9 @@ extern "C"
     int64_t different; /* points that are not, bit for bit, what they are a period away */
   } oracle_seam;
 
-  /* Glues opposite sides of the surface together: points that are a period apart become one. 0 if
-   * memory ran out. */
-  int oracle_check_seam(const mcor_options* options, const oracle_lattice* lattice,
+  /* Glues opposite sides of the surface together: points that are a period apart become one. edge: of the
+   * cubes. 0 if memory ran out. */
+  int oracle_check_seam(const mcor_options* options, const double edge[3],
     const mcor_surface* surface, const mesh_report* mesh, oracle_seam* seam);
 
 #ifdef __cplusplus

@@ -155,7 +155,7 @@ static int reference_particles(
   return enough;
 }
 
-static int oracle_set_iso(oracle_reference* reference, double iso)
+static void reference_set_iso(oracle_reference* reference, double iso)
 {
   /* In single precision rounding may change the side of a node whose value is this close. */
   const double relative = reference->unit > 1e-10 ? 2e-6 : 1e-13;
@@ -163,26 +163,8 @@ static int oracle_set_iso(oracle_reference* reference, double iso)
   reference->field.center = iso;
   reference->limits.close = relative * reference->range;
   reference->limits.margin = relative;
-  if (reference->is_adaptive)
-  {
-    oracle_march_adaptive(&reference->adaptive, &reference->field, &reference->limits,
-      reference->by_field, reference->unit);
-    return 1;
-  }
-  oracle_free_surface(&reference->surface);
-  oracle_classify(&reference->lattice, reference->field.kind, &reference->limits);
-  return oracle_create_surface(&reference->surface, &reference->lattice);
-}
-
-/* Whether cubes of more than one size are asked for. */
-static int reference_is_adaptive(const oracle_particles* particles, const mcor_options* options)
-{
-  double largest = 0.0;
-  for (int64_t j = 0; j < particles->count; ++j)
-  {
-    largest = particles->solid[j] ? largest : fmax(largest, particles->smoothing_length[j]);
-  }
-  return options->level_limit > 0 && largest >= 2.0 * oracle_smallest_h(particles);
+  oracle_march(&reference->lattice, &reference->field, &reference->limits, reference->by_field,
+    reference->unit);
 }
 
 /* Evaluates all nodes. */
@@ -190,22 +172,15 @@ static int reference_lattice(
   oracle_reference* reference, const mcor_options* options, int64_t node_limit)
 {
   double edge[3];
+  oracle_lattice* lattice = &reference->lattice;
   reference_edges(&reference->particles, options, edge);
-  const oracle_lattice* nodes =
-    reference->is_adaptive ? &reference->adaptive.nodes : &reference->lattice;
-  const int enough = reference->is_adaptive
-    ? oracle_create_adaptive(
-        &reference->adaptive, &reference->field, edge[0], options->level_limit, node_limit)
-    : oracle_create_lattice(&reference->lattice, &reference->field, edge, node_limit);
-  reference->lattice.cube = fmin(edge[0], fmin(edge[1], edge[2]));
-  if (enough && oracle_is_periodic(options))
-  {
-    oracle_own_period(&reference->lattice, options);
-  }
+  const int enough =
+    oracle_create_lattice(lattice, &reference->field, edge, options->level_limit, node_limit);
+  oracle_own_period(options, edge, lattice->first, lattice->end);
   reference->greatest_weight = 1.0;
-  for (int64_t n = 0; enough && n < oracle_node_count(nodes); ++n)
+  for (int64_t n = 0; enough && n < lattice->node_count; ++n)
   {
-    reference->greatest_weight = fmax(reference->greatest_weight, nodes->trim_weight[n]);
+    reference->greatest_weight = fmax(reference->greatest_weight, lattice->nodes[n].trim_weight);
   }
   if (options->field == MCOR_WEIGHT_SUM)
   {
@@ -233,7 +208,6 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
-  reference->is_adaptive = reference_is_adaptive(&reference->particles, options);
   reference->range =
     options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
   if (!(reference->range > 0.0))
@@ -247,20 +221,13 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
     oracle_free_reference(reference);
     return 0;
   }
-  if (!oracle_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5))
-  {
-    snprintf(message, 256, "out of memory for the crossed edges");
-    oracle_free_reference(reference);
-    return 0;
-  }
+  reference_set_iso(reference, options->iso_count > 0 ? options->iso_values[0] : 0.5);
   return 1;
 }
 
 void oracle_free_reference(oracle_reference* reference)
 {
-  oracle_free_surface(&reference->surface);
   oracle_free_lattice(&reference->lattice);
-  oracle_free_adaptive(&reference->adaptive);
   oracle_free_field(&reference->field);
   oracle_free_particles(&reference->particles);
   memset(reference, 0, sizeof(*reference));

@@ -1,206 +1,484 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "oracle.h"
 
+/* Cells, their crossed edges, and how these are joined. */
+
+#include "oracle_lattice.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static int oracle_above(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k)
+static int lattice_above(const oracle_lattice* lattice, int64_t node)
 {
-  return lattice->flags[oracle_node_index(lattice, i, j, k)] & ORACLE_NODE_ABOVE;
+  return lattice->nodes[node].flags & LATTICE_ABOVE;
 }
 
-static int oracle_edge_used(const oracle_lattice* lattice, int64_t edge)
+static void lattice_classify(lattice_node* node, oracle_kind kind, const oracle_limits* limits)
 {
-  int64_t nodes[2];
-  oracle_edge_ends(lattice, edge, nodes);
-  if ((lattice->flags[nodes[0]] ^ lattice->flags[nodes[1]]) & ORACLE_NODE_ABOVE)
+  const double difference = node->value - limits->iso;
+  const int of_weight = kind == ORACLE_WEIGHT, of_mean = kind == ORACLE_SHEPARD;
+  const int valid = of_weight ||
+    (node->trim_weight >= limits->node_threshold &&
+      (!of_mean || node->weight >= limits->least_weight));
+  const int margin = !of_weight &&
+    (fabs(node->trim_weight - limits->node_threshold) <= limits->margin ||
+      (of_mean && fabs(node->weight - limits->least_weight) <= limits->margin));
+  node->flags = (difference >= 0.0 ? LATTICE_ABOVE : 0) | (valid ? LATTICE_VALID : 0) |
+    (fabs(difference) <= limits->close ? LATTICE_CLOSE : 0) | (margin ? LATTICE_MARGIN : 0);
+}
+
+/* ---- edges ---- */
+
+/* Which of the four quarters around an edge a cell takes: its middle, but a cell whose face the
+ * edge runs across takes two. */
+static int lattice_quadrants(const lattice_cell* cell, const int64_t at[3], int axis)
+{
+  const int64_t size = (int64_t)1 << cell->level;
+  int quadrants = 0;
+  for (int q = 0; q < 4; ++q)
   {
-    int64_t cells[4][3];
-    oracle_edge_cells(lattice, edge, cells);
-    for (int c = 0; c < 4; ++c)
+    int inside = 1;
+    for (int side = 0; side < 2; ++side)
     {
-      if (oracle_cell_valid(lattice, cells[c][0], cells[c][1], cells[c][2]))
-      {
-        return 1;
-      }
+      const int other = (axis + 1 + side) % 3;
+      const int64_t offset = at[other] - cell->at[other];
+      inside =
+        inside && (q >> side & 1 ? offset >= 0 && offset < size : offset > 0 && offset <= size);
+    }
+    quadrants |= inside << q;
+  }
+  return quadrants;
+}
+
+/* The edge between two nodes of a cell, made where it is new. */
+static int64_t lattice_edge_between(
+  oracle_lattice* lattice, const lattice_cell* cell, int64_t node_a, int64_t node_b)
+{
+  const int64_t* a = lattice->nodes[node_a].at;
+  const int64_t* b = lattice->nodes[node_b].at;
+  const int axis = a[0] != b[0] ? 0 : a[1] != b[1] ? 1 : 2;
+  const int swapped = a[axis] > b[axis];
+  const int64_t* low = swapped ? b : a;
+  int64_t* index = oracle_map_find(&lattice->edge_map, low, axis, 1);
+  if (*index < 0)
+  {
+    lattice->edges = oracle_grow(
+      lattice->edges, lattice->edge_count, &lattice->edge_capacity, sizeof(lattice_edge));
+    lattice_edge* edge = &lattice->edges[lattice->edge_count];
+    memset(edge, 0, sizeof(*edge));
+    memcpy(edge->at, low, sizeof(edge->at));
+    edge->length = swapped ? a[axis] - b[axis] : b[axis] - a[axis];
+    edge->axis = axis;
+    edge->node[0] = swapped ? node_b : node_a;
+    edge->node[1] = swapped ? node_a : node_b;
+    edge->certain = 1;
+    edge->component = -1;
+    *index = lattice->edge_count++;
+  }
+  if (cell->valid)
+  {
+    lattice->edges[*index].quadrants |= lattice_quadrants(cell, low, axis);
+  }
+  return *index;
+}
+
+/* ---- faces ---- */
+
+/* Nodes of a cell around a square of its face: towards -axis or +axis, with the lowest corner at (u,
+ * v) and 1 or 2 half-edges wide; counter-clockwise seen from outside. Returns how many. */
+static int lattice_ring(
+  const lattice_cell* cell, int axis, int side, const int lowest[2], int width, int64_t ring[8])
+{
+  static const int walk[8][2] = { { 0, 0 }, { 1, 0 }, { 2, 0 }, { 2, 1 }, { 2, 2 }, { 1, 2 },
+    { 0, 2 }, { 0, 1 } };
+  const int stride[3] = { 1, 3, 9 };
+  int count = 0;
+  for (int n = 0; n < 8; ++n)
+  {
+    const int* step = walk[side ? n : 7 - n];
+    if (width == 1 && (step[0] == 1 || step[1] == 1))
+    {
+      continue;
+    }
+    const int u = lowest[0] + step[0] * width / 2;
+    const int v = lowest[1] + step[1] * width / 2;
+    const int64_t node =
+      cell->node[2 * side * stride[axis] + u * stride[(axis + 1) % 3] + v * stride[(axis + 2) % 3]];
+    if (node >= 0)
+    {
+      ring[count++] = node;
     }
   }
-  return 0;
+  return count;
 }
 
-static int oracle_cell_used(const oracle_lattice* lattice, int64_t i, int64_t j, int64_t k)
+/* Whether the nodes above iso are joined on a face: 0 or 1, or -1 where that is within rounding. value: at
+ * the corners (0, 0), (1, 0), (0, 1), (1, 1) of u and v; corner: where the first one is. */
+static int lattice_decide_face(const oracle_decider* decider, const double value[4],
+  const double corner[3], const double edge[3], int u, int v)
 {
-  if (i + 1 >= lattice->size[0] || j + 1 >= lattice->size[1] || k + 1 >= lattice->size[2])
+  const double sum = value[0] - value[2] - value[1] + value[3];
+  double point[3] = { corner[0], corner[1], corner[2] };
+  oracle_sample sample;
+  point[u] += edge[u] * (value[0] - value[2]) / sum;
+  point[v] += edge[v] * (value[0] - value[1]) / sum;
+  oracle_evaluate(decider->field, NULL, point, &sample);
+  /* Rounding of the value, and of the node values, which moves the point. */
+  const double moved = fmax(edge[u], edge[v]) * decider->limits->close / fabs(sum);
+  const double rounding = decider->limits->close +
+    oracle_rounding(decider->field, point, decider->unit) +
+    moved * (fabs(sample.gradient[u]) + fabs(sample.gradient[v]));
+  if (fabs(sample.value - decider->limits->iso) <= rounding ||
+    (decider->field->kind == ORACLE_SHEPARD && fabs(sample.weight) < 1e-9))
+  {
+    return -1;
+  }
+  return sample.value > decider->limits->iso;
+}
+
+/* Decides likewise for a face of a cell; as in the case table, 0, where the field does not
+ * decide. */
+static int lattice_joined(oracle_lattice* lattice, const lattice_cell* cell, int face)
+{
+  static const int stride[3] = { 1, 3, 9 };
+  const int axis = face / 2, side = face % 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const int64_t size = (int64_t)1 << cell->level;
+  int64_t across[3] = { cell->at[0], cell->at[1], cell->at[2] };
+  double value[4], corner[3];
+  across[axis] += side ? size : -size;
+  if (!lattice->decider || !oracle_is_plain(lattice, cell->level, cell->at) ||
+    !oracle_is_plain(lattice, cell->level, across))
   {
     return 0;
   }
-  int above = 0;
-  for (int c = 0; c < 8; ++c)
+  for (int n = 0; n < 4; ++n)
   {
-    above += oracle_above(lattice, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+    const int place = 2 * side * stride[axis] + 2 * (n & 1) * stride[u] + 2 * (n >> 1) * stride[v];
+    const lattice_node* node = &lattice->nodes[cell->node[place]];
+    value[n] = node->value;
+    if (n == 0)
+    {
+      oracle_place(lattice, node->at, corner);
+    }
   }
-  return above > 0 && above < 8 && oracle_cell_valid(lattice, i, j, k);
+  const double edge[3] = { (double)size * lattice->edge[0], (double)size * lattice->edge[1],
+    (double)size * lattice->edge[2] };
+  return lattice_decide_face(lattice->decider, value, corner, edge, u, v);
 }
 
-/* Counts (fill = 0) or writes the crossed edges and cells, in ascending order. */
-static void oracle_list(oracle_surface* surface, const oracle_lattice* lattice, int fill)
+/* A cell's segments: next[n] follows edge[n] on its loop. */
+typedef struct lattice_links
 {
-  int64_t edges = 0;
-  int64_t cells = 0;
-  for (int64_t k = 0; k < lattice->size[2]; ++k)
+  int count;
+  int64_t edge[48], next[48];
+} lattice_links;
+
+/* A segment leads from where the walk around a square enters "above" to where it leaves it. */
+static void lattice_link(oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring,
+  int count, lattice_links* links)
+{
+  for (int n = 0; n < count; ++n)
   {
-    for (int64_t j = 0; j < lattice->size[1]; ++j)
+    const int64_t from = ring[n];
+    int last = (n + 1) % count;
+    if (lattice_above(lattice, from) || !lattice_above(lattice, ring[last]))
     {
-      for (int64_t i = 0; i < lattice->size[0]; ++i)
+      continue;
+    }
+    links->edge[links->count] = lattice_edge_between(lattice, cell, from, ring[last]);
+    while (lattice_above(lattice, ring[(last + 1) % count]))
+    {
+      last = (last + 1) % count;
+    }
+    links->next[links->count++] =
+      lattice_edge_between(lattice, cell, ring[last], ring[(last + 1) % count]);
+  }
+}
+
+static int lattice_ambiguous(const oracle_lattice* lattice, const int64_t* ring, int count)
+{
+  return count == 4 && !lattice_above(lattice, ring[0]) == !lattice_above(lattice, ring[2]) &&
+    !lattice_above(lattice, ring[1]) == !lattice_above(lattice, ring[3]) &&
+    !lattice_above(lattice, ring[0]) != !lattice_above(lattice, ring[1]);
+}
+
+/* Nodes above joined: each of the two below is cut off. */
+static void lattice_link_joined(
+  oracle_lattice* lattice, const lattice_cell* cell, const int64_t ring[4], lattice_links* links)
+{
+  for (int n = 0; n < 4; ++n)
+  {
+    if (!lattice_above(lattice, ring[n]))
+    {
+      links->edge[links->count] = lattice_edge_between(lattice, cell, ring[n], ring[(n + 1) % 4]);
+      links->next[links->count++] = lattice_edge_between(lattice, cell, ring[n], ring[(n + 3) % 4]);
+    }
+  }
+}
+
+/* Pairs of a square's edges that rounding may join or part. */
+static void lattice_doubt(
+  oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring, int count)
+{
+  int64_t edge[8];
+  int edges = 0;
+  for (int n = 0; n < count; ++n)
+  {
+    if (!lattice_above(lattice, ring[n]) != !lattice_above(lattice, ring[(n + 1) % count]))
+    {
+      edge[edges++] = lattice_edge_between(lattice, cell, ring[n], ring[(n + 1) % count]);
+    }
+  }
+  for (int n = 0; n < edges * edges; ++n)
+  {
+    const int64_t pair[3] = { edge[n % edges], edge[n / edges], 0 };
+    if (pair[0] < pair[1])
+    {
+      *oracle_map_find(&lattice->doubts, pair, 0, 1) = 1;
+    }
+  }
+}
+
+/* On a face, or a quarter of one that is split. */
+static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cell, int face,
+  int split, const int64_t* ring, int count, lattice_links* links)
+{
+  const int ambiguous = !split && lattice_ambiguous(lattice, ring, count);
+  const int joined = ambiguous ? lattice_joined(lattice, cell, face) : 0;
+  int doubtful = joined < 0 || !cell->certain;
+  for (int n = 0; n < count; ++n)
+  {
+    doubtful = doubtful || (lattice->nodes[ring[n]].flags & LATTICE_CLOSE) != 0;
+  }
+  if (joined > 0)
+  {
+    lattice_link_joined(lattice, cell, ring, links);
+  }
+  else
+  {
+    lattice_link(lattice, cell, ring, count, links);
+  }
+  if (doubtful)
+  {
+    lattice_doubt(lattice, cell, ring, count);
+  }
+}
+
+static void lattice_link_cell(
+  oracle_lattice* lattice, const lattice_cell* cell, lattice_links* links)
+{
+  static const int middle[6] = { 12, 14, 10, 16, 4, 22 };
+  links->count = 0;
+  for (int face = 0; face < 6; ++face)
+  {
+    const int split = cell->node[middle[face]] >= 0;
+    for (int part = 0; part < (split ? 4 : 1); ++part)
+    {
+      const int lowest[2] = { part & 1, part >> 1 };
+      int64_t ring[8];
+      const int count = lattice_ring(cell, face / 2, face % 2, lowest, split ? 1 : 2, ring);
+      lattice_link_square(lattice, cell, face, split, ring, count, links);
+    }
+  }
+}
+
+/* Of the cell that comes next. */
+static void lattice_add_segment(oracle_lattice* lattice, int64_t from, int64_t to, int certain)
+{
+  lattice->segments = oracle_grow(
+    lattice->segments, lattice->segment_count, &lattice->segment_capacity, sizeof(lattice_segment));
+  const lattice_segment segment = { from, to, lattice->cell_count };
+  lattice->segments[lattice->segment_count++] = segment;
+  lattice->edges[from].used = 1;
+  lattice->edges[from].sure |= certain;
+}
+
+/* Joins a valid cell's segments to loops; one of two is nothing. */
+static void lattice_close_loops(
+  oracle_lattice* lattice, lattice_cell* cell, const lattice_links* links)
+{
+  int seen[48] = { 0 };
+  for (int first = 0; first < links->count; ++first)
+  {
+    int loop[48];
+    int length = 0;
+    for (int n = first; !seen[n];)
+    {
+      int following = 0;
+      seen[n] = 1;
+      loop[length++] = n;
+      while (links->edge[following] != links->next[n])
       {
-        const int64_t node = oracle_node_index(lattice, i, j, k);
-        const int64_t ijk[3] = { i, j, k };
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          if (ijk[axis] + 1 < lattice->size[axis] && oracle_edge_used(lattice, 3 * node + axis))
-          {
-            if (fill)
-            {
-              surface->edge[edges] = 3 * node + axis;
-            }
-            ++edges;
-          }
-        }
-        if (oracle_cell_used(lattice, i, j, k))
-        {
-          if (fill)
-          {
-            surface->cell[cells] = node;
-          }
-          ++cells;
-        }
+        ++following;
+      }
+      n = following;
+    }
+    if (length > 2)
+    {
+      ++cell->loops;
+      cell->triangles += length - 2;
+      for (int n = 0; n < length; ++n)
+      {
+        lattice_add_segment(lattice, links->edge[loop[n]], links->next[loop[n]], cell->certain);
       }
     }
   }
-  surface->edge_count = edges;
-  surface->cell_count = cells;
+  lattice->triangle_count += cell->triangles;
 }
 
-static int oracle_compare_keys(const void* a, const void* b)
-{
-  const int64_t x = *(const int64_t*)a;
-  const int64_t y = *(const int64_t*)b;
-  return (x > y) - (x < y);
-}
+/* ---- cells ---- */
 
-static int64_t oracle_find(const int64_t* keys, int64_t count, int64_t key)
+/* Fills in what the nodes say; 0 where the surface does not cross the cell, or cannot. */
+static int lattice_judge(const oracle_lattice* lattice, lattice_cell* cell)
 {
-  const int64_t* at =
-    count > 0 ? bsearch(&key, keys, (size_t)count, sizeof(*keys), oracle_compare_keys) : NULL;
-  return at ? at - keys : -1;
-}
-
-int64_t oracle_find_edge(const oracle_surface* surface, int64_t edge)
-{
-  return oracle_find(surface->edge, surface->edge_count, edge);
-}
-
-static int64_t oracle_root(int64_t* parent, int64_t n)
-{
-  while (parent[n] != n)
+  int above = 0;
+  int close = 0;
+  int count = 0;
+  int possible = 1;
+  cell->valid = cell->certain = 1;
+  for (int n = 0; n < 27; ++n)
   {
-    parent[n] = parent[parent[n]];
-    n = parent[n];
+    if (cell->node[n] >= 0)
+    {
+      const int flags = lattice->nodes[cell->node[n]].flags;
+      const int margin = (flags & LATTICE_MARGIN) != 0;
+      const int valid = (flags & LATTICE_VALID) != 0;
+      above += (flags & LATTICE_ABOVE) != 0;
+      close += (flags & LATTICE_CLOSE) != 0;
+      ++count;
+      cell->valid = cell->valid && valid;
+      cell->certain = cell->certain && !margin;
+      possible = possible && (valid || margin);
+    }
+  }
+  /* Among more than 8 nodes, one on the other side may turn a loop into one of two edges. */
+  cell->certain = cell->certain && (count == 8 || close == 0);
+  return above > 0 && above < count && possible;
+}
+
+typedef void lattice_visit(oracle_lattice* lattice, lattice_cell* cell);
+
+static void lattice_visit_cells(oracle_lattice* lattice, lattice_visit* visit)
+{
+  for (int64_t b = 0; b < lattice->brick_count; ++b)
+  {
+    for (int c = 0; c < 64; ++c)
+    {
+      lattice_cell cell;
+      int there = 1;
+      oracle_cell_at(lattice, b, c, 0, &cell);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        there =
+          there && cell.at[axis] >= lattice->first[axis] && cell.at[axis] < lattice->end[axis];
+      }
+      if (there)
+      {
+        visit(lattice, &cell);
+      }
+    }
+  }
+}
+
+static void lattice_march_cell(oracle_lattice* lattice, lattice_cell* cell)
+{
+  if (!lattice_judge(lattice, cell))
+  {
+    return;
+  }
+  lattice_links links;
+  lattice_link_cell(lattice, cell, &links);
+  if (cell->valid)
+  {
+    lattice_close_loops(lattice, cell, &links);
+  }
+  lattice->cells =
+    oracle_grow(lattice->cells, lattice->cell_count, &lattice->cell_capacity, sizeof(lattice_cell));
+  lattice->cells[lattice->cell_count++] = *cell;
+}
+
+/* Where a cell might be another, or not be, its edges are not certain, crossed or not as it is. */
+static void lattice_doubt_cell(oracle_lattice* lattice, lattice_cell* cell)
+{
+  lattice_judge(lattice, cell);
+  for (int n = 0; n < 27 && !cell->certain; ++n)
+  {
+    static const int stride[3] = { 1, 3, 9 };
+    for (int axis = 0; axis < 3 && cell->node[n] >= 0; ++axis)
+    {
+      const int64_t* found =
+        oracle_map_find(&lattice->edge_map, lattice->nodes[cell->node[n]].at, axis, 0);
+      if (found && n / stride[axis] % 3 < 2)
+      {
+        lattice->edges[*found].certain = 0;
+      }
+    }
+  }
+}
+
+static int64_t lattice_root(lattice_cell* cells, int64_t n)
+{
+  while (cells[n].component != n)
+  {
+    cells[n].component = cells[cells[n].component].component;
+    n = cells[n].component;
   }
   return n;
 }
 
-/* 1 if the face between a cell and its neighbour in +axis has nodes on both sides. */
-static int oracle_face_mixed(const oracle_lattice* lattice, int64_t cell, int axis)
+/* Components of cells that share segments; each edge gets that of one of its cells. */
+static void lattice_unite(oracle_lattice* lattice)
 {
-  const int64_t step[3] = { 1, lattice->size[0], lattice->size[0] * lattice->size[1] };
-  const int64_t first = cell + step[axis];
-  const int64_t u = step[(axis + 1) % 3];
-  const int64_t v = step[(axis + 2) % 3];
-  const int above = (lattice->flags[first] & ORACLE_NODE_ABOVE) +
-    (lattice->flags[first + u] & ORACLE_NODE_ABOVE) +
-    (lattice->flags[first + v] & ORACLE_NODE_ABOVE) +
-    (lattice->flags[first + u + v] & ORACLE_NODE_ABOVE);
-  return above > 0 && above < 4;
-}
-
-/* Unites cells over mixed faces; parent[c] is then the number of the component of cell c. */
-static int64_t oracle_unite_cells(
-  const oracle_surface* surface, const oracle_lattice* lattice, int64_t* parent)
-{
-  const int64_t step[3] = { 1, lattice->size[0], lattice->size[0] * lattice->size[1] };
-  for (int64_t c = 0; c < surface->cell_count; ++c)
+  oracle_map seen = { NULL, 0, 0 };
+  lattice_cell* cells = lattice->cells;
+  for (int64_t c = 0; c < lattice->cell_count; ++c)
   {
-    parent[c] = c;
+    cells[c].component = c;
   }
-  for (int64_t c = 0; c < surface->cell_count; ++c)
+  for (int64_t s = 0; s < lattice->segment_count; ++s)
   {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (oracle_face_mixed(lattice, surface->cell[c], axis))
-      {
-        const int64_t other =
-          oracle_find(surface->cell, surface->cell_count, surface->cell[c] + step[axis]);
-        if (other >= 0)
-        {
-          const int64_t a = oracle_root(parent, c);
-          const int64_t b = oracle_root(parent, other);
-          parent[a > b ? a : b] = a > b ? b : a;
-        }
-      }
-    }
+    const lattice_segment* segment = &lattice->segments[s];
+    const int up = segment->from < segment->to;
+    const int64_t pair[3] = { up ? segment->from : segment->to, up ? segment->to : segment->from,
+      0 };
+    int64_t* other = oracle_map_find(&seen, pair, 0, 1);
+    *other = *other < 0 ? segment->cell : *other;
+    const int64_t a = lattice_root(cells, segment->cell);
+    const int64_t b = lattice_root(cells, *other);
+    cells[a > b ? a : b].component = a > b ? b : a;
   }
   /* Roots are the lowest cell of their component, so one ascending pass can number them. */
-  int64_t components = 0;
-  for (int64_t c = 0; c < surface->cell_count; ++c)
+  for (int64_t c = 0; c < lattice->cell_count; ++c)
   {
-    const int64_t root = parent[c];
-    parent[c] = root == c ? components++ : parent[root];
+    const int64_t root = cells[c].component;
+    cells[c].component = root != c ? cells[root].component
+      : cells[c].loops > 0         ? lattice->component_count++
+                                   : -1;
   }
-  return components;
+  for (int64_t s = 0; s < lattice->segment_count; ++s)
+  {
+    lattice->edges[lattice->segments[s].from].component =
+      cells[lattice->segments[s].cell].component;
+  }
+  oracle_map_free(&seen);
 }
 
-int oracle_create_surface(oracle_surface* surface, const oracle_lattice* lattice)
+void oracle_march(oracle_lattice* lattice, const oracle_field* field, const oracle_limits* limits,
+  int by_field, double unit)
 {
-  memset(surface, 0, sizeof(*surface));
-  oracle_list(surface, lattice, 0);
-  surface->edge = malloc(((size_t)surface->edge_count + 1) * sizeof(int64_t));
-  surface->edge_component = malloc(((size_t)surface->edge_count + 1) * sizeof(int64_t));
-  surface->cell = malloc(((size_t)surface->cell_count + 1) * sizeof(int64_t));
-  int64_t* parent = malloc(((size_t)surface->cell_count + 1) * sizeof(int64_t));
-  if (!surface->edge || !surface->edge_component || !surface->cell || !parent)
+  const oracle_decider decider = { field, limits, unit };
+  oracle_map_free(&lattice->edge_map);
+  oracle_map_free(&lattice->doubts);
+  lattice->cell_count = lattice->edge_count = lattice->segment_count = 0;
+  lattice->component_count = lattice->triangle_count = 0;
+  for (int64_t n = 0; n < lattice->node_count; ++n)
   {
-    free(parent);
-    oracle_free_surface(surface);
-    return 0;
+    lattice_classify(&lattice->nodes[n], field->kind, limits);
   }
-  oracle_list(surface, lattice, 1);
-  surface->component_count = oracle_unite_cells(surface, lattice, parent);
-  for (int64_t e = 0; e < surface->edge_count; ++e)
-  {
-    int64_t cells[4][3];
-    surface->edge_component[e] = -1;
-    oracle_edge_cells(lattice, surface->edge[e], cells);
-    /* All valid cells of a crossed edge lie in one component unless invalid ones separate them; the
-     * first then names it. */
-    for (int c = 0; c < 4 && surface->edge_component[e] < 0; ++c)
-    {
-      if (oracle_cell_valid(lattice, cells[c][0], cells[c][1], cells[c][2]))
-      {
-        const int64_t node = oracle_node_index(lattice, cells[c][0], cells[c][1], cells[c][2]);
-        surface->edge_component[e] = parent[oracle_find(surface->cell, surface->cell_count, node)];
-      }
-    }
-  }
-  free(parent);
-  return 1;
-}
-
-void oracle_free_surface(oracle_surface* surface)
-{
-  free(surface->edge);
-  free(surface->edge_component);
-  free(surface->cell);
-  memset(surface, 0, sizeof(*surface));
+  lattice->decider = by_field ? &decider : NULL;
+  lattice_visit_cells(lattice, lattice_march_cell);
+  lattice->decider = NULL;
+  lattice_visit_cells(lattice, lattice_doubt_cell);
+  lattice_unite(lattice);
 }

@@ -50,16 +50,9 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
 /* Opposite sides are alike to the last bit, but for what is trimmed. */
 static void check_sides(const char* name, const mcor_surface* s, const mcor_options* options)
 {
-  oracle_lattice lattice = { .cube = s->statistics.cube_size };
   oracle_seam seam;
-  for (int a = 0; a < 3; ++a)
-  {
-    lattice.edge[a] = s->statistics.cube_edges[a];
-    lattice.origin[a] = s->statistics.lattice_origin[a];
-    lattice.end[a] = s->statistics.lattice_cells[a];
-  }
   mesh_report report = core_check_mesh(s);
-  assert_true(oracle_check_seam(options, &lattice, s, &report, &seam));
+  assert_true(oracle_check_seam(options, s->statistics.cube_edges, s, &report, &seam));
   CORE_CHECK(seam.joined > 20 && seam.open == 0 && seam.torn == 0 && seam.different == 0,
     "%s: %lld edges of borders are one, %lld are open, %lld torn, %lld points differ", name,
     (long long)seam.joined, (long long)seam.open, (long long)seam.torn, (long long)seam.different);

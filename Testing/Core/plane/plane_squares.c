@@ -6,7 +6,7 @@
 
 #include "plane_reference.h"
 
-#include "oracle_adaptive.h"
+#include "oracle_lattice.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ typedef struct plane_squares
   int top;
   int64_t low[2], size[2]; /* in bricks of the level above the highest */
   uint8_t* split[MCOR_CUBE_LEVELS + 1];
-  adaptive_map node_map, edge_map;
+  oracle_map node_map, edge_map;
   plane_node* nodes;
   plane_edge* edges;
   int64_t node_count, node_capacity, edge_count, edge_capacity;
@@ -152,7 +152,7 @@ static void plane_split_all(plane_squares* s)
 static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
 {
   const int64_t at[3] = { x, y, 0 };
-  int64_t* place = adaptive_map_find(&s->node_map, at, 0, 1);
+  int64_t* place = oracle_map_find(&s->node_map, at, 0, 1);
   if (*place >= 0)
   {
     return s->nodes + *place;
@@ -161,7 +161,7 @@ static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
   const plane_sample p = plane_evaluate(s->field, (double)x * s->cube, (double)y * s->cube);
   const int lacks = o->field == MCOR_SHEPARD && p.fluid < 1e-3;
   *place = s->node_count;
-  s->nodes = adaptive_grow(s->nodes, s->node_count + 1, &s->node_capacity, sizeof *s->nodes);
+  s->nodes = oracle_grow(s->nodes, s->node_count + 1, &s->node_capacity, sizeof *s->nodes);
   plane_node* n = s->nodes + s->node_count++;
   n->above = (lacks ? 0 : p.value) >= s->iso;
   n->valid = o->field == MCOR_WEIGHT_SUM || (lacks ? -1 : p.weight) >= o->node_threshold;
@@ -178,11 +178,11 @@ static int64_t plane_edge_at(
   const int axis = a[1] == b[1] ? 0 : 1, forward = b[axis] > a[axis];
   const int64_t* low = forward ? a : b;
   const int64_t at[3] = { low[0], low[1], 0 };
-  int64_t* place = adaptive_map_find(&s->edge_map, at, axis, 1);
+  int64_t* place = oracle_map_find(&s->edge_map, at, axis, 1);
   if (*place < 0)
   {
     *place = s->edge_count;
-    s->edges = adaptive_grow(s->edges, s->edge_count + 1, &s->edge_capacity, sizeof *s->edges);
+    s->edges = oracle_grow(s->edges, s->edge_count + 1, &s->edge_capacity, sizeof *s->edges);
     s->edges[s->edge_count++] = (plane_edge){ .at = { low[0], low[1] },
       .length = llabs(b[axis] - a[axis]),
       .axis = axis,
@@ -293,8 +293,8 @@ static void plane_destroy(plane_squares* s)
   {
     free(s->split[l]);
   }
-  adaptive_map_free(&s->node_map);
-  adaptive_map_free(&s->edge_map);
+  oracle_map_free(&s->node_map);
+  oracle_map_free(&s->edge_map);
   free(s->nodes);
   free(s->edges);
 }
@@ -333,7 +333,7 @@ static int64_t plane_edge_of(plane_squares* s, double u, double v)
     int64_t at[3] = { 0, 0, 0 };
     at[axis] = (int64_t)floor(ldexp(x[axis], -l)) * (INT64_C(1) << l);
     at[!axis] = (int64_t)floor(x[!axis] + 0.5);
-    const int64_t* edge = adaptive_map_find(&s->edge_map, at, axis, 0);
+    const int64_t* edge = oracle_map_find(&s->edge_map, at, axis, 0);
     if (edge && s->edges[*edge].length == INT64_C(1) << l)
     {
       return *edge;

@@ -8,7 +8,7 @@
 #include "mcor.h"
 #include "mesh_check.h"
 #include "oracle.h"
-#include "oracle_adaptive.h"
+#include "oracle_lattice.h"
 
 #ifdef __cplusplus
 extern "C"
@@ -24,9 +24,6 @@ extern "C"
     oracle_particles particles;
     oracle_field field;
     oracle_lattice lattice;
-    oracle_surface surface;
-    int is_adaptive; /* then these two are empty, but for the smallest cube, and this holds all */
-    oracle_adaptive adaptive;
     int by_field; /* topology is */
     oracle_limits limits;
     /* Range of the scalar over fluid particles, or its largest magnitude if all are equal; for
@@ -56,8 +53,6 @@ extern "C"
     int64_t split;       /* pinched edges with two vertices, as it should be */
     int64_t components;  /* of the oracle */
     int64_t components_missing, components_partial; /* unexcused edges missing: all, some */
-    int64_t pinched_edges;                          /* two valid cells touch only in the edge */
-
     double residual; /* max |f - iso| / range over vertices on edges */
     int64_t noisy;   /* vertices whose residual is above 4e-6, but within the bound on rounding */
     double distance; /* max distance to the surface f = iso, in cubes */

@@ -3,17 +3,15 @@
 #ifndef oracle_compare_internal_h
 #define oracle_compare_internal_h
 
-/* oracle_compare.c calls what compares edges (oracle_compare_edges.c), vertices and triangles
- * (_mesh.c) and what the mesh does on the faces of the lattice (_faces.c); these call what they share
- * (_state.c), and not each other. */
+/* oracle_compare.c calls what compares edges (oracle_compare_edges.c) and vertices and triangles (_mesh.c);
+ * these call what they share (_state.c), and not each other. */
 
 #include "oracle_compare.h"
 
 enum
 {
   COMPARE_OFF_LATTICE = -1,
-  COMPARE_TRIM_VERTEX = -2,
-  COMPARE_ON_NODE = -3 /* and lower: on node -3 - value; which of its edges is open */
+  COMPARE_TRIM_VERTEX = -2
 };
 
 typedef struct compare_state
@@ -26,7 +24,7 @@ typedef struct compare_state
   oracle_comparison* result;
   /* [point_count], an edge of the lattice (3 * number + axis) or COMPARE_*. */
   int64_t* vertex_edge;
-  /* [edge_count] of the oracle's surface, a point or -1. A pinched edge has a second vertex, as
+  /* [edge_count] of the lattice, a point or -1. A pinched edge has a second vertex, as
    * each of its two cells has a fan of its own. */
   int64_t *edge_vertex, *second_vertex;
   double* gradient;    /* [point_count][3], by the oracle */
@@ -48,33 +46,15 @@ int compare_rightly_trimmed(
   const compare_state* state, const double start[3], int axis, double length);
 /* The first fault is kept in words. */
 void compare_note(compare_state* state, const char* format, ...);
-void compare_note_edge(compare_state* state, const char* what, int64_t edge);
-/* 1 if either end of the edge has the flag. */
-int compare_end_flag(const oracle_lattice* lattice, int64_t edge, int flag);
-/* 1 if two valid cells touch only in this edge. */
-int compare_pinched(const oracle_lattice* lattice, int64_t edge);
 
-/* ---- oracle_compare_edges.c: which edge each vertex lies on, then what that leaves out ---- */
+/* ---- oracle_compare_edges.c: which edge each vertex lies on, what that leaves out, how triangles join them ---- */
 
-void compare_assign(compare_state* state);
-/* present, absent: of each component, and one more; counted up. */
-void compare_missing(compare_state* state, int64_t* present, int64_t* absent);
-void compare_extra(compare_state* state);
-
-/* ---- oracle_compare_adaptive.c: these and those on faces, for cubes of several sizes ---- */
-
-void compare_adaptive(compare_state* state, int64_t* present, int64_t* absent);
+/* present, absent: of each component; counted up. */
+void compare_edges(compare_state* state, int64_t* present, int64_t* absent);
 
 /* ---- oracle_compare_mesh.c ---- */
 
 void compare_vertices(compare_state* state);
 int compare_orientation(compare_state* state); /* 0 if memory ran out */
-
-/* ---- oracle_compare_faces.c ---- */
-
-void compare_faces(compare_state* state);
-void compare_boundary(compare_state* state);
-void compare_count_pinched(compare_state* state);
-void compare_count_unsettled(compare_state* state);
 
 #endif

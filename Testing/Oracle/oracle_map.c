@@ -1,18 +1,18 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "oracle_adaptive.h"
+#include "oracle_lattice.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void adaptive_out_of_memory(void)
+static void lattice_out_of_memory(void)
 {
-  fprintf(stderr, "out of memory for the adaptive lattice\n");
+  fprintf(stderr, "out of memory for the lattice\n");
   abort();
 }
 
-void* adaptive_grow(void* array, int64_t count, int64_t* capacity, size_t size)
+void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size)
 {
   if (count < *capacity)
   {
@@ -22,12 +22,12 @@ void* adaptive_grow(void* array, int64_t count, int64_t* capacity, size_t size)
   void* grown = realloc(array, (size_t)*capacity * size);
   if (!grown)
   {
-    adaptive_out_of_memory();
+    lattice_out_of_memory();
   }
   return grown;
 }
 
-static int64_t adaptive_map_slot(const adaptive_map* map, const int64_t at[3], int64_t tag)
+static int64_t oracle_map_slot(const oracle_map* map, const int64_t at[3], int64_t tag)
 {
   uint64_t hash = (uint64_t)tag;
   for (int axis = 0; axis < 3; ++axis)
@@ -46,14 +46,14 @@ static int64_t adaptive_map_slot(const adaptive_map* map, const int64_t at[3], i
   }
 }
 
-static void adaptive_map_grow(adaptive_map* map)
+static void oracle_map_grow(oracle_map* map)
 {
-  const adaptive_map old = *map;
+  const oracle_map old = *map;
   map->capacity = old.capacity > 0 ? 2 * old.capacity : 1024;
   map->slots = malloc((size_t)map->capacity * 5 * sizeof(int64_t));
   if (!map->slots)
   {
-    adaptive_out_of_memory();
+    lattice_out_of_memory();
   }
   memset(map->slots, 0xff, (size_t)map->capacity * 5 * sizeof(int64_t));
   for (int64_t n = 0; n < old.capacity; ++n)
@@ -61,19 +61,19 @@ static void adaptive_map_grow(adaptive_map* map)
     const int64_t* held = &old.slots[5 * n];
     if (held[4] >= 0)
     {
-      memcpy(&map->slots[5 * adaptive_map_slot(map, held, held[3])], held, 5 * sizeof(int64_t));
+      memcpy(&map->slots[5 * oracle_map_slot(map, held, held[3])], held, 5 * sizeof(int64_t));
     }
   }
   free(old.slots);
 }
 
-int64_t* adaptive_map_find(adaptive_map* map, const int64_t at[3], int64_t tag, int add)
+int64_t* oracle_map_find(oracle_map* map, const int64_t at[3], int64_t tag, int add)
 {
   if (2 * map->count >= map->capacity)
   {
-    adaptive_map_grow(map);
+    oracle_map_grow(map);
   }
-  int64_t* held = &map->slots[5 * adaptive_map_slot(map, at, tag)];
+  int64_t* held = &map->slots[5 * oracle_map_slot(map, at, tag)];
   if (held[4] < 0)
   {
     if (!add)
@@ -87,7 +87,7 @@ int64_t* adaptive_map_find(adaptive_map* map, const int64_t at[3], int64_t tag, 
   return &held[4];
 }
 
-void adaptive_map_free(adaptive_map* map)
+void oracle_map_free(oracle_map* map)
 {
   free(map->slots);
   memset(map, 0, sizeof(*map));

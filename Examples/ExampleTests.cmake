@@ -25,7 +25,7 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 
-# The cases with tiny sets. VTK's own Python; splashsurf is compared only where that has it.
+# The cases with tiny sets. VTK's own Python; splashsurf is compared, and table d made, only where that has the packages.
 if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
   mcor_add_example_test(benchmark vtk "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/Benchmark/benchmark.py" $<TARGET_FILE:marching-correctors> --quick

@@ -19,7 +19,6 @@ import sys
 import tempfile
 
 import cases
-import device_limits
 import paper_tables
 import smooth
 import tables
@@ -75,10 +74,7 @@ class Benchmark:
     def describe(self):
         """Machine, device, versions."""
         found = self.program.run(self.sets.get("tank", self.sizes[0]), tables.ISOSURFACE)
-        device = device_limits.measure(found["device"], found["platform"], 1)
-        facts = {"machine": machine(), "device": f"{found['device']}, {device['compute_units']} compute units",
-                 "platform": found["platform"],
-                 "limits": f"measured through {device['platform_version']}, {device['driver_version']}",
+        facts = {"machine": machine(), "device": found["device"], "platform": found["platform"],
                  "program": f"{found['name']}, on VTK {found['vtk']}", "python": platform.python_version(), **versions(),
                  "runs": self.runs}
         self.report.text("# Benchmark", "", *(f"- {name}: {fact}" for name, fact in facts.items()))

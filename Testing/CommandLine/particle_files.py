@@ -1,10 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Particle files written by hand, as ASCII: no VTK between a test and the bytes that it means."""
+"""Files of particles, their steps and pieces, and of points, in the forms that VTK reads, all written by hand: no VTK between a
+test and the bytes that it means."""
+import base64
 import itertools
 import math
+import struct
+import zlib
 
 SPACING = 0.1
+CODES = {"Float64": "d", "Int64": "q", "UInt8": "B"}
 
 
 def lattice(n=10):
@@ -26,64 +31,6 @@ def lattice(n=10):
     return points, arrays
 
 
-def text_of(values):
-    flat = (v for value in values for v in (value if isinstance(value, tuple) else (value,)))
-    return " ".join("nan" if v != v else repr(v) for v in flat)
-
-
-def components(values):
-    return len(values[0]) if values and isinstance(values[0], tuple) else 1
-
-
-def xml_array(name, values, kind="Float64", width=None):
-    width = width or components(values)
-    return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width}" '
-            f'format="ascii">{text_of(values)}</DataArray>')
-
-
-def string_array(name, texts):
-    codes = " ".join(" ".join(str(ord(c)) for c in text) + " 0" for text in texts)
-    return f'<Array type="String" Name="{name}" format="ascii">{codes}</Array>'
-
-
-def write_vtp(path, points, arrays, extra=""):
-    """`extra` is more XML for the point data."""
-    data = "".join(xml_array(name, values) for name, values in arrays.items())
-    path.write_text(
-        '<?xml version="1.0"?><VTKFile type="PolyData" version="0.1" byte_order="LittleEndian">'
-        f'<PolyData><Piece NumberOfPoints="{len(points)}" NumberOfVerts="0" NumberOfLines="0" '
-        f'NumberOfStrips="0" NumberOfPolys="0"><PointData>{data}{extra}</PointData>'
-        f'<Points>{xml_array("Points", points, width=3)}</Points></Piece></PolyData></VTKFile>')
-
-
-def write_vtu(path, points, arrays, cells=None):
-    """An unstructured grid of vertices, as many SPH codes write, or of cells: (type, points)."""
-    cells = [(1, [i]) for i in range(len(points))] if cells is None else cells
-    count = len(cells)
-    ends = list(itertools.accumulate(len(ids) for _, ids in cells))
-    cells = (xml_array("connectivity", [i for _, ids in cells for i in ids], "Int64") + xml_array("offsets", ends, "Int64") +
-             xml_array("types", [kind for kind, _ in cells], "UInt8"))
-    data = "".join(xml_array(name, values) for name, values in arrays.items())
-    path.write_text(
-        '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="0.1" '
-        f'byte_order="LittleEndian"><UnstructuredGrid><Piece NumberOfPoints="{len(points)}" '
-        f'NumberOfCells="{count}"><PointData>{data}</PointData>'
-        f'<Points>{xml_array("Points", points, width=3)}</Points><Cells>{cells}</Cells></Piece>'
-        '</UnstructuredGrid></VTKFile>')
-
-
-def write_legacy(path, points, arrays):
-    """Scalars and vectors as a simulation writes them, several of each."""
-    lines = ["# vtk DataFile Version 3.0", "particles", "ASCII", "DATASET POLYDATA",
-             f"POINTS {len(points)} double", text_of(points), f"POINT_DATA {len(points)}"]
-    for name, values in arrays.items():
-        if components(values) == 3:
-            lines += [f"VECTORS {name} double", text_of(values)]
-        else:
-            lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", text_of(values)]
-    path.write_text("\n".join(lines) + "\n")
-
-
 def drop_at(time, n=10, numbers=None, velocity=2.0):
     """The block at a time at which it falls and turns around the z axis: positions and arrays.
     `numbers` are the particles that are there, in the order of the file."""
@@ -99,6 +46,99 @@ def drop_at(time, n=10, numbers=None, velocity=2.0):
     return moved, arrays
 
 
+def flat(values):
+    return [v for value in values for v in (value if isinstance(value, tuple) else (value,))]
+
+
+def text_of(values):
+    return " ".join("nan" if v != v else repr(v) for v in flat(values))
+
+
+def components(values):
+    return len(values[0]) if values and isinstance(values[0], tuple) else 1
+
+
+def packed(values, order="<", kind="Float64"):
+    numbers = flat(values)
+    return struct.pack(f"{order}{len(numbers)}{CODES[kind]}", *numbers)
+
+
+def xml_array(name, values, kind="Float64", width=None, form='format="ascii"', text=None):
+    return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{width or components(values)}" {form}>'
+            f'{text_of(values) if text is None else text}</DataArray>\n')
+
+
+def xml(points, arrays, kind="PolyData", form="ascii", cells=None, extra=""):
+    """The bytes of a file. kind: PolyData, or UnstructuredGrid, of vertices, as many SPH codes write, or of cells: (type, points);
+    form: ascii, inline, compressed, appended (raw); `extra` is more XML for the point data."""
+    appended = b""
+
+    def array(name, values, kind="Float64", width=None):
+        nonlocal appended
+        data = b"" if form == "ascii" else packed(values, kind=kind)
+        size = struct.pack("<I", len(data))
+        if form == "ascii":
+            return xml_array(name, values, kind, width)
+        if form == "appended":
+            offset, appended = len(appended), appended + size + data
+            return xml_array(name, values, kind, width, f'format="appended" offset="{offset}"', "")
+        body = zlib.compress(data)
+        text = (base64.b64encode(size + data) if form == "inline" else
+                base64.b64encode(struct.pack("<4I", 1, len(data), 0, len(body))) + base64.b64encode(body))
+        return xml_array(name, values, kind, width, 'format="binary"', text.decode())
+
+    data = "".join(array(name, values) for name, values in arrays.items()) + extra
+    place = array("Points", points, width=3)
+    counts = 'NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0"'
+    body = f"<PointData>\n{data}</PointData>\n<Points>\n{place}</Points>\n"
+    if kind == "UnstructuredGrid":
+        cells = [(1, [i]) for i in range(len(points))] if cells is None else cells
+        ends = list(itertools.accumulate(len(ids) for _, ids in cells))
+        counts = f'NumberOfCells="{len(cells)}"'
+        body += ("<Cells>\n" + array("connectivity", [i for _, ids in cells for i in ids], "Int64") + array("offsets", ends, "Int64") +
+                 array("types", [shape for shape, _ in cells], "UInt8") + "</Cells>\n")
+    packing = ' header_type="UInt32"' + ' compressor="vtkZLibDataCompressor"' * (form == "compressed")
+    head = (f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="0.1" byte_order="LittleEndian"{packing}>\n<{kind}>\n'
+            f'<Piece NumberOfPoints="{len(points)}" {counts}>\n{body}</Piece>\n</{kind}>\n').encode()
+    tail = b'<AppendedData encoding="raw">\n_' + appended + b"\n</AppendedData>\n" if appended else b""
+    return head + tail + b"</VTKFile>\n"
+
+
+def write_vtp(path, points, arrays, extra=""):
+    path.write_bytes(xml(points, arrays, extra=extra))
+
+
+def write_vtu(path, points, arrays, cells=None):
+    path.write_bytes(xml(points, arrays, "UnstructuredGrid", cells=cells))
+
+
+def legacy(points, arrays=(), form="ASCII", fields=0, before="", cells=""):
+    """Scalars and vectors as a simulation writes them, the last `fields` arrays in a field; binary ones are big endian."""
+    write = (lambda values: text_of(values).encode()) if form == "ASCII" else (lambda values: packed(values, ">"))
+    parts = [f"# vtk DataFile Version 3.0\nparticles\n{form}\nDATASET POLYDATA\n{before}POINTS {len(points)} double\n".encode(),
+             write(points), f"\n{cells}".encode()]
+    parts += [f"POINT_DATA {len(points)}\n".encode()] if arrays else []
+    for i, (name, values) in enumerate(dict(arrays).items()):
+        field = len(arrays) - fields
+        head = f"FIELD FieldData {fields}\n" if i == field else ""
+        head += (f"{name} {components(values)} {len(points)} double\n" if i >= field else
+                 f"VECTORS {name} double\n" if components(values) == 3 else
+                 f"SCALARS {name} double 1\nLOOKUP_TABLE default\n")
+        parts += [head.encode(), write(values), b"\n"]
+    return b"".join(parts)
+
+
+def write_legacy(path, points, arrays, **more):
+    path.write_bytes(legacy(points, arrays, **more))
+
+
+def all_forms(points, arrays):
+    """Name of a file and its bytes, for each form."""
+    forms = {f"{form}.{ending}": xml(points, arrays, kind, form) for form in ("ascii", "inline", "compressed", "appended")
+             for ending, kind in (("vtp", "PolyData"), ("vtu", "UnstructuredGrid"))}
+    return {**forms, "ascii.vtk": legacy(points, arrays), "binary.vtk": legacy(points, arrays, "BINARY", len(arrays) - 2)}
+
+
 def write_pvd(path, entries):
     """entries: (time, file) each; those of one time are parts of one set."""
     entries = list(entries)
@@ -107,3 +147,47 @@ def write_pvd(path, entries):
         f'<DataSet timestep="{time}" group="" part="{part}" file="{name}"/>'
         for part, (time, name) in zip(parts, entries)) +
         '</Collection></VTKFile>')
+
+
+def write_pieces(path, names):
+    """A .pvtp or .pvtu file."""
+    kind = {".pvtp": "PPolyData", ".pvtu": "PUnstructuredGrid"}[path.suffix]
+    path.write_text(f'<?xml version="1.0"?><VTKFile type="{kind}"><{kind} GhostLevel="0">' +
+                    "".join(f'<Piece Source="{name}"/>' for name in names) + f"</{kind}></VTKFile>")
+
+
+def write_image(path, extent, origin="0 0 0", spacing="1 1 1"):
+    """Points of a grid, without arrays: a .vti file, or a .vtk one, whose extent is numbers of points."""
+    path.write_text(
+        f'<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData WholeExtent="{extent}" '
+        f'Origin="{origin}" Spacing="{spacing}"><Piece Extent="{extent}"></Piece></ImageData></VTKFile>'
+        if path.suffix == ".vti" else "# vtk DataFile Version 3.0\nimage\nASCII\nDATASET STRUCTURED_POINTS\n"
+        f"DIMENSIONS {extent}\nORIGIN {origin}\nSPACING {spacing}\n")
+
+
+def unpacked(text):
+    """Unpacks an array that VTK has packed with LZ4: a header of four numbers, then one block of sequences, each of bytes to
+    copy from the block and of bytes to repeat from what is there already."""
+    blocks, _, _, _ = struct.unpack("<4I", base64.b64decode(text[:24])[:16])
+    assert blocks == 1
+    block, at, data = base64.b64decode(text[24:]), 0, bytearray()
+
+    def length(short):
+        nonlocal at
+        total = short
+        while short in (15, 255):
+            short = block[at]
+            total, at = total + short, at + 1
+            short = 255 if short == 255 else 0
+        return total
+
+    while at < len(block):
+        token, at = block[at], at + 1
+        literals = length(token >> 4)
+        data += block[at:at + literals]
+        at += literals
+        if at < len(block):
+            back, at = block[at] | block[at + 1] << 8, at + 2
+            for _ in range(length(token & 15) + 4):
+                data.append(data[-back])
+    return bytes(data)

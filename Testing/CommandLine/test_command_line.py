@@ -254,8 +254,7 @@ class BadData(CommandLineTest):
 
     def test_not_particles(self):
         image = self.directory / "image.vtk"
-        image.write_text("# vtk DataFile Version 3.0\nimage\nASCII\nDATASET STRUCTURED_POINTS\n"
-                         "DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n")
+        files.write_image(image, "2 2 2")
         self.refuse_with("image.vtk holds a vtk.*, not particles", source=image)
 
     def test_unwritable_files(self):
@@ -376,14 +375,8 @@ class Options(CommandLineTest):
         xs = [-5.0, 0.0, 0.1, 0.2, 0.3]
         files.write_vtp(self.directory / "points.vtp", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
         files.write_vtu(self.directory / "points.vtu", [(x, 0.0, 0.0) for x in xs], {"Own": xs})
-        extent = 'Extent="0 4 0 0 0 0"'
-        (self.directory / "points.vti").write_text(
-            '<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">'
-            f'<ImageData Whole{extent} Origin="-0.2 0 0" Spacing="0.15 1 1"><Piece {extent}>'
-            '</Piece></ImageData></VTKFile>')
-        (self.directory / "points.vtk").write_text(
-            "# vtk DataFile Version 3.0\npoints\nASCII\nDATASET STRUCTURED_POINTS\n"
-            "DIMENSIONS 5 1 1\nORIGIN -0.2 0 0\nSPACING 0.15 1 1\nPOINT_DATA 5\n")
+        files.write_image(self.directory / "points.vti", "0 4 0 0 0 0", "-0.2 0 0", "0.15 1 1")
+        files.write_image(self.directory / "points.vtk", "5 1 1", "-0.2 0 0", "0.15 1 1")
 
     def test_probe(self):
         self.write_points()
@@ -404,10 +397,8 @@ class Options(CommandLineTest):
 
     def test_probe_of_period(self):
         """Points periods away from the particles."""
-        self.write_points()
         length = 10 * files.SPACING
-        (self.directory / "far.vtk").write_text((self.directory / "points.vtk").read_text().replace(
-            "ORIGIN -0.2", f"ORIGIN {3 * length - 0.2!r}"))
+        files.write_image(self.directory / "far.vtk", "5 1 1", f"{3 * length - 0.2!r} 0 0", "0.15 1 1")
         for arguments, valid in ([], 0), (["--periodic", f"{length!r},0,0"], 5):
             result = self.run_good(self.input, self.directory / "far_out.vtk", "--probe", "far.vtk", "--derive",
                                    "Velocity", *arguments)
@@ -440,31 +431,17 @@ class Options(CommandLineTest):
         self.assertIn('NumberOfLines="1"', text)
         self.assertRegex(text, r'Name="arc_length"[^>]*RangeMin="0"[^>]*RangeMax="1.2')
 
-    def write_image(self, extent, name="image.vti"):
-        path = self.directory / name
-        path.write_text('<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">'
-                        f'<ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="1 1 1"><Piece Extent="{extent}">'
-                        '</Piece></ImageData></VTKFile>')
-        return path
-
     def test_sizes_of_probes(self):
         """Impossible sizes are told at once, with the file's name."""
-        output = self.directory / "out.vti"
-        for extent, sentence in [("0 99999 0 99999 0 99999", "has 1000000000000000 points; at most 2147483647"),
-                                 ("0 -5 0 4 0 4", "cannot be read: (Whole)?Extent is -4; it may be damaged"),
-                                 ("0 -1 0 -1 0 -1", "holds no points")]:
+        for name, extent, sentence in (
+                ("image.vti", "0 99999 0 99999 0 99999", "has 1000000000000000 points; at most 2147483647"),
+                ("image.vti", "0 -5 0 4 0 4", "cannot be read: (Whole)?Extent is -4; it may be damaged"),
+                ("image.vti", "0 -1 0 -1 0 -1", "holds no points"),
+                ("image.vtk", "100000 100000 100000", "has 1000000000000000 points"),
+                ("image.vtk", "-5 4 4", "cannot be read: dimensions is -5")):
             with self.subTest(extent):
-                result = self.run_program(self.input, output, "--probe", self.write_image(extent))
-                self.one_sentence(result, 1, "image.vti " + sentence)
-        for dimensions, sentence in [("100000 100000 100000", "has 1000000000000000 points"),
-                                     ("-5 4 4", "cannot be read: dimensions is -5")]:
-            with self.subTest(dimensions):
-                (self.directory / "image.vtk").write_text(
-                    "# vtk DataFile Version 3.0\nimage\nASCII\nDATASET STRUCTURED_POINTS\n"
-                    f"DIMENSIONS {dimensions}\nORIGIN 0 0 0\nSPACING 1 1 1\n")
-                result = self.run_program(self.input, self.directory / "out.vtk", "--probe", "image.vtk")
-                self.one_sentence(result, 1, "image.vtk " + sentence)
-        self.assertFalse(output.exists())
+                files.write_image(self.directory / name, extent)
+                self.refuse(self.run_program(self.input, "surface" + name[-4:], "--probe", name), 1, f"{name} {sentence}")
 
     def test_wrong_probes(self):
         self.write_points()

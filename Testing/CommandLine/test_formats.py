@@ -117,18 +117,12 @@ class Formats(CommandLineTest):
             path = self.directory / f"piece{i}.{kind}"
             points, arrays = files.drop_at(0, numbers=list(numbers))
             if ghosts:
-                marks = [int(n >= 500 and i == 0) for n in numbers]
-                arrays["vtkGhostType"] = marks
+                arrays["vtkGhostType"] = [int(n >= 500 and i == 0) for n in numbers]
             write(path, points, arrays)
-            if ghosts:
-                path.write_text(path.read_text().replace('"Float64" Name="vtkGhostType"',
-                                                         '"UInt8" Name="vtkGhostType"'))
+            path.write_text(path.read_text().replace('"Float64" Name="vtkGhostType"', '"UInt8" Name="vtkGhostType"'))
             pieces.append(path)
-        name = {"vtp": "PolyData", "vtu": "UnstructuredGrid"}[kind]
         path = self.directory / f"particles.p{kind}"
-        path.write_text(f'<?xml version="1.0"?><VTKFile type="P{name}"><P{name} GhostLevel="0">' +
-                        "".join(f'<Piece Source="{p.name}"/>' for p in pieces) +
-                        f"</P{name}></VTKFile>")
+        files.write_pieces(path, [piece.name for piece in pieces])
         return path, pieces
 
     def test_pieces(self):

@@ -203,7 +203,7 @@ class OutputFiles(CommandLineTest):
         link = self.directory / "link.vtp"
         link.symlink_to("piece.vtp")
         pieces = self.directory / "particles.pvtp"
-        pieces.write_text('<VTKFile type="PPolyData"><PPolyData><Piece Source="piece.vtp"/></PPolyData></VTKFile>')
+        files.write_pieces(pieces, ["piece.vtp"])
         steps = self.directory / "steps.pvd"
         files.write_pvd(steps, [(0, "particles.pvtp")])
         film = self.directory / "film.pvd"

@@ -7,7 +7,6 @@ import re
 import struct
 
 import particle_files as files
-from binary_files import unpacked
 from command_line_test import ISO, CommandLineTest, main, read_table
 
 SIDE = 20
@@ -151,7 +150,7 @@ class Plane(CommandLineTest):
 
     def point_values(self, name):
         kind, text = re.search(f'type="Float(32|64)" Name="{name}"[^>]*>\\s*([^<\\s]*)', self.output.read_text()).groups()
-        return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", unpacked(text))]
+        return [value for value, in struct.iter_unpack("<f" if kind == "32" else "<d", files.unpacked(text))]
 
     def test_tables(self):
         """A film's lines, and gauges in their plane, have tables."""

@@ -5,7 +5,6 @@ import math
 import struct
 import xml.etree.ElementTree
 
-import binary_files
 import particle_files as files
 from command_line_test import CommandLineTest, main
 
@@ -24,7 +23,7 @@ class Project(CommandLineTest):
         array, = image.iter("DataArray")
         extent = list(map(int, image.get("WholeExtent").split()))
         size = [high - low + 1 for low, high in zip(extent[::2], extent[1::2])]
-        data = binary_files.unpacked(array.text.strip())
+        data = files.unpacked(array.text.strip())
         values = struct.unpack(f"<{len(data) // 8}d", data)
         self.assertEqual(len(values), math.prod(size))
         spacing = list(map(float, image.get("Spacing").split()))

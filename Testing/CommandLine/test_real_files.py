@@ -104,11 +104,9 @@ class RealFiles(CommandLineTest):
     # ---- films ----
 
     def write_tank(self, number, layers, time=None, name="TIME"):
-        points = block((5, 5, layers))
-        field = f"FIELD FieldData 1\n{name} 1 1 double\n{time}\n" if time is not None else ""
         path = self.directory / f"tank_{number}.vtk"
-        path.write_text(f"# vtk DataFile Version 3.0\ntank\nASCII\nDATASET POLYDATA\n{field}"
-                        f"POINTS {len(points)} float\n" + files.text_of(points) + "\n")
+        files.write_legacy(path, block((5, 5, layers)), {}, before="" if time is None else
+                           f"FIELD FieldData 1\n{name} 1 1 double\n{time}\n")
         return path
 
     def test_order_and_times(self):
@@ -177,28 +175,19 @@ class RealFiles(CommandLineTest):
     # ---- particles among meshes ----
 
     def test_vertices(self):
-        particles = block((6, 6, 6))
+        def lists(name, cells):
+            return f"{name} {len(cells)} {sum(1 + len(ids) for ids in cells)}\n" + "".join(
+                f"{len(ids)} {' '.join(map(str, ids))}\n" for ids in cells)
+
+        particles, file = block((6, 6, 6)), self.directory / "mesh.vtk"
         nodes = [(i, j, k) for k in (-3, -2) for j in (0, 1) for i in (0, 1)]
-        points = nodes[:4] + particles + nodes[4:]
-        hexahedron = [0, 1, 3, 2, 220, 221, 223, 222]
-        for shared in (False, True):  # polygons beside vertices in poly data, too
-            cells = [[4 + i] for i in range(len(particles))]
-            head = f"# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET {'POLYDATA' if shared else 'UNSTRUCTURED_GRID'}\n"
-            text = head + f"POINTS {len(points)} double\n{files.text_of(points)}\n"
-            if shared:
-                text += (f"VERTICES {len(cells)} {2 * len(cells)}\n" + "\n".join(f"1 {c[0]}" for c in cells) +
-                         "\nPOLYGONS 1 5\n4 0 1 3 2\n")
-            else:
-                cells.append(hexahedron)
-                text += (f"CELLS {len(cells)} {sum(1 + len(c) for c in cells)}\n" +
-                         "\n".join(f"{len(c)} {' '.join(map(str, c))}" for c in cells) +
-                         f"\nCELL_TYPES {len(cells)}\n" + " ".join(["1"] * len(particles) + ["12"]) + "\n")
-            values = [0.25 * p[2] for p in particles] + [99.0]
-            text += (f"CELL_DATA {len(particles) + 1}\nSCALARS Height double 1\nLOOKUP_TABLE default\n" +
-                     " ".join(map(repr, values)) + f"\nPOINT_DATA {len(points)}\nSCALARS NODE_ID int 1\nLOOKUP_TABLE default\n" +
-                     " ".join(map(str, range(len(points)))) + "\n")
-            file = self.directory / "mesh.vtk"
-            file.write_text(text)
+        vertices = [[4 + i] for i in range(len(particles))]
+        heights = files.text_of([0.25 * p[2] for p in particles] + [99.0])
+        solid = lists("CELLS", [*vertices, [0, 1, 3, 2, 220, 221, 223, 222]]) + "CELL_TYPES 217\n" + "1 " * 216 + "12\n"
+        for kind, cells in (("UNSTRUCTURED_GRID", solid), ("POLYDATA", lists("VERTICES", vertices) + lists("POLYGONS", [[0, 1, 3, 2]]))):
+            cells += f"CELL_DATA 217\nSCALARS Height double 1\nLOOKUP_TABLE default\n{heights}\n"
+            files.write_legacy(file, nodes[:4] + particles + nodes[4:], {"NODE_ID": list(range(224))}, cells=cells)
+            file.write_text(file.read_text().replace("POLYDATA", kind))
             volume = self.volume(file, *H, words="note: 8 of 224 points of .* are nodes of a mesh and no particles")
             self.assertAlmostEqual(volume, 0.6 ** 3, delta=0.17 * 0.6 ** 3)
             self.assertEqual(self.statistics["fluid_particles"], 216)
@@ -213,9 +202,7 @@ class RealFiles(CommandLineTest):
         files.write_vtu(self.directory / "spray.vtu", [(3, 3, 3)], {}, [])
         names = {"all.pvtu": ["hull", "water", "spray"], "hull.pvtu": ["hull", "spray"]}
         for name, pieces in names.items():
-            (self.directory / name).write_text(
-                '<?xml version="1.0"?><VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>' +
-                "".join(f'<Piece Source="{piece}.vtu"/>' for piece in pieces) + "</PUnstructuredGrid></VTKFile>")
+            files.write_pieces(self.directory / name, [f"{piece}.vtu" for piece in pieces])
         files.write_pvd(self.directory / "all.pvd", [(0, self.directory / f"{piece}.vtu") for piece in names["all.pvtu"]])
         for name, count in (("all.pvtu", 217), ("hull.pvtu", 9), ("hull.vtu", 8)):
             listed = self.run_program("--list-arrays", self.directory / name)

@@ -27,7 +27,7 @@ static void mcor_drop_leaning(mcor_bunches* bunches, int32_t first, int state)
   for (int32_t e = bunches->leans[first] ? -1 : bunches->star[first]; e >= 0;
        e = bunches->before[e])
   {
-    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    const cl_int* corner = bunches->triangles + e / 3 * 3;
     for (int c = 0; c < 3; ++c)
     {
       if (mcor_state_of(bunches, bunches->first[corner[c]]) == MCOR_BUNCH_LEANING)
@@ -176,18 +176,13 @@ static mcor_status mcor_write_added(mcor_context* context, const mcor_adding* ad
 {
   mcor_mesh* mesh = &context->mesh;
   const size_t o = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size;
-  struct
-  {
-    mcor_buffer* array;
-    size_t width;
-  } const of_edges[] = { { &mesh->linear, real }, { &mesh->evaluations, 1 },
-    { &mesh->ends, 2 * real } }; /* so far, cuts and caps may have none */
+  mcor_buffer* const of_edges[] = { &mesh->linear, &mesh->evaluations, &mesh->ends };
+  const size_t widths[] = { real, 1, 2 * real };
   MCOR_TRY(mcor_extend_vertices(context, (int)o, (int)(o + n)));
-  for (size_t i = 0; i < 3; ++i)
+  for (size_t i = 0; i < 3; ++i) /* so far, cuts and caps may have none */
   {
-    const size_t width = of_edges[i].width, size = of_edges[i].array->size;
-    MCOR_TRY(mcor_extend(
-      context, of_edges[i].array, size < o * width ? size : o * width, (o + n) * width));
+    const size_t old = o * widths[i], size = of_edges[i]->size;
+    MCOR_TRY(mcor_extend(context, of_edges[i], size < old ? size : old, (o + n) * widths[i]));
   }
   MCOR_TRY(mcor_append_bytes(context, &mesh->node, o * 16, add->node, n * 16));
   const size_t width = (add->lines ? 4 : 2) * real;
@@ -256,6 +251,7 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
   }
   if (!bunches->late)
   {
+    MCOR_TRY(mcor_reserve_vertices(bunches->context, bunches->vertex_count));
     bunches->context->mesh.vertex_count = 0;
     MCOR_TRY(mcor_add_vertices(bunches, false, NULL, count));
   }
@@ -368,25 +364,6 @@ static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
   mesh->vertex_count = count;
 }
 
-/* Renumbers the edges that cuts are on, because vertices have other numbers now. */
-static mcor_status mcor_renumber_cuts(mcor_bunches* bunches)
-{
-  mcor_context* context = bunches->context;
-  mcor_mesh* mesh = &context->mesh;
-  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
-  cl_ulong* cut = malloc(cuts * sizeof *cut + 1);
-  MCOR_TRY(mcor_allocated(context, cut));
-  mcor_status status = mcor_read(context, &mesh->cut_edges, 0, cut, cuts * sizeof *cut);
-  for (size_t i = 0; i < cuts && status == MCOR_OK; ++i)
-  {
-    cut[i] =
-      (cl_ulong)bunches->place[cut[i] >> 32] << 32 | (cl_ulong)bunches->place[cut[i] & UINT32_MAX];
-  }
-  MCOR_THEN(status, mcor_write(context, &mesh->cut_edges, cut, cuts * sizeof *cut));
-  free(cut);
-  return status;
-}
-
 static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -421,7 +398,14 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   free(from);
   MCOR_TRY(status);
   mcor_note_order(bunches, march_count, count);
-  MCOR_TRY(bunches->late ? mcor_renumber_cuts(bunches) : MCOR_OK);
+  for (int i = 0; i < bunches->cut_count; ++i)
+  {
+    cl_ulong* cut = &bunches->cut[i];
+    *cut = (cl_ulong)bunches->place[*cut >> 32] << 32 | (cl_ulong)bunches->place[*cut & UINT32_MAX];
+  }
+  MCOR_TRY(bunches->late ? mcor_write(context, &mesh->cut_edges, bunches->cut,
+                             (size_t)bunches->cut_count * sizeof *bunches->cut)
+                         : MCOR_OK);
   return mcor_find_places(bunches);
 }
 
@@ -430,98 +414,73 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
 typedef struct mcor_filing
 {
   const mcor_bunches* bunches;
-  bool follows;
-  cl_int* triangles;
-  cl_ulong* cells;
-  int64_t first[MCOR_SLICES + 1]; /* first of each slice; before, how many the slice has */
+  int64_t first[MCOR_SLICES], count[MCOR_SLICES];       /* of the triangles that are left */
   int64_t gone[MCOR_SLICES][MCOR_TREE_LEVEL_LIMIT + 1]; /* owned ones that are not left, by level */
 } mcor_filing;
 
-static void mcor_count_slice(void* data, int slice, int64_t first, int64_t last)
+/* Moves the triangles of a slice that are left to its beginning. */
+static void mcor_file_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_filing* filing = data;
   const mcor_bunches* bunches = filing->bunches;
   const bool is_part = bunches->context->box.is_part;
-  int64_t count = 0;
+  int64_t to = first;
   int level = 0;
   for (int64_t t = first; t < last; ++t)
   {
     int32_t corners[3];
     const bool is_left = mcor_places_of(bunches, t, corners);
-    for (; level + 1 < bunches->context->lattice.levels && t >= bunches->level_end[level];)
+    while (level + 1 < bunches->context->lattice.levels && t >= bunches->level_end[level])
     {
       ++level;
     }
-    count += is_left;
-    filing->gone[slice][level] +=
-      !is_left && !(is_part && (((const cl_ulong*)bunches->cells)[t] & MCOR_RING_CELL));
-  }
-  filing->first[slice + 1] = count;
-}
-
-static void mcor_fill_slice(void* data, int slice, int64_t first, int64_t last)
-{
-  const mcor_filing* filing = data;
-  int64_t to = filing->first[slice];
-  for (int64_t t = first; t < last; ++t)
-  {
-    int32_t corners[3];
-    if (mcor_places_of(filing->bunches, t, corners))
+    if (!is_left)
     {
-      memcpy(filing->triangles + 3 * to, corners, sizeof corners);
-      if (filing->follows)
-      {
-        filing->cells[to] = ((const cl_ulong*)filing->bunches->cells)[t];
-      }
-      ++to;
+      filing->gone[slice][level] += !(is_part && (bunches->cells[t] & MCOR_RING_CELL));
+      continue;
     }
-  }
-}
-
-/* If trimming comes later, triangles that vanish do not count as made before it. */
-static void mcor_count_gone(const mcor_bunches* bunches, const mcor_filing* filing, int slices)
-{
-  mcor_statistics* s = bunches->context->run.statistics;
-  for (int i = 0; i < slices && !bunches->late; ++i)
-  {
-    for (int l = 0; l < bunches->context->lattice.levels; ++l)
+    memcpy(bunches->triangles + 3 * to, corners, sizeof corners);
+    if (bunches->cells)
     {
-      s->triangles_of_level[l] -= filing->gone[i][l];
-      s->triangles_before_trimming -= filing->gone[i][l];
+      bunches->cells[to] = bunches->cells[t];
     }
+    ++to;
   }
+  filing->first[slice] = first;
+  filing->count[slice] = to - first;
 }
 
 static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
-  mcor_mesh* mesh = &context->mesh;
-  mcor_filing filing = { .bunches = bunches, .follows = mcor_follows_cells(context) };
+  mcor_statistics* s = context->run.statistics;
+  mcor_filing filing = { .bunches = bunches };
   int slices;
+  size_t n = 0;
   MCOR_TRY(mcor_parallel_run(
-    context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_count_slice, &filing, &slices));
-  for (int s = 0; s < slices; ++s)
+    context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_file_slice, &filing, &slices));
+  for (int i = 0; i < slices; ++i)
   {
-    filing.first[s + 1] += filing.first[s];
+    const size_t first = (size_t)filing.first[i], count = (size_t)filing.count[i];
+    memmove(bunches->triangles + 3 * n, bunches->triangles + 3 * first, 3 * count * sizeof(cl_int));
+    if (bunches->cells)
+    {
+      memmove(bunches->cells + n, bunches->cells + first, count * sizeof(cl_ulong));
+    }
+    n += count;
+    /* If trimming comes later, triangles that vanish do not count as made before it. */
+    for (int l = 0; l < context->lattice.levels && !bunches->late; ++l)
+    {
+      s->triangles_of_level[l] -= filing.gone[i][l];
+      s->triangles_before_trimming -= filing.gone[i][l];
+    }
   }
-  mcor_count_gone(bunches, &filing, slices);
-  const size_t n = (size_t)filing.first[slices], cells = filing.follows ? n : 1;
-  void *triangle_view = NULL, *cell_view = NULL;
-  MCOR_TRY(mcor_reserve(context, &mesh->triangles, 3 * n * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &context->box.cells, cells * sizeof(cl_ulong)));
-  mcor_status status =
-    mcor_map(context, &mesh->triangles, 3 * n * sizeof(cl_int), true, &triangle_view);
-  MCOR_THEN(
-    status, mcor_map(context, &context->box.cells, cells * sizeof(cl_ulong), true, &cell_view));
-  filing.triangles = triangle_view;
-  filing.cells = cell_view;
-  MCOR_THEN(status,
-    mcor_parallel_run(
-      context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_fill_slice, &filing, NULL));
-  const mcor_mapping mapped[] = { { &mesh->triangles, 0, &triangle_view },
-    { &context->box.cells, 0, &cell_view } };
-  mesh->triangle_count = (int)n;
-  return mcor_unmap_all(context, mapped, 2, status);
+  context->mesh.triangle_count = (int)n;
+  MCOR_TRY(
+    mcor_write(context, &context->mesh.triangles, bunches->triangles, 3 * n * sizeof(cl_int)));
+  return bunches->cells
+    ? mcor_write(context, &context->box.cells, bunches->cells, n * sizeof(cl_ulong))
+    : MCOR_OK;
 }
 
 /* ---- All of it ---- */
@@ -543,7 +502,9 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   mcor_context* context = b->context;
   const mcor_mesh* mesh = &context->mesh;
   const size_t n = (size_t)b->vertex_count, march = (size_t)b->march_count,
-               real = context->cl.real_size;
+               triangles = (size_t)b->triangle_count, real = context->cl.real_size,
+               cuts = (size_t)b->cut_count * sizeof *b->cut,
+               cells = mcor_follows_cells(context) ? triangles * sizeof *b->cells : 0;
   struct
   {
     void** array;
@@ -553,9 +514,10 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
     { (void**)&b->held, n * sizeof *b->held }, /* so far all zero */
     { (void**)&b->key, n * sizeof *b->key }, { (void**)&b->first, n * sizeof *b->first },
     { (void**)&b->next, n * sizeof *b->next }, { (void**)&b->star, n * sizeof *b->star },
-    { (void**)&b->before, 3 * (size_t)b->triangle_count * sizeof *b->before },
-    { (void**)&b->sorted, n * sizeof *b->sorted }, { (void**)&b->order, 2 * n * sizeof *b->order },
-    { (void**)&b->place, n * sizeof *b->place },
+    { (void**)&b->before, 3 * triangles * sizeof *b->before },
+    { (void**)&b->triangles, 3 * triangles * sizeof *b->triangles }, { (void**)&b->cells, cells },
+    { (void**)&b->cut, cuts }, { (void**)&b->sorted, n * sizeof *b->sorted },
+    { (void**)&b->order, 2 * n * sizeof *b->order }, { (void**)&b->place, n * sizeof *b->place },
     { (void**)&b->merged_place, n * sizeof *b->merged_place },
     { (void**)&b->now, n * sizeof *b->now }, { (void**)&b->node, 4 * n * sizeof *b->node },
     { &b->ends, 2 * march * real }, { &b->offset, b->late ? 4 * n * real : 0 } };
@@ -570,7 +532,7 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   uint8_t* at = b->memory;
   for (size_t i = 0; i < count; ++i)
   {
-    *parts[i].array = at;
+    *parts[i].array = parts[i].bytes > 0 ? at : NULL;
     at += (parts[i].bytes + 15) / 16 * 16;
   }
   memset(b->memory, 0, (size_t)((uint8_t*)b->key - b->memory));
@@ -581,6 +543,10 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
       (size_t)context->bricks.first_slot[l + 1] * sizeof(cl_int), &b->level_end[l],
       sizeof(cl_int)));
   }
+  MCOR_TRY(
+    mcor_read(context, &mesh->triangles, 0, b->triangles, 3 * triangles * sizeof *b->triangles));
+  MCOR_TRY(mcor_read(context, &context->box.cells, 0, b->cells, cells));
+  MCOR_TRY(mcor_read(context, &mesh->cut_edges, 0, b->cut, cuts));
   MCOR_TRY(mcor_read(context, &mesh->node, 0, b->node, 4 * n * sizeof *b->node));
   MCOR_TRY(mcor_read(context, &mesh->ends, 0, b->ends, 2 * march * real));
   return b->late ? mcor_read(context, &mesh->offset, 0, b->offset, 4 * n * real) : MCOR_OK;
@@ -600,23 +566,14 @@ mcor_status mcor_compact(mcor_context* context)
     .march_count = mesh->march_count,
     .vertex_count = mesh->vertex_count,
     .triangle_count = mesh->triangle_count };
-  const size_t triangles = (size_t)mesh->triangle_count;
-  if (triangles == 0 || mesh->march_count == 0)
+  bunches.cut_count = bunches.late ? mesh->cap_first - mesh->march_count : 0;
+  if (mesh->triangle_count == 0 || mesh->march_count == 0)
   {
     return MCOR_OK;
   }
-  mcor_take_buffer(context, &mesh->triangles, &bunches.corner_buffer);
-  mcor_take_buffer(context, &context->box.cells, &bunches.cell_buffer);
-  const mcor_mapping views[] = { { &bunches.corner_buffer, 3 * triangles * sizeof(cl_int),
-                                   &bunches.triangles },
-    { &bunches.cell_buffer, triangles * sizeof(cl_ulong), &bunches.cells } };
-  const int count = mcor_follows_cells(context) ? 2 : 1;
   mcor_status status = mcor_begin_bunches(&bunches);
-  MCOR_THEN(status, mcor_map_all(context, views, count));
   MCOR_THEN(status, mcor_merge_bunches(&bunches));
-  status = mcor_unmap_all(context, views, count, status);
   free(bunches.memory);
   free(bunches.points);
-  MCOR_RELEASE(context, &bunches.corner_buffer, &bunches.cell_buffer);
   return status;
 }

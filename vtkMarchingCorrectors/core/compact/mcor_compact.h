@@ -53,15 +53,17 @@ typedef struct mcor_bunches
   bool late;   /* see mcor_compacts_late */
   int corners; /* different corners of a triangle: 2 if it stands for a line */
   int march_count, vertex_count, triangle_count; /* of the mesh before merging */
+  int cut_count;                                 /* vertices of cuts, if late */
   int cut_first[MCOR_TREE_LEVEL_LIMIT + 2];      /* its level_first[1] */
   cl_int level_end[MCOR_TREE_LEVEL_LIMIT + 1];   /* end of the marched triangles of each level */
   uint8_t* memory;                               /* of the arrays that follow */
   cl_int* node;                                  /* [vertex_count][4] */
-  void *ends, *offset; /* real [march_count][2]; real [vertex_count][4], if late */
-  mcor_buffer corner_buffer, cell_buffer;
-  void *triangles, *cells; /* views of these buffers */
-  uint64_t* key;           /* [vertex_count]: lattice node of a vertex */
-  int32_t *first, *next;   /* [vertex_count]: first vertex of the bunch; next one, or -1 */
+  cl_ulong* cut;                                 /* [cut_count]: its cut_edges */
+  void *ends, *offset;   /* real [march_count][2]; real [vertex_count][4], if late */
+  cl_int* triangles;     /* [triangle_count][3] */
+  cl_ulong* cells;       /* [triangle_count], if mcor_follows_cells */
+  uint64_t* key;         /* [vertex_count]: lattice node of a vertex */
+  int32_t *first, *next; /* [vertex_count]: first vertex of the bunch; next one, or -1 */
   int32_t *star,
     *before; /* by bunch: corner of its last triangle; by corner: that of the one before, or -1 */
   atomic_uchar* state; /* [vertex_count], by bunch */
@@ -128,7 +130,7 @@ static inline int32_t* mcor_place_in(const mcor_bunches* bunches, int32_t entry)
 /* Finds the corners of a triangle in the mesh. Returns whether it is left. */
 static inline bool mcor_places_of(const mcor_bunches* bunches, int64_t t, int32_t place[3])
 {
-  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  const cl_int* corner = bunches->triangles + 3 * t;
   for (int c = 0; c < 3; ++c)
   {
     place[c] = bunches->now[corner[c]];

@@ -34,32 +34,22 @@
 typedef struct mcor_frozen
 {
   const mcor_bunches* bunches;
-  int side_count;
-  struct
-  {
-    int axis, node;
-  } sides[12];
+  int count, axis[12], node[12];
 } mcor_frozen;
-
-static void mcor_add_side(mcor_frozen* frozen, int axis, int node)
-{
-  frozen->sides[frozen->side_count].axis = axis;
-  frozen->sides[frozen->side_count++].node = node;
-}
 
 static void mcor_list_sides(const mcor_context* context, mcor_frozen* frozen)
 {
   const mcor_lattice* lattice = &context->lattice;
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 12; ++i)
   {
-    const int axis = i / 2, upper = i % 2, cap = mcor_cap_plane(context, axis, upper);
-    if (lattice->period[axis] > 0)
+    const int axis = i % 6 / 2, upper = i % 2, period = lattice->period[axis];
+    const int node = i < 6 ? mcor_cap_plane(context, axis, upper)
+      : period > 0         ? lattice->period_first[axis] + upper * period
+                           : -1;
+    if (node >= 0)
     {
-      mcor_add_side(frozen, axis, lattice->period_first[axis] + upper * lattice->period[axis]);
-    }
-    if (cap >= 0)
-    {
-      mcor_add_side(frozen, axis, cap);
+      frozen->axis[frozen->count] = axis;
+      frozen->node[frozen->count++] = node;
     }
   }
 }
@@ -69,10 +59,10 @@ static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
 {
   const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
   bool is = node[3] >> 2 & 1;
-  for (int i = 0; i < frozen->side_count; ++i)
+  for (int i = 0; i < frozen->count; ++i)
   {
-    const int a = frozen->sides[i].axis;
-    is = is || (a != axis && node[a] << level == frozen->sides[i].node);
+    const int a = frozen->axis[i];
+    is = is || (a != axis && node[a] << level == frozen->node[i]);
   }
   return is;
 }
@@ -99,12 +89,9 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 }
 
 /* Freezes vertices of cuts and caps, and vertices beside caps; holds vertices beside cuts. */
-static mcor_status mcor_freeze_borders(mcor_bunches* bunches)
+static void mcor_freeze_borders(mcor_bunches* bunches)
 {
-  mcor_context* context = bunches->context;
-  const mcor_mesh* mesh = &context->mesh;
-  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
-  const cl_int* corner = bunches->triangles;
+  const mcor_mesh* mesh = &bunches->context->mesh;
   for (int v = mesh->march_count; v < mesh->vertex_count; ++v)
   {
     bunches->key[v] = MCOR_FROZEN;
@@ -112,17 +99,12 @@ static mcor_status mcor_freeze_borders(mcor_bunches* bunches)
   for (int64_t c = 3 * (int64_t)mesh->cap_triangle_first; c < 3 * (int64_t)mesh->triangle_count;
        ++c)
   {
-    bunches->key[corner[c]] = MCOR_FROZEN;
+    bunches->key[bunches->triangles[c]] = MCOR_FROZEN;
   }
-  cl_ulong* cut = malloc(cuts * sizeof *cut + 1);
-  MCOR_TRY(mcor_allocated(context, cut));
-  const mcor_status status = mcor_read(context, &mesh->cut_edges, 0, cut, cuts * sizeof *cut);
-  for (size_t i = 0; i < cuts && status == MCOR_OK; ++i)
+  for (int i = 0; i < bunches->cut_count; ++i)
   {
-    bunches->held[cut[i] >> 32] = bunches->held[cut[i] & UINT32_MAX] = 1;
+    bunches->held[bunches->cut[i] >> 32] = bunches->held[bunches->cut[i] & UINT32_MAX] = 1;
   }
-  free(cut);
-  return status;
 }
 
 static mcor_status mcor_key_vertices(mcor_bunches* bunches)
@@ -132,7 +114,11 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
   mcor_list_sides(context, &frozen);
   MCOR_TRY(mcor_parallel_run(
     context, bunches->march_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &frozen, NULL));
-  return bunches->late ? mcor_freeze_borders(bunches) : MCOR_OK;
+  if (bunches->late)
+  {
+    mcor_freeze_borders(bunches);
+  }
+  return MCOR_OK;
 }
 
 /* ---- Bunches ---- */
@@ -140,7 +126,7 @@ static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 /* Finds the corners of a triangle, as the first vertices of their bunches. */
 static void mcor_bunches_of(const mcor_bunches* bunches, int64_t t, int32_t of[3])
 {
-  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  const cl_int* corner = bunches->triangles + 3 * t;
   for (int c = 0; c < 3; ++c)
   {
     of[c] = bunches->first[corner[c]];
@@ -234,7 +220,7 @@ static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_
   int within = 0, before = 0, behind = 0;
   for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
   {
-    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    const cl_int* corner = bunches->triangles + e / 3 * 3;
     const int c = e % 3;
     const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
     within += joins && c == 0;
@@ -259,7 +245,7 @@ static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* 
   fan->count = 0;
   for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
   {
-    const cl_int* corner = (const cl_int*)bunches->triangles + e / 3 * 3;
+    const cl_int* corner = bunches->triangles + e / 3 * 3;
     const int c = e % 3;
     const int32_t next = corner[c < 2 ? c + 1 : 0], last = corner[c > 0 ? c - 1 : 2];
     if (bunches->first[next] == bunch || bunches->first[last] == bunch)

@@ -148,7 +148,7 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
     }
     for (int c = 0; c < corners; ++c)
     {
-      of[c] = bunches->first[((const cl_int*)bunches->triangles)[3 * t + c]];
+      of[c] = bunches->first[bunches->triangles[3 * t + c]];
       const int state = mcor_state_of(bunches, of[c]);
       merged = merged || state >= MCOR_BUNCH_MERGED;
       fresh = fresh || state == MCOR_BUNCH_FRESH;
@@ -205,7 +205,7 @@ static int32_t mcor_stand_in(const mcor_bunches* bunches, int32_t v)
 /* Finds the corners of a triangle. Returns whether it is left, and v is one of them. */
 static bool mcor_is_around(const mcor_bunches* bunches, int64_t t, int32_t v, int32_t of[3])
 {
-  const cl_int* corner = (const cl_int*)bunches->triangles + 3 * t;
+  const cl_int* corner = bunches->triangles + 3 * t;
   for (int c = 0; c < 3; ++c)
   {
     of[c] = mcor_stand_in(bunches, corner[c]);
@@ -241,7 +241,7 @@ static void mcor_sliver_slice(void* data, int slice, int64_t first, int64_t last
     if (mcor_places_of(bunches, t, place) && mcor_sharpness(bunches, place, side) > MCOR_SLIVER)
     {
       const int widest = side[2] > fmax(side[0], side[1]) ? 2 : side[1] > side[0];
-      const int32_t v = mcor_stand_in(bunches, ((const cl_int*)bunches->triangles)[3 * t + widest]);
+      const int32_t v = mcor_stand_in(bunches, bunches->triangles[3 * t + widest]);
       const bool moves =
         bunches->key[v] != MCOR_FROZEN && (!bunches->held[v] || mcor_is_merged(bunches, v));
       atomic_store_explicit(&bunches->wide[v], moves, memory_order_relaxed);

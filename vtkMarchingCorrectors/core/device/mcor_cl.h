@@ -189,6 +189,9 @@ mcor_status mcor_fill_range(
 void mcor_take_buffer(mcor_context* context, mcor_buffer* from, mcor_buffer* to);
 /* Makes room for `bytes`, keeping the first `old`. */
 mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, size_t bytes);
+/* Appends to a buffer that holds `old` bytes. */
+mcor_status mcor_append_bytes(
+  mcor_context* context, mcor_buffer* buffer, size_t old, const void* data, size_t bytes);
 mcor_status mcor_copy(
   mcor_context* context, const mcor_buffer* from, mcor_buffer* to, size_t to_offset, size_t bytes);
 mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load, size_t items,

@@ -178,18 +178,6 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
   return status;
 }
 
-mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes)
-{
-  MCOR_TRY(mcor_reserve(context, buffer, bytes));
-  if (bytes > 0)
-  {
-    MCOR_CL_TRY(context,
-      clEnqueueWriteBuffer(context->cl.queue, buffer->mem, CL_TRUE, 0, bytes, data, 0, NULL, NULL),
-      "clEnqueueWriteBuffer");
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes)
 {
@@ -371,4 +359,23 @@ mcor_status mcor_extend(mcor_context* context, mcor_buffer* buffer, size_t old, 
     *buffer = bigger;
   }
   return status;
+}
+
+mcor_status mcor_append_bytes(
+  mcor_context* context, mcor_buffer* buffer, size_t old, const void* data, size_t bytes)
+{
+  MCOR_TRY(mcor_extend(context, buffer, old, old + bytes));
+  if (bytes > 0)
+  {
+    MCOR_CL_TRY(context,
+      clEnqueueWriteBuffer(
+        context->cl.queue, buffer->mem, CL_TRUE, old, bytes, data, 0, NULL, NULL),
+      "clEnqueueWriteBuffer");
+  }
+  return MCOR_OK;
+}
+
+mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes)
+{
+  return mcor_append_bytes(context, buffer, 0, data, bytes);
 }

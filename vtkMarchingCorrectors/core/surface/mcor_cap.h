@@ -71,9 +71,6 @@ typedef struct mcor_cap_vertex
 /* Appends vertices to the mesh, and evaluates the field there. */
 mcor_status mcor_append_cap_vertices(
   mcor_context* context, const mcor_cap_vertex* vertices, int64_t count);
-/* Appends to a buffer that holds `old` bytes. */
-mcor_status mcor_append_bytes(
-  mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes);
 void mcor_end_caps(mcor_context* context);
 /* Whether vertex v of the mesh belongs to caps alone. Its normal is that of the sides that it
  * lies on. */

@@ -158,21 +158,6 @@ void mcor_end_caps(mcor_context* context)
   context->mesh.cap_keys = NULL;
 }
 
-mcor_status mcor_append_bytes(
-  mcor_context* context, mcor_buffer* to, size_t old, const void* data, size_t bytes)
-{
-  mcor_buffer more = { 0 };
-  if (old == 0)
-  {
-    return mcor_write(context, to, data, bytes);
-  }
-  MCOR_TRY(mcor_extend(context, to, old, old + bytes));
-  mcor_status status = mcor_write(context, &more, data, bytes);
-  MCOR_THEN(status, mcor_copy(context, &more, to, old, bytes));
-  mcor_release(context, &more);
-  return status;
-}
-
 mcor_status mcor_append_cap_vertices(
   mcor_context* context, const mcor_cap_vertex* vertices, int64_t count)
 {

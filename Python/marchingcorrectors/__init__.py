@@ -12,14 +12,12 @@ from pkgutil import extend_path as _extend_path
 from typing import TYPE_CHECKING, Any, List
 
 from ._context import Context
-from ._flux import Fluxes, flux
-from ._functions import derivatives, flow, free_surface, isosurface, probe, widening
-from ._gauge import Gauges, gauge
+from ._functions import derivatives, flow, free_surface, isosurface, probe, project, widening
 from ._library import (Cancelled, DeviceError, Error, InvalidArgument, InvalidData, OutOfCapacity,
                        devices)
-from ._project import Projection, project
+from ._meters import Fluxes, Gauges, flux, gauge
 from ._structs import VERSION as __version__
-from ._surface import Derivatives, Samples, Surface
+from ._surface import Derivatives, Projection, Samples, Surface
 from ._warnings import InputWarning
 
 if TYPE_CHECKING:

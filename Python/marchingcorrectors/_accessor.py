@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Optional, Sequence, T
 import numpy as np
 import pyvista
 
-from . import _flux, _functions, _gauge, _project
+from . import _functions, _meters
 from ._arrays import QUANTITIES
 from ._call import Shared, own_keywords
 from ._library import InvalidArgument
@@ -210,7 +210,7 @@ class SphAccessor:
         return result
 
     @_method(GAUGE)
-    def gauge(self, lines: Any, iso: float = 0.5, **words: Unpack[Particles]) -> _gauge.Gauges:
+    def gauge(self, lines: Any, iso: float = 0.5, **words: Unpack[Particles]) -> _meters.Gauges:
         """Water levels: where straight lines cross the free surface, every crossing.
 
         Example: particles.sph.gauge({"mast": ((0.5, 0, 0), (0.5, 1, 0))}).last
@@ -221,11 +221,11 @@ class SphAccessor:
         iso: the sum of the weights at which the fluid ends, above 0, as of free_surface().
         """
         particles, words = self._prepare(words, with_attributes=False)
-        return _gauge.gauge(particles, lines, iso, **words)
+        return _meters.gauge(particles, lines, iso, **words)
 
     @_method(GAUGE)
     def flux(self, sections: Any, velocity: Union[None, str, np.ndarray] = None, iso: float = 0.5,
-             **words: Unpack[Particles]) -> _flux.Fluxes:
+             **words: Unpack[Particles]) -> _meters.Fluxes:
         """Fluxes through sections.
 
         Example: particles.sph.flux({"gate": ("disc", (1, 0, 0), (1, 0, 0), 0.2)}).mass_flux
@@ -239,12 +239,12 @@ class SphAccessor:
         particles, words = self._prepare(words, with_attributes=False)
         if velocity is None:
             velocity = name_of(detect(particles.data.GetPointData(), len(particles), "velocity", 3)) or "Velocity"
-        return _flux.flux(particles, velocity, _triangles_in(sections), iso, **words)
+        return _meters.flux(particles, velocity, _triangles_in(sections), iso, **words)
 
     @_method(PROJECT)
     def project(self, scalar: Union[None, str, np.ndarray] = None, *, direction: Union[None, str, Sequence[float]] = None,
                 resolution: int = 512, weighted_by: Union[None, str, np.ndarray] = None,
-                box: Optional[Sequence[float]] = None, **words: Unpack[Particles]) -> _project.Projection:
+                box: Optional[Sequence[float]] = None, **words: Unpack[Particles]) -> _functions.Projection:
         """Column densities, or integrals of another scalar along lines of sight, as an image.
 
         Example: image = particles.sph.project(direction="z"); plt.imshow(image.values, extent=image.extent, origin="lower")
@@ -256,7 +256,7 @@ class SphAccessor:
         weighted_by: the name of a point array, or an array: the image is the mean of the scalar, with these weights.
         """
         particles, words = self._prepare(words, with_attributes=False)
-        return _project.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,
+        return _functions.project(particles, scalar, direction=direction, resolution=resolution, weighted_by=weighted_by, box=box,
                                 **words)
 
     def _prepare(self, given: Any, with_attributes: bool = True) -> Any:

@@ -14,8 +14,8 @@ import numpy as np
 from . import io
 from ._arrays import choose
 from ._functions import free_surface, isosurface, probe
-from ._gauge import gauge
 from ._library import InvalidArgument
+from ._meters import gauge
 from .io._outputs import Outputs
 from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, words_of
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results of the functions: a surface, samples, derivatives."""
+"""Results of the functions: a surface, samples, derivatives, an image."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field as dataclass_field, fields
@@ -255,3 +255,24 @@ class Derivatives(Result):
     def __repr__(self):
         return (f"<Derivatives: {len(self.corrected)} particles, {int(self.corrected.sum())} of them corrected; "
                 f"arrays: {self._names(('corrected',))}>")
+
+
+@dataclass(eq=False, repr=False)
+class Projection(Result):
+    """An image of integrals along lines of sight; lengths have the unit of the positions (L)."""
+
+    values: np.ndarray  #: (rows, columns) float64: means over pixels, scalar unit x L; the first row is the lowest
+    extent: np.ndarray  #: (4,): left, right, lower and upper side, along the axes; as of matplotlib's imshow
+    axes: np.ndarray  #: (3, 3): unit vectors along a row, from row to row, and the line of sight
+    depth: float  #: where what is seen begins, along the line of sight
+    statistics: Dict[str, Any] = dataclass_field(default_factory=dict)
+
+    @property
+    def pixel_area(self) -> float:
+        """L^2. values.sum() * pixel_area is the mass in the image, where the values are column densities."""
+        left, right, lower, upper = self.extent
+        return float((right - left) * (upper - lower) / max(self.values.size, 1))
+
+    def __repr__(self):
+        rows, columns = self.values.shape
+        return f"<Projection: {columns} x {rows} pixels>"

@@ -90,8 +90,7 @@ def _read(paths, types, walls, step):
         from .gadget_binary import read_gadget_binary
         return read_gadget_binary(path, types)
     if is_hdf5:
-        from .snapshot import read_snapshot
-        return read_snapshot(path, types)
+        return _read_hdf5(path, types)
     if head.startswith(b"#FileJBD "):
         from .bi4 import read_bi4
         return read_bi4(path)
@@ -103,3 +102,22 @@ def _read(paths, types, walls, step):
         return read_native(path)
     raise FileError(f"{path.name} is in no format that is known here (HDF5, .bi4, .bgeo, VTK, .csv, .txt, .xyz, dumps of "
                     "LAMMPS and Phantom, GADGET), or its beginning is damaged.")
+
+
+def _read_hdf5(path, types):
+    import h5py
+
+    from . import gadget, phantom, pysph
+
+    with h5py.File(path, "r") as file:
+        names = set(file)
+    if any(name.startswith("PartType") for name in names):
+        return gadget.read_gadget(path, types)
+    if types is not None:
+        raise FileError(f"{path.name} is no snapshot of GADGET's layout: it has no types to choose.")
+    if {"header", "particles"} <= names:
+        return phantom.read_hdf5_dump(path)
+    if {"solver_data", "particles"} <= names:
+        return pysph.read_pysph(path)
+    raise FileError(f"{path.name} is HDF5, but no layout that is known here: GADGET, GIZMO, AREPO and SWIFT have "
+                    "PartType0, Phantom has header and particles, PySPH has solver_data and particles.")

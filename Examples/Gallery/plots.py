@@ -23,7 +23,7 @@ import marchingcorrectors as mc
 EXAMPLES = Path(__file__).resolve().parent.parent
 DATA = EXAMPLES / "Data"
 sys.path.insert(0, str(EXAMPLES / "Benchmark"))
-from measure import smoothed_by_splashsurf  # noqa: E402
+from measure import interpolator, smoothed_by_splashsurf  # noqa: E402
 FLUID = ("ParticleType", 0)
 
 
@@ -165,15 +165,8 @@ def interpolate(particles, square):
     image = pyvista.ImageData(
         origin=(bounds[0] - 4 * square, 0, bounds[4] - 4 * square), spacing=(square, square, square),
         dimensions=(int((bounds[1] - bounds[0]) / square) + 9, 1, int((bounds[5] - bounds[4]) / square) + 9))
-    kernel = vtk.vtkSPHCubicKernel()
-    kernel.SetDimension(2)
-    kernel.SetSpatialStep(particles["SmoothingLength"][0])
-    field = vtk.vtkSPHInterpolator()
-    field.SetInputData(image)
-    field.SetSourceData(particles)
-    field.SetKernel(kernel)
-    field.SetDensityArrayName("Density")
-    field.SetMassArrayName("Mass")
+    field = interpolator(particles, image, particles["SmoothingLength"][0], 2, "Pressure", "Mass", "Density")
+    field.SetShepardNormalization(False)
     field.Update()
     return pyvista.wrap(field.GetOutput()).extract_surface(algorithm=None)
 

@@ -23,14 +23,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWrit
 import marchingcorrectors as mc
 from marchingcorrectors import io
 from marchingcorrectors.io._particles import find_kernel
-
-SPACING, H = 0.1, 0.13
-LINE = np.arange(-9, 10) * SPACING
-X = np.stack(np.meshgrid(LINE, LINE, LINE), -1).reshape(-1, 3)
-X = X[np.linalg.norm(X, axis=1) < 0.9]
-DENSITY = 2 - np.linalg.norm(X, axis=1)
-MASS = DENSITY * SPACING ** 3
-WALL = X[:, 2] < -0.5
+from solver_files import DENSITY, MASS, SPACING, WALL, X, H, write_bgeo, write_bi4
 
 
 def write_gadget(path, part=slice(None), files=1, table=False, swift=False, periodic=False):
@@ -122,51 +115,6 @@ def write_pysph(path):
             arrays["tag"] = np.arange(chosen.sum()) == 0  # one that is another process's
             if name == "fluid":
                 arrays["u"], arrays["v"], arrays["w"] = X[chosen].T
-
-
-def write_bi4(path, order="<", wide=False, double=True, **more):
-    """By the layout that JBinaryData.h and .cpp describe."""
-    def pack(form, *values):
-        return struct.pack(order + form, *values)
-
-    def text(word):
-        return pack("I", len(word.encode())) + word.encode()
-
-    def value(name, kind, form, *values):
-        return text(name) + pack("i", kind) + (text(values[0]) if kind == 1 else pack(form, *values))
-
-    def array(name, kind, form, values):
-        data = values.astype(order + form).tobytes()
-        base = text("\nARRAY") + text(name) + pack("ii", 0, kind) + pack("QQ" if wide else "II", len(values), len(data))
-        return pack("I", len(base)) + base + data
-
-    def item(name, values, arrays, items):
-        packed = text("\nVALUES") + pack("I", len(values)) + b"".join(values) if values else b""
-        base = text("\nITEM\n") + text(name) + pack("ii", 0, 0) + text("%.7E") + text("%.15E")
-        base += pack("III", len(arrays), len(items), len(packed))
-        return pack("I", len(base)) + base + packed + b"".join(arrays) + b"".join(items)
-
-    ids = np.empty(len(X), np.uint32)
-    ids[WALL], ids[~WALL] = np.arange(WALL.sum()), WALL.sum() + np.arange((~WALL).sum())
-    arrays = [array("Idp", 8, "u4", ids), array("Posd", 23, "f8", X) if double else array("Pos", 22, "f4", X),
-              array("Vel", 22, "f4", X), array("Rhop", 11, "f4", 1000 * DENSITY)]
-    part = item("PART_0003", [value("TimeStep", 12, "d", 0.75), value("Npok", 8, "I", len(X))], arrays, [])
-    values = [value("AppName", 1, "", "été"), value("Data2d", 2, "i", 0), value("Dp", 12, "d", SPACING),
-              value("H", 12, "d", H), value("MassFluid", 12, "d", 1.0), value("Rhop0", 12, "d", 1000.0),
-              value("CaseNfixed", 10, "Q", int(WALL.sum())), value("CaseNmoving", 10, "Q", 0),
-              value("CaseNfloat", 10, "Q", 0), value("PeriActive", 7, "i", more.get("period", 0)),
-              value("MapPosMin", 23, "3d", -2, -2, -2), value("MapPosMax", 23, "3d", 2, 2, 2)]
-    head = b"#FileJBD JPartDataBi4".ljust(58) + b"\n\0" + bytes([(order == ">") + 10 * wide, wide, 0, 0])
-    Path(path).write_bytes(head + item("JPartDataBi4", values, [], [part]))
-
-
-def write_bgeo(path, pack=bytes):
-    table = np.zeros(len(X), [("p", ">f4", 4), ("id", ">i4"), ("velocity", ">f4", 3)])
-    table["p"][:, :3], table["p"][:, 3], table["id"], table["velocity"] = X, 1, np.arange(len(X)), X
-    data = b"BgeoV" + struct.pack(">9i", 5, len(X), 0, 0, 0, 2, 0, 0, 0)
-    for name, size, kind in ((b"id", 1, 1), (b"velocity", 3, 5)):
-        data += struct.pack(">H", len(name)) + name + struct.pack(">Hi", size, kind) + bytes(4 * size)
-    Path(path).write_bytes(pack(data + table.tobytes() + b"\0\xff"))
 
 
 def quietly(function, *arguments, **words):

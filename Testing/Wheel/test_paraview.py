@@ -10,11 +10,11 @@ import glob
 import inspect
 import os
 import shutil
-import struct
 import sys
 import tempfile
 
 import numpy as np
+from solver_files import X, write_bi4
 
 if not hasattr(inspect, "getargspec"):  # Debian 12's ParaView 5.11 cannot load any plugin in Python without
     inspect.getargspec = inspect.getfullargspec
@@ -26,29 +26,6 @@ if not plugins:
 
 from paraview import servermanager
 from paraview import simple
-
-
-def text(word):
-    return struct.pack("<I", len(word)) + word.encode()
-
-
-def item(name, values, arrays, items):
-    """An item of DualSPHysics' layout; test_files.py, which has it, too, wants more packages than ParaView's Python has."""
-    packed = text("\nVALUES") + struct.pack("<I", len(values)) + b"".join(values) if values else b""
-    base = text("\nITEM\n") + text(name) + struct.pack("<ii", 0, 0) + text("%f") + text("%f")
-    base += struct.pack("<III", len(arrays), len(items), len(packed))
-    return struct.pack("<I", len(base)) + base + packed + b"".join(arrays) + b"".join(items)
-
-
-def write(path, time, points):
-    data = points.astype("<f8").tobytes()
-    base = text("\nARRAY") + text("Posd") + struct.pack("<iiII", 0, 23, len(points), len(data))
-    part = item("PART", [text("TimeStep") + struct.pack("<id", 12, time)],
-                [struct.pack("<I", len(base)) + base + data], [])
-    head = b"#FileJBD JPartDataBi4".ljust(58) + b"\n" + bytes(5)
-    with open(path, "wb") as file:
-        file.write(head + item("JPartDataBi4", [text("H") + struct.pack("<id", 12, 0.13)], [], [part]))
-
 
 simple.LoadPlugin(plugins[0], remote=False, ns=globals())
 reader = simple.XMLPolyDataReader(FileName=[os.environ["MCOR_TEST_DATA"] + "/dam_break_45k.vtp"])
@@ -76,7 +53,7 @@ folder = tempfile.mkdtemp()
 atexit.register(shutil.rmtree, folder, True)
 names = [os.path.join(folder, f"Part_{i:04d}.bi4") for i in range(3)]
 for i, name in enumerate(names):
-    write(name, 0.25 * i, cube * [1, 1, 1 + 0.1 * i])
+    write_bi4(name, time=0.25 * i, positions=X * [1, 1, 1 + 0.1 * i])
 reader = simple.OpenDataFile(names)  # by the ending alone, as File > Open does
 assert reader is not None and "SPHParticleReader" in reader.GetXMLName(), reader
 times = list(reader.TimestepValues)

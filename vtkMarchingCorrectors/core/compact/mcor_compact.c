@@ -172,24 +172,6 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
   (void)slice;
 }
 
-static mcor_status mcor_write_added(mcor_context* context, const mcor_adding* add, int count)
-{
-  mcor_mesh* mesh = &context->mesh;
-  const size_t o = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size;
-  mcor_buffer* const of_edges[] = { &mesh->linear, &mesh->evaluations, &mesh->ends };
-  const size_t widths[] = { real, 1, 2 * real };
-  MCOR_TRY(mcor_extend_vertices(context, (int)o, (int)(o + n)));
-  for (size_t i = 0; i < 3; ++i) /* so far, cuts and caps may have none */
-  {
-    const size_t old = o * widths[i], size = of_edges[i]->size;
-    MCOR_TRY(mcor_extend(context, of_edges[i], size < old ? size : old, (o + n) * widths[i]));
-  }
-  MCOR_TRY(mcor_append_bytes(context, &mesh->node, o * 16, add->node, n * 16));
-  const size_t width = (add->lines ? 4 : 2) * real;
-  return mcor_append_bytes(
-    context, add->lines ? &mesh->offset : &mesh->ends, o * width, add->data, n * width);
-}
-
 /* Notes that `count` vertices of the order are in the mesh from `at` on, and the first one of each
  * level. */
 static void mcor_note_places(mcor_bunches* bunches, int at, int count, cl_int level_first[])
@@ -217,20 +199,33 @@ mcor_status mcor_add_vertices(
   mcor_bunches* bunches, bool lines, const double (*starts)[3], int count)
 {
   mcor_context* context = bunches->context;
-  const size_t n = (size_t)count;
+  mcor_mesh* mesh = &context->mesh;
+  const size_t o = (size_t)mesh->vertex_count, n = (size_t)count, real = context->cl.real_size,
+               width = (lines ? 4 : 2) * real;
+  mcor_buffer* const of_edges[] = { &mesh->linear, &mesh->evaluations, &mesh->ends };
+  const size_t widths[] = { real, 1, 2 * real };
   mcor_adding add = { .bunches = bunches,
     .lines = lines,
     .starts = starts,
-    .node = malloc(4 * n * sizeof *add.node + 1),
-    .data = malloc(4 * n * context->cl.real_size + 1) };
+    .node = malloc(n * 16 + 1),
+    .data = malloc(n * width + 1) };
   mcor_status status = mcor_allocated(context, add.node && add.data);
   MCOR_THEN(
     status, mcor_parallel_run(context, count, MCOR_LIGHT_GRAIN, mcor_add_slice, &add, NULL));
-  MCOR_THEN(status, mcor_write_added(context, &add, count));
+  MCOR_THEN(status, mcor_extend_vertices(context, (int)o, (int)(o + n)));
+  for (size_t i = 0; i < 3; ++i) /* so far, cuts and caps may have none */
+  {
+    const size_t old = o * widths[i], size = of_edges[i]->size;
+    MCOR_THEN(
+      status, mcor_extend(context, of_edges[i], size < old ? size : old, (o + n) * widths[i]));
+  }
+  MCOR_THEN(status, mcor_append_bytes(context, &mesh->node, o * 16, add.node, n * 16));
+  MCOR_THEN(status,
+    mcor_append_bytes(
+      context, lines ? &mesh->offset : &mesh->ends, o * width, add.data, n * width));
   free(add.node);
   free(add.data);
   MCOR_TRY(status);
-  mcor_mesh* mesh = &context->mesh;
   mcor_note_places(bunches, mesh->vertex_count, count, mesh->level_first[1]);
   mesh->march_count = mesh->vertex_count;
   mesh->vertex_count += count;
@@ -241,6 +236,7 @@ mcor_status mcor_add_vertices(
 static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 {
   int count = 0;
+  mcor_sort_bunches(bunches);
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
     bunches->place[v] = v;
@@ -273,21 +269,22 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 static int mcor_list_fresh(mcor_bunches* bunches)
 {
   int count = 0;
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  for (int i = 0; i < bunches->sorted_count; ++i)
   {
-    if (mcor_state_of(bunches, v) == MCOR_BUNCH_BAD)
+    if (mcor_state_of(bunches, bunches->sorted[i].first) == MCOR_BUNCH_BAD)
     {
-      mcor_drop_leaning(bunches, v, MCOR_BUNCH_BAD);
+      mcor_drop_leaning(bunches, bunches->sorted[i].first, MCOR_BUNCH_BAD);
     }
   }
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  for (int i = 0; i < bunches->sorted_count; ++i)
   {
-    const int state = mcor_state_of(bunches, v);
+    const int32_t first = bunches->sorted[i].first;
+    const int state = mcor_state_of(bunches, first);
     if (state == MCOR_BUNCH_BAD || state == MCOR_BUNCH_FRESH)
     {
-      mcor_set_state(bunches, v, state == MCOR_BUNCH_BAD ? MCOR_BUNCH_FRESH : MCOR_BUNCH_APART);
+      mcor_set_state(bunches, first, state == MCOR_BUNCH_BAD ? MCOR_BUNCH_FRESH : MCOR_BUNCH_APART);
     }
-    if (mcor_state_of(bunches, bunches->first[v]) == MCOR_BUNCH_FRESH) /* it comes first */
+    for (int32_t v = state == MCOR_BUNCH_BAD ? first : -1; v >= 0; v = bunches->next[v])
     {
       bunches->order[count++] = v;
     }
@@ -345,25 +342,6 @@ static mcor_status mcor_gather(
   return status;
 }
 
-/* Notes the places of vertices. Cuts and caps follow the vertices on edges. */
-static void mcor_note_order(mcor_bunches* bunches, int march_count, int count)
-{
-  mcor_mesh* mesh = &bunches->context->mesh;
-  const int shift = march_count - bunches->march_count;
-  mcor_note_places(bunches, 0, march_count, mesh->level_first[0]);
-  for (int i = march_count; i < count; ++i)
-  {
-    bunches->place[i - shift] = i;
-  }
-  for (int l = 0; l < bunches->context->lattice.levels; ++l)
-  {
-    mesh->level_first[1][l] = bunches->late ? bunches->cut_first[l] + shift : march_count;
-  }
-  mesh->cap_first += shift;
-  mesh->march_count = march_count;
-  mesh->vertex_count = count;
-}
-
 static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
 {
   mcor_context* context = bunches->context;
@@ -397,7 +375,19 @@ static mcor_status mcor_gather_vertices(mcor_bunches* bunches)
   }
   free(from);
   MCOR_TRY(status);
-  mcor_note_order(bunches, march_count, count);
+  mcor_note_places(bunches, 0, march_count, mesh->level_first[0]);
+  const int shift = march_count - bunches->march_count; /* of cuts and caps, which follow */
+  for (int i = march_count; i < count; ++i)
+  {
+    bunches->place[i - shift] = i;
+  }
+  for (int l = 0; l < context->lattice.levels; ++l)
+  {
+    mesh->level_first[1][l] = bunches->late ? bunches->cut_first[l] + shift : march_count;
+  }
+  mesh->cap_first += shift;
+  mesh->march_count = march_count;
+  mesh->vertex_count = count;
   for (int i = 0; i < bunches->cut_count; ++i)
   {
     cl_ulong* cut = &bunches->cut[i];
@@ -485,17 +475,6 @@ static mcor_status mcor_file_triangles(mcor_bunches* bunches)
 
 /* ---- All of it ---- */
 
-static mcor_status mcor_merge_bunches(mcor_bunches* bunches)
-{
-  MCOR_TRY(mcor_find_bunches(bunches));
-  mcor_sort_bunches(bunches);
-  MCOR_TRY(mcor_place_vertices(bunches));
-  MCOR_TRY(mcor_take_apart(bunches));
-  MCOR_TRY(mcor_move_slivers(bunches));
-  MCOR_TRY(mcor_gather_vertices(bunches));
-  return mcor_file_triangles(bunches);
-}
-
 /* Memory of the host, in one block, and a copy of the vertices. */
 static mcor_status mcor_begin_bunches(mcor_bunches* b)
 {
@@ -572,7 +551,12 @@ mcor_status mcor_compact(mcor_context* context)
     return MCOR_OK;
   }
   mcor_status status = mcor_begin_bunches(&bunches);
-  MCOR_THEN(status, mcor_merge_bunches(&bunches));
+  MCOR_THEN(status, mcor_find_bunches(&bunches));
+  MCOR_THEN(status, mcor_place_vertices(&bunches));
+  MCOR_THEN(status, mcor_take_apart(&bunches));
+  MCOR_THEN(status, mcor_move_slivers(&bunches));
+  MCOR_THEN(status, mcor_gather_vertices(&bunches));
+  MCOR_THEN(status, mcor_file_triangles(&bunches));
   free(bunches.memory);
   free(bunches.points);
   return status;

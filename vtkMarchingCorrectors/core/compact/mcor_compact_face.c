@@ -350,17 +350,16 @@ static mcor_status mcor_put_back(mcor_bunches* bunches, const int32_t* before, i
  * it. */
 mcor_status mcor_move_slivers(mcor_bunches* bunches)
 {
-  const size_t n = (size_t)bunches->vertex_count;
   if (bunches->corners == 2)
   {
     return MCOR_OK;
   }
-  double(*starts)[3] = malloc(n * sizeof *starts);
-  int32_t* before = malloc(n * sizeof *before);
+  double(*starts)[3] = malloc((size_t)bunches->vertex_count * sizeof *starts);
+  int32_t* before = bunches->order + bunches->vertex_count; /* behind those that move */
   int count = 0;
-  mcor_status status = mcor_allocated(bunches->context, starts && before);
+  mcor_status status = mcor_allocated(bunches->context, starts);
   MCOR_THEN(status, mcor_list_moving(bunches, starts, &count));
-  for (int i = 0; i < count && status == MCOR_OK; ++i)
+  for (int i = 0; i < count; ++i)
   {
     before[i] = *mcor_place_in(bunches, bunches->order[i]);
   }
@@ -370,6 +369,5 @@ mcor_status mcor_move_slivers(mcor_bunches* bunches)
     MCOR_THEN(status, mcor_put_back(bunches, before, count));
   }
   free(starts);
-  free(before);
   return status;
 }

@@ -168,9 +168,8 @@ static mcor_status mcor_deliver_factors(
     { &run->limited, real, &job.factors }, { &run->outside, n * sizeof(cl_int), &job.outside } };
   MCOR_TRY(mcor_find_originals(context, run));
   mcor_status status = mcor_map_all(context, views, count);
-  status = status == MCOR_OK
-    ? mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL)
-    : status;
+  MCOR_THEN(status,
+    mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL));
   for (int i = 0; i < MCOR_SLICES; ++i)
   {
     context->run.statistics->widening_outside += job.left[i];
@@ -192,10 +191,18 @@ mcor_status mcor_read_volumes(mcor_context* context, const mcor_input* input, do
   return status;
 }
 
-static mcor_status mcor_widen_all(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_widen_run* run)
+/* Finds the factors of all particles. A box without globals only tells which ones are too far away
+ * to matter, see mcor_leave_out_far. */
+static mcor_status mcor_run_widen(
+  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
+  mcor_widen_run* run = data;
   mcor_widening* out = run->out;
+  mcor_options own = *options;
+  if (!options->globals)
+  {
+    memset(own.box, 0, sizeof own.box);
+  }
   for (int64_t i = 0; i < input->count; ++i)
   {
     out->factor[i] = 1;
@@ -206,39 +213,25 @@ static mcor_status mcor_widen_all(
   }
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   context->run.widest = run->widest;
-  MCOR_TRY(mcor_check_input(context, input, options));
-  if (options->globals && mcor_has_box(options))
+  context->run.options = &own;
+  mcor_status status = mcor_check_input(context, input, &own);
+  if (status == MCOR_OK && options->globals && mcor_has_box(options))
   {
     mcor_bound_by_box(context, options);
   }
   if (input->count > 0)
   {
-    MCOR_TRY(mcor_prepare(context, input, options));
+    MCOR_THEN(status, mcor_prepare(context, input, &own));
   }
-  if (input->count > 0 && context->grid.count > 0)
+  if (status == MCOR_OK && input->count > 0 && context->grid.count > 0)
   {
-    MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.2, 0.8));
-    mcor_status status = mcor_find_factors(context, run);
-    status = status == MCOR_OK ? mcor_deliver_factors(context, input, run) : status;
+    status = mcor_begin_phase(context, MCOR_PHASE_SEARCH_GRID, 0.2, 0.8);
+    MCOR_THEN(status, mcor_find_factors(context, run));
+    MCOR_THEN(status, mcor_deliver_factors(context, input, run));
     mcor_release_run(context, run);
-    MCOR_TRY(status);
   }
-  MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-  return mcor_finish_statistics(context);
-}
-
-/* Finds the factors of all particles. A box without globals only tells which ones are too far away
- * to matter, see mcor_leave_out_far. */
-static mcor_status mcor_run_widen(
-  mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
-{
-  mcor_options everywhere = *options;
-  if (!options->globals)
-  {
-    memset(everywhere.box, 0, sizeof everywhere.box);
-  }
-  context->run.options = &everywhere;
-  const mcor_status status = mcor_widen_all(context, input, &everywhere, data);
+  MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
+  MCOR_THEN(status, mcor_finish_statistics(context));
   context->run.options = options;
   return status;
 }
@@ -299,9 +292,9 @@ mcor_status mcor_widen(mcor_context* context, const mcor_input* input, const mco
   mcor_input particles;
   mcor_options own;
   const bool uses_solids = mcor_choose_widening(input, options, &particles, &own);
-  status = status == MCOR_OK ? mcor_run_call(context, &particles, &own, uses_solids,
-                                 &widening->statistics, mcor_run_widen, &run)
-                             : status;
+  MCOR_THEN(status,
+    mcor_run_call(
+      context, &particles, &own, uses_solids, &widening->statistics, mcor_run_widen, &run));
   context->kept.grid = context->kept.value = context->kept.nodes = false;
   if (status != MCOR_OK)
   {

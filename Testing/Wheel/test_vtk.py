@@ -11,7 +11,6 @@ import pyvista
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 import marchingcorrectors as mc
-from filter_report import report_mesh
 from marchingcorrectors import vtkMarchingCorrectors
 
 DATA = Path(os.environ["MCOR_TEST_DATA"])

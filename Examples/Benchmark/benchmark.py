@@ -33,7 +33,7 @@ CASES = {
     "b": Case(tables.free_surface, "free surface with one attribute and normals, against splashsurf", LARGE, "4k,8k", 5),
     "c": Case(paper_tables.paper_tables, "Tables I to V of the paper, each figure beside the paper's", LARGE, "4k,8k", 5),
     "d": Case(tables.limits, "phases against the device's measured bandwidth and peak", LARGE, "4k,8k", 5),
-    "e": Case(tables.reuse, "reuse for other iso values and scalars, growth with the particles, first start", LARGE, "4k,8k", 5),
+    "e": Case(tables.reuse, "reuse for other iso values and scalars, growth with the particles", LARGE, "4k,8k", 5),
     "adaptive": Case(cases.adaptive, "adaptive cubes against uniform ones; smoothing lengths 1:10 to 1:1000", "100k"),
     "cancel": Case(cases.cancel, "how long a run goes on after it is cancelled"),
     "distance": Case(cases.distance, "how far surfaces on adaptive and on uniform cubes are apart", "100k"),

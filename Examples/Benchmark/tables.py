@@ -1,10 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables a, b, d and e, on the wavy tank: against what one would use otherwise, with the cubic spline, the same smoothing
-length and the same cube size, half of it; against the device's limits; reuse, growth, first start."""
+length and the same cube size, half of it; against the device's limits; reuse and growth."""
 import math
 import statistics
-import tempfile
 import time
 
 import numpy as np
@@ -272,33 +271,6 @@ def growth(benchmark):
     return {"sizes": results, "exponents": exponents}
 
 
-def first_start(benchmark):
-    out, count, starts = benchmark.report, benchmark.middle, []
-    out.heading(f"First start ever, and later starts ({text_of(count)})",
-                "Process: from start to end, with reading the particles and writing the surface. First start ever: no "
-                "built programs are cached (POCL_CACHE_DIR, CUDA_CACHE_PATH). PoCL compiles a kernel once more at its "
-                "first launch, which counts in the phases.", mark="###")
-    path = benchmark.sets.get("tank", count)
-    for _ in range(benchmark.runs):
-        with tempfile.TemporaryDirectory(prefix="mcor-cache-") as cache:
-            environment = {"POCL_CACHE_DIR": cache, "CUDA_CACHE_PATH": cache}
-            starts.append([benchmark.program.start(path, ISOSURFACE, 1, environment) for _ in range(2)])
-    rows, results = [], {}
-    for i, name in enumerate(("first start ever", "later start")):
-        runs = [pair[i][0]["runs"][0] for pair in starts]
-        results[name] = {
-            "process_seconds": statistics.median(pair[i][1] for pair in starts),
-            "first_run_seconds": statistics.median(run["wall_seconds"] for run in runs),
-            "program_build_seconds": statistics.median(run["seconds"]["program_build"] for run in runs)}
-        rows.append([name, *map(seconds_of, results[name].values())])
-    warm = benchmark.program.run(path, ISOSURFACE)
-    rows.append(["later run in the same process", "", seconds_of(warm["seconds"]),
-                 seconds_of(warm["phases"]["program_build"])])
-    out.table(["", "process", "run", "of it building or loading the program"], rows)
-    return results
-
-
 def reuse(benchmark):
-    benchmark.report.heading("e. Reuse, growth, first start")
-    return {"second_surface": second_surface(benchmark), "growth": growth(benchmark),
-            "first_start": first_start(benchmark)}
+    benchmark.report.heading("e. Reuse and growth")
+    return {"second_surface": second_surface(benchmark), "growth": growth(benchmark)}

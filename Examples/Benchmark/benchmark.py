@@ -82,7 +82,7 @@ class Benchmark:
 
 
 def versions():
-    """Of what is compared, as far as this Python has it."""
+    """Versions of what is compared, as far as this Python has it."""
     from importlib.metadata import PackageNotFoundError, version
     try:
         splashsurf = version("pysplashsurf")

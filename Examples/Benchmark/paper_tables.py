@@ -104,7 +104,7 @@ def time_row(name, ours, paper, text=seconds_of):
 
 
 def cost(corrected, total):
-    """What correction adds, as a share of the total without."""
+    """The correction's share of the total without it."""
     return [None if a is None else (a - b) / b for a, b in zip(corrected, total)]
 
 

@@ -312,7 +312,7 @@ class TestProbe(unittest.TestCase):
         return image
 
     def test_gradients(self):
-        """Of a linear array inside of the cube: the particles' gradient to some digits; that of the weight, 0."""
+        """Gradients of a linear array inside of the cube: the particles' gradient to some digits; that of the weight, 0."""
         y = points_of(cube())[:, 1:2]
         particles = cube(Pair=(100 + y * [1, 2]).astype(numpy.float32))
         data = self.probe(self.image(0, 8, 0, 8, 0, 2, spacing=0.1, origin=(-0.4, -0.4, -0.1)), particles, ComputeGradients=1)
@@ -322,7 +322,7 @@ class TestProbe(unittest.TestCase):
         self.assertLess(abs(values_of(data, "WeightSum_Gradient").mean(axis=0)).max(), 0.1)
 
     def test_bits(self):
-        """The same in any order, of points in any class, with device data kept or not, of particles in blocks."""
+        """Bits are the same in any order, of points in any class, with device data kept or not, of particles in blocks."""
         particles, places = cube(), self.places(5000)
         expected = self.probe(particles_of(places), particles)
         back = self.probe(particles_of(places[::-1]), particles, KeepDeviceData=0)

@@ -31,7 +31,7 @@ def make_filter(particles=None, scalar="Radius", iso=0.3):
 
 
 def normals_of(surface):
-    """Of the triangles, by their corners."""
+    """The triangles' normals, by their corners."""
     corners = points_of(surface).astype(float)[corners_of(surface)]
     return numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
@@ -217,7 +217,7 @@ class TestArrays(FilterTest):
         self.has(self.good(extract, InterpolateAttributes=0), "Radius", "Position Id")
 
     def test_left_out(self):
-        """What the user excludes, and with a warning what is not finite where there is fluid."""
+        """Arrays that the user excludes, and with a warning those that are not finite where there is fluid."""
         wall = points_of(cube())[:, 0] < -0.9
         broken = numpy.where(wall, math.inf, 1)
         particles = self.make_particles(Broken=numpy.ones((COUNT, 3)), BrokenWall=broken, Wall=wall.astype(float))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What comes in. Weird input first: an empty output and one sentence, and the filter works again. Then arrays and point
+"""Input of all kinds. Weird input first: an empty output and one sentence, and the filter works again. Then arrays and point
 sets of any kind, and what is found where nobody has named it."""
 import math
 import unittest

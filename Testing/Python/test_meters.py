@@ -93,7 +93,7 @@ class TestGauge(MeterTest):
             self.assertEqual((inside["state"], inside["last"]), ("full", 0.5))
 
     def test_lines(self):
-        """Of the second input, with and without names; and two points alone."""
+        """Lines of the second input, with and without names; and two points alone."""
         line = made_by(vtkLineSource(), Point1=(0.3, 0.1, -2), Point2=(0.3, 0.1, 2), Resolution=7)  # one line, and one gauge
         gauge = self.gauge(self.MAST)
         rows = self.measured(gauge, cube(), LinesData=line)
@@ -200,7 +200,7 @@ class TestComponents(MeterTest):
         return made_by(append, OutputPointsPrecision=1)
 
     def particles(self, *places, **arrays):
-        """Of mass 2, with velocities that are twice the place."""
+        """Particles of mass 2, with velocities that are twice the place."""
         places = numpy.array(places, float)
         return particles_of(places, Mass=numpy.full(len(places), 2.0), Velocity=2 * places, **arrays)
 
@@ -287,7 +287,7 @@ class TestComponents(MeterTest):
         self.assertGreater(closed, 10)
 
     def pieces_of(self, shift, wanted, period):
-        """Of a lattice of spacing 0.1 in the period 2, moved by `shift`: those whose way from the origin is wanted."""
+        """Particles of a lattice of spacing 0.1 in the period 2, moved by `shift`: those whose way from the origin is wanted."""
         way = numpy.remainder(lattice(20, 20, 20) + 1, 2) - 1
         chosen = way[wanted(way)]
         particles = self.particles(*(chosen + shift))
@@ -315,7 +315,7 @@ class TestComponents(MeterTest):
                     self.assertTrue(period[2 * a] - 1e-3 < row[axis] < period[2 * a + 1] + 1e-3)
 
     def test_drops_in_bubbles(self):
-        """Of a ball, and of a layer without an end: each holds its particles wherever sides cut these."""
+        """Pieces of a ball, and of a layer without an end: each holds its particles wherever sides cut these."""
         for is_layer in (False, True):
             def wanted(way, is_layer=is_layer):
                 r = numpy.linalg.norm(way, axis=1)

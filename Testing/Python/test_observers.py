@@ -67,7 +67,7 @@ class TestObservers(unittest.TestCase):
                 self.assertEqual((statistics_of(extract), extract.GetErrorMessage()), (statistics, ""))
 
     def test_blocks(self):
-        """That are taken out of the input have their surfaces all the same."""
+        """Blocks that are taken out of the input have their surfaces all the same."""
         expected, blocks = surface_of(run(sphere())[0]), blocks_of(cube(), cube())
         extract = sphere(blocks)
         on_progress(extract, lambda made: made.GetProgress() > 0.1 and blocks.SetNumberOfBlocks(0))

@@ -25,7 +25,7 @@ def grow(_, data):
     data.GetPointData().GetArray("Other").Modified()
 
 
-# What versions tell of arrays; core_reuse has all options.
+# Steps that versions of arrays tell of; core_reuse has all options.
 STEPS = (
     {}, {"Value": (0, 0.5)}, {"InputArrayToProcess": (0, 0, 0, POINTS, "Other")}, {"CubeLevelLimit": 1},
     {"CubeSizeModeToUniform": ()}, {"CubeSizeModeToAdaptive": ()}, {"Box": (-2, 0.1, -0.2, 0.6, -2, 2), "UseBox": 1}, {"UseBox": 0},

@@ -189,7 +189,7 @@ class Test(unittest.TestCase):
                              {key: value for key, value in found["fields"].items() if key in told}, name)
 
     def test_accessor(self):
-        """The same triangles, names and sentences; where no double is rounded, the same points and arrays."""
+        """Makes the triangles, names and sentences of the filter."""
         words_of = {"Kernel": lambda value: {"sph_kernel": value}, "Dimension": lambda value: {"dimension": value},
                     "VertexThreshold": lambda value: {"vertex_threshold": value},
                     "FluidArrayName": lambda value: {"fluid": (value, 0)},

@@ -65,8 +65,8 @@ mcor_status mcor_correct(mcor_context* context)
     {
       ++s->vertices_corrected;
       context->run.evaluations_counted += evaluations[i];
+      most = evaluations[i] > most ? evaluations[i] : most;
     }
-    most = evaluations[i] > most ? evaluations[i] : most;
   }
   s->iterations_max = most - 1 > s->iterations_max ? most - 1 : s->iterations_max;
   free(owners);

@@ -429,9 +429,10 @@ public:
   ///@{
   /**
    * The processes that share a run; VTK's global controller by default. With MPI and more than one
-   * process, all update together, each with some of the particles or none, see
-   * vtkMarchingCorrectors. Probes and derivatives return their results to the process that has the
-   * points or particles.
+   * process, all update together, each with some of the particles (without those that vtkGhostType
+   * marks as duplicates) or none, and results are those of one process, to the last bit. Probes and
+   * derivatives return them to the process that has the points or particles. If one process fails,
+   * all do. If blocks are taken apart, all processes must have the same number of them.
    */
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
@@ -542,6 +543,8 @@ protected:
    * together once and kept while they are the same. Null for other data.
    */
   vtkSmartPointer<vtkPointSet> TakeParticles(vtkDataObject* data);
+  /** Does so ahead of an update, with data that may not be read so far. */
+  vtkSmartPointer<vtkPointSet> TakeParticlesAhead(vtkDataObject* data);
   /** Does the same with the result of TakeVertices(). */
   vtkSmartPointer<vtkPointSet> JoinParticles(vtkDataObject* data);
 

@@ -25,40 +25,15 @@
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
+#include <functional>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
-/**
- * The lowest of many numbers, one more than the count of particles that may be far from the
- * others.
- */
-struct Lowest
-{
-  std::size_t Far = 0;
-  std::vector<double> Numbers; ///< a heap, the greatest first
-
-  void Add(double number)
-  {
-    if (this->Numbers.size() <= this->Far || number < this->Numbers.front())
-    {
-      this->Numbers.push_back(number);
-      std::push_heap(this->Numbers.begin(), this->Numbers.end());
-    }
-    if (this->Numbers.size() > this->Far + 1)
-    {
-      std::pop_heap(this->Numbers.begin(), this->Numbers.end());
-      this->Numbers.pop_back();
-    }
-  }
-};
-
 vtkIdType CountPoints(vtkDataObject* data)
 {
   vtkIdType count = 0;
@@ -85,7 +60,7 @@ bool vtkSPHAlgorithm::AgreeOnBlocks(vtkDataObjectTree* blocks)
 }
 
 // A block that fails leaves its place empty, and does not touch the others. An observer of the
-// progress may take blocks out of the input.
+// progress may take blocks out of the input, or change those that come later.
 void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree* output)
 {
   auto blocks = vtkSmartPointer<vtkDataObjectTree>::Take(input->NewInstance());
@@ -98,6 +73,17 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   const std::vector<std::string> names = vtkSPHNameBlocks(blocks);
   vtkSmartPointer<vtkDataObjectTreeIterator> iterator;
   iterator.TakeReference(blocks->NewTreeIterator());
+  std::vector<vtkSmartPointer<vtkDataObject>> taken; // copies, but the first: data kept are its own
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    vtkDataObject* block = iterator->GetCurrentDataObject();
+    taken.emplace_back(block);
+    if (taken.size() > 1)
+    {
+      taken.back().TakeReference(block->NewInstance());
+      taken.back()->ShallowCopy(block);
+    }
+  }
   iterator->InitTraversal();
   this->WarnOnce(WARN_WALL_BLOCK, vtkSPHFindWalls(names));
   const double share = 1.0 / static_cast<double>(names.size());
@@ -105,7 +91,7 @@ void vtkSPHAlgorithm::ProcessBlocks(vtkDataObjectTree* input, vtkDataObjectTree*
   {
     this->SetProgressShiftScale(static_cast<double>(i) * share, share);
     this->BlockName = names[i] + ": ";
-    vtkDataObject* block = iterator->GetCurrentDataObject();
+    vtkDataObject* block = taken[i];
     auto made = vtkSmartPointer<vtkDataObject>::Take(
       vtkDataObjectTypes::NewDataObject(this->GetOutputClassName(block->GetClassName())));
     made->GetFieldData()->PassData(block->GetFieldData());
@@ -152,6 +138,16 @@ vtkDataObject* vtkSPHAlgorithm::TakeVertices(vtkDataObject* data)
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticles(vtkDataObject* data)
 {
   return this->JoinParticles(this->TakeVertices(data));
+}
+
+vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::TakeParticlesAhead(vtkDataObject* data)
+{
+  auto* points = vtkPointSet::SafeDownCast(data);
+  if (!this->IsShared() && points && points->GetNumberOfPoints() == 0)
+  {
+    this->GetInputAlgorithm(0, 0)->Update();
+  }
+  return this->TakeParticles(data);
 }
 
 vtkSmartPointer<vtkPointSet> vtkSPHAlgorithm::JoinParticles(vtkDataObject* data)
@@ -243,52 +239,46 @@ bool vtkSPHAlgorithm::FindFluidBounds(vtkPointSet* particles, double bounds[6])
     return all;
   };
   vtkDataArray* fluid = own->GetPointData()->GetArray(choice.FluidArrayName.c_str());
-  const auto forEach = [&choice, own, fluid](auto&& visit)
+  List coordinates[3];
+  for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
   {
     double x[3];
-    for (vtkIdType i = 0; i < own->GetNumberOfPoints(); ++i)
+    own->GetPoint(i, x);
+    if ((!fluid || fluid->GetComponent(i, 0) == choice.FluidValue) && std::isfinite(x[0]) &&
+      std::isfinite(x[1]) && std::isfinite(x[2]))
     {
-      own->GetPoint(i, x);
-      if ((!fluid || fluid->GetComponent(i, 0) == choice.FluidValue) && std::isfinite(x[0]) &&
-        std::isfinite(x[1]) && std::isfinite(x[2]))
+      for (int a = 0; a < 3; ++a)
       {
-        visit(x);
+        coordinates[a].push_back(x[a]);
       }
     }
-  };
-  double count = 0.0;
-  forEach([&count](const double*) { count += 1.0; });
-  const List counts = gather({ count });
-  const auto total = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0.0));
+  }
+  auto total = static_cast<std::int64_t>(coordinates[0].size());
+  run->Sum(&total, 1);
   if (total == 0)
   {
     return false;
   }
-  std::array<Lowest, 6> ends; // along each axis; every other is that of what is below 0 as above it
-  for (Lowest& end : ends)
+  const std::int64_t far = std::min(std::max<std::int64_t>(8, total / 1000), (total - 1) / 4);
+  const auto takeLowest = [far](List list)
   {
-    end.Far = std::min(std::max<std::size_t>(8, total / 1000), (total - 1) / 4);
-  }
-  forEach(
-    [&ends](const double* x)
-    {
-      for (std::size_t e = 0; e < 6; ++e)
-      {
-        ends[e].Add(e % 2 ? -x[e / 2] : x[e / 2]);
-      }
-    });
+    const auto count = std::min(static_cast<std::int64_t>(list.size()), far + 1);
+    std::partial_sort(list.begin(), list.begin() + count, list.end());
+    list.resize(static_cast<std::size_t>(count));
+    return list;
+  };
+  List ends[6]; // along each axis; every other is that of what is below 0 as above it
   double longest = 0.0;
-  for (std::size_t e = 0; e < 6; ++e)
+  for (int e = 0; e < 6; ++e)
   {
-    const List all = gather(ends[e].Numbers);
-    ends[e].Numbers.clear();
-    std::for_each(all.begin(), all.end(), [&ends, e](double number) { ends[e].Add(number); });
-    std::sort_heap(ends[e].Numbers.begin(), ends[e].Numbers.end());
-    longest = std::max(longest, e % 2 ? -ends[e].Numbers.back() - ends[e - 1].Numbers.back() : 0.0);
+    List& along = coordinates[e / 2];
+    ends[e] = takeLowest(gather(takeLowest(along)));
+    std::transform(along.begin(), along.end(), along.begin(), std::negate<double>());
+    longest = std::max(longest, e % 2 ? -ends[e].back() - ends[e - 1].back() : 0.0);
   }
-  for (std::size_t e = 0; e < 6; ++e)
+  for (int e = 0; e < 6; ++e)
   {
-    const List& lowest = ends[e].Numbers;
+    const List& lowest = ends[e];
     const double end = *std::lower_bound(lowest.begin(), lowest.end(), lowest.back() - longest);
     bounds[e] = e % 2 ? -end : end;
   }

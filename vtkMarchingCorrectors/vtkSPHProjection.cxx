@@ -49,11 +49,6 @@ vtkImageData* vtkSPHProjection::GetImage()
   return vtkImageData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-const char* vtkSPHProjection::GetOutputClassName(const char*)
-{
-  return "vtkImageData";
-}
-
 mcor_view vtkSPHProjection::MakeView() const
 {
   mcor_view view = {};
@@ -68,14 +63,8 @@ int vtkSPHProjection::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkInformation* info = outputVector->GetInformationObject(0);
-  vtkDataObject* data = vtkDataObject::GetData(inputVector[0]);
-  auto* points = vtkPointSet::SafeDownCast(data);
-  if (!this->IsShared() && points && points->GetNumberOfPoints() == 0)
-  {
-    this->GetInputAlgorithm(0, 0)->Update(); // not read so far
-  }
-  const vtkSmartPointer<vtkPointSet> particles = this->TakeParticles(data);
-  const mcor_projection placed = this->Place(particles);
+  const mcor_projection placed =
+    this->Place(this->TakeParticlesAhead(vtkDataObject::GetData(inputVector[0])));
   int extent[6] = { 0, 0, 0, 0, 0, 0 };
   if (placed.size[0] > 0)
   {

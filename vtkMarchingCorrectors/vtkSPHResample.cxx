@@ -61,20 +61,32 @@ struct Rectangle
     this->ChooseAxes(normal);
     std::fill_n(this->Low, 2, std::numeric_limits<double>::infinity());
     std::fill_n(this->High, 2, -std::numeric_limits<double>::infinity());
-    for (int edge = 0; edge < 12; ++edge)
+    double corners[8][3], heights[8];
+    for (int c = 0; c < 8; ++c)
     {
-      const int axis = edge / 4;
-      double ends[2][3], height[2];
-      for (int end = 0; end < 2; ++end)
+      for (int a = 0; a < 3; ++a)
       {
-        const int sides[3] = { end, edge & 1, edge >> 1 & 1 };
+        corners[c][a] = box[2 * a + (c >> a & 1)] - origin[a];
+      }
+      heights[c] = vtkMath::Dot(corners[c], normal);
+      if (heights[c] == 0.0)
+      {
+        this->Add(corners[c]);
+      }
+    }
+    for (int edge = 0; edge < 24; ++edge)
+    {
+      const int c = edge / 3, d = c | 1 << edge % 3; // the same where c is the edge's end
+      if ((heights[c] < 0.0) != (heights[d] < 0.0))
+      {
+        const double part = heights[c] / (heights[c] - heights[d]);
+        double x[3];
         for (int a = 0; a < 3; ++a)
         {
-          ends[end][(axis + a) % 3] = box[2 * ((axis + a) % 3) + sides[a]] - origin[(axis + a) % 3];
+          x[a] = corners[c][a] + part * (corners[d][a] - corners[c][a]);
         }
-        height[end] = vtkMath::Dot(ends[end], normal);
+        this->Add(x);
       }
-      this->AddEdge(ends, height);
     }
   }
 
@@ -99,27 +111,6 @@ private:
     if (*largest < 0.0)
     {
       std::transform(this->V, this->V + 3, this->V, [](double v) { return v == 0.0 ? 0.0 : -v; });
-    }
-  }
-
-  void AddEdge(const double ends[2][3], const double height[2])
-  {
-    for (int end = 0; end < 2; ++end)
-    {
-      if (height[end] == 0.0)
-      {
-        this->Add(ends[end]);
-      }
-    }
-    if ((height[0] < 0.0) != (height[1] < 0.0))
-    {
-      const double part = height[0] / (height[0] - height[1]);
-      double x[3];
-      for (int a = 0; a < 3; ++a)
-      {
-        x[a] = ends[0][a] + part * (ends[1][a] - ends[0][a]);
-      }
-      this->Add(x);
     }
   }
 
@@ -269,12 +260,7 @@ void vtkSPHResample::ChooseDimensions(vtkDataObject* data)
   std::copy_n(this->Bounds, 6, bounds);
   if (this->FitBounds)
   {
-    auto* points = vtkPointSet::SafeDownCast(data);
-    if (!this->IsShared() && points && points->GetNumberOfPoints() == 0)
-    {
-      this->GetInputAlgorithm(0, 0)->Update(); // not read so far
-    }
-    this->Particles = this->TakeParticles(data);
+    this->Particles = this->TakeParticlesAhead(data);
     const bool isFound = (this->Particles || this->IsShared()) && this->FindBounds(bounds);
     this->Particles = nullptr;
     std::fill_n(bounds, isFound ? 0 : 6, 0.0);

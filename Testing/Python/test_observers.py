@@ -67,14 +67,17 @@ class TestObservers(unittest.TestCase):
                 self.assertEqual((statistics_of(extract), extract.GetErrorMessage()), (statistics, ""))
 
     def test_blocks(self):
-        """Blocks that are taken out of the input have their surfaces all the same."""
-        expected, blocks = surface_of(run(sphere())[0]), blocks_of(cube(), cube())
-        extract = sphere(blocks)
-        on_progress(extract, lambda made: made.GetProgress() > 0.1 and blocks.SetNumberOfBlocks(0))
-        output, told = run(extract, BlocksToApart=())
-        self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
-        for i in range(2):
-            self.assertTrue(surface_of(output.GetBlock(i)) == expected)
+        """Blocks that are taken out of the input, or changed, have their surfaces all the same."""
+        expected = surface_of(run(sphere())[0])
+        for change in (lambda blocks: blocks.SetNumberOfBlocks(0), lambda blocks: blocks.GetBlock(1).Initialize(),
+                       lambda blocks: blocks.GetBlock(1).GetPointData().RemoveArray("Radius")):
+            blocks = blocks_of(cube(), cube())
+            extract = sphere(blocks)
+            on_progress(extract, lambda made, change=change, blocks=blocks: made.GetProgress() > 0.1 and change(blocks))
+            output, told = run(extract, BlocksToApart=())
+            self.assertEqual((told, extract.GetErrorMessage()), ([], ""))
+            for i in range(2):
+                self.assertTrue(surface_of(output.GetBlock(i)) == expected)
 
     def test_update_within(self):
         """Is refused by VTK, and changes nothing; one after it works."""

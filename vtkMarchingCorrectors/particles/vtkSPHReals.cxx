@@ -5,8 +5,6 @@
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkDoubleArray.h"
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -45,34 +43,20 @@ vtkSmartPointer<vtkDataArray> vtkSPHAsReal(vtkDataArray* array)
     return array;
   }
   auto copy = vtkSmartPointer<vtkDoubleArray>::New();
-  copy->SetNumberOfComponents(array->GetNumberOfComponents());
-  copy->SetNumberOfTuples(array->GetNumberOfTuples());
-  double* to = copy->GetPointer(0);
-  vtkSPHForValues(array,
-    [to](auto values, vtkIdType first)
-    {
-      std::transform(values.begin(), values.end(), to + first,
-        [](auto value) { return static_cast<double>(value); });
-    });
+  copy->DeepCopy(array);
   return copy;
 }
 
 vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* solid)
 {
-  std::atomic<vtkIdType> fluidCount{ 0 };
-  vtkSPHForValues(array,
-    [&](auto values, vtkIdType first)
-    {
-      vtkIdType count = 0;
-      std::uint8_t* to = solid + first;
-      for (const auto value : values)
-      {
-        const bool isFluid = static_cast<double>(value) == fluid;
-        *to++ = isFluid ? 0 : 1;
-        count += isFluid ? 1 : 0;
-      }
-      fluidCount += count;
-    });
+  const vtkSmartPointer<vtkDataArray> real = vtkSPHAsReal(array);
+  const vtkSPHReals values(real);
+  vtkIdType fluidCount = 0;
+  for (vtkIdType i = 0; i < real->GetNumberOfTuples(); ++i)
+  {
+    solid[i] = values(i, 0) == fluid ? 0 : 1;
+    fluidCount += solid[i] ? 0 : 1;
+  }
   return fluidCount;
 }
 
@@ -80,23 +64,9 @@ vtkIdType vtkSPHMarkSolids(vtkDataArray* array, double fluid, std::uint8_t* soli
 std::map<double, vtkIdType> vtkSPHCountValues(vtkDataArray* array, std::size_t most)
 {
   std::map<double, vtkIdType> counts;
-  const vtkIdType number = array->GetNumberOfTuples();
-  double last = 0.0;
-  vtkIdType run = 0;
-  for (vtkIdType i = 0; i < number && counts.size() <= most; ++i)
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples() && counts.size() <= most; ++i)
   {
-    const double value = array->GetComponent(i, 0);
-    if (run > 0 && value != last)
-    {
-      counts[last] += run;
-      run = 0;
-    }
-    last = value;
-    ++run;
-  }
-  if (run > 0)
-  {
-    counts[last] += run;
+    ++counts[array->GetComponent(i, 0)];
   }
   return counts.size() <= most ? counts : std::map<double, vtkIdType>();
 }

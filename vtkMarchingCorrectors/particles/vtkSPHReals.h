@@ -5,10 +5,7 @@
 #define vtkSPHReals_h
 
 #include "mcor.h"
-#include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
-#include "vtkDataArrayRange.h"
-#include "vtkSMPTools.h"
 #include "vtkSmartPointer.h"
 
 #include <cstddef>
@@ -49,22 +46,6 @@ private:
   const float* const Floats;
   const double* const Doubles;
 };
-
-/** Calls work(values, index of the first) for all values, on all processors. */
-template <typename WorkT>
-void vtkSPHForValues(vtkDataArray* array, const WorkT& work)
-{
-  const auto run = [&work](auto* typed)
-  {
-    vtkSMPTools::For(0, typed->GetNumberOfValues(), 65536,
-      [&](vtkIdType begin, vtkIdType end)
-      { work(vtk::DataArrayValueRange(typed, begin, end), begin); });
-  };
-  if (!vtkArrayDispatch::Dispatch::Execute(array, run))
-  {
-    run(array);
-  }
-}
 
 /**
  * Sets `solid` to 0 where the array has the value `fluid`, else to 1. Returns the number of

@@ -12,8 +12,8 @@
 #include "vtkPoints.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHNumbers.h"
 #include "vtkSPHReals.h"
+#include "vtkTypeInt64Array.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,6 +75,42 @@ vtkSmartPointer<vtkDataArray> MakeArray(
   return array;
 }
 
+using Numbered = std::vector<std::pair<std::int64_t, vtkIdType>>; // particles by their numbers
+
+/** Sorts particles by number. Returns an empty sentence, or what is wrong; `step` names the step. */
+std::string SortByNumber(vtkDataArray* array, const std::string& step, Numbered& sorted)
+{
+  const std::string name = vtkSPHNameOf(array);
+  const vtkIdType count = array->GetNumberOfTuples();
+  for (vtkIdType i = 0; vtkSPHIsReal(array) && i < count; ++i)
+  {
+    // Beyond 2^53, floating point cannot hold all whole numbers, so distinct ones may have become
+    // equal.
+    const double real = array->GetComponent(i, 0);
+    if (!(std::floor(real) == real && std::abs(real) <= 9007199254740992.0))
+    {
+      return "The number '" + name + "' of particle " + std::to_string(i) + " in " + step + " is " +
+        Text(real) + "; particles have whole numbers.";
+    }
+  }
+  vtkNew<vtkTypeInt64Array> numbers;
+  numbers->DeepCopy(array);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    sorted.emplace_back(numbers->GetValue(i), i);
+  }
+  if (!std::is_sorted(sorted.begin(), sorted.end()))
+  {
+    vtkSMPTools::Sort(sorted.begin(), sorted.end());
+  }
+  const auto twin = std::adjacent_find(
+    sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  return twin == sorted.end()
+    ? ""
+    : "Particles " + std::to_string(twin->second) + " and " + std::to_string((twin + 1)->second) +
+      " in " + step + " have the same number " + std::to_string(twin->first) +
+      ", so they cannot be told apart: '" + name + "' is not an array of particle ids.";
+}
 }
 
 void vtkSPHTemporalCopy(vtkPointSet* particles, vtkPolyData* output)
@@ -125,10 +161,7 @@ bool vtkSPHTemporalPair::Match(
   if (signature != this->Signature)
   {
     this->Signature.clear();
-    this->Error = vtkSPHMatchNumbers({ this->Steps[0].Ids, this->Steps[1].Ids },
-      { this->NameOfStep(0), this->NameOfStep(1) },
-      { &this->Steps[0].Partners, &this->Steps[1].Partners });
-    if (!this->Error.empty())
+    if (!this->MatchNumbers())
     {
       return false;
     }
@@ -137,6 +170,30 @@ bool vtkSPHTemporalPair::Match(
     this->Signature = signature;
   }
   return true;
+}
+
+bool vtkSPHTemporalPair::MatchNumbers()
+{
+  Numbered sorted[2];
+  for (int k = 0; k < 2 && this->Error.empty(); ++k)
+  {
+    Step& step = this->Steps[k];
+    this->Error = SortByNumber(step.Ids, this->NameOfStep(k), sorted[k]);
+    step.Partners.assign(sorted[k].size(), -1);
+  }
+  auto one = sorted[0].begin(), other = sorted[1].begin();
+  while (this->Error.empty() && one != sorted[0].end() && other != sorted[1].end())
+  {
+    const std::int64_t a = one->first, b = other->first;
+    if (a == b)
+    {
+      this->Steps[0].Partners[static_cast<size_t>(one->second)] = other->second;
+      this->Steps[1].Partners[static_cast<size_t>(other->second)] = one->second;
+    }
+    one += a <= b ? 1 : 0;
+    other += b <= a ? 1 : 0;
+  }
+  return this->Error.empty();
 }
 
 void vtkSPHTemporalPair::MatchNothing()

@@ -52,6 +52,7 @@ private:
     std::vector<vtkIdType> Partners; // number of each particle in the other step; -1: it has none
   };
 
+  bool MatchNumbers();
   void MatchNothing();
   bool FindIds(const std::string& name);
   bool FindVelocities(const vtkSPHTemporalChoice& choice);

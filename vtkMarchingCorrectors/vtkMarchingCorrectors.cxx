@@ -3,6 +3,7 @@
 #include "vtkMarchingCorrectors.h"
 
 #include "mcor.h"
+#include "mcor_parts.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -100,11 +101,6 @@ void vtkMarchingCorrectors::SetPanelBoxLength(double x, double y, double z)
 {
   const double* b = this->Box;
   this->SetBox(b[0], b[0] + x, b[2], b[2] + y, b[4], b[4] + z);
-}
-
-const char* vtkMarchingCorrectors::GetOutputClassName(const char*)
-{
-  return "vtkPolyData";
 }
 
 void vtkMarchingCorrectors::FillOptions(mcor_options& options)
@@ -239,27 +235,10 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   }
   this->SetIsoValues(*run, input, isoValues);
   vtkNew<vtkPointData> found;
-  vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
-  const vtkIdType count = run->Own->GetNumberOfPoints();
-#if MCOR_HAS_RANKS
-  if (run->IsShared())
+  mcor_statistics statistics = {};
+  if (!this->FindWidening(*run, input, found, statistics))
   {
-    if (!this->WidenDistributed(
-          static_cast<vtkSharedRun&>(*run), input, found, widening.statistics))
-    {
-      return false;
-    }
-  }
-  else
-#endif
-  {
-    if (!run->Call(input,
-          [&](mcor_context* context)
-          { return mcor_widen(context, &input.Core, &run->Options, &widening); }))
-    {
-      return false;
-    }
-    vtkSPHAddWidening(found, input.Core, widening, count);
+    return false;
   }
   const mcor_input& core = input.Core;
   vtkDataArray* const factors = found->GetArray("Widening");
@@ -267,11 +246,11 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
     ? 1.0 / mcor_support_factor(run->Options.sph_kernel)
     : 1.0;
   vtkNew<vtkDoubleArray> lengths;
-  lengths->SetNumberOfValues(count);
-  for (vtkIdType i = 0; i < count; ++i)
+  lengths->SetNumberOfValues(factors->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < lengths->GetNumberOfValues(); ++i)
   {
     const double length = core.estimate_smoothing_length
-      ? widening.statistics.smoothing_length_min
+      ? statistics.smoothing_length_min
       : vtkSPHValueOf(core.smoothing_length, i) * unit;
     lengths->SetValue(i, length * factors->GetComponent(i, 0));
   }
@@ -280,10 +259,54 @@ bool vtkMarchingCorrectors::Widen(vtkPointSet* particles, vtkPolyData* output)
   output->GetPointData()->ShallowCopy(run->Own->GetPointData());
   output->GetFieldData()->ShallowCopy(run->Own->GetFieldData());
   vtkSPHAddArray(output->GetPointData(), "WidenedSmoothingLength", lengths.Get());
-  for (int i = 0; i < found->GetNumberOfArrays(); ++i)
+  vtkSPHAddArrays(found, output->GetPointData());
+  return true;
+}
+
+// If processes share the run, the one that owns a particle's place finds its factor, which then
+// travels to where the particle came from.
+bool vtkMarchingCorrectors::FindWidening(
+  vtkRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found, mcor_statistics& statistics)
+{
+  const std::unique_ptr<vtkRun> sums = vtkRun::Make(this);
+  sums->Own = run.Own;
+  sums->Options = mcor_spell_out(&run.Options);
+  sums->Options.level_limit = 0;
+  if (!sums->Measure(mine, false)) // with the box, which tells the particles that are too far away
   {
-    output->GetPointData()->AddArray(found->GetAbstractArray(i));
+    return false;
   }
+  std::fill_n(sums->Options.box, sums->IsShared() ? 6 : 0, 0.0);
+  vtkSPHParticles* input =
+    sums->Share(mine, [](vtkSPHParticles& near) { return near.CollectParticles(); });
+  vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
+  if (!input ||
+    !sums->Call(*input,
+      [&](mcor_context* context)
+      { return mcor_widen(context, &input->Core, &sums->Options, &widening); }))
+  {
+    return false;
+  }
+  statistics = widening.statistics;
+  if (const vtkSPHMergeRanges merge = sums->MergeRanges())
+  {
+    // A process that owns no place has no statistics.
+    const double least = statistics.smoothing_length_min;
+    double range[2] = { least > 0.0 ? least : std::numeric_limits<double>::infinity(), 0.0 };
+    merge(range, 1);
+    statistics.smoothing_length_min = range[0];
+  }
+  const auto count = static_cast<vtkIdType>(input->Core.count);
+  vtkSPHAddWidening(found, mine.Core, widening, count);
+  vtkSPHAddArray(found, "WideningOutside", vtkSPHAdopt(widening.outside, 1, count));
+  sums->Return(found, run.Own);
+  statistics.widening_outside = 0;
+  vtkDataArray* const outside = found->GetArray("WideningOutside");
+  for (vtkIdType i = 0; i < outside->GetNumberOfTuples(); ++i)
+  {
+    statistics.widening_outside += outside->GetComponent(i, 0) != 0.0 ? 1 : 0;
+  }
+  found->RemoveArray("WideningOutside");
   return true;
 }
 

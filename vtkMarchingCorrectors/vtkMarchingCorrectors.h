@@ -44,14 +44,11 @@
  * the properties, except for the costs of the run, and for the seed cells, which include cells that
  * KeepDeviceData has kept.
  *
- * With MPI, if the Controller has more than one process, the processes share the surface. All of
- * them update, each with some of the particles (without those that vtkGhostType marks as
- * duplicates) or none. Each process gets the part of the surface in its share of space, to the last
- * bit as one process would make it. "GlobalPointIds" and "GlobalCellIds" number points and
- * triangles in the whole surface. GetRunStatistics() describes the whole surface, and has
- * "RankParticles", "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles"
- * and "RankSeconds" with one component per process. If one process fails, all do. If blocks are
- * taken apart, all processes must have the same number of them.
+ * If processes share a run, see SetController(), each gets the part of the surface in its share of
+ * space. "GlobalPointIds" and "GlobalCellIds" number points and triangles in the whole surface.
+ * GetRunStatistics() describes the whole surface, and has "RankParticles", "RankCopies",
+ * "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles" and "RankSeconds" with one
+ * component per process.
  *
  * @warning
  * Every piece is contoured by itself, unless processes share the surface. Particles of a
@@ -513,7 +510,7 @@ protected:
   vtkMarchingCorrectors();
   ~vtkMarchingCorrectors() override = default;
 
-  const char* GetOutputClassName(const char* inputClassName) override;
+  const char* GetOutputClassName(const char*) override { return "vtkPolyData"; }
   void Process(vtkDataObject* input, vtkDataObject* output) override;
 
   vtkNew<vtkContourValues> ContourValues;
@@ -535,8 +532,8 @@ private:
 
   void ContourDistributed(vtkSharedRun& run, vtkMarchingCorrectorsChoice& choice,
     vtkMarchingCorrectorsInput& mine, vtkPolyData* output);
-  /** Finds the arrays of Widen() for this rank's particles, and statistics of them. */
-  bool WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
+  /** Finds the arrays of Widen() for this process's particles, and statistics of them. */
+  bool FindWidening(vtkRun& run, vtkMarchingCorrectorsInput& mine, vtkPointData* found,
     mcor_statistics& statistics);
   void FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input, mcor_options options,
     mcor_surface& surface, vtkPolyData* output);

@@ -217,20 +217,12 @@ void vtkSPHDerivatives::Process(vtkDataObject* data, vtkDataObject* output)
   {
     return;
   }
-  const std::string active = found->GetScalars() ? found->GetScalars()->GetName() : std::string();
   run->Return(found, particles);
   run->AddShares();
   if (particles && derived)
   {
     derived->ShallowCopy(particles);
-    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
-    {
-      derived->GetPointData()->AddArray(found->GetAbstractArray(i));
-    }
-    if (!active.empty())
-    {
-      derived->GetPointData()->SetActiveScalars(active.c_str());
-    }
+    vtkSPHAddArrays(found, derived->GetPointData());
   }
 }
 

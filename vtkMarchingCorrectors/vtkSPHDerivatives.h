@@ -27,10 +27,8 @@
  *     StrainRate           S, nine values
  *
  * They are float if the input array is, else double. Sums are over fluid particles; solid particles get
- * zeros. If the input has an array of such a name, the new one is called NAME_SPH, see SetReplaceArrays().
- *
- * If the controller has several processes, they share the work: each gets the derivatives at its particles,
- * the same to the last bit as from one process. Particles that vtkGhostType marks as duplicates get zeros.
+ * zeros, as do those that vtkGhostType marks as duplicates. If the input has an array of such a name, the
+ * new one is called NAME_SPH, see SetReplaceArrays().
  *
  * @warning
  * A block that is processed by itself (see SetBlocks()), or a piece that is not shared by processes, has

@@ -472,10 +472,7 @@ void vtkSPHProbe::Process(vtkDataObject* data, vtkDataObject* output)
   if (points && probed)
   {
     probed->ShallowCopy(points);
-    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
-    {
-      probed->GetPointData()->AddArray(found->GetAbstractArray(i));
-    }
+    vtkSPHAddArrays(found, probed->GetPointData());
     this->FinishOutput(probed);
   }
 }

@@ -30,9 +30,7 @@
  * Points are processed in batches, so that little memory is needed beside the output; points that
  * no particle reaches cost next to nothing.
  *
- * If the controller has several processes, they share the work: each has some of the points and
- * particles, or none, and gets the values at its points, the same to the last bit as from one
- * process. Particles that vtkGhostType marks as duplicates do not count; such points do.
+ * Points that vtkGhostType marks as duplicates have values, too.
  *
  * Composite data at port 0 give composite data. Particles in several blocks are taken together,
  * with the arrays that all blocks have.

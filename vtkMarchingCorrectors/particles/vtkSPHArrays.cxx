@@ -47,13 +47,13 @@ vtkSmartPointer<vtkDataArray> RoundToFloat(double*& values, int components, vtkI
 }
 
 template <typename ArrayT, typename ValueT>
-void AddTuple(vtkFieldData* data, const char* name, std::initializer_list<ValueT> values)
+void AddTuple(vtkFieldData* data, const char* name, const std::vector<ValueT>& values)
 {
-  auto array = vtkSmartPointer<ArrayT>::New();
+  vtkNew<ArrayT> array;
   array->SetNumberOfComponents(static_cast<int>(values.size()));
   array->SetNumberOfTuples(1);
   std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkSPHAddArray(data, name, array);
+  vtkSPHAddArray(data, name, array.Get());
 }
 
 // One component for each phase, one for building programs, and the total; 0 before the first run.
@@ -121,6 +121,18 @@ void vtkSPHTakeTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttr
   to->CopyData(from, ids, places);
 }
 
+void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to)
+{
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    to->AddArray(from->GetAbstractArray(i));
+  }
+  if (from->GetScalars())
+  {
+    to->SetActiveScalars(from->GetScalars()->GetName());
+  }
+}
+
 vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -166,13 +178,12 @@ void vtkSPHAddArray(
   data->AddArray(array);
 }
 
-void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values)
+void vtkSPHAddReal(vtkFieldData* data, const char* name, const std::vector<double>& values)
 {
   AddTuple<vtkDoubleArray>(data, name, values);
 }
 
-void vtkSPHAddCount(
-  vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values)
+void vtkSPHAddCount(vtkFieldData* data, const char* name, const std::vector<std::int64_t>& values)
 {
   AddTuple<vtkTypeInt64Array>(data, name, values);
 }
@@ -227,16 +238,6 @@ void vtkSPHAddRunStatistics(vtkFieldData* run, const mcor_statistics& s)
     AddToRun(run, how, name, s.member);                                                            \
   }
 #include "mcor_statistics.def"
-}
-
-void vtkSPHAdd(vtkFieldData* data, const char* name, double value)
-{
-  vtkSPHAddReal(data, name, { value });
-}
-
-void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value)
-{
-  vtkSPHAddCount(data, name, { value });
 }
 
 void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&counts)[MCOR_CUBE_LEVELS])

@@ -14,7 +14,6 @@
 #include "vtkTypeTraits.h"
 
 #include <cstdint>
-#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +43,9 @@ vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdT
 
 /** Copies the tuples with these numbers, in this order, of all arrays, normals and ids, too. */
 void vtkSPHTakeTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
+
+/** Adds all arrays, in place of those of their names; scalars become the active ones. */
+void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 
 /** Returns the points with these numbers, in this order. */
 vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids);
@@ -78,33 +80,40 @@ vtkSmartPointer<vtkDataArray> vtkSPHAdoptReal(
 
 void vtkSPHAddArray(
   vtkFieldData* data, const char* name, const vtkSmartPointer<vtkAbstractArray>& array);
-void vtkSPHAddReal(vtkFieldData* data, const char* name, std::initializer_list<double> values);
-void vtkSPHAddCount(
-  vtkFieldData* data, const char* name, std::initializer_list<std::int64_t> values);
 void vtkSPHAddText(vtkFieldData* data, const char* name, const std::string& text);
-
-/**
- * Adds a number, or an array of numbers; counts of levels as a tuple each, up to the last level
- * that has any.
- */
 ///@{
-void vtkSPHAdd(vtkFieldData* data, const char* name, double value);
-void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value);
-void vtkSPHAdd(
-  vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
+/** Adds numbers as one tuple. */
+void vtkSPHAddReal(vtkFieldData* data, const char* name, const std::vector<double>& values);
+void vtkSPHAddCount(vtkFieldData* data, const char* name, const std::vector<std::int64_t>& values);
+///@}
+
+///@{
+/**
+ * Adds a number, or an array; counts of levels as a tuple each, up to the last level that
+ * has any.
+ */
+inline void vtkSPHAdd(vtkFieldData* data, const char* name, double value)
+{
+  vtkSPHAddReal(data, name, { value });
+}
+inline void vtkSPHAdd(vtkFieldData* data, const char* name, std::int64_t value)
+{
+  vtkSPHAddCount(data, name, { value });
+}
 inline void vtkSPHAdd(vtkFieldData* data, const char* name, int value)
 {
-  vtkSPHAdd(data, name, static_cast<std::int64_t>(value));
+  vtkSPHAddCount(data, name, { value });
+}
+void vtkSPHAdd(
+  vtkFieldData* data, const char* name, const std::int64_t (&levels)[MCOR_CUBE_LEVELS]);
+inline void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&values)[3])
+{
+  vtkSPHAddCount(data, name, std::vector<std::int64_t>(values, values + 3));
 }
 template <std::size_t N>
-void vtkSPHAdd(vtkFieldData* data, const char* name, const std::int64_t (&v)[N])
+void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&values)[N])
 {
-  vtkSPHAddCount(data, name, { v[0], v[1], v[2] });
-}
-template <std::size_t N>
-void vtkSPHAdd(vtkFieldData* data, const char* name, const double (&v)[N])
-{
-  vtkSPHAddReal(data, name, { v[0], v[1], v[2] });
+  vtkSPHAddReal(data, name, std::vector<double>(values, values + N));
 }
 ///@}
 

@@ -19,7 +19,6 @@
 #include "vtkSPHRanksStatistics.h"
 #include "vtkSPHRanksSurface.h"
 #include "vtkSPHSharedRun.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <memory>
@@ -37,15 +36,12 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
   {
     vtkNew<vtkPointData> found;
     mcor_statistics statistics = {};
-    if (!this->WidenDistributed(run, mine, found, statistics))
+    if (!this->FindWidening(run, mine, found, statistics))
     {
       return;
     }
     outside = statistics.widening_outside;
-    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
-    {
-      run.Own->GetPointData()->AddArray(found->GetAbstractArray(i));
-    }
+    vtkSPHAddArrays(found, run.Own->GetPointData());
     options.widen = 1.0;
     choice.IsWidened = true;
     this->FillRequests(choice, run.Own, run.MergeRanges());
@@ -94,47 +90,6 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
     surface.statistics.widening_outside = outside;
     this->FinishDistributed(run, input, whole, surface, output);
   }
-}
-
-// The rank that owns a particle's place finds its factor, which then travels to where the particle
-// came from.
-bool vtkMarchingCorrectors::WidenDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& mine,
-  vtkPointData* found, mcor_statistics& statistics)
-{
-  vtkSharedRun sums(this);
-  sums.Own = run.Own;
-  sums.Options = mcor_spell_out(&run.Options);
-  sums.Options.level_limit = 0;
-  if (!sums.Measure(mine, false)) // with the box, which tells the particles that are too far away
-  {
-    return false;
-  }
-  std::fill(sums.Options.box, sums.Options.box + 6, 0.0);
-  vtkSPHParticles* input =
-    sums.Share(mine, [](vtkSPHParticles& near) { return near.CollectParticles(); });
-  vtkSPHOwned<mcor_widening, mcor_free_widening> widening;
-  if (!input ||
-    !sums.Call(*input,
-      [&](mcor_context* context)
-      { return mcor_widen(context, &input->Core, &sums.Options, &widening); }))
-  {
-    return false;
-  }
-  const vtkIdType near = sums.Near->GetNumberOfPoints();
-  vtkSPHAddWidening(found, mine.Core, widening, near);
-  vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName("WideningOutside");
-  flags->SetArray(widening.outside, near, 1); // which stays the widening's
-  found->AddArray(flags);
-  sums.Return(found, run.Own);
-  vtkDataArray* const home = found->GetArray("WideningOutside");
-  for (vtkIdType i = 0; i < home->GetNumberOfTuples(); ++i)
-  {
-    statistics.widening_outside += home->GetComponent(i, 0) != 0.0 ? 1 : 0;
-  }
-  found->RemoveArray("WideningOutside");
-  statistics.smoothing_length_min = sums.Globals.measured.h_min;
-  return true;
 }
 
 void vtkMarchingCorrectors::FinishDistributed(vtkSharedRun& run, vtkMarchingCorrectorsInput& input,

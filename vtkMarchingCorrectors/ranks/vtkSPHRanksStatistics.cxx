@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksStatistics.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHRanks.h"
 #include "vtkSPHRanksRoute.h"
-#include "vtkTypeInt64Array.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numeric>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -79,21 +78,14 @@ struct Sums
 
 using Share = vtkSPHRanksShare;
 
-/** Adds an array with one component for each rank. */
-template <typename ArrayT, typename ValueOf>
-void Add(vtkFieldData* run, const char* name, const std::vector<Share>& shares, ValueOf valueOf)
-{
-  auto array = vtkSmartPointer<ArrayT>::New();
-  array->SetNumberOfComponents(static_cast<int>(shares.size()));
-  array->SetNumberOfTuples(1);
-  std::transform(shares.begin(), shares.end(), array->GetPointer(0), valueOf);
-  vtkSPHAddArray(run, name, array);
-}
+using CountOf = std::function<std::int64_t(const Share&)>;
 
 void AddCount(
-  vtkFieldData* run, const char* name, const std::vector<Share>& shares, std::int64_t Share::*count)
+  vtkFieldData* run, const char* name, const std::vector<Share>& shares, const CountOf& countOf)
 {
-  Add<vtkTypeInt64Array>(run, name, shares, std::mem_fn(count));
+  std::vector<std::int64_t> values;
+  std::transform(shares.begin(), shares.end(), std::back_inserter(values), countOf);
+  vtkSPHAddCount(run, name, values);
 }
 
 void AddExchange(vtkFieldData* run, const std::vector<Share>& shares)
@@ -105,12 +97,13 @@ void AddExchange(vtkFieldData* run, const std::vector<Share>& shares)
 
 void AddSeconds(vtkFieldData* run, const std::vector<Share>& shares)
 {
-  Add<vtkDoubleArray>(run, "RankSeconds", shares,
-    [](const Share& share)
-    {
-      const double* seconds = share.Statistics.seconds;
-      return std::accumulate(seconds, seconds + MCOR_PHASE_COUNT, 0.0);
-    });
+  std::vector<double> values;
+  for (const Share& share : shares)
+  {
+    const double* seconds = share.Statistics.seconds;
+    values.push_back(std::accumulate(seconds, seconds + MCOR_PHASE_COUNT, 0.0));
+  }
+  vtkSPHAddReal(run, "RankSeconds", values);
 }
 }
 
@@ -139,7 +132,7 @@ void vtkSPHAddShares(vtkFieldData* run, const std::vector<vtkSPHRanksShare>& sha
 {
   AddExchange(run, shares);
   AddCount(run, "RankWork", shares, &Share::Work);
-  Add<vtkTypeInt64Array>(run, "RankNodesEvaluated", shares,
+  AddCount(run, "RankNodesEvaluated", shares,
     [](const Share& share) { return share.Statistics.nodes_evaluated; });
   AddCount(run, "RankTriangles", shares, &Share::Triangles);
   AddSeconds(run, shares);

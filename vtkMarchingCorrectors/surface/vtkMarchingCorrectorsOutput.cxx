@@ -105,26 +105,16 @@ namespace
 /// a mesh for non-manifold.
 void BuildTriangles(mcor_surface& s, vtkPolyData* output)
 {
-  const vtkIdType count = s.triangle_count;
-  vtkNew<vtkIdTypeArray> corners, offsets;
-  corners->SetNumberOfValues(3 * count);
-  offsets->SetNumberOfValues(count + 1);
-  vtkIdType *corner = corners->GetPointer(0), *offset = offsets->GetPointer(0);
+  vtkNew<vtkIdTypeArray> corners;
+  corners->SetNumberOfValues(3 * s.triangle_count);
   const std::int32_t* from = s.triangles;
-  vtkSMPTools::For(0, count,
-    [=](vtkIdType begin, vtkIdType end)
-    {
-      std::copy(from + 3 * begin, from + 3 * end, corner + 3 * begin);
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        offset[i] = 3 * i;
-      }
-    });
-  offset[count] = 3 * count;
+  vtkIdType* to = corners->GetPointer(0);
+  vtkSMPTools::For(0, corners->GetNumberOfValues(),
+    [=](vtkIdType begin, vtkIdType end) { std::copy(from + begin, from + end, to + begin); });
   std::free(s.triangles);
   s.triangles = nullptr;
   vtkNew<vtkCellArray> triangles;
-  triangles->SetData(offsets, corners);
+  triangles->SetData(3, corners);
   output->SetPolys(triangles);
 }
 
@@ -406,7 +396,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   const bool isPeriodic = p[0] < p[1] || p[2] < p[3] || p[4] < p[5];
   if (isPeriodic)
   {
-    vtkSPHAddReal(fieldData, "PeriodicBounds", { p[0], p[1], p[2], p[3], p[4], p[5] });
+    vtkSPHAddReal(fieldData, "PeriodicBounds", std::vector<double>(p, p + 6));
   }
   if (isPeriodic || o.capping != MCOR_CAP_NONE)
   {
@@ -414,7 +404,7 @@ void vtkMarchingCorrectorsOutput::AddParameters(vtkFieldData* fieldData) const
   }
   if (mcor_has_box(&o))
   {
-    vtkSPHAddReal(fieldData, "Box", { o.box[0], o.box[1], o.box[2], o.box[3], o.box[4], o.box[5] });
+    vtkSPHAddReal(fieldData, "Box", std::vector<double>(o.box, o.box + 6));
   }
 }
 VTK_ABI_NAMESPACE_END

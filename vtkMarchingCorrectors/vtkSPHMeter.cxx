@@ -49,11 +49,6 @@ int vtkSPHMeter::FillOutputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
-const char* vtkSPHMeter::GetOutputClassName(const char*)
-{
-  return "vtkTable";
-}
-
 // Requests all of both inputs, whatever piece of the table is wanted; if processes share a run, all
 // of the places.
 int vtkSPHMeter::RequestUpdateExtent(

@@ -62,7 +62,7 @@ protected:
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  const char* GetOutputClassName(const char* inputClassName) override;
+  const char* GetOutputClassName(const char*) override { return "vtkTable"; }
   void Process(vtkDataObject* input, vtkDataObject* output) override;
   bool TakesTogether() const override { return true; }
 

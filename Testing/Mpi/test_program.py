@@ -68,17 +68,21 @@ class Program(unittest.TestCase):
             np.testing.assert_array_equal(vtk_to_numpy(array), vtk_to_numpy(ranks.GetPointData().GetArray(array.GetName())),
                                           array.GetName())
 
-    def test_one_file(self):
-        """One file, written as one: the points, and what they carry, are those of one process."""
-        how = ["--scalar", "Speed", "--iso", "2"]
-        self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), *how))
-        done = self.good(self.run_ranks(PARTICLES, self.path("ranks.vtp"), *how, "--stats", self.path("s.json")))
+    def check_surfaces(self, particles, pieces, *how):
+        """What processes make of pieces of the particles, written as one file, is what one process makes: points, triangles,
+        and what the points carry."""
+        done = [self.good(self.run_alone(particles, self.path("alone.vtp"), *how)),
+                self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *how))]
         alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
         self.assertGreater(alone.GetNumberOfPolys(), 1000)
-        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()),
-                                      vtk_to_numpy(ranks.GetPoints().GetData()))
+        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
         np.testing.assert_array_equal(corners(alone), corners(ranks))
         self.check_point_data(alone, ranks)
+        return done
+
+    def test_one_file(self):
+        how = ["--scalar", "Speed", "--iso", "2", "--stats", self.path("s.json")]
+        _, done = self.check_surfaces(PARTICLES, PARTICLES, *how)
         with open(self.path("s.json"), encoding="utf-8") as stream:
             self.assertIn("rank_particles", stream.read())
         self.assertEqual(done.stdout.count("surface "), 1, done.stdout)
@@ -95,14 +99,8 @@ class Program(unittest.TestCase):
                 particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
                 write(particles, self.path("in.vtp"))
                 pieces = write_pieces(self.path("in.vtp"), self.folder.name, 3)
-            words = [*how, "--smoothing-length", "neighbours"]
-            done = [self.good(self.run_alone(self.path("in.vtp"), self.path("alone.vtp"), *words)),
-                    self.good(self.run_ranks(pieces, self.path("ranks.vtp"), *words))]
+            done = self.check_surfaces(self.path("in.vtp"), pieces, *how, "--smoothing-length", "neighbours")
             self.assertEqual([run.stderr.count("1 particle is so far away") for run in done], [how[-1] == "--quiet"] * 2)
-            alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
-            self.assertGreater(alone.GetNumberOfPolys(), 1000)
-            np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
-            self.check_point_data(alone, ranks)
 
     def test_pieces_of_meshes(self):
         """A piece of polygons among pieces of vertices has no particles, whichever process reads it."""
@@ -120,11 +118,8 @@ class Program(unittest.TestCase):
         with open(self.path("all.pvtp"), "w", encoding="utf-8") as list_:
             list_.write('<VTKFile type="PPolyData"><PPolyData><Piece Source="hull.vtp"/><Piece Source="water.vtp"/>'
                         '</PPolyData></VTKFile>')
-        self.good(self.run_alone(self.path("water.vtp"), self.path("alone.vtp"), "--free-surface"))
-        done = self.good(self.run_ranks(self.path("all.pvtp"), self.path("ranks.vtp"), "--free-surface"))
+        _, done = self.check_surfaces(self.path("water.vtp"), self.path("all.pvtp"), "--free-surface")
         self.assertEqual(done.stderr.count("3 of 3 points of"), 1, done.stderr)
-        np.testing.assert_array_equal(*(vtk_to_numpy(read(self.path(name)).GetPoints().GetData())
-                                        for name in ("alone.vtp", "ranks.vtp")))
 
     def write_plane(self):
         """The particles, moved into the plane z = 0.5; with smoothing lengths of 1 to 4."""
@@ -380,12 +375,7 @@ class Program(unittest.TestCase):
         for i in range(0, particles.GetNumberOfPoints(), 20):
             particles.GetPoints().SetPoint(i, 1e6 + 1e3 * i, -1e6, 1e6)
         write(particles, self.path("in.vtp"))
-        for name, run in (("alone.vtp", self.run_alone), ("ranks.vtp", self.run_ranks)):
-            self.good(run(self.path("in.vtp"), self.path(name), "--free-surface", "--smooth", box))
-        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
-        self.assertGreater(alone.GetNumberOfPoints(), 100)
-        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
-        self.check_point_data(alone, ranks)
+        self.check_surfaces(self.path("in.vtp"), self.path("in.vtp"), "--free-surface", "--smooth", box)
 
     def write_series(self):
         """Two steps, the first in pieces, the second in one file, and a third whose file is damaged; ids and velocities."""
@@ -473,13 +463,7 @@ class Program(unittest.TestCase):
     def test_derive(self):
         """A surface of what is derived from another array."""
         how = ["--derive", "Velocity", "--scalar", "Vorticity", "--iso", "20", "--no-attributes"]
-        self.good(self.run_alone(PARTICLES, self.path("alone.vtp"), *how))
-        self.good(self.run_ranks(write_pieces(PARTICLES, self.folder.name, 2), self.path("ranks.vtp"), *how))
-        alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
-        self.assertGreater(alone.GetNumberOfPolys(), 1000)
-        np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()),
-                                      vtk_to_numpy(ranks.GetPoints().GetData()))
-        np.testing.assert_array_equal(corners(alone), corners(ranks))
+        self.check_surfaces(PARTICLES, write_pieces(PARTICLES, self.folder.name, 2), *how)
         self.check_fails(self.run_ranks(PARTICLES, self.path("o.vtp"), "--derive", "Nope", "--free-surface"), "Nope")
 
     def test_damaged_piece(self):

@@ -50,6 +50,12 @@ public:
   std::vector<vtkIdType> FindEnclosing(const std::vector<std::array<double, 3>>& points,
     const std::vector<vtkIdType>& without = {}) const;
 
+  struct Face
+  {
+    double Corner[3][3];
+    vtkIdType Piece;
+  };
+
 private:
   using Shift = std::array<int, 3>; // in periods
   void ReadTriangles(vtkPolyData* mesh);
@@ -63,6 +69,7 @@ private:
   void MoveHome();
   void FindParents();
   std::vector<std::array<double, 3>> ListShifts(bool hasVolume) const;
+  std::vector<Face> ListFaces(bool hasVolume) const;
   std::vector<vtkIdType> FindAround(const std::vector<std::array<double, 3>>& points) const;
   vtkIdType RootOf(vtkIdType point);
   Shift ShiftOf(vtkIdType point) const;

@@ -15,12 +15,7 @@ VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 using Triple = std::array<double, 3>;
-
-struct Face
-{
-  double Corner[3][3];
-  vtkIdType Piece;
-};
+using Face = vtkSPHPieces::Face;
 
 /**
  * Finds where the edge between two corners passes y, and whether the point (y, z) lies below
@@ -231,21 +226,26 @@ std::vector<Triple> vtkSPHPieces::ListShifts(bool hasVolume) const
   return shifts;
 }
 
-std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
-  const std::vector<Triple>& points, const std::vector<vtkIdType>& without) const
+std::vector<vtkSPHPieces::Face> vtkSPHPieces::ListFaces(bool hasVolume) const
 {
   std::vector<Face> faces;
-  for (size_t t = 0; t < this->Triangles.size() && !points.empty(); ++t)
+  for (size_t t = 0; t < this->Triangles.size(); ++t)
   {
     Face face;
     face.Piece = this->PieceOfTriangle[t];
-    if (this->Pieces[static_cast<size_t>(face.Piece)].HasVolume())
+    if (this->Pieces[static_cast<size_t>(face.Piece)].HasVolume() == hasVolume)
     {
       this->CornersOf(static_cast<vtkIdType>(t), face.Corner);
       faces.push_back(face);
     }
   }
-  const Columns columns(std::move(faces));
+  return faces;
+}
+
+std::vector<vtkIdType> vtkSPHPieces::FindEnclosing(
+  const std::vector<Triple>& points, const std::vector<vtkIdType>& without) const
+{
+  const Columns columns(points.empty() ? std::vector<Face>() : this->ListFaces(true));
   const std::vector<Triple> shifts = this->ListShifts(true);
   std::vector<vtkIdType> found(points.size(), -1);
   vtkSMPTools::For(0, static_cast<vtkIdType>(points.size()),
@@ -276,6 +276,7 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(const std::vector<Triple>& point
   std::vector<vtkIdType> found(points.size(), -1);
   std::vector<double> nearest(points.size(), VTK_DOUBLE_MAX);
   const std::vector<Triple> shifts = this->ListShifts(false);
+  const std::vector<Face> all = this->ListFaces(false);
   for (int ray = 0; ray < 6; ++ray)
   {
     const int axis = ray / 2;
@@ -283,21 +284,13 @@ std::vector<vtkIdType> vtkSPHPieces::FindAround(const std::vector<Triple>& point
     const auto turn = [axis, way](const double* x) {
       return Triple{ { way * x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3] } };
     };
-    std::vector<Face> faces;
-    for (size_t t = 0; t < this->Triangles.size(); ++t)
+    std::vector<Face> faces = all;
+    for (Face& face : faces)
     {
-      Face face;
-      face.Piece = this->PieceOfTriangle[t];
-      if (!this->Pieces[static_cast<size_t>(face.Piece)].HasVolume())
+      for (double(&corner)[3] : face.Corner)
       {
-        double corners[3][3];
-        this->CornersOf(static_cast<vtkIdType>(t), corners);
-        for (int i = 0; i < 3; ++i)
-        {
-          const Triple turned = turn(corners[i]);
-          std::copy(turned.begin(), turned.end(), face.Corner[i]);
-        }
-        faces.push_back(face);
+        const Triple turned = turn(corner);
+        std::copy(turned.begin(), turned.end(), corner);
       }
     }
     const Columns columns(std::move(faces));

@@ -56,22 +56,6 @@
  * trimmed at the cut, and with them both pieces have the surface there.
  *
  * @warning
- * The `sum` field falls to zero at a free surface. It therefore has a second sheet along the free
- * surface wherever the iso value is lower than the scalar there. The Shepard field does not.
- *
- * @warning
- * Pairs as seeds miss parts of the surface without a pair of close particles on both sides. This is
- * the paper's selection, meant for previews and comparison.
- *
- * @warning
- * The surface ends where trimming cuts it: it is a manifold with boundary, closed only where the
- * fluid closes it. In free-surface mode nothing is trimmed.
- *
- * @warning
- * With single precision output points, the rounding of the coordinates limits how well the field at
- * a vertex matches the iso value.
- *
- * @warning
  * As everywhere in VTK, in-place changes of input arrays are noticed only if Modified() is called.
  * An observer of the progress may change the filter while an update runs, but not the values in the
  * input's arrays; the change takes effect if Modified() is called after the update.
@@ -198,7 +182,8 @@ public:
 
   /**
    * Divide the SPH sum of the scalar by the sum of the weights (Shepard). On by default; off gives
-   * the plain sum of the paper.
+   * the plain sum of the paper. That falls to zero at a free surface, and so has a second sheet
+   * along it wherever the iso value is lower than the scalar there.
    */
   vtkSPHFlagMacro(ShepardNormalization, 1);
 
@@ -309,7 +294,8 @@ public:
    * How the march is seeded, see SeedModeType; COMPLETE by default, which misses nothing that
    * Marching Cubes on the full lattice would find. In free-surface mode it is always COMPLETE: no
    * pair of particles lies on both sides of the fluid's surface. PAIRS is for comparisons with the
-   * paper: an error with cubes of several sizes, a box, caps or several processes.
+   * paper: it misses parts of the surface without a pair of close particles on both sides, and is
+   * an error with cubes of several sizes, a box, caps or several processes.
    */
   vtkSPHClampMacro(SeedMode, int, COMPLETE, COMPLETE, PAIRS);
   void SetSeedModeToComplete() { this->SetSeedMode(COMPLETE); }
@@ -364,7 +350,8 @@ public:
   /**
    * End the surface where the fluid ends (see VertexThreshold), and at walls (see Solids). On by
    * default. Off keeps the triangles beyond, except for those that NodeThreshold discards. The free
-   * surface is not trimmed.
+   * surface is not trimmed. A trimmed one is a manifold with boundary, closed only where the fluid
+   * closes it.
    */
   vtkSPHFlagMacro(Trim, 1);
 
@@ -453,7 +440,8 @@ public:
 
   /**
    * Precision of the output points: vtkAlgorithm::DEFAULT_PRECISION (as the input points, the
-   * default), SINGLE_PRECISION or DOUBLE_PRECISION.
+   * default), SINGLE_PRECISION or DOUBLE_PRECISION. In single precision, the rounding of the
+   * coordinates limits how well the field at a vertex matches the iso value.
    */
   vtkSPHClampMacro(
     OutputPointsPrecision, int, DEFAULT_PRECISION, SINGLE_PRECISION, DEFAULT_PRECISION);
@@ -480,11 +468,11 @@ public:
    * known.
    */
   vtkGetVector2Macro(FluidScalarRange, double);
-  vtkGetCharFromStdStringMacro(UsedIsoValues);
-  vtkGetCharFromStdStringMacro(IsoValueArrayName);
-  vtkGetCharFromStdStringMacro(UsedSmoothingLength);
+  vtkSPHToldMacro(UsedIsoValues);
+  vtkSPHToldMacro(IsoValueArrayName);
+  vtkSPHToldMacro(UsedSmoothingLength);
   vtkGetMacro(UsedCubeSize, double);
-  vtkGetCharFromStdStringMacro(SurfaceMeasures);
+  vtkSPHToldMacro(SurfaceMeasures);
   vtkGetMacro(EstimatedCells, double);
   ///@}
 
@@ -519,11 +507,7 @@ protected:
   int Solids = SOLIDS_AUTO;
 
   double FluidScalarRange[2] = { 0.0, 0.0 };
-  std::string UsedIsoValues;
-  std::string IsoValueArrayName;
-  std::string UsedSmoothingLength;
   double UsedCubeSize = 0.0;
-  std::string SurfaceMeasures;
   double EstimatedCells = 0.0;
 
 private:

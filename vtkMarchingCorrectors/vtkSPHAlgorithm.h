@@ -59,7 +59,7 @@ struct vtkSPHRequest;
 ///@{
 /**
  * Declare SetX() and GetX() of a setting by VTK's macros, and for a flag XOn() and XOff(); those
- * without Choice in their names also the member X, with its default.
+ * without Choice in their names also the member X, with its default. What a run tells has GetX().
  */
 #define vtkSPHChoiceMacro(name, type)                                                              \
   vtkSetMacro(name, type);                                                                         \
@@ -79,6 +79,7 @@ public:
   vtkSPHMemberMacro(type name = usual) vtkSPHChoiceMacro(name, type)
 #define vtkSPHTextMacro(name, usual)                                                               \
   vtkSPHMemberMacro(std::string name = usual) vtkSPHChoiceTextMacro(name)
+#define vtkSPHToldMacro(name) vtkSPHMemberMacro(std::string name) vtkGetCharFromStdStringMacro(name)
 #define vtkSPHFlagMacro(name, usual)                                                               \
   vtkSPHMemberMacro(vtkTypeBool name = usual) vtkSPHChoiceFlagMacro(name)
 #define vtkSPHClampMacro(name, type, usual, least, most)                                           \
@@ -269,17 +270,17 @@ public:
 
   ///@{
   /** The arrays used by the last run; empty for a constant or a computed quantity. */
-  vtkGetCharFromStdStringMacro(UsedSmoothingLengthArrayName);
-  vtkGetCharFromStdStringMacro(UsedVolumeArrayName);
-  vtkGetCharFromStdStringMacro(UsedMassArrayName);
-  vtkGetCharFromStdStringMacro(UsedDensityArrayName);
+  vtkSPHToldMacro(UsedSmoothingLengthArrayName);
+  vtkSPHToldMacro(UsedVolumeArrayName);
+  vtkSPHToldMacro(UsedMassArrayName);
+  vtkSPHToldMacro(UsedDensityArrayName);
   ///@}
 
   /**
    * The source of volumes in the last run, in words: "array Mass / array Density", "computed
    * from the positions".
    */
-  vtkGetCharFromStdStringMacro(UsedVolume);
+  vtkSPHToldMacro(UsedVolume);
 
   ///@{
   /** The kernel W, see KernelType; CUBIC_SPLINE by default. Use the kernel of the simulation. */
@@ -358,7 +359,7 @@ public:
    * The array and value that marked fluid in the last run, such as "ParticleType = 0"; empty:
    * all particles were fluid.
    */
-  vtkGetCharFromStdStringMacro(UsedFluid);
+  vtkSPHToldMacro(UsedFluid);
 
   ///@{
   /**
@@ -442,7 +443,7 @@ public:
    * Why the last run failed, in one sentence, which is also reported as a VTK error; empty if it
    * did not fail. For composite data, one line for each block that failed.
    */
-  vtkGetCharFromStdStringMacro(ErrorMessage);
+  vtkSPHToldMacro(ErrorMessage);
 
   /**
    * One array for each number of the last update: "Seconds" (one named component for each phase,
@@ -595,15 +596,8 @@ protected:
 
   double NextBounds[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   std::string NextBlocks;
-  std::string UsedSmoothingLengthArrayName;
-  std::string UsedVolume;
-  std::string UsedVolumeArrayName;
-  std::string UsedMassArrayName;
-  std::string UsedDensityArrayName;
-  std::string UsedFluid;
   vtkMultiProcessController* Controller = nullptr;
 
-  std::string ErrorMessage;
   std::set<int> Warned;  // kinds of warnings that this run has given
   std::string BlockName; // begins the messages about a block of composite data
   vtkSmartPointer<vtkFieldData> RunStatistics;

@@ -93,14 +93,14 @@ public:
   /**
    * The arrays used for the last time between two steps; empty if there was none, or no velocity.
    */
-  vtkGetCharFromStdStringMacro(UsedIdArrayName);
-  vtkGetCharFromStdStringMacro(UsedVelocityArrayName);
+  vtkSPHToldMacro(UsedIdArrayName);
+  vtkSPHToldMacro(UsedVelocityArrayName);
   ///@}
 
   /**
    * Why the last update failed, in one sentence, which is also reported as a VTK error; else empty.
    */
-  vtkGetCharFromStdStringMacro(ErrorMessage);
+  vtkSPHToldMacro(ErrorMessage);
 
   /** Particles without a time, which are passed on. */
   void SetInputData(vtkDataObject* particles);
@@ -117,9 +117,6 @@ protected:
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
-  std::string UsedIdArrayName;
-  std::string UsedVelocityArrayName;
-
 private:
   vtkSPHTemporalInterpolator(const vtkSPHTemporalInterpolator&) = delete;
   void operator=(const vtkSPHTemporalInterpolator&) = delete;
@@ -133,7 +130,6 @@ private:
   void Fill(size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output);
   void Fail(const std::string& message);
 
-  std::string ErrorMessage;
   std::string BlockName; // begins the messages about a block of composite data
   class vtkInternals;
   std::unique_ptr<vtkInternals> Internals;

@@ -296,7 +296,7 @@ class Program(unittest.TestCase):
         pieces = write_pieces(PARTICLES, self.folder.name, int(RANKS) + 1)
         how = ["--scalar", "Speed", "--iso", "2", "--no-attributes", "--periodic"]
         self.check_fails(self.run_ranks(pieces, self.path("o.ply"), *how, "auto"), "give no period")
-        self.set_box_size("piece_1.vtp", 0, 0, 3.1)
+        self.set_box_size("piece_2.vtp", 0, 0, 3.1)
         for output, run, period in ("alone.ply", self.run_alone, "0,0,3.1"), ("ranks.ply", self.run_ranks, "auto"):
             self.good(run(PARTICLES if run == self.run_alone else pieces, self.path(output), *how, period))
         self.assertTrue(filecmp.cmp(self.path("alone.ply"), self.path("ranks.ply"), shallow=False))
@@ -350,23 +350,27 @@ class Program(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("o.vti")))
 
     def test_factors(self):
-        """--widening: the file of the first process has all particles, with the arrays that one process finds; one of them is so far
-        away that it is left out."""
+        """--widening: the file of the first process has all particles in the order of the pieces, with the arrays that one process
+        finds; one of them is so far away that it is left out."""
         particles = read(PARTICLES)
         particles.GetPoints().SetPoint(7, 3e5, -1e5, 1e6)
-        for how in ([], ["--smoothing-length", "estimate", "--periodic", "0,0,3"]):
+        for how in ([], ["--smoothing-length", "estimate", "--periodic", "0,0,3", "--no-attributes"]):
             for name in ("Mass", "Density", "Volume") if how else ():  # volumes are computed
                 particles.GetPointData().RemoveArray(name)
             write(particles, self.path("in.vtp"))
+            pieces = write_pieces(self.path("in.vtp"), self.folder.name, 5)
             for name, run in (("alone", self.run_alone), ("ranks", self.run_ranks)):
-                done = self.good(run(self.path("in.vtp"), self.path(name + "-surface.vtp"), "--free-surface", "--smooth", *how,
+                done = self.good(run(pieces, self.path(name + "_surface.vtp"), "--free-surface", "--smooth", *how,
                                      "--widening", self.path(name + ".vtp")))
                 self.assertIn("1 particle is so far away", done.stderr)
-            alone, ranks = read(self.path("alone.vtp")), read(self.path("ranks.vtp"))
-            np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
+            for file in ("_surface.vtp", ".vtp"):
+                alone, ranks = read(self.path("alone" + file)), read(self.path("ranks" + file))
+                np.testing.assert_array_equal(vtk_to_numpy(alone.GetPoints().GetData()), vtk_to_numpy(ranks.GetPoints().GetData()))
+                self.assertGreater(alone.GetPointData().GetArray("Widening").GetRange()[1], 1.9)
+                self.assertEqual(*([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())]
+                                   for data in (alone.GetPointData(), ranks.GetPointData())))
+                self.check_point_data(alone, ranks)
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
-            self.assertGreater(alone.GetPointData().GetArray("Widening").GetRange()[1], 1.9)
-            self.check_point_data(alone, ranks)
 
     def test_factors_in_box(self):
         """With a box, any number of particles may be far away from it."""

@@ -144,13 +144,11 @@ vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids)
 
 vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count)
 {
-  vtkNew<vtkIdTypeArray> points, offsets;
+  vtkNew<vtkIdTypeArray> points;
   points->SetNumberOfValues(count);
-  offsets->SetNumberOfValues(count + 1);
   std::iota(points->GetPointer(0), points->GetPointer(0) + count, vtkIdType(0));
-  std::iota(offsets->GetPointer(0), offsets->GetPointer(0) + count + 1, vtkIdType(0));
   auto vertices = vtkSmartPointer<vtkCellArray>::New();
-  vertices->SetData(offsets, points);
+  vertices->SetData(1, points);
   return vertices;
 }
 

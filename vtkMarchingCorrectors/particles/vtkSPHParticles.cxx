@@ -374,15 +374,12 @@ void vtkSPHParticles::CollectAttributes(const std::vector<std::string>& taken)
   {
     this->Interpolate(velocity);
   }
-  for (const vtkSPHAttribute& attribute : this->Interpolated)
-  {
-    vtkSPHSign(this->AttributesSignature, attribute.Array);
-  }
 }
 
 void vtkSPHParticles::Interpolate(vtkDataArray* array)
 {
   this->Interpolated.push_back({ array, vtkSPHNameOf(array), array->GetNumberOfComponents() });
+  vtkSPHSign(this->AttributesSignature, array);
   this->Attributes.push_back(this->View(array));
   this->Core.attributes = this->Attributes.data();
   this->Core.attribute_count = static_cast<int>(this->Attributes.size());

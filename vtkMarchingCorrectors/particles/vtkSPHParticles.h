@@ -166,6 +166,7 @@ protected:
 
   bool CollectSolids();
   bool CollectVolume();
+  void Interpolate(vtkDataArray* array);
 
   /** "Density", summed from masses, which gives volumes, too, from then on; null, and Error, where
    * it fails. */
@@ -192,7 +193,6 @@ private:
   bool CollectDensity(double constant, mcor_array& core);
   bool CollectQuantity(const std::string& role, const std::string& setName, double constant,
     mcor_quantity quantity, vtkSmartPointer<vtkDataArray>& array, mcor_array& core);
-  void Interpolate(vtkDataArray* array);
 
   std::vector<vtkSmartPointer<vtkDataArray>> Viewed; // held while the core reads them
   std::deque<std::string> Names;                     // of these, for the core's messages

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 // No rank may return here while another goes on: all agree first on what one of them has found.
@@ -88,6 +89,14 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
         { return mcor_extract(context, &input.Core, &options, &surface); }))
   {
     surface.statistics.widening_outside = outside;
+    if (choice.IsWidened) // as where the core widens by itself
+    {
+      input.Interpolated.pop_back();
+      if (surface.attribute_count > 0) // none where there was nothing to extract
+      {
+        std::swap(surface.widening, surface.attributes[--surface.attribute_count]);
+      }
+    }
     this->FinishDistributed(run, input, whole, surface, output);
   }
 }

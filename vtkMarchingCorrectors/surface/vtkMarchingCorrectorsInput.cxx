@@ -37,11 +37,19 @@ bool vtkMarchingCorrectorsInput::Collect()
   {
     std::vector<std::string> taken = this->Choice.ComputedArrays;
     taken.push_back("WideningVolume");
+    if (this->Choice.IsWidened)
+    {
+      taken.push_back("Widening");
+    }
     if (this->Choice.ComputeScalars)
     {
       taken.push_back(this->IsoValueName);
     }
     this->CollectAttributes(taken);
+  }
+  if (this->Choice.IsWidened)
+  {
+    this->Interpolate(this->Points->GetPointData()->GetArray("Widening")); // the last one
   }
   this->SignScalar();
   return true;

@@ -359,8 +359,12 @@ ParticleSets ReadParticlesPart(
 {
   const std::vector<std::string> all = ListParts(file, messages);
   ParticleSets sets;
-  for (auto i = static_cast<std::size_t>(rank); i < all.size();
-       i += static_cast<std::size_t>(count))
+  const auto endOf = [&all, count](int ranks)
+  {
+    const auto n = static_cast<std::size_t>(count);
+    return (static_cast<std::size_t>(ranks) * all.size() + n - 1) / n;
+  };
+  for (std::size_t i = endOf(rank); i < endOf(rank + 1); ++i)
   {
     ReadSet(all[i], sets, messages);
   }

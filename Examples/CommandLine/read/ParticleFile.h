@@ -46,8 +46,8 @@ struct ParticleSets
   bool IsList = false; ///< of pieces, which may hold copies of others' particles
 };
 
-/// The part that this one of `count` processes reads: every so manieth piece of a file that lists
-/// pieces; another file is the first one's.
+/// The part that this one of `count` processes reads: some pieces of a file that lists pieces, those
+/// behind the pieces of the processes before it; another file is the first one's.
 ParticleSets ReadParticlesPart(
   const std::string& file, int rank, int count, MessageCapture* messages);
 

@@ -167,7 +167,13 @@ void vtkMarchingCorrectors::FillRequests(
 
 void vtkMarchingCorrectors::Process(vtkDataObject* data, vtkDataObject* output)
 {
-  this->ClearSummary();
+  std::fill_n(this->FluidScalarRange, 2, 0.0);
+  this->UsedIsoValues.clear();
+  this->IsoValueArrayName.clear();
+  this->UsedSmoothingLength.clear();
+  this->UsedCubeSize = 0.0;
+  this->SurfaceMeasures.clear();
+  this->EstimatedCells = 0.0;
   auto* particles = vtkPointSet::SafeDownCast(data);
   const std::unique_ptr<vtkRun> run = vtkRun::Make(this);
   if (data && !particles && !run->IsShared())
@@ -350,17 +356,6 @@ void vtkMarchingCorrectors::WarnOf(const vtkMarchingCorrectorsInput& input,
   }
   this->WarnOnce(WARN_SINGLE_POINTS,
     vtkSPHTakeText(mcor_describe_single_points(largestFloat, surface.statistics.cube_size)));
-}
-
-void vtkMarchingCorrectors::ClearSummary()
-{
-  std::fill_n(this->FluidScalarRange, 2, 0.0);
-  this->UsedIsoValues.clear();
-  this->IsoValueArrayName.clear();
-  this->UsedSmoothingLength.clear();
-  this->UsedCubeSize = 0.0;
-  this->SurfaceMeasures.clear();
-  this->EstimatedCells = 0.0;
 }
 
 void vtkMarchingCorrectors::WarnOfHugeRun()

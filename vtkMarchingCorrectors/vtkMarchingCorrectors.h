@@ -531,7 +531,6 @@ private:
   void FillRequests(vtkMarchingCorrectorsChoice& choice, vtkPointSet* particles,
     const vtkSPHMergeRanges& merge = nullptr);
   void FillOptions(mcor_options& options);
-  void ClearSummary();
   /** Findings of the next update, ahead of it. */
   struct vtkAhead
   {

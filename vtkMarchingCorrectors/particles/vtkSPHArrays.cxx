@@ -298,18 +298,19 @@ void vtkSPHArrayChoice::Consider(const std::string& name, int components, bool i
   }
 }
 
-std::vector<bool> vtkSPHFindVarying(
-  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMergeRanges& merge)
+namespace
+{
+vtkSPHArrayChoice Consider(const std::vector<vtkDataArray*>& arrays, const vtkSPHMergeRanges& merge)
 {
   std::vector<double> ranges; // of each component
-  for (const auto& each : arrays)
+  for (vtkDataArray* array : arrays)
   {
-    for (int c = 0; c < each.second; ++c)
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c)
     {
       double range[2] = { VTK_DOUBLE_MAX, VTK_DOUBLE_MIN };
-      if (each.first && each.first->GetNumberOfTuples() > 0)
+      if (array->GetNumberOfTuples() > 0)
       {
-        each.first->GetRange(range, c);
+        array->GetRange(range, c);
       }
       ranges.insert(ranges.end(), range, range + 2);
     }
@@ -318,32 +319,17 @@ std::vector<bool> vtkSPHFindVarying(
   {
     merge(ranges.data(), static_cast<int>(ranges.size() / 2));
   }
-  std::vector<bool> varying;
+  vtkSPHArrayChoice choice;
   const double* range = ranges.data();
-  for (const auto& each : arrays)
+  for (vtkDataArray* array : arrays)
   {
-    bool varies = false;
-    for (int c = 0; c < each.second; ++c, range += 2)
+    bool varies = false; // in a component
+    for (int c = 0; c < array->GetNumberOfComponents(); ++c, range += 2)
     {
       varies = varies || range[0] < range[1];
     }
-    varying.push_back(varies);
-  }
-  return varying;
-}
-
-namespace
-{
-vtkSPHArrayChoice Consider(
-  const std::vector<std::pair<vtkDataArray*, int>>& arrays, const vtkSPHMergeRanges& merge)
-{
-  const std::vector<bool> varying = vtkSPHFindVarying(arrays, merge);
-  vtkSPHArrayChoice choice;
-  for (size_t i = 0; i < arrays.size(); ++i)
-  {
-    vtkDataArray* array = arrays[i].first;
     choice.Consider(
-      array->GetName() ? array->GetName() : "", arrays[i].second, vtkSPHIsReal(array), varying[i]);
+      vtkSPHNameOf(array), array->GetNumberOfComponents(), vtkSPHIsReal(array), varies);
   }
   return choice;
 }
@@ -351,13 +337,13 @@ vtkSPHArrayChoice Consider(
 
 std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge)
 {
-  std::vector<std::pair<vtkDataArray*, int>> arrays;
+  std::vector<vtkDataArray*> arrays;
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = data->GetArray(i);
     if (array && array->GetName())
     {
-      arrays.emplace_back(array, array->GetNumberOfComponents());
+      arrays.push_back(array);
     }
   }
   return Consider(arrays, merge).Best;
@@ -365,6 +351,6 @@ std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge
 
 bool vtkSPHIsFit(vtkDataArray* array, const vtkSPHMergeRanges& merge)
 {
-  return Consider({ { array, array->GetNumberOfComponents() } }, merge).Rank >= 0;
+  return Consider({ array }, merge).Rank >= 0;
 }
 VTK_ABI_NAMESPACE_END

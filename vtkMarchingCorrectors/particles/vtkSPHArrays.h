@@ -15,7 +15,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -157,13 +156,6 @@ struct vtkSPHArrayChoice
   std::string Best; ///< empty where no array is fit
   int Rank = -1;
 };
-
-/**
- * Which of the arrays, with these numbers of components, have two different values in a
- * component. A null array is one that is missing here.
- */
-std::vector<bool> vtkSPHFindVarying(const std::vector<std::pair<vtkDataArray*, int>>& arrays,
-  const vtkSPHMergeRanges& merge = nullptr);
 
 /** The name of the fittest array to show; empty: there is none. */
 std::string vtkSPHChooseArray(vtkFieldData* data, const vtkSPHMergeRanges& merge = nullptr);

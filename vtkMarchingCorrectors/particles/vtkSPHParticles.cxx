@@ -29,6 +29,17 @@ const void* OrEmpty(const void* values)
 
 const char* const MadeName = "vtkSPHMade:";
 
+/** Returns the solver whose names the arrays have, see mcor_find_layout. */
+std::string FindLayout(vtkPointData* data)
+{
+  std::string names;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    names += vtkSPHNameOf(data->GetAbstractArray(i)) + "\n";
+  }
+  return mcor_find_layout(names.c_str());
+}
+
 std::uint64_t BitsOf(double value)
 {
   std::uint64_t bits;
@@ -112,7 +123,7 @@ bool vtkSPHParticles::CollectSmoothingLength()
       "The particles have no smoothing length. Turn Estimate Smoothing Length on, or choose "
       "Smoothing Length Array; no point array has one of its usual names "
       "(SmoothingLength, hsml, h, ...). " +
-      (this->FindLayout() == "DualSPHysics"
+      (FindLayout(this->Points->GetPointData()) == "DualSPHysics"
           ? std::string("DualSPHysics does not store it: it is coefh x sqrt(3) x dp. ")
           : std::string()) +
       this->DescribeSpacing() + vtkSPHListNames(this->Points);
@@ -607,17 +618,6 @@ vtkDataArray* vtkSPHParticles::Check(
     return nullptr;
   }
   return numbers;
-}
-
-std::string vtkSPHParticles::FindLayout() const
-{
-  std::string names;
-  vtkPointData* pointData = this->Points->GetPointData();
-  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
-  {
-    names += vtkSPHNameOf(pointData->GetAbstractArray(i)) + "\n";
-  }
-  return mcor_find_layout(names.c_str());
 }
 
 // As float only where all are.

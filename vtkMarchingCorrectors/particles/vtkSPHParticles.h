@@ -96,9 +96,6 @@ public:
   std::vector<std::string> ListLeftOut(
     const std::int64_t* notFinite, const std::string& place) const;
 
-  /** The solver whose names the point arrays have, see mcor_find_layout. */
-  std::string FindLayout() const;
-
   /**
    * The point arrays vx, vy and vz as one vector, "Velocity"; nothing where they are not there, or
    * such an array is.

@@ -174,16 +174,12 @@ void vtkSPHPieces::JoinParts(
   this->GroupEndless[kept] |= this->GroupEndless[old];
 }
 
-vtkSPHPieces::Shift vtkSPHPieces::ShiftOf(vtkIdType point) const
-{
-  return this->GroupShift[static_cast<size_t>(this->Root[static_cast<size_t>(point)])];
-}
-
 // Moves a point to where its piece is in one.
 void vtkSPHPieces::CornersOf(vtkIdType triangle, double corners[3][3]) const
 {
   const auto& points = this->Triangles[static_cast<size_t>(triangle)];
-  const Shift shift = this->ShiftOf(points[0]);
+  const vtkIdType root = this->Root[static_cast<size_t>(points[0])];
+  const Shift& shift = this->GroupShift[static_cast<size_t>(root)];
   for (int i = 0; i < 3; ++i)
   {
     for (int a = 0; a < 3; ++a)

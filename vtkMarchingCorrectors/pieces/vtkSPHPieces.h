@@ -72,7 +72,6 @@ private:
   std::vector<Face> ListFaces(bool hasVolume) const;
   std::vector<vtkIdType> FindAround(const std::vector<std::array<double, 3>>& points) const;
   vtkIdType RootOf(vtkIdType point);
-  Shift ShiftOf(vtkIdType point) const;
   void CornersOf(vtkIdType triangle, double corners[3][3]) const;
 
   double Period[6];

@@ -51,7 +51,9 @@ bool vtkMarchingCorrectorsInput::Collect()
   {
     this->Interpolate(this->Points->GetPointData()->GetArray("Widening")); // the last one
   }
-  this->SignScalar();
+  vtkSPHSign(this->ScalarSignature, this->Scalar);
+  vtkSPHSign(this->ScalarSignature, this->ScalarDot);
+  this->ScalarSignature.push_back(static_cast<std::uint64_t>(this->Core.scalar_component));
   return true;
 }
 
@@ -136,13 +138,6 @@ void vtkMarchingCorrectorsInput::NameScalar()
   {
     this->IsoValueName = this->ScalarName;
   }
-}
-
-void vtkMarchingCorrectorsInput::SignScalar()
-{
-  vtkSPHSign(this->ScalarSignature, this->Scalar);
-  vtkSPHSign(this->ScalarSignature, this->ScalarDot);
-  this->ScalarSignature.push_back(static_cast<std::uint64_t>(this->Core.scalar_component));
 }
 
 void vtkSPHAddWidening(

@@ -44,7 +44,6 @@ public:
 private:
   bool CollectScalar();
   void NameScalar();
-  void SignScalar();
 };
 
 /** Adds the arrays Widening and, where volumes are computed, WideningVolume, for `count` particles. */

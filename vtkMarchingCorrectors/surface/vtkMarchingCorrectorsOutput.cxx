@@ -94,7 +94,6 @@ void vtkMarchingCorrectorsOutput::BuildMesh(
   BuildCells(this->Surface, output);
   this->BuildInterpolatedArrays(output);
   this->BuildComputedArrays(output);
-  this->BuildIsoValue(output);
   this->AddIsoValues(output->GetFieldData());
   this->ChooseActive(output, merge);
 }
@@ -219,18 +218,12 @@ void vtkMarchingCorrectorsOutput::BuildComputedArrays(vtkPolyData* output)
   {
     pointData->SetActiveNormals("Normals");
   }
-}
-
-void vtkMarchingCorrectorsOutput::BuildIsoValue(vtkPolyData* output)
-{
-  if (!this->Surface.iso_value)
+  if (s.iso_value)
   {
-    return;
+    const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
+    vtkSPHAddArray(pointData, this->Input.IsoValueName.c_str(),
+      vtkSPHAdoptReal(s.iso_value, 1, s.point_count, asFloat));
   }
-  const char* name = this->Input.IsoValueName.c_str();
-  const bool asFloat = this->Input.Scalar && this->Input.Scalar->GetDataType() == VTK_FLOAT;
-  vtkSPHAddArray(output->GetPointData(), name,
-    vtkSPHAdoptReal(this->Surface.iso_value, 1, this->Surface.point_count, asFloat));
 }
 
 // Chooses the active scalars: an attribute of the particles, if it varies on the surface (the

@@ -65,7 +65,6 @@ private:
   bool StoresFloats(int precision) const;
   void BuildComputedArrays(vtkPolyData* output);
   void BuildInterpolatedArrays(vtkPolyData* output);
-  void BuildIsoValue(vtkPolyData* output);
   void ChooseActive(vtkPolyData* output, const vtkSPHMergeRanges& merge) const;
   void AddIsoValues(vtkFieldData* fieldData) const;
   void AddStatistics(vtkFieldData* fieldData) const;

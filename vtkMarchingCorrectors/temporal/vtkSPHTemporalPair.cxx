@@ -19,7 +19,6 @@
 #include <cmath>
 #include <functional>
 #include <sstream>
-#include <type_traits>
 #include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -40,39 +39,28 @@ template <typename ValueT>
 vtkSmartPointer<vtkDataArray> MakeArray(
   vtkDataArray* a, vtkDataArray* b, vtkIdType count, const ValueT& value)
 {
-  const bool isFloat = a->GetDataType() == VTK_FLOAT && b->GetDataType() == VTK_FLOAT;
-  auto array = vtkSmartPointer<vtkDataArray>::Take(
-    vtkDataArray::CreateDataArray(isFloat ? VTK_FLOAT : VTK_DOUBLE));
   const int components = a->GetNumberOfComponents();
+  vtkNew<vtkDoubleArray> array;
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(count);
   array->SetName(a->GetName());
   array->CopyComponentNames(a);
-  const auto fill = [&](auto* typed)
-  {
-    auto* const to = typed->GetPointer(0);
-    using T = std::decay_t<decltype(*to)>;
-    vtkSMPTools::For(0, count, Grain,
-      [&](vtkIdType begin, vtkIdType end)
+  double* const to = array->GetPointer(0);
+  vtkSMPTools::For(0, count, Grain,
+    [to, components, &value](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin * components; i < end * components; ++i)
       {
-        for (vtkIdType i = begin; i < end; ++i)
-        {
-          for (int c = 0; c < components; ++c)
-          {
-            to[i * components + c] = static_cast<T>(value(i, c));
-          }
-        }
-      });
-  };
-  if (isFloat)
+        to[i] = value(i / components, static_cast<int>(i % components));
+      }
+    });
+  if (a->GetDataType() != VTK_FLOAT || b->GetDataType() != VTK_FLOAT)
   {
-    fill(static_cast<vtkFloatArray*>(array.Get()));
+    return array.Get();
   }
-  else
-  {
-    fill(static_cast<vtkDoubleArray*>(array.Get()));
-  }
-  return array;
+  auto floats = vtkSmartPointer<vtkFloatArray>::New();
+  floats->DeepCopy(array);
+  return floats;
 }
 
 using Numbered = std::vector<std::pair<std::int64_t, vtkIdType>>; // particles by their numbers

@@ -3,7 +3,7 @@
 """Pictures against baselines, drawn here.
 
 mode_images.py [MODE...]           each way in which the filters draw, by the Python package
-pvpython mode_images.py [MODE...]  by the plugin: made by ParaView, and one drawn by it, too (Plugin)
+pvpython mode_images.py            one by the plugin, made and drawn by ParaView
 """
 import math
 import os
@@ -54,63 +54,42 @@ def write_square():
     return writer.GetFileName()
 
 
-def by_package(mode):
+def extract(mode):
     from marchingcorrectors import vtkMarchingCorrectors
     reader = vtkXMLPolyDataReader()
     reader.SetFileName(write_square() if mode == "Filled" else DATA)
     if mode == "Slice":
         from marchingcorrectors import vtkSPHProbe
-        plane, extract = vtkPlaneSource(), vtkSPHProbe()
+        plane, made = vtkPlaneSource(), vtkSPHProbe()
         for name, place in PLANE.items():
             getattr(plane, "Set" + name)(place)
         plane.SetResolution(*RESOLUTION)
-        extract.SetInputConnection(plane.GetOutputPort())
-        extract.SetInputConnection(1, reader.GetOutputPort())
+        made.SetInputConnection(plane.GetOutputPort())
+        made.SetInputConnection(1, reader.GetOutputPort())
     else:
-        extract = vtkMarchingCorrectors()
-        extract.SetInputConnection(reader.GetOutputPort())
-        extract.SetInputArrayToProcess(0, 0, 0, 0, "Radius" if mode == "Filled" else "Velocity")
+        made = vtkMarchingCorrectors()
+        made.SetInputConnection(reader.GetOutputPort())
+        made.SetInputArrayToProcess(0, 0, 0, 0, "Radius" if mode == "Filled" else "Velocity")
         for i, value in enumerate(RADII if mode == "Filled" else SPEEDS if mode == "Speed" else [0.7]):
-            extract.SetValue(i, value)
-        extract.ComputeWeightSumOn()
-        extract.SetFilled(mode == "Filled")
-        extract.SetPreview(mode == "Preview")
-        extract.SetCubeSizeFactor(2.0 if mode == "Preview" else 0.5)
-        extract.SetTrim(mode != "Untrimmed")
-        extract.SetNodeThreshold(0.001 if mode == "Untrimmed" else 0.1)  # where kernels end, so that the picture shows it
-        extract.SetFreeSurface(mode in ("Wall", "FreeSurface"))
-        extract.SetSolids(vtkMarchingCorrectors.SOLIDS_WALL if mode == "Wall" else vtkMarchingCorrectors.SOLIDS_AUTO)
-        extract.SetHScaleFactor(0.75 if mode == "Weight" else 1.0)
+            made.SetValue(i, value)
+        made.ComputeWeightSumOn()
+        made.SetFilled(mode == "Filled")
+        made.SetPreview(mode == "Preview")
+        made.SetCubeSizeFactor(2.0 if mode == "Preview" else 0.5)
+        made.SetTrim(mode != "Untrimmed")
+        made.SetNodeThreshold(0.001 if mode == "Untrimmed" else 0.1)  # where kernels end, so that the picture shows it
+        made.SetFreeSurface(mode in ("Wall", "FreeSurface"))
+        made.SetSolids(vtkMarchingCorrectors.SOLIDS_WALL if mode == "Wall" else vtkMarchingCorrectors.SOLIDS_AUTO)
+        made.SetHScaleFactor(0.75 if mode == "Weight" else 1.0)
     if mode != "Filled":
-        extract.SetFluidArrayName("ParticleType")
-    extract.Update()
-    return extract.GetOutput()
-
-
-def by_plugin(mode):
-    from paraview import servermanager, simple
-    reader = simple.XMLPolyDataReader(FileName=[write_square() if mode == "Filled" else DATA])
-    if mode == "Filled":
-        extract = globals()["MarchingCorrectors"](Input=reader, ContourBy=["POINTS", "Radius"], Isosurfaces=RADII, Filled=1)
-    elif mode == "Slice":
-        plane = simple.Plane(**PLANE, XResolution=RESOLUTION[0], YResolution=RESOLUTION[1])
-        extract = globals()["SPHProbe"](Points=plane, Particles=reader, FluidArray="ParticleType",
-                                        NaNOutsideOfTheFluid=0)
-    else:
-        extract = globals()["MarchingCorrectors"](
-            Input=reader, ContourBy=["POINTS", "Velocity"], Isosurfaces=SPEEDS if mode == "Speed" else [0.7],
-            FluidArray="ParticleType", ComputeWeightSum=1, Preview=int(mode == "Preview"),
-            CubeSizeFactor=2.0 if mode == "Preview" else 0.5, Trim=int(mode != "Untrimmed"),
-            NodeThreshold=0.001 if mode == "Untrimmed" else 0.1,
-            FreeSurface=int(mode in ("Wall", "FreeSurface")),
-            SmoothingLengthScale=0.75 if mode == "Weight" else 1.0)
-    if mode == "Wall":
-        extract.Solids = "End the surface at walls"
-    return servermanager.Fetch(extract)
+        made.SetFluidArrayName("ParticleType")
+    made.Update()
+    return made.GetOutput()
 
 
 def draw_by_plugin(path):
     from paraview import simple
+    simple.LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())  # its filters come here
     extract = globals()["MarchingCorrectors"](Input=simple.XMLPolyDataReader(FileName=[DATA]), FluidArray="ParticleType",
                                               FreeSurface=1)
     view = simple.CreateRenderView(ViewSize=[500, 300], UseColorPaletteForBackground=0, Background=[0.2, 0.2, 0.25],
@@ -224,17 +203,17 @@ def difference(path, baseline):
     return compare.GetThresholdedError()
 
 
-def main(make, prefix, modes):
+def main(modes):
     failed = []
     for mode in modes:
         name = f"Test{mode}Image.png"
-        path = os.path.join(OUTPUT, prefix + name)
+        path = os.path.join(OUTPUT, "python_" + name)
         if mode == "Plugin":
             draw_by_plugin(path)
         elif mode == "Filled":
-            draw_filled(make(mode), path)
+            draw_filled(extract(mode), path)
         else:
-            draw(make(mode), *COLORS.get(mode, ("Velocity", 0.0, 3.0)), path)
+            draw(extract(mode), *COLORS.get(mode, ("Velocity", 0.0, 3.0)), path)
         error, most = difference(path, os.path.join(BASELINES, name)), PLUGIN_THRESHOLD if mode == "Plugin" else THRESHOLD
         print("%s differs by %g (at most %g)" % (path, error, most))
         if error > most:
@@ -242,9 +221,4 @@ def main(make, prefix, modes):
     sys.exit("not the baselines: " + ", ".join(failed) if failed else 0)
 
 
-if "MCOR_TEST_PLUGIN" in os.environ:
-    from paraview.simple import LoadPlugin
-    LoadPlugin(os.environ["MCOR_TEST_PLUGIN"], remote=False, ns=globals())  # its filters come here
-    main(by_plugin, "plugin_", sys.argv[1:] or [*MODES, "Plugin"])
-else:
-    main(by_package, "python_", sys.argv[1:] or MODES)
+main(["Plugin"] if "MCOR_TEST_PLUGIN" in os.environ else sys.argv[1:] or MODES)

@@ -25,21 +25,6 @@ bool HasStepNumber(const std::string& name)
     EndOfPlace(name, name.find('%')) != std::string::npos;
 }
 
-bool FindStepNumber(const std::string& file, std::size_t& number)
-{
-  const char* const digits = "0123456789";
-  const std::size_t folder = file.find_last_of("/\\");
-  const std::size_t last = file.find_last_of(digits);
-  if (last == std::string::npos || (folder != std::string::npos && last < folder))
-  {
-    return false;
-  }
-  const std::size_t before = file.find_last_not_of(digits, last);
-  const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  number = std::strtoull(file.substr(first, last - first + 1).c_str(), nullptr, 10);
-  return true;
-}
-
 std::string NameOfStep(const std::string& name, std::size_t step)
 {
   const std::size_t percent = name.find('%');

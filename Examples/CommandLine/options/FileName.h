@@ -51,10 +51,6 @@ std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
 /// sign.
 bool HasStepNumber(const std::string& name);
 
-/// The last number in a file's name, without its folder: 120 of WaterBody_120.vtp. False if there
-/// is none.
-bool FindStepNumber(const std::string& file, std::size_t& number);
-
 /// frame_0007.png of frame_%04d.png
 std::string NameOfStep(const std::string& name, std::size_t step);
 

@@ -124,27 +124,21 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* mes
   return data;
 }
 
-/// Makes names fit for sentences and for the surface's file; a legacy file can hold bytes that
-/// these cannot.
-void MakePrintable(vtkAbstractArray* array)
-{
-  array->SetName(Printable(array->GetName() ? array->GetName() : "").c_str());
-  for (int i = 0; array->HasAComponentName() && i < array->GetNumberOfComponents(); ++i)
-  {
-    if (const char* name = array->GetComponentName(i))
-    {
-      array->SetComponentName(i, Printable(name).c_str());
-    }
-  }
-}
-
-/// The arrays of one kind, of this many elements. Throws std::runtime_error.
+/// Checks arrays of one kind, of this many elements, and makes their names fit for sentences and for
+/// the surface's file: a legacy file can hold bytes that these cannot. Throws std::runtime_error.
 void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
-    MakePrintable(array);
+    array->SetName(Printable(array->GetName() ? array->GetName() : "").c_str());
+    for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
+    {
+      if (const char* name = array->GetComponentName(c))
+      {
+        array->SetComponentName(c, Printable(name).c_str());
+      }
+    }
     if (array->GetNumberOfTuples() != count)
     {
       FailToRead(file,

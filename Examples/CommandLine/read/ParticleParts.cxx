@@ -53,25 +53,21 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
   return own;
 }
 
-bool HaveOneType(const std::vector<vtkSmartPointer<vtkPolyData>>& parts, const char* name)
-{
-  vtkDataArray* first = parts.front()->GetPointData()->GetArray(name);
-  return std::all_of(parts.begin(), parts.end(),
-    [&](vtkPolyData* part)
-    {
-      vtkDataArray* array = part->GetPointData()->GetArray(name);
-      return !first || !array || array->GetDataType() == first->GetDataType();
-    });
-}
-
 /// Arrays of one name and several types become doubles: VTK would leave them out.
 void MakeTypesAlike(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
 {
   vtkPointData* arrays = parts.front()->GetPointData();
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
+    vtkDataArray* first = arrays->GetArray(i);
+    const bool areAlike = std::all_of(parts.begin(), parts.end(),
+      [first](vtkPolyData* part)
+      {
+        vtkDataArray* array = first ? part->GetPointData()->GetArray(first->GetName()) : nullptr;
+        return !array || array->GetDataType() == first->GetDataType();
+      });
     const std::string name = arrays->GetArrayName(i);
-    for (std::size_t p = 0; p < parts.size() && !HaveOneType(parts, name.c_str()); ++p)
+    for (std::size_t p = 0; p < parts.size() && !areAlike; ++p)
     {
       vtkNew<vtkDoubleArray> values;
       values->DeepCopy(parts[p]->GetPointData()->GetArray(name.c_str()));
@@ -81,10 +77,10 @@ void MakeTypesAlike(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
 }
 
 /// Each component's median; 0 for marks of copies, which walls are not.
-std::vector<double> Median(vtkDataArray* array, const std::string& name)
+std::vector<double> Median(vtkDataArray* array)
 {
   std::vector<double> median(static_cast<std::size_t>(array->GetNumberOfComponents()));
-  if (name == vtkDataSetAttributes::GhostArrayName())
+  if (std::string(array->GetName()) == vtkDataSetAttributes::GhostArrayName())
   {
     return median;
   }
@@ -111,18 +107,11 @@ vtkSmartPointer<vtkDataArray> Append(vtkDataArray* fluid, vtkDataArray* walls, v
   all->SetNumberOfComponents(fluid->GetNumberOfComponents());
   all->SetNumberOfTuples(count + wallCount);
   all->InsertTuples(0, count, 0, fluid);
-  if (walls && walls->GetNumberOfComponents() == fluid->GetNumberOfComponents())
-  {
-    for (vtkIdType i = 0; i < wallCount; ++i)
-    {
-      all->SetTuple(count + i, walls->GetTuple(i));
-    }
-    return all;
-  }
-  const std::vector<double> median = Median(fluid, fluid->GetName());
+  const bool haveOwn = walls && walls->GetNumberOfComponents() == fluid->GetNumberOfComponents();
+  const std::vector<double> median = haveOwn ? std::vector<double>() : Median(fluid);
   for (vtkIdType i = 0; i < wallCount; ++i)
   {
-    all->SetTuple(count + i, median.data());
+    all->SetTuple(count + i, haveOwn ? walls->GetTuple(i) : median.data());
   }
   return all;
 }

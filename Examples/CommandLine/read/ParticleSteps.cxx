@@ -15,6 +15,8 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <stdexcept>
 
@@ -163,13 +165,20 @@ void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, Message
   }
   for (ParticleSteps::Step& step : steps)
   {
-    std::size_t number = 0;
-    if (HasStepNumber(file) && !FindStepNumber(step.Files.front(), number))
+    if (!HasStepNumber(file))
+    {
+      step.Walls.push_back(file);
+      continue;
+    }
+    const std::string name = std::filesystem::path(step.Files.front()).filename().string();
+    const auto numbers = Numbered(name).second; // 120 of WaterBody_120.vtp
+    if (numbers.empty())
     {
       throw std::runtime_error("--walls " + file + " needs the number of each step, but the name " +
         step.Files.front() + " has none");
     }
-    step.Walls.push_back(HasStepNumber(file) ? NameOfStep(file, number) : file);
+    step.Walls.push_back(
+      NameOfStep(file, std::strtoull(numbers.back().second.c_str(), nullptr, 10)));
   }
 }
 

@@ -69,15 +69,6 @@ class Gauge(CommandLineTest):
                       "other=0.1,0,-1:0.1,0,1", "--time-step", "0.25")
         self.assertEqual(self.table.read_text(), before)
 
-    def test_times_between_steps(self):
-        """The particles move on between two steps, and so does the level."""
-        self.write_rising_steps(2, 0.1, Id=list(range(1000)), Velocity=[(0.0, 0.0, 0.4)] * 1000)
-        stored = self.good("--gauge", UP, source="steps.pvd")
-        rows = self.good("--gauge", UP, "--times", "0,0.1,0.25", source="steps.pvd")
-        self.assertEqual([float(row["time"]) for row in rows], [0, 0.1, 0.25])
-        self.assertEqual([rows[0], rows[2]], stored)
-        self.assertAlmostEqual(float(rows[1]["z"]), float(stored[0]["z"]) + 0.04, delta=1e-5)
-
     def test_a_table_that_grows(self):
         """Steps that were measured are in the table before the others are."""
         program = subprocess.Popen([self.program, *[self.input] * 1000, self.table, "--gauge", UP], cwd=self.directory,

@@ -58,10 +58,6 @@ class RealFiles(CommandLineTest):
             self.assertEqual(self.statistics["fluid_particles"], 1000)
             (time, state, level), = self.levels([file], *H, gauge="a=0.5,0.5,-1:0.5,0.5,3")
             self.assertAlmostEqual(level, 1.0, delta=0.02)
-            self.assertEqual(self.run_program(file, self.directory / "slice.vti", "--slice", "y=0.5", *H, "--quiet",
-                                              "--resolution", "50").returncode, 0)
-            slice = (self.directory / "slice.vti").read_text()
-            self.assertRegex(slice, 'WholeExtent="0 4[0-9] 0 0 0 (49|50)"|WholeExtent="0 49 0 0 0 4[0-9]"')
         nine = [(1e6, 0.0, 1e6 + i) for i in range(9)]
         write_csv(file, near + nine, {})
         self.refuse(self.extract(*FREE, *H, source=file), 1, "far away from the rest")
@@ -89,17 +85,6 @@ class RealFiles(CommandLineTest):
         self.refuse_all(2, [(["Kind"], "needs NAME=VALUE or"), (["Kind=2:1"], "lower value first"), (["Kind=a"], "finite number")],
                         *FREE, *H, "--only", source=file)
         self.refuse_all(1, [(["Nothing=1"], "no point array 'Nothing' for the choice")], *FREE, *H, "--only", source=file)
-
-    def test_what_plays_no_part(self):
-        near = block((10, 10, 10))
-        file = self.directory / "walls.csv"
-        bad = {"h": [0.13] * 1000 + [-1.0], "Mass": [1.0] * 1000 + [math.nan], "Density": [1000.0] * 1000 + [0.0],
-               "Kind": [0] * 1000 + [1], "A": [p[0] for p in near] + [math.inf]}
-        write_csv(file, near + [(math.nan, 1, 1)], bad)
-        self.volume(file, "--fluid", "Kind=0")  # the free surface has no use for solids
-        fluid = ["--scalar", "A", "--iso", "0.4", "--fluid", "Kind=0"]
-        self.refuse(self.extract(*fluid, source=file), 1, "particle 1000 is not a number")
-        self.extract_good(*fluid, "--solids", "ignore", "--quiet", source=file)
 
     # ---- films ----
 

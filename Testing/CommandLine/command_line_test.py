@@ -65,10 +65,11 @@ class CommandLineTest(unittest.TestCase):
     def extract(self, *options, source=None, **run_options):
         return self.run_program(source or self.input, self.output, *options, **run_options)
 
-    def run_good(self, *arguments, **options):
-        """Runs the program, which must succeed without a word on stderr."""
+    def run_good(self, *arguments, says="^$", **options):
+        """Runs the program, which must succeed, and say what matches on stderr, or nothing."""
         result = self.run_program(*arguments, **options)
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stderr, says)
         return result
 
     def extract_good(self, *options, source=None, **run_options):
@@ -77,10 +78,7 @@ class CommandLineTest(unittest.TestCase):
     def succeed(self, *options, source=None, told=""):
         """Runs the program, which must succeed, and say what matches on stderr, or nothing; returns its statistics."""
         statistics = self.directory / "statistics.json"
-        result = self.extract(*options, "--stats", statistics, source=source)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stderr, told or "^$")
-        self.said = result.stderr
+        self.said = self.extract_good(*options, "--stats", statistics, source=source, says=told or "^$").stderr
         self.assertIn("</VTKFile>", self.output.read_text())
         return json.loads(statistics.read_text())
 

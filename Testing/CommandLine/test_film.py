@@ -36,8 +36,7 @@ class Film(CommandLineTest):
 
     def good(self, *arguments):
         statistics = self.directory / "statistics.json"
-        result = self.make(*arguments, "--stats", statistics)
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.run_good(*arguments, self.film, *FREE, "--stats", statistics)
         return json.loads(statistics.read_text())
 
     def listed(self):
@@ -59,8 +58,7 @@ class Film(CommandLineTest):
         """Five of them interpolated."""
         self.write_steps(6)
         times = [0.05 * i for i in range(10)]  # 0.30000000000000004, too
-        result = self.make("steps.pvd", "--times", ",".join(map(repr, times)), "--stats", "s.json")
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        result = self.run_good("steps.pvd", self.film, *FREE, "--times", ",".join(map(repr, times)), "--stats", "s.json")
         self.assertEqual(result.stdout.count("\n"), 10)
         self.assertRegex(result.stdout, r"(?m)^.*film_0003\.vtp \(time 0\.15\): \d+ points, \d+ triangles")
         self.assertEqual([(round(t, 9), p.name) for t, p in self.listed()],
@@ -83,15 +81,13 @@ class Film(CommandLineTest):
         self.good(*paths[::-1])
         self.assertEqual([t for t, _ in self.listed()], [0, 1, 2])
         for path, (_, surface) in zip(paths, self.listed()):
-            self.assertEqual(self.extract(*FREE, source=path).returncode, 0)
+            self.extract_good(*FREE, source=path)
             self.assertEqual(self.output.read_bytes().decode(), self.without_mark(surface))
 
     def test_time_step(self):
         paths = self.write_steps(3)
-        result = self.make(*paths, "--times", "0.5")
-        self.assertEqual(result.returncode, 0)
-        self.assertRegex(result.stderr, "warning: .*film_0000.vtp .*moved 0.10.* times as far as 'Velocity'"
-                         ".*use --time-step")
+        self.run_good(*paths, self.film, *FREE, "--times", "0.5",
+                      says="warning: .*film_0000.vtp .*moved 0.10.* times as far as 'Velocity'.*use --time-step")
         files.write_pvd(self.directory / "steps.pvd", enumerate(path.name for path in paths))
         self.assertRegex(self.make("steps.pvd", "--times", "0.5").stderr, r"moved 0.10.*change those in the \.pvd file")
         self.good(*paths, "--time-step", "0.1", "--times", "0.05,0.2")

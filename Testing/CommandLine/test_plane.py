@@ -93,9 +93,7 @@ class Plane(CommandLineTest):
 
     def test_table_without_fluid(self):
         for output in ("none.csv", "none_%04d.csv"):
-            result = self.run_program(self.input, output, *ISO, "--fluid", "Radius=99")
-            self.assertEqual(result.returncode, 0)
-            self.assertRegex(result.stderr, "the surface is empty: No particle has Radius = 99")
+            self.run_good(self.input, output, *ISO, "--fluid", "Radius=99", says="the surface is empty: No particle has Radius = 99")
             self.assertEqual((self.directory / output.replace("%04d", "0000")).read_text(), "Line\n")
 
     def test_points_as_a_table(self):
@@ -176,8 +174,7 @@ class Plane(CommandLineTest):
         self.assertAlmostEqual(lengths[0], 0.1 * math.sqrt(2), delta=1e-12)
 
     def test_derivatives(self):
-        result = self.extract("--derive", "Velocity", "--scalar", "Divergence", "--iso", "1.5")
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.extract_good("--derive", "Velocity", "--scalar", "Divergence", "--iso", "1.5", says=".*")
         self.assertNotIn("Lambda2", self.output.read_text())
         self.assertIn("Q-criterion", self.output.read_text())
         self.output.unlink()

@@ -35,9 +35,7 @@ class RealFiles(CommandLineTest):
 
     def levels(self, sources, *options, gauge="a=0.25,0.25,-1:0.25,0.25,2", words=None):
         table = self.directory / "levels.csv"
-        result = self.run_program(*sources, table, "--quiet", "--gauge", gauge, *options)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stderr, words) if words else self.assertEqual(result.stderr, "")
+        self.run_good(*sources, table, "--quiet", "--gauge", gauge, *options, says=words or "^$")
         return [(float(row["time"]), row["state"], float(row["z"]) if row["state"] == "wet" else None)
                 for row in read_table(table)]
 
@@ -148,9 +146,8 @@ class RealFiles(CommandLineTest):
         paths = [self.write_tank(n, layers, 0.1 * n) for n, layers in enumerate([0, 5, 0])]
         self.assertEqual([state for _, state, _ in self.levels(paths, *H)], ["dry", "wet", "dry"])
         numbers = self.directory / "numbers.csv"
-        result = self.run_program(*paths, self.directory / "film.pvd", *FREE, *H, "--numbers", numbers,
-                                  "--gauge", "a=0.25,0.25,-1:0.25,0.25,2")
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.run_good(*paths, self.directory / "film.pvd", *FREE, *H, "--numbers", numbers, "--gauge",
+                      "a=0.25,0.25,-1:0.25,0.25,2", says=".*")
         self.assertEqual((self.directory / "film.pvd").read_text().count("<DataSet"), 3)
         rows = read_table(numbers)
         self.assertEqual([float(row["volume"]) > 0 for row in rows], [False, True, False])
@@ -247,8 +244,7 @@ class RealFiles(CommandLineTest):
         self.levels([file], *H, "--periodic", "1.5,0,0", words="extend over 1.9 along x", gauge="a=1,0.5,-1:1,0.5,2")
         for name, *how in (("slice.vti", "--slice", "z=0.5", "--resolution", "20"), ("line.vtp", "--line=0,0.5,0.5,2,0.5,0.5"),
                            ("probe.vtp", "--probe", file), ("derived.vtp", "--derive", "A", "--scalar", "A", "--iso", "1")):
-            result = self.run_program(file, self.directory / name, "--quiet", *H, "--periodic", "1.5,0,0", *how)
-            self.assertEqual(result.returncode, 0, result.stderr)
+            result = self.run_good(file, self.directory / name, "--quiet", *H, "--periodic", "1.5,0,0", *how, says=".*")
             self.assertEqual(result.stderr.count("extend over 1.9 along x"), 1, result.stderr)
 
     def test_bodies_in_vacuum(self):

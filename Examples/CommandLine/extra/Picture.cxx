@@ -41,46 +41,25 @@
 namespace
 {
 
-/// A connection to the X server, where this VTK renders through one. X is asked for in the running
+/// Connects to the X server, where this VTK renders through one. X is asked for in the running
 /// program, since only VTK's rendering library knows whether it is linked to it. The connection is
 /// held until the picture is drawn: a server that loses its last client starts anew (Xvfb does),
-/// and does not answer meanwhile.
-class DisplayConnection
+/// and does not answer meanwhile. Throws where it is certain that a server is needed and cannot be
+/// reached.
+std::shared_ptr<void> Connect(vtkRenderWindow* window, const std::string& file)
 {
-public:
-  explicit DisplayConnection(vtkRenderWindow* window)
+  const auto open = reinterpret_cast<void* (*)(const char*)>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
+  const auto close = reinterpret_cast<int (*)(void*)>(dlsym(RTLD_DEFAULT, "XCloseDisplay"));
+  if (!window->IsA("vtkXOpenGLRenderWindow") || !open || !close)
   {
-    if (window->IsA("vtkXOpenGLRenderWindow"))
-    {
-      const auto open = reinterpret_cast<OpenType>(dlsym(RTLD_DEFAULT, "XOpenDisplay"));
-      this->Close = reinterpret_cast<CloseType>(dlsym(RTLD_DEFAULT, "XCloseDisplay"));
-      this->Needed = open && this->Close;
-      this->Display = this->Needed ? open(nullptr) : nullptr;
-    }
+    return nullptr;
   }
-
-  ~DisplayConnection()
+  if (void* display = open(nullptr))
   {
-    if (this->Display)
-    {
-      this->Close(this->Display);
-    }
+    return { display, close };
   }
-
-  DisplayConnection(const DisplayConnection&) = delete;
-  void operator=(const DisplayConnection&) = delete;
-
-  /// Whether it is certain that an X server is needed and cannot be reached.
-  bool IsMissing() const { return this->Needed && !this->Display; }
-
-private:
-  using OpenType = void* (*)(const char*);
-  using CloseType = int (*)(void*);
-
-  bool Needed = false;
-  void* Display = nullptr;
-  CloseType Close = nullptr;
-};
+  FailToWrite(file, "rendering needs a display; try xvfb-run -a -s -noreset");
+}
 
 const double WidthOfBar = 0.13; ///< of the picture, where there is one
 
@@ -196,12 +175,8 @@ class Scene : public Picture
 public:
   explicit Scene(const PictureOptions& options)
     : Options(options)
-    , Display(this->Window)
+    , Display(Connect(this->Window, options.File))
   {
-    if (this->Display.IsMissing())
-    {
-      FailToWrite(options.File, "rendering needs a display; try xvfb-run -a -s -noreset");
-    }
     this->Renderer->SetBackground(1.0, 1.0, 1.0);
     // A headlight alone leaves what faces sideways nearly black.
     vtkNew<vtkLightKit> lights;
@@ -370,7 +345,7 @@ private:
   const PictureOptions& Options;
   vtkBoundingBox Seen;
   vtkNew<vtkRenderWindow> Window;
-  const DisplayConnection Display;
+  const std::shared_ptr<void> Display;
   vtkNew<vtkRenderer> Renderer;
   vtkNew<vtkRenderer> Bars;
   bool HasBar = false;

@@ -173,6 +173,11 @@ private:
 
 struct Column
 {
+  explicit Column(const std::string& name)
+    : Name(name)
+  {
+  }
+
   std::string Name;
   std::vector<double> Numbers;
   std::vector<std::string> Words;  ///< of one that is not of numbers; else empty
@@ -205,12 +210,7 @@ using Table = std::vector<Column>;
 
 Table TableOf(const std::vector<std::string>& names)
 {
-  Table table;
-  for (const std::string& name : names)
-  {
-    table.push_back({ name, {}, {}, {} });
-  }
-  return table;
+  return { names.begin(), names.end() };
 }
 
 void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)

@@ -508,6 +508,7 @@ static mcor_status mcor_begin_bunches(mcor_bunches* b)
   }
   b->memory = malloc(bytes);
   MCOR_TRY(mcor_allocated(context, b->memory));
+  mcor_use_large_pages(b->memory, bytes);
   uint8_t* at = b->memory;
   for (size_t i = 0; i < count; ++i)
   {

@@ -78,6 +78,8 @@ static mcor_status mcor_update_points(mcor_bunches* bunches)
     const size_t room = n + n / 4;
     mcor_point* points = realloc(bunches->points, room * sizeof *points);
     MCOR_TRY(mcor_allocated(context, points));
+    mcor_use_large_pages(points + bunches->point_count,
+      (room - (size_t)bunches->point_count) * sizeof *points);
     bunches->points = points;
     bunches->point_room = (int64_t)room;
   }

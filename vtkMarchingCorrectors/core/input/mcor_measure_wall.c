@@ -10,6 +10,7 @@
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_ranks.h"
+#include "mcor_vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -71,11 +72,10 @@ static void mcor_wall_add(
     {
       break;
     }
-    const double w = !near ? 0
-      : mcor_kernel_of(kernel)->is_tensor
-      ? mcor_w_of(kernel, fabs(d[0]) * inv_h) * mcor_w_of(kernel, fabs(d[1]) * inv_h) *
-        mcor_w_of(kernel, fabs(d[2]) * inv_h)
-      : mcor_w_of(kernel, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) * inv_h);
+    const double w = !near                ? 0
+      : mcor_kernel_of(kernel)->is_tensor ? mcor_w_of(kernel, fabs(d[0]) * inv_h) *
+        mcor_w_of(kernel, fabs(d[1]) * inv_h) * mcor_w_of(kernel, fabs(d[2]) * inv_h)
+                                          : mcor_w_of(kernel, sqrt(mcor_dot(d, d)) * inv_h);
     if (w != 0 && weight == 0)
     {
       /* Shares do not depend on the unit of volumes, so masses do where volumes are yet to be

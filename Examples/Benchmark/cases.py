@@ -186,29 +186,13 @@ def gauges(benchmark):
 PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # the spacing is 1
 
 
-def make_plane(path, count):
-    """A jittered lattice with a scalar that winds."""
-    side = round(count ** 0.5)
-    j, i = np.mgrid[0:side, 0:side]
-    random = np.random.default_rng(1)
-    x = np.zeros((side * side, 3), dtype=np.float32)
-    for a, places in enumerate((i, j)):
-        x[:, a] = places.ravel() + 0.3 * (random.random(side * side) - 0.5)
-    u, v = x[:, 0] / side, x[:, 1] / side
-    swirl = np.sin(6 * np.pi * u) * np.sin(4 * np.pi * v) + 0.2 * np.sin(20 * u + 13 * v)
-    ones = np.ones(side * side, np.float32)
-    arrays = {"Swirl": swirl.astype(np.float32), "Mass": ones, "Density": ones}
-    make_particles.write(path, make_particles.poly_data(x, arrays))
-    return path
-
-
 def plane(benchmark):
     """Two dimensions: an isoline of particles in a plane, against vtkSPHInterpolator with a kernel of two dimensions on the
     same lattice, and vtkFlyingEdges2D. And the first line ever, of 100,000 particles, everything: process, file in and
     out, kernels, from an empty cache. Seconds of processors, of all threads, and in brackets of the clock; reading is
     not among them, but for the cold start: of six surfaces in a process less one."""
     program, more, own = benchmark.program, 5, []
-    path = make_plane(benchmark.folder / "plane.vtp", benchmark.sizes[-1])
+    path = benchmark.sets.get("plane", benchmark.sizes[-1])
     options = ["--scalar", "Swirl", "--iso", PLANE_ISO, "--smoothing-length", PLANE_LENGTH, "--no-attributes"]
     for _ in range(benchmark.runs):
         once, many = program.start(path, options), program.start(path, options, 1 + more)
@@ -223,7 +207,7 @@ def plane(benchmark):
         f"{'vtkSPHInterpolator + vtkFlyingEdges2D':38} {theirs['processors']:8.2f} s ({theirs['seconds']:.2f} s), "
         f"{theirs['triangles']} lines", f"ratio {theirs['processors'] / processors:.1f}")
     empty = str(benchmark.folder / "empty")
-    _, clock, processors = program.start(make_plane(benchmark.folder / "cold.vtp", 100000), options, 1,
+    _, clock, processors = program.start(benchmark.sets.get("plane", 100000), options, 1,
                                          {"XDG_CACHE_HOME": empty, "POCL_CACHE_DIR": empty})
     benchmark.report.text(f"first line of 100,000 particles {processors:.2f} s ({clock:.2f} s)")
 

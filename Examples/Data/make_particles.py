@@ -159,6 +159,16 @@ def wave(count, ratio=1.3):
         "Velocity": velocity, "Type": (~fluid).astype(np.int32)}
 
 
+def plane(count, jitter=0.15):
+    """A jittered lattice in the plane z = 0, of spacing 1, with a scalar that winds: Swirl; Mass and Density are 1."""
+    side = round(count ** 0.5)
+    j, i = np.mgrid[0:side, 0:side]
+    places = np.stack([i.ravel(), j.ravel()]) + np.random.default_rng(1).uniform(-jitter, jitter, (2, side * side))
+    u, v = places / side
+    swirl = np.sin(6 * np.pi * u) * np.sin(4 * np.pi * v) + 0.2 * np.sin(20 * u + 13 * v)
+    return np.stack([*places, 0 * u], -1), {"Swirl": swirl, "Mass": np.ones(side * side), "Density": np.ones(side * side)}
+
+
 def tangents(p):
     """dGamma per node: central difference of the closed polygon."""
     return 0.5 * (np.roll(p, -1, 0) - np.roll(p, 1, 0))
@@ -286,7 +296,7 @@ def write(path, particles):
 
 
 def main():
-    sets = {make.__name__: make for make in (tank, dam_break, graded, wave, vortex_rings)}
+    sets = {make.__name__: make for make in (tank, dam_break, graded, wave, plane, vortex_rings)}
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n\n".join(f"{name}: {make.__doc__}" for name, make in sets.items()))
@@ -298,15 +308,15 @@ def main():
                         help="vortex_rings: particles of negligible vorticity, too")
     given = vars(parser.parse_args())
     chosen, count, out = (given.pop(name) for name in ("set", "count", "out"))
-    if "ratio" in given and chosen == "vortex_rings" or "keep_all" in given and chosen != "vortex_rings":
+    if "ratio" in given and chosen in ("plane", "vortex_rings") or "keep_all" in given and chosen != "vortex_rings":
         parser.error(f"{chosen} has no such option")
     positions, arrays = sets[chosen](count, **given)
     if chosen != "graded":  # whose sizes and places go over three decades
         positions = positions.astype(np.float32)
         arrays = {name: values.astype(np.float32) if values.dtype.kind == "f" else values for name, values in arrays.items()}
     write(out, poly_data(positions, arrays))
-    h = arrays["SmoothingLength"]
-    print(f"{out}: {len(positions)} particles, h {h.min():.6g} .. {h.max():.6g}")
+    h = arrays.get("SmoothingLength")
+    print(f"{out}: {len(positions)} particles" + ("" if h is None else f", h {h.min():.6g} .. {h.max():.6g}"))
 
 
 if __name__ == "__main__":

@@ -15,9 +15,8 @@ import numpy as np
 import vtkmodules.vtkInteractionStyle  # noqa: F401
 import vtkmodules.vtkRenderingFreeType  # noqa: F401
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLookupTable
 from vtkmodules.vtkFiltersCore import vtkThreshold
 from vtkmodules.vtkFiltersSources import vtkOutlineSource
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -27,7 +26,10 @@ from vtkmodules.vtkRenderingCore import (
 
 from marchingcorrectors import vtkMarchingCorrectors, vtkSPHDerivatives
 
-DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Data", "dam_break_45k.vtp")
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "Data")
+sys.path.insert(0, DATA)
+from make_particles import poly_data  # noqa: E402
+
 RED, YELLOW, GREEN = (0.85, 0.15, 0.1), (0.95, 0.8, 0.15), (0.2, 0.65, 0.25)
 WATER, ORANGE, LINE, WHITE = (0.45, 0.68, 0.9), (0.90, 0.45, 0.20), (0.1, 0.2, 0.5), (1, 1, 1)
 # Cameras: position, focus, angle; the whole tank by the number of panels in a row.
@@ -39,7 +41,7 @@ README = (-0.35, 2.5, 4.4), (1.565, 0.45, 0.0), 31
 
 def read():
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(DATA)
+    reader.SetFileName(os.path.join(DATA, "dam_break_45k.vtp"))
     reader.Update()
     return reader
 
@@ -173,11 +175,28 @@ def dam_break():
         ("isosurface of the speed, 1 m/s", actor_of(iso, ORANGE, specular=0.3), faint)], README, (24, 474), 28), (1950, 520)
 
 
-def figure_1():
-    reader, levels = read(), ((500.0, RED), (1500.0, YELLOW), (3000.0, GREEN))
-    actors = [actor_of(surface(reader, "Pressure", value), color) for value, color in levels]
-    return in_tank(reader, [("pressure 500, 1500, 3000 Pa in the free surface", *actors,
-                             actor_of(surface(reader), WATER, 0.25))], TANK[1])
+# Panels: a text, and surfaces: an array or None for the free surface, its value, colour, opacity, and the scale of h.
+FIGURES = {
+    "figure_1": (TANK[1], [("pressure 500, 1500, 3000 Pa in the free surface", ("Pressure", 500.0, RED), ("Pressure", 1500.0, YELLOW),
+                            ("Pressure", 3000.0, GREEN), (None, 0, WATER, 0.25))]),
+    "figure_6": (TANK[1], [("vorticity 5 / s", ("Vorticity", 5.0, ORANGE))]),
+    "figure_7": (TANK[2], [(f"lambda2 {value:g} / s^2", ("Lambda2", value, RED), (None, 0, WATER, 0.15))
+                           for value in (-150.0, -50.0)]),
+    "figure_8": (TANK[3], [(f"vorticity {value:g} / s", ("Vorticity", value, ORANGE, 0.35)) for value in (10.0, 1.0, 0.1)]),
+    "figure_9": (NEAR, [("pressure 1500 Pa, h", ("Pressure", 1500.0, YELLOW)),
+                        ("0.5 h: noise", ("Pressure", 1500.0, YELLOW, 1.0, 0.5))])}
+
+
+def figure(name):
+    """Vorticity and Lambda2 are computed, in place of those that the file brings."""
+    reader, (camera, panels) = read(), FIGURES[name]
+    derived = water(vtkSPHDerivatives(), reader, "Velocity")
+
+    def actor(array, value, color, opacity=1.0, scale=1.0):
+        source = derived if array in ("Vorticity", "Lambda2") else reader
+        return actor_of(surface(source, array, value, HScaleFactor=scale), color, opacity)
+
+    return in_tank(reader, [(text, *(actor(*each) for each in surfaces)) for text, *surfaces in panels], camera)
 
 
 def figure_4():
@@ -190,10 +209,6 @@ def figure_4():
     return in_tank(reader, panels, EDGE)
 
 
-def scaled(reader, scale, **properties):
-    return surface(reader, "Pressure", 1500.0, HScaleFactor=scale, **properties)
-
-
 def figure_5():
     """Green where the sum of the kernels is 1, red where it is 0.5 or less."""
     reader, table = read(), vtkLookupTable()
@@ -202,38 +217,8 @@ def figure_5():
     table.SetSaturationRange(0.85, 0.85)
     table.SetValueRange(0.9, 0.75)
     return in_tank(reader, [
-        (text, colored(actor_of(scaled(reader, scale, ComputeWeightSum=1), GREEN), "WeightSum", table))
+        (text, colored(actor_of(surface(reader, "Pressure", 1500.0, HScaleFactor=scale, ComputeWeightSum=1), GREEN), "WeightSum", table))
         for scale, text in ((1.0, "pressure 1500 Pa, h"), (0.75, "0.75 h"), (0.5, "0.5 h"))], TANK[3])
-
-
-def derived(reader):
-    """Vorticity and Lambda2 of the water, in place of those that the file brings."""
-    return water(vtkSPHDerivatives(), reader, "Velocity")
-
-
-def figure_6():
-    reader = read()
-    return in_tank(reader, [("vorticity 5 / s", actor_of(surface(derived(reader), "Vorticity", 5.0), ORANGE))], TANK[1])
-
-
-def figure_7():
-    reader = read()
-    lambda2, free = derived(reader), surface(reader)
-    return in_tank(reader, [(f"lambda2 {value:g} / s^2", actor_of(surface(lambda2, "Lambda2", value), RED),
-                             actor_of(free, WATER, 0.15)) for value in (-150.0, -50.0)], TANK[2])
-
-
-def figure_8():
-    reader = read()
-    vorticity = derived(reader)
-    return in_tank(reader, [(f"vorticity {value:g} / s", actor_of(surface(vorticity, "Vorticity", value), ORANGE, 0.35))
-                            for value in (10.0, 1.0, 0.1)], TANK[3])
-
-
-def figure_9():
-    reader = read()
-    return in_tank(reader, [(text, actor_of(scaled(reader, scale), YELLOW))
-                            for scale, text in ((1.0, "pressure 1500 Pa, h"), (0.5, "0.5 h: noise"))], NEAR)
 
 
 FINEST, SHARE = 0.002, 0.1  # a particle's spacing, and its growth with the distance from the point
@@ -256,16 +241,9 @@ def graded_particles():
 
 def graded():
     """Adaptive cubes: the whole, and two looks from nearer, with the triangles' edges."""
-    rows, data, renderers = graded_particles(), vtkPolyData(), []
-    data.SetPoints(vtkPoints())
-    data.GetPoints().SetData(numpy_to_vtk(rows[:, :3].copy(), deep=True))
+    rows, renderers, extract = graded_particles(), [], vtkMarchingCorrectors()
     # 1.5 edges: the kernel reaches across the step from one edge to the next.
-    for name, values in (("SmoothingLength", 1.5 * rows[:, 3]), ("Volume", rows[:, 3] ** 3)):
-        array = numpy_to_vtk(values, deep=True)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    extract = vtkMarchingCorrectors()
-    extract.SetInputData(data)
+    extract.SetInputData(poly_data(rows[:, :3].copy(), {"SmoothingLength": 1.5 * rows[:, 3], "Volume": rows[:, 3] ** 3}))
     extract.FreeSurfaceOn()
     extract.SetCubeSizeModeToAdaptive()
     extract.Update()
@@ -283,8 +261,8 @@ def graded():
     return renderers, (1350, 450)
 
 
-PICTURES = {picture.__name__: picture for picture in (
-    dam_break, figure_1, figure_4, figure_5, figure_6, figure_7, figure_8, figure_9, graded)}
+PICTURES = {**{name: lambda name=name: figure(name) for name in FIGURES}, "figure_4": figure_4, "figure_5": figure_5,
+            "dam_break": dam_break, "graded": graded}
 
 
 def main(directory, names):

@@ -50,10 +50,8 @@ def animate(file):
     """The scene and the view; the frames are the interpolator's time steps."""
     film = SPHTemporalInterpolator(Input=PVDReader(FileName=file), ResampleFactor=BETWEEN + 1)  # noqa: F821, the plugin's
     surface = MarchingCorrectors(Input=film, FreeSurface=1, Smooth=1)  # noqa: F821
-    view = CreateRenderView(ViewSize=[360, 360])
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1.0, 1.0, 1.0]
-    view.OrientationAxesVisibility = 0
+    view = CreateRenderView(ViewSize=[360, 360], UseColorPaletteForBackground=0, Background=[1.0, 1.0, 1.0],
+                            OrientationAxesVisibility=0)
     shown = Show(surface, view)
     ColorBy(shown, ("POINTS", "Velocity", "Magnitude"))
     GetColorTransferFunction("Velocity").RescaleTransferFunction(0.0, 1.0)

@@ -39,10 +39,8 @@ def slabs(particles):
 
 
 def view_of(caption):
-    view = CreateRenderView(ViewSize=[800, 500])
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1.0, 1.0, 1.0]
-    view.OrientationAxesVisibility = 0
+    view = CreateRenderView(ViewSize=[800, 500], UseColorPaletteForBackground=0, Background=[1.0, 1.0, 1.0],
+                            OrientationAxesVisibility=0)
     text = Show(Text(Text=caption), view)
     text.Color, text.FontSize = [0.0, 0.0, 0.0], 20
     return view

@@ -2,17 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectors.h"
 
-#include "mcor.h"
 #include "mcor_parts.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
@@ -26,11 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <memory>
 #include <sstream>
-#include <string>
-#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 static_assert(static_cast<int>(vtkMarchingCorrectors::MAGNITUDE) == MCOR_MAGNITUDE,

@@ -2,17 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHAlgorithm.h"
 
-#include "mcor.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTypes.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
-#include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
-#include "vtkSPHParticles.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"

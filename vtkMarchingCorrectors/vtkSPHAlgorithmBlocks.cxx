@@ -4,7 +4,6 @@
 // Blocks of composite data, and detection of the fluid among particles.
 #include "vtkSPHAlgorithm.h"
 
-#include "mcor.h"
 #include "vtkDataObjectTree.h"
 #include "vtkDataObjectTreeIterator.h"
 #include "vtkDataObjectTypes.h"
@@ -12,13 +11,10 @@
 #include "vtkIdList.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
-#include "vtkSPHParticles.h"
 #include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 #include "vtkSPHVertices.h"
@@ -27,9 +23,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace

@@ -2,21 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHDerivatives.h"
 
-#include "mcor.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <memory>
-#include <string>
-#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -118,26 +112,23 @@ vtkSPHDerivatives::vtkSPHDerivatives()
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
 
-// A file may have another array of that name: made with another kernel, or by the solver.
-std::string vtkSPHDerivatives::NameResult(const std::string& name, vtkPointSet* particles) const
-{
-  std::string free = name;
-  while (!this->ReplaceArrays && particles->GetPointData()->HasArray(free.c_str()))
-  {
-    free += "_SPH";
-  }
-  return free;
-}
-
 vtkSPHDerivatives::vtkWanted vtkSPHDerivatives::ListWanted(vtkPointSet* particles) const
 {
-  const auto name = [&](const char* usual) { return this->NameResult(usual, particles); };
+  // A file may have another array of that name: made with another kernel, or by the solver.
+  const auto name = [this, particles](std::string free)
+  {
+    while (!this->ReplaceArrays && particles->GetPointData()->HasArray(free.c_str()))
+    {
+      free += "_SPH";
+    }
+    return free;
+  };
   return { { { name("Divergence"), 1, &mcor_flow::divergence, this->ComputeDivergence != 0 },
              { name("Vorticity"), 3, &mcor_flow::vorticity, this->ComputeVorticity != 0 },
              { name("Q-criterion"), 1, &mcor_flow::q_criterion, this->ComputeQCriterion != 0 },
              { name("Lambda2"), 1, &mcor_flow::lambda2, this->ComputeLambda2 != 0 },
              { name("StrainRate"), 9, &mcor_flow::strain_rate, this->ComputeStrainRate != 0 } },
-    this->ComputeGradient != 0, name(this->ResultArrayName.c_str()) };
+    this->ComputeGradient != 0, name(this->ResultArrayName) };
 }
 
 // Reads first what an observer of the progress may change during the run.

@@ -100,7 +100,6 @@ private:
   void operator=(const vtkSPHDerivatives&) = delete;
 
   struct vtkWanted;
-  std::string NameResult(const std::string& name, vtkPointSet* particles) const;
   vtkWanted ListWanted(vtkPointSet* particles) const;
 };
 VTK_ABI_NAMESPACE_END

@@ -18,7 +18,6 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
-#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace
@@ -77,36 +76,30 @@ std::vector<Shapes> ListShapes(vtkDataSet* data, const std::string& usual)
 
 vtkStandardNewMacro(vtkSPHFlux);
 
-void vtkSPHFlux::AddSection(const char* name, int shape, std::vector<double> numbers)
-{
-  this->Sections.push_back({ name ? name : "", shape, std::move(numbers) });
-  this->Modified();
-}
-
 void vtkSPHFlux::AddRectangle(
   const char* name, const double corner[3], const double end1[3], const double end2[3])
 {
   std::vector<double> points(corner, corner + 3);
   points.insert(points.end(), end1, end1 + 3);
   points.insert(points.end(), end2, end2 + 3);
-  this->AddSection(name, MCOR_SECTION_RECTANGLE, points);
+  this->AddPlace(name, MCOR_SECTION_RECTANGLE, points);
 }
 
 void vtkSPHFlux::AddDisc(
   const char* name, const double center[3], const double normal[3], double radius)
 {
-  this->AddSection(name, MCOR_SECTION_DISC,
+  this->AddPlace(name, MCOR_SECTION_DISC,
     { center[0], center[1], center[2], normal[0], normal[1], normal[2], radius });
 }
 
 void vtkSPHFlux::AddBox(const char* name, const double b[6])
 {
-  this->AddSection(name, MCOR_SECTION_BOX, { b[0], b[2], b[4], b[1], b[3], b[5] });
+  this->AddPlace(name, MCOR_SECTION_BOX, { b[0], b[2], b[4], b[1], b[3], b[5] });
 }
 
 void vtkSPHFlux::AddLine(const char* name, const double point1[3], const double point2[3])
 {
-  this->AddSection(
+  this->AddPlace(
     name, MCOR_SECTION_LINES, { point1[0], point1[1], point1[2], point2[0], point2[1], point2[2] });
 }
 
@@ -118,24 +111,13 @@ void vtkSPHFlux::AddSurface(const char* name, vtkDataSet* surface)
     all.Triangles.insert(all.Triangles.end(), shapes.Triangles.begin(), shapes.Triangles.end());
     all.Lines.insert(all.Lines.end(), shapes.Lines.begin(), shapes.Lines.end());
   }
-  all.Triangles.empty() ? this->AddSection(name, MCOR_SECTION_LINES, all.Lines)
-                        : this->AddSection(name, MCOR_SECTION_TRIANGLES, all.Triangles);
-}
-
-void vtkSPHFlux::ClearSections()
-{
-  this->Sections.clear();
-  this->Modified();
-}
-
-int vtkSPHFlux::GetNumberOfSections() const
-{
-  return static_cast<int>(this->Sections.size());
+  all.Triangles.empty() ? this->AddPlace(name, MCOR_SECTION_LINES, all.Lines)
+                        : this->AddPlace(name, MCOR_SECTION_TRIANGLES, all.Triangles);
 }
 
 std::vector<vtkSPHMeter::Place> vtkSPHFlux::ListPlaces(vtkDataObject* more)
 {
-  std::vector<Place> sections = this->Sections;
+  std::vector<Place> sections = this->Places;
   if (auto* data = vtkDataSet::SafeDownCast(more))
   {
     for (const Shapes& shapes : ListShapes(data, "section"))
@@ -212,7 +194,7 @@ void vtkSPHFlux::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   vtkSPHPrintMacro(Origin, Normal, Radius, VelocityArrayName);
-  for (const Place& section : this->Sections)
+  for (const Place& section : this->Places)
   {
     os << indent << "Section " << section.Name << ": shape " << section.Shape << ", "
        << section.Numbers.size() / 3 << " points\n";

@@ -69,8 +69,8 @@ public:
   void AddBox(const char* name, const double bounds[6]);
   void AddLine(const char* name, const double point1[3], const double point2[3]);
   void AddSurface(const char* name, vtkDataSet* surface);
-  void ClearSections();
-  int GetNumberOfSections() const;
+  void ClearSections() { this->ClearPlaces(); }
+  int GetNumberOfSections() const { return static_cast<int>(this->Places.size()); }
   ///@}
 
   ///@{
@@ -104,10 +104,6 @@ protected:
 private:
   vtkSPHFlux(const vtkSPHFlux&) = delete;
   void operator=(const vtkSPHFlux&) = delete;
-
-  void AddSection(const char* name, int shape, std::vector<double> numbers);
-
-  std::vector<Place> Sections; // points, of a disc also the radius
 };
 VTK_ABI_NAMESPACE_END
 

@@ -23,19 +23,7 @@ vtkStandardNewMacro(vtkSPHGauge);
 void vtkSPHGauge::AddGauge(
   const char* name, double x0, double y0, double z0, double x1, double y1, double z1)
 {
-  this->Gauges.push_back({ name ? name : "", 0, { x0, y0, z0, x1, y1, z1 } });
-  this->Modified();
-}
-
-void vtkSPHGauge::ClearGauges()
-{
-  this->Gauges.clear();
-  this->Modified();
-}
-
-int vtkSPHGauge::GetNumberOfGauges() const
-{
-  return static_cast<int>(this->Gauges.size());
+  this->AddPlace(name, 0, { x0, y0, z0, x1, y1, z1 });
 }
 
 void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Place>& gauges)
@@ -61,7 +49,7 @@ void vtkSPHGauge::AddLines(vtkDataSet* lines, std::vector<Place>& gauges)
 
 std::vector<vtkSPHMeter::Place> vtkSPHGauge::ListPlaces(vtkDataObject* more)
 {
-  std::vector<Place> gauges = this->Gauges;
+  std::vector<Place> gauges = this->Places;
   if (auto* lines = vtkDataSet::SafeDownCast(more))
   {
     AddLines(lines, gauges);
@@ -126,7 +114,7 @@ void vtkSPHGauge::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   vtkSPHPrintMacro(Point1, Point2);
-  for (const Place& gauge : this->Gauges)
+  for (const Place& gauge : this->Places)
   {
     os << indent << "Gauge " << gauge.Name << ":";
     std::for_each(

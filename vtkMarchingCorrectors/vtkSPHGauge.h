@@ -56,8 +56,8 @@ public:
    * positions.
    */
   void AddGauge(const char* name, double x0, double y0, double z0, double x1, double y1, double z1);
-  void ClearGauges();
-  int GetNumberOfGauges() const;
+  void ClearGauges() { this->ClearPlaces(); }
+  int GetNumberOfGauges() const { return static_cast<int>(this->Places.size()); }
   ///@}
 
   ///@{
@@ -82,8 +82,6 @@ private:
   void operator=(const vtkSPHGauge&) = delete;
 
   static void AddLines(vtkDataSet* lines, std::vector<Place>& gauges);
-
-  std::vector<Place> Gauges; // x, y, z of the one end, then of the other
 };
 VTK_ABI_NAMESPACE_END
 

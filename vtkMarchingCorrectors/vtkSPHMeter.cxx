@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHMeter.h"
 
-#include "mcor.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
@@ -17,7 +15,6 @@
 #include <algorithm>
 #include <limits>
 #include <set>
-#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -79,6 +76,18 @@ int vtkSPHMeter::RequestData(
   const int done = this->Superclass::RequestData(request, inputVector, outputVector);
   this->More = nullptr;
   return done;
+}
+
+void vtkSPHMeter::AddPlace(const char* name, int shape, std::vector<double> numbers)
+{
+  this->Places.push_back({ name ? name : "", shape, std::move(numbers) });
+  this->Modified();
+}
+
+void vtkSPHMeter::ClearPlaces()
+{
+  this->Places.clear();
+  this->Modified();
 }
 
 bool vtkSPHMeter::Collect(vtkSPHParticles& particles)

@@ -74,6 +74,11 @@ protected:
     std::vector<double> Numbers;
   };
 
+  void AddPlace(const char* name, int shape, std::vector<double> numbers);
+  void ClearPlaces();
+
+  std::vector<Place> Places; // that were added
+
   ///@{
   /**
    * Differences of filters: the word for one place ("gauge"); the consequence of no fluid, in

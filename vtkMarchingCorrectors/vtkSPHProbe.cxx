@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHProbe.h"
 
-#include "mcor.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
-#include "vtkDataSet.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -13,8 +11,6 @@
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkSMPTools.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
@@ -22,11 +18,7 @@
 #include "vtkSPHRun.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace

@@ -2,20 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHProjection.h"
 
-#include "mcor.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHPrint.h"
 #include "vtkSPHRun.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <memory>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace

@@ -102,8 +102,6 @@ vtkStandardNewMacro(vtkSPHTemporalInterpolator);
 vtkSPHTemporalInterpolator::vtkSPHTemporalInterpolator()
   : Internals(new vtkInternals)
 {
-  this->SetNumberOfInputPorts(1);
-  this->SetNumberOfOutputPorts(1);
 }
 
 vtkSPHTemporalInterpolator::~vtkSPHTemporalInterpolator() = default;
@@ -121,16 +119,6 @@ int vtkSPHTemporalInterpolator::FillOutputPortInformation(int, vtkInformation* i
   return 1;
 }
 
-vtkPolyData* vtkSPHTemporalInterpolator::GetOutput()
-{
-  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
-}
-
-void vtkSPHTemporalInterpolator::SetInputData(vtkDataObject* particles)
-{
-  this->SetInputDataInternal(0, particles);
-}
-
 void vtkSPHTemporalInterpolator::Fail(const std::string& message)
 {
   const std::string sentence = this->BlockName + message;
@@ -138,49 +126,31 @@ void vtkSPHTemporalInterpolator::Fail(const std::string& message)
   vtkErrorMacro(<< sentence);
 }
 
+// Makes a poly data as output, or blocks of them if the input has blocks.
 vtkTypeBool vtkSPHTemporalInterpolator::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkInformation *input = inputVector[0]->GetInformationObject(0),
-                 *output = outputVector->GetInformationObject(0);
-  if (request->Has(Pipeline::REQUEST_DATA_OBJECT()))
+  if (!request->Has(Pipeline::REQUEST_DATA_OBJECT()))
   {
-    return this->RequestDataObject(input, output);
+    return this->Superclass::ProcessRequest(request, inputVector, outputVector);
   }
-  if (request->Has(Pipeline::REQUEST_INFORMATION()))
-  {
-    this->Internals->Kept.clear(); // something changed upstream
-    return this->RequestInformation(input, output);
-  }
-  if (request->Has(Pipeline::REQUEST_UPDATE_EXTENT()))
-  {
-    return this->RequestUpdateExtent(input, output);
-  }
-  if (request->Has(Pipeline::REQUEST_DATA()))
-  {
-    this->RequestData(input, output);
-    return 1; // see vtkSPHAlgorithm::RequestData
-  }
-  return this->Superclass::ProcessRequest(request, inputVector, outputVector);
-}
-
-// Makes a poly data as output, or blocks of them if the input has blocks.
-int vtkSPHTemporalInterpolator::RequestDataObject(vtkInformation* input, vtkInformation* output)
-{
-  auto* blocks = vtkDataObjectTree::GetData(input);
-  vtkDataObject* old = vtkDataObject::GetData(output);
+  auto* blocks = vtkDataObjectTree::GetData(inputVector[0]);
+  vtkDataObject* old = vtkDataObject::GetData(outputVector);
   if (!old || !old->IsA(blocks ? blocks->GetClassName() : "vtkPolyData"))
   {
     auto made = vtkSmartPointer<vtkDataObject>::Take(
       blocks ? static_cast<vtkDataObject*>(blocks->NewInstance()) : vtkPolyData::New());
-    output->Set(vtkDataObject::DATA_OBJECT(), made);
+    outputVector->GetInformationObject(0)->Set(vtkDataObject::DATA_OBJECT(), made);
   }
   return 1;
 }
 
-int vtkSPHTemporalInterpolator::RequestInformation(vtkInformation* input, vtkInformation* output)
+int vtkSPHTemporalInterpolator::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  const std::vector<double> stored = TimesOf(input);
+  this->Internals->Kept.clear(); // something changed upstream
+  vtkInformation* output = outputVector->GetInformationObject(0);
+  const std::vector<double> stored = TimesOf(inputVector[0]->GetInformationObject(0));
   if (stored.empty())
   {
     return 1; // one set of particles, which is passed on
@@ -201,8 +171,11 @@ int vtkSPHTemporalInterpolator::RequestInformation(vtkInformation* input, vtkInf
 }
 
 // Requests the first step that is not kept from upstream; if all are kept, nothing new.
-int vtkSPHTemporalInterpolator::RequestUpdateExtent(vtkInformation* input, vtkInformation* output)
+int vtkSPHTemporalInterpolator::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  vtkInformation *input = inputVector[0]->GetInformationObject(0),
+                 *output = outputVector->GetInformationObject(0);
   const std::vector<double> stored = TimesOf(input);
   vtkInternals& steps = *this->Internals;
   steps.Time = output->Has(Pipeline::UPDATE_TIME_STEP()) ? output->Get(Pipeline::UPDATE_TIME_STEP())
@@ -257,8 +230,10 @@ bool vtkSPHTemporalInterpolator::FetchSteps(vtkInformation* input)
   return true;
 }
 
-void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformation* output)
+int vtkSPHTemporalInterpolator::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  vtkInformation* input = inputVector[0]->GetInformationObject(0);
   this->ErrorMessage.clear();
   this->BlockName.clear();
   this->UsedIdArrayName.clear();
@@ -267,11 +242,11 @@ void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformati
   if (!(this->TimeScale > 0.0 && std::isfinite(this->TimeScale)))
   {
     this->Fail("The time scale must be greater than 0.");
-    return;
+    return 1;
   }
   if (!this->FetchSteps(input))
   {
-    return;
+    return 1;
   }
   const bool isTimed = !steps.Times.empty();
   vtkDataObject* given = vtkDataObject::GetData(input);
@@ -279,7 +254,7 @@ void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformati
     isTimed ? nullptr : vtkSPHTakeVertices(given, vtkSPHHaveVertices(given));
   vtkDataObject* first = isTimed ? steps.Find(steps.Times.front()) : taken.Get();
   vtkDataObject* second = isTimed ? steps.Find(steps.Times.back()) : first;
-  vtkDataObject* to = vtkDataObject::GetData(output);
+  vtkDataObject* to = vtkDataObject::GetData(outputVector);
   auto* blocks = vtkDataObjectTree::SafeDownCast(to);
   if (blocks)
   {
@@ -294,6 +269,7 @@ void vtkSPHTemporalInterpolator::RequestData(vtkInformation* input, vtkInformati
   {
     to->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), steps.Time);
   }
+  return 1; // see vtkSPHAlgorithm::RequestData
 }
 
 void vtkSPHTemporalInterpolator::FillBlocks(

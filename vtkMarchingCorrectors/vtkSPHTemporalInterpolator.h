@@ -44,9 +44,9 @@
 #ifndef vtkSPHTemporalInterpolator_h
 #define vtkSPHTemporalInterpolator_h
 
-#include "vtkAlgorithm.h"
 #include "vtkMarchingCorrectorsModule.h" // For export macro
-#include "vtkSPHAlgorithm.h"             // For macros
+#include "vtkPolyDataAlgorithm.h"
+#include "vtkSPHAlgorithm.h" // For macros
 
 #include <memory> // For the pairs of blocks
 #include <string> // For members
@@ -57,11 +57,12 @@ class vtkDataObject;
 class vtkDataObjectTree;
 class vtkPolyData;
 
-class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHTemporalInterpolator : public vtkAlgorithm
+class VTKMARCHINGCORRECTORS_EXPORT VTK_MARSHALAUTO vtkSPHTemporalInterpolator
+  : public vtkPolyDataAlgorithm
 {
 public:
   static vtkSPHTemporalInterpolator* New();
-  vtkTypeMacro(vtkSPHTemporalInterpolator, vtkAlgorithm);
+  vtkTypeMacro(vtkSPHTemporalInterpolator, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   /**
@@ -102,12 +103,6 @@ public:
    */
   vtkSPHToldMacro(ErrorMessage);
 
-  /** Particles without a time, which are passed on. */
-  void SetInputData(vtkDataObject* particles);
-
-  /** The output; nullptr if it is composite. */
-  vtkPolyData* GetOutput();
-
 protected:
   vtkSPHTemporalInterpolator();
   ~vtkSPHTemporalInterpolator() override;
@@ -116,15 +111,17 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   vtkTypeBool ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
 
 private:
   vtkSPHTemporalInterpolator(const vtkSPHTemporalInterpolator&) = delete;
   void operator=(const vtkSPHTemporalInterpolator&) = delete;
 
-  int RequestDataObject(vtkInformation* input, vtkInformation* output);
-  int RequestInformation(vtkInformation* input, vtkInformation* output);
-  int RequestUpdateExtent(vtkInformation* input, vtkInformation* output);
-  void RequestData(vtkInformation* input, vtkInformation* output);
   bool FetchSteps(vtkInformation* input);
   void FillBlocks(vtkDataObjectTree* first, vtkDataObjectTree* second, vtkDataObjectTree* output);
   void Fill(size_t block, vtkDataObject* first, vtkDataObject* second, vtkPolyData* output);

@@ -20,7 +20,6 @@
 #include <cstring>
 #include <numeric>
 #include <sstream>
-#include <vector>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace

@@ -7,7 +7,6 @@
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHFound.h"

@@ -4,7 +4,6 @@
 #include "vtkSPHParticles.h"
 
 #include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHReals.h"
 

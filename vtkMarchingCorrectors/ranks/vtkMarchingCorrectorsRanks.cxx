@@ -11,7 +11,6 @@
 #include "vtkFieldData.h"
 #include "vtkMarchingCorrectorsInput.h"
 #include "vtkMarchingCorrectorsOutput.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"

@@ -19,8 +19,6 @@
 #include "vtkSPHRanksSurface.h"
 #include "vtkTable.h"
 
-#include <vector>
-
 VTK_ABI_NAMESPACE_BEGIN
 namespace
 {

@@ -368,11 +368,8 @@ vtkSmartPointer<vtkIdList> ListOwn(vtkPointSet* data, const vtkSPHParticlesChoic
   own->Allocate(count);
   for (vtkIdType i = 0; i < count; ++i)
   {
-    if (!present[static_cast<size_t>(i)])
-    {
-      continue;
-    }
-    if (!marks || !(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
+    const bool isCopy = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+    if (present[static_cast<size_t>(i)] && !isCopy)
     {
       own->InsertNextId(i);
     }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSPHRanksRoute.h"
 
-#include "vtkDataSet.h"
 #include "vtkSPHReals.h"
 #include "vtkSPHRun.h"
 
@@ -10,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 VTK_ABI_NAMESPACE_BEGIN
 namespace

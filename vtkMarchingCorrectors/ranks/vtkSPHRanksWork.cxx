@@ -5,7 +5,6 @@
 #include "vtkSPHReals.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

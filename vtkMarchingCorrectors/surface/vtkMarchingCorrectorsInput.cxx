@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsInput.h"
 
-#include "vtkPointData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHRun.h"
 

@@ -23,7 +23,6 @@
 #include <cstdlib>
 #include <numeric>
 #include <sstream>
-#include <string>
 #include <type_traits>
 
 VTK_ABI_NAMESPACE_BEGIN

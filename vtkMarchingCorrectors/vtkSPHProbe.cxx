@@ -179,7 +179,8 @@ private:
 
   /** Takes over what the core has found at the points from `first` on. */
   void Put(vtkIdType first, const mcor_samples& samples);
-  Pair Make(const std::string& name, int components, bool asFloat, bool gradient) const;
+  Pair Make(
+    const std::string& name, int components, bool asFloat, bool gradient, double fill) const;
 
   const vtkIdType Count;
   const double Null;        // the value at points that are not valid
@@ -197,26 +198,18 @@ Samples::Samples(const vtkSPHParticles& particles, const mcor_options& options,
   const bool gradients = (options.outputs & MCOR_OUT_GRADIENTS) != 0;
   for (const vtkSPHAttribute& from : particles.Interpolated)
   {
-    this->Arrays.push_back(
-      this->Make(from.Name, from.Components, from.Array->GetDataType() == VTK_FLOAT, gradients));
-    Pair& made = this->Arrays.back();
-    for (vtkDataArray* array : { made.Values.GetPointer(), made.Gradient.GetPointer() })
-    {
-      if (array && null != 0.0)
-      {
-        array->Fill(null);
-      }
-    }
-    made.Values->CopyComponentNames(from.Array);
+    this->Arrays.push_back(this->Make(
+      from.Name, from.Components, from.Array->GetDataType() == VTK_FLOAT, gradients, null));
+    this->Arrays.back().Values->CopyComponentNames(from.Array);
   }
-  this->Weight = this->Make("WeightSum", 1, options.precision == MCOR_FLOAT32, gradients);
+  this->Weight = this->Make("WeightSum", 1, options.precision == MCOR_FLOAT32, gradients, 0.0);
   this->Mask->SetName(maskName.c_str());
   this->Mask->SetNumberOfTuples(count);
   this->Mask->FillValue(0);
 }
 
 Samples::Pair Samples::Make(
-  const std::string& name, int components, bool asFloat, bool gradient) const
+  const std::string& name, int components, bool asFloat, bool gradient, double fill) const
 {
   const auto make = [&](const std::string& itsName, int itsComponents)
   {
@@ -225,7 +218,7 @@ Samples::Pair Samples::Make(
     array->SetName(itsName.c_str());
     array->SetNumberOfComponents(itsComponents);
     array->SetNumberOfTuples(this->Count);
-    array->Fill(0.0);
+    array->Fill(fill);
     return array;
   };
   Pair pair;

@@ -41,13 +41,15 @@ void vtkSPHSign(std::vector<std::uint64_t>& signature, vtkObject* object);
 vtkSmartPointer<vtkAbstractArray> vtkSPHMakeLike(vtkAbstractArray* array, vtkIdType count);
 
 /** Copies the tuples with these numbers, in this order, of all arrays, normals and ids, too. */
-void vtkSPHTakeTuples(vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
+VTKMARCHINGCORRECTORS_EXPORT void vtkSPHTakeTuples(
+  vtkDataSetAttributes* from, vtkIdList* ids, vtkDataSetAttributes* to);
 
 /** Adds all arrays, in place of those of their names; scalars become the active ones. */
 void vtkSPHAddArrays(vtkDataSetAttributes* from, vtkDataSetAttributes* to);
 
 /** Returns the points with these numbers, in this order. */
-vtkSmartPointer<vtkPoints> vtkSPHTakePoints(vtkPoints* from, vtkIdList* ids);
+VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPoints> vtkSPHTakePoints(
+  vtkPoints* from, vtkIdList* ids);
 
 /** Makes a vertex of each of so many points. */
 vtkSmartPointer<vtkCellArray> vtkSPHMakeVertices(vtkIdType count);

@@ -7,6 +7,7 @@
 #ifndef vtkSPHBlocks_h
 #define vtkSPHBlocks_h
 
+#include "vtkMarchingCorrectorsModule.h"
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
@@ -35,7 +36,7 @@ std::vector<vtkPointSet*> vtkSPHListPointSets(vtkDataObject* data);
  * arrays that only walls lack are kept, with a meaningless value there. If the fluid array is a
  * block, see vtkSPHListFluidBlocks(), all others are walls. Field data of all blocks are kept.
  */
-vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
+VTKMARCHINGCORRECTORS_EXPORT vtkSmartPointer<vtkPointSet> vtkSPHJoinBlocks(
   vtkDataObjectTree* tree, const std::string& fluidArray = "");
 
 /**

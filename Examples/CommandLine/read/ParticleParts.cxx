@@ -3,15 +3,17 @@
 #include "ParticleFile.h"
 
 #include "vtkAbstractArray.h"
-#include "vtkAppendPolyData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSPHArrays.h"
+#include "vtkSPHBlocks.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -35,21 +37,17 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
   {
     return own;
   }
-  vtkPointData *from = part->GetPointData(), *to = own->GetPointData();
-  vtkNew<vtkPoints> points;
-  points->SetDataType(part->GetPoints()->GetDataType());
-  to->Initialize();
-  to->CopyAllOn();
-  to->CopyAllocate(from, part->GetNumberOfPoints());
+  vtkNew<vtkIdList> kept;
   for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
   {
     if (!(marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT))
     {
-      to->CopyData(from, i, points->InsertNextPoint(part->GetPoint(i)));
+      kept->InsertNextId(i);
     }
   }
-  to->Squeeze();
-  own->SetPoints(points);
+  own->SetPoints(vtkSPHTakePoints(part->GetPoints(), kept));
+  own->GetPointData()->Initialize();
+  vtkSPHTakeTuples(part->GetPointData(), kept, own->GetPointData());
   return own;
 }
 
@@ -123,23 +121,12 @@ vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPoin
   std::vector<vtkSmartPointer<vtkPolyData>> own(parts.size());
   std::transform(parts.begin(), parts.end(), own.begin(), Own);
   MakeTypesAlike(own);
-  vtkNew<vtkAppendPolyData> append;
+  vtkNew<vtkMultiBlockDataSet> blocks;
   for (const vtkSmartPointer<vtkPolyData>& part : own)
   {
-    append->AddInputData(part);
+    blocks->SetBlock(blocks->GetNumberOfBlocks(), part);
   }
-  append->Update();
-  vtkPolyData* all = append->GetOutput();
-  auto joined = vtkSmartPointer<vtkPolyData>::New();
-  joined->SetPoints(all->GetPoints());
-  vtkPointData* order = parts.front()->GetPointData(); // VTK sorts the arrays by name
-  for (int i = 0; i < order->GetNumberOfArrays(); ++i)
-  {
-    if (vtkAbstractArray* array = all->GetPointData()->GetAbstractArray(order->GetArrayName(i)))
-    {
-      joined->GetPointData()->AddArray(array);
-    }
-  }
+  const vtkSmartPointer<vtkPointSet> joined = vtkSPHJoinBlocks(blocks);
   joined->SetFieldData(parts.front()->GetFieldData());
   return joined;
 }

@@ -27,7 +27,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -101,26 +100,6 @@ void CheckSize(const std::string& file, double most, View name, double value, do
   }
 }
 
-/// The attributes of a tag.
-std::map<View, View> AttributesOf(View tag)
-{
-  std::map<View, View> attributes;
-  std::size_t equals = 0;
-  while ((equals = tag.find('=', equals + 1)) != View::npos)
-  {
-    const std::size_t name = tag.find_last_of(" \t\r\n", equals) + 1;
-    const std::size_t open = tag.find_first_of("\"'", equals);
-    const std::size_t close = open == View::npos ? open : tag.find(tag[open], open + 1);
-    if (close == View::npos)
-    {
-      break;
-    }
-    attributes[tag.substr(name, equals - name)] = tag.substr(open + 1, close - open - 1);
-    equals = close;
-  }
-  return attributes;
-}
-
 /// Counts are attributes of tags: of pieces, and of their arrays, which have so many numbers for
 /// each point or cell.
 void CheckXmlSizes(const std::string& file, View text)
@@ -138,17 +117,26 @@ void CheckXmlSizes(const std::string& file, View text)
     {
       return;
     }
-    for (const auto& [name, value] : AttributesOf(tag))
+    for (std::size_t equals = 0; (equals = tag.find('=', equals + 1)) != View::npos;)
     {
-      const std::vector<double> numbers = Numbers(value);
+      const std::size_t open = tag.find_first_of("\"'", equals);
+      const std::size_t close = open == View::npos ? open : tag.find(tag[open], open + 1);
+      if (close == View::npos)
+      {
+        break;
+      }
+      const std::size_t start = tag.find_last_of(" \t\r\n", equals) + 1;
+      const View name = tag.substr(start, equals - start);
+      const std::vector<double> numbers = Numbers(tag.substr(open + 1, close - open - 1));
+      equals = close;
       if (name.substr(0, 8) == "NumberOf" && !numbers.empty())
       {
         const bool isWidth = name == "NumberOfComponents";
         CheckSize(file, most, name, numbers[0], isWidth ? std::max(elements, 1.0) : 1.0);
         elements = name == "NumberOfPoints" ? numbers[0] : elements;
       }
-      for (std::size_t a = 1; a < numbers.size() && (name == "Extent" || name == "WholeExtent");
-           a += 2)
+      const bool isExtent = name == "Extent" || name == "WholeExtent";
+      for (std::size_t a = 1; isExtent && a < numbers.size(); a += 2)
       {
         CheckSize(file, most, name, std::min(numbers[a] - numbers[a - 1] + 1.0, 0.0));
       }

@@ -72,7 +72,7 @@ static const bits_case cases[] = {
 };
 
 /* Gives some particles a far larger support, and as much weight as the others have. */
-static void widen(core_set* set, uint64_t* seed)
+static void widen(particle_set* set, uint64_t* seed)
 {
   for (int64_t i = 0; i < set->count; i += 3)
   {
@@ -89,7 +89,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   const int eigenvalue = at->boundary == MCOR_BOUNDARY_EIGENVALUE;
   const double small_iso = eigenvalue && !at->mixed ? 5 : 6;
   const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? small_iso : at->iso;
-  core_set set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
+  particle_set set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -157,7 +157,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
     core_keep_surface(at->name, &input, &surface);
   }
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
   return good;
 }
 

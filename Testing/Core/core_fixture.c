@@ -54,30 +54,6 @@ void* core_copy(const void* data, size_t bytes)
   return copy;
 }
 
-core_set core_make_set(int64_t count)
-{
-  const size_t n = (size_t)count;
-  const core_set set = { .count = count,
-    .position = calloc(n, 3 * sizeof(double)),
-    .smoothing_length = calloc(n, sizeof(double)),
-    .volume = calloc(n, sizeof(double)),
-    .scalar = calloc(n, sizeof(double)),
-    .solid = calloc(n, 1) };
-  assert_true(
-    n == 0 || (set.position && set.smoothing_length && set.volume && set.scalar && set.solid));
-  return set;
-}
-
-void core_free_set(core_set* set)
-{
-  free(set->position);
-  free(set->smoothing_length);
-  free(set->volume);
-  free(set->scalar);
-  free(set->solid);
-  *set = (core_set){ 0 };
-}
-
 double core_ball(const double x[3])
 {
   return 9 - x[0] * x[0] - x[1] * x[1] - x[2] * x[2];
@@ -88,9 +64,10 @@ double core_slope(const double x[3])
   return 0.7 * x[0] - 0.4 * x[1] + 0.5 * x[2] + 0.1;
 }
 
-core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(const double x[3]))
+particle_set core_make_block(
+  int n, double jitter, uint64_t seed, double (*value)(const double x[3]))
 {
-  core_set set = core_make_set((int64_t)n * n * n);
+  particle_set set = particle_set_make((int64_t)n * n * n);
   for (int i = 0; i < n * n * n; ++i)
   {
     double* x = set.position + 3 * i;
@@ -106,9 +83,9 @@ core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(co
   return set;
 }
 
-core_set core_make_graded(double ratio, double step)
+particle_set core_make_graded(double ratio, double step)
 {
-  core_set set = core_make_set(60000);
+  particle_set set = particle_set_make(60000);
   uint64_t seed = 5;
   int64_t n = 0;
   for (double r = 1; r < ratio; r *= 1 + 0.9 * step)
@@ -133,9 +110,9 @@ core_set core_make_graded(double ratio, double step)
   return set;
 }
 
-core_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed)
+particle_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed)
 {
-  core_set set = core_make_set(count);
+  particle_set set = particle_set_make(count);
   for (int64_t i = 0; i < count; ++i)
   {
     for (int a = 0; a < 3; ++a)
@@ -150,22 +127,7 @@ core_set core_make_random(int64_t count, double size, double h_min, double h_max
   return set;
 }
 
-mcor_array core_array(const double* data, int components)
-{
-  return (mcor_array){ .data = data, .type = MCOR_FLOAT64, .components = components };
-}
-
-mcor_input core_input(const core_set* set)
-{
-  return (mcor_input){ .count = set->count,
-    .positions = core_array(set->position, 3),
-    .smoothing_length = core_array(set->smoothing_length, 1),
-    .volume = core_array(set->volume, 1),
-    .scalar = core_array(set->scalar, 1),
-    .solid = set->has_solids ? set->solid : NULL };
-}
-
-mcor_input core_input_to_keep(const core_set* set)
+mcor_input core_input_to_keep(const particle_set* set)
 {
   static uint64_t version = 0;
   mcor_input input = core_input(set);
@@ -184,16 +146,6 @@ mcor_options core_options(const double* iso)
   return options;
 }
 
-oracle_particles core_oracle(const core_set* set)
-{
-  return (oracle_particles){ .count = set->count,
-    .position = set->position,
-    .smoothing_length = set->smoothing_length,
-    .volume = set->volume,
-    .scalar = set->scalar,
-    .solid = set->solid };
-}
-
 int64_t* core_make_order(int64_t count, uint64_t seed)
 {
   int64_t* order = malloc((size_t)count * sizeof *order);
@@ -207,24 +159,14 @@ int64_t* core_make_order(int64_t count, uint64_t seed)
   return order;
 }
 
-void core_append(core_set* to, const core_set* from, int64_t i)
+particle_set core_permute(const particle_set* set, const int64_t* order)
 {
-  const int64_t n = to->count++;
-  memcpy(to->position + 3 * n, from->position + 3 * i, 3 * sizeof(double));
-  to->smoothing_length[n] = from->smoothing_length[i];
-  to->volume[n] = from->volume[i];
-  to->scalar[n] = from->scalar[i];
-  to->solid[n] = from->solid[i];
-}
-
-core_set core_permute(const core_set* set, const int64_t* order)
-{
-  core_set result = core_make_set(set->count);
+  particle_set result = particle_set_make(set->count);
   result.has_solids = set->has_solids;
   result.count = 0;
   for (int64_t i = 0; i < set->count; ++i)
   {
-    core_append(&result, set, order[i]);
+    particle_set_append(&result, set, order[i]);
   }
   return result;
 }
@@ -240,9 +182,8 @@ mcor_surface core_extract(
 static mesh_report check_mesh(const mcor_surface* surface, bool may_coincide)
 {
   mesh_report report;
-  CORE_CHECK(mesh_check(surface->points, surface->point_count, surface->triangles,
-               surface->triangle_count, &report),
-    "out of memory");
+  mesh_check(
+    surface->points, surface->point_count, surface->triangles, surface->triangle_count, &report);
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
     CORE_CHECK((may_coincide && fault == MESH_COINCIDENT_POINT) || report.faults[fault] == 0,

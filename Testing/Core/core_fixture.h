@@ -37,18 +37,6 @@
       mcor_last_error(context));                                                                   \
   } while (0)
 
-/* Particles, each array of exactly `count` elements. */
-typedef struct core_set
-{
-  int64_t count;
-  double* position; /* [count][3] */
-  double* smoothing_length;
-  double* volume;
-  double* scalar;
-  uint8_t* solid;
-  int has_solids; /* 0: no solid array is handed over */
-} core_set;
-
 /* Group fixtures: *state is a mcor_context*. */
 int core_set_up(void** state);
 int core_tear_down(void** state);
@@ -58,37 +46,28 @@ void core_create_form(mcor_context** context, const char* form);
 /* A block of heap memory that holds a copy of exactly these bytes. */
 void* core_copy(const void* data, size_t bytes);
 
-core_set core_make_set(int64_t count);
-void core_free_set(core_set* set);
-
 /* n^3 particles with spacing 1 around the origin, displaced by up to `jitter`, smoothing
  * length 1.3, volume 1, scalar = value(x). */
-core_set core_make_block(int n, double jitter, uint64_t seed, double (*value)(const double x[3]));
+particle_set core_make_block(
+  int n, double jitter, uint64_t seed, double (*value)(const double x[3]));
 /* A shell of particles around a hole whose size goes with the distance from the hole's middle, from 1
  * to `ratio`; scalar: height. A wedge of it is left out. */
-core_set core_make_graded(double ratio, double step);
+particle_set core_make_graded(double ratio, double step);
 
 /* Particles anywhere in a cube of edge `size`; smoothing lengths in [h_min, h_max], log-uniform;
  * scalars in [-1, 1]. */
-core_set core_make_random(int64_t count, double size, double h_min, double h_max, uint64_t seed);
+particle_set core_make_random(
+  int64_t count, double size, double h_min, double h_max, uint64_t seed);
 
 double core_ball(const double x[3]);  /* 9 - |x|^2: iso 0 is a sphere of radius 3 */
 double core_slope(const double x[3]); /* linear */
 
-/* The set as input; borrowed. */
-mcor_array core_array(const double* data, int components);
-mcor_input core_input(const core_set* set);
 /* As core_input, but the particles stay on the device after the extraction. */
-mcor_input core_input_to_keep(const core_set* set);
+mcor_input core_input_to_keep(const particle_set* set);
 mcor_options core_options(const double* iso);
 
-/* The set for the oracle; borrowed, not to be freed. */
-oracle_particles core_oracle(const core_set* set);
-
-/* Appends particle i to a set that has room. */
-void core_append(core_set* to, const core_set* from, int64_t i);
 /* Particle i of the result is particle order[i] of the set. */
-core_set core_permute(const core_set* set, const int64_t* order);
+particle_set core_permute(const particle_set* set, const int64_t* order);
 /* A seemingly random order; free with free(). */
 int64_t* core_make_order(int64_t count, uint64_t seed);
 

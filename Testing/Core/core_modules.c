@@ -14,9 +14,9 @@
 static const double modules_weight = 0.4, modules_isos[2] = { 0.6, 1.1 };
 
 /* Particles of spacing 1, and beside them some of spacing 4. */
-static core_set modules_set(void)
+static particle_set modules_set(void)
 {
-  core_set set = core_make_set(27 + 27);
+  particle_set set = particle_set_make(27 + 27);
   for (int i = 0; i < 54; ++i)
   {
     const int coarse = i >= 27, at = i % 27;
@@ -140,7 +140,7 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
 static int modules_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;
-  core_set set = modules_set();
+  particle_set set = modules_set();
   for (int i = 9; i < 18; ++i)
   {
     memcpy(set.position + 3 * i, set.position + 3 * (i + 18), 3 * sizeof(double));
@@ -176,7 +176,7 @@ static int modules_plane(mcor_context* context, const mcor_input* input)
       (surface.statistics.cells_of_level[1] > 0) == (levels > 0) && good;
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
   return good;
 }
 
@@ -276,9 +276,9 @@ static int modules_flux(mcor_context* context, const mcor_input* input)
 
 /* A tank along x in three blocks of spacing 1, 2 and 4, on a layer of solids; the fluid's top slopes and is
  * rough. Particles repeat along y. Without libm, so the bits are the same everywhere. */
-static core_set tank_set(bool flat)
+static particle_set tank_set(bool flat)
 {
-  core_set set = core_make_set(5000);
+  particle_set set = particle_set_make(5000);
   uint64_t seed = 11;
   int64_t n = 0;
   double x0 = 0;
@@ -341,7 +341,7 @@ static int tank_run(mcor_context* context, const tank_case* at)
 {
   static const double levels[3] = { 5.3, 0.5, 8 };
   const int has = at->has;
-  core_set set = tank_set(has & TANK_FLAT);
+  particle_set set = tank_set(has & TANK_FLAT);
   uint64_t seed = 3;
   for (int64_t i = 0; i < set.count && has & TANK_TOPOLOGY; ++i)
   {
@@ -405,7 +405,7 @@ static int tank_run(mcor_context* context, const tank_case* at)
       (long long)s->joined_faces, (long long)s->trim_vertices);
   }
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
   return good;
 }
 
@@ -497,7 +497,7 @@ int main(int argc, char** argv)
     mcor_free_context(context);
     return 1;
   }
-  core_set set = modules_set();
+  particle_set set = modules_set();
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
   mcor_input input = core_input(&set);
@@ -514,6 +514,6 @@ int main(int argc, char** argv)
     good = (!wanted || runs[i].run(context, &input)) && good;
   }
   mcor_free_context(context);
-  core_free_set(&set);
+  particle_set_free(&set);
   return good ? 0 : 1;
 }

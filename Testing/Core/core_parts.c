@@ -244,7 +244,7 @@ void core_ask_for_all(mcor_options* options)
 }
 
 void core_add_near(
-  core_set* near, const core_set* set, int64_t i, const double box[6], double margin)
+  particle_set* near, const particle_set* set, int64_t i, const double box[6], double margin)
 {
   const double* x = set->position + 3 * i;
   int in = 1;
@@ -254,13 +254,13 @@ void core_add_near(
   }
   if (in)
   {
-    core_append(near, set, i);
+    particle_set_append(near, set, i);
   }
 }
 
-core_set core_take_near(const core_set* set, const double box[6], double margin)
+particle_set core_take_near(const particle_set* set, const double box[6], double margin)
 {
-  core_set near = core_make_set(set->count);
+  particle_set near = particle_set_make(set->count);
   near.has_solids = set->has_solids;
   near.count = 0;
   for (int64_t i = set->count - 1; i >= 0; --i)

@@ -48,8 +48,8 @@ void core_ask_for_all(mcor_options* options);
 
 /* Appends particle i of the set to `near`, which has room, if it is not farther than `margin` from the box. */
 void core_add_near(
-  core_set* near, const core_set* set, int64_t i, const double box[6], double margin);
+  particle_set* near, const particle_set* set, int64_t i, const double box[6], double margin);
 /* All that are so near, in another order. */
-core_set core_take_near(const core_set* set, const double box[6], double margin);
+particle_set core_take_near(const particle_set* set, const double box[6], double margin);
 
 #endif

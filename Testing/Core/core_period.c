@@ -8,9 +8,9 @@
 #define PI 3.14159265358979323846
 
 /* Particles of spacing 1 in a box at the origin with sides of these lengths; a scalar that repeats. */
-core_set core_make_period(const int length[3], uint64_t seed)
+particle_set core_make_period(const int length[3], uint64_t seed)
 {
-  core_set set = core_make_set((int64_t)length[0] * length[1] * length[2]);
+  particle_set set = particle_set_make((int64_t)length[0] * length[1] * length[2]);
   for (int64_t i = 0; i < set.count; ++i)
   {
     double* x = set.position + 3 * i;
@@ -27,10 +27,9 @@ core_set core_make_period(const int length[3], uint64_t seed)
 }
 
 /* The set and its images in all 27 periods, or those along the axes that have one. */
-core_set core_add_images(const core_set* set, const double period[6])
+particle_set core_add_images(const particle_set* set, const double period[6])
 {
-  core_set all = core_make_set(27 * set->count);
-  all.count = 0;
+  particle_set all = { 0 };
   for (int image = 0; image < 27; ++image)
   {
     const int at[3] = { image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1 };
@@ -39,16 +38,13 @@ core_set core_add_images(const core_set* set, const double period[6])
     {
       open = open || (at[a] != 0 && period[2 * a] == period[2 * a + 1]);
     }
-    for (int64_t i = 0; i < set->count && !open; ++i, ++all.count)
+    for (int64_t i = 0; i < set->count && !open; ++i)
     {
+      particle_set_append(&all, set, i);
       for (int a = 0; a < 3; ++a)
       {
-        all.position[3 * all.count + a] =
-          set->position[3 * i + a] + at[a] * (period[2 * a + 1] - period[2 * a]);
+        all.position[3 * (all.count - 1) + a] += at[a] * (period[2 * a + 1] - period[2 * a]);
       }
-      all.smoothing_length[all.count] = set->smoothing_length[i];
-      all.volume[all.count] = set->volume[i];
-      all.scalar[all.count] = set->scalar[i];
     }
   }
   return all;
@@ -63,7 +59,7 @@ mcor_options core_period_options(const double* iso, const double period[6])
   return options;
 }
 
-void core_stretch_period(core_set* set, double period[6])
+void core_stretch_period(particle_set* set, double period[6])
 {
   static const double factors[3] = { 1, 1 + 5.0 / 128, 1 + 3.0 / 128 };
   for (int64_t i = 0; i < 3 * set->count; ++i)

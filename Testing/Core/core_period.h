@@ -8,11 +8,11 @@
 #include "core_fixture.h"
 
 /* Particles of spacing 1 in a box at the origin with sides of these lengths; the scalar repeats. */
-core_set core_make_period(const int length[3], uint64_t seed);
+particle_set core_make_period(const int length[3], uint64_t seed);
 /* The set and its images in all 27 periods, or those along the axes that have one. */
-core_set core_add_images(const core_set* set, const double period[6]);
+particle_set core_add_images(const particle_set* set, const double period[6]);
 mcor_options core_period_options(const double* iso, const double period[6]);
 /* So that no cube divides two of the periods, by numbers that keep positions exact a period away. */
-void core_stretch_period(core_set* set, double period[6]);
+void core_stretch_period(particle_set* set, double period[6]);
 
 #endif

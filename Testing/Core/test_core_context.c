@@ -34,7 +34,7 @@ static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mc
 /* Several iso values at once are the surfaces of each. */
 static void test_several_iso_values(void** state)
 {
-  core_set set = core_make_block(9, 0.3, 3, core_ball);
+  particle_set set = core_make_block(9, 0.3, 3, core_ball);
   const double iso[3] = { 5, 0, 2.5 };
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(iso);
@@ -69,7 +69,7 @@ static void test_several_iso_values(void** state)
   assert_int_equal(point, all.point_count);
   assert_int_equal(triangle, all.triangle_count);
   mcor_free_surface(&all);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 typedef struct permuted_case
@@ -102,9 +102,9 @@ static const permuted_case permuted_cases[] = { { .name = "volume array" },
     .precision = MCOR_FLOAT64,
     .boundary = MCOR_BOUNDARY_EIGENVALUE } };
 
-static core_set make_permuted_set(const permuted_case* at)
+static particle_set make_permuted_set(const permuted_case* at)
 {
-  core_set set = core_make_block(9, 0.35, 11, core_ball);
+  particle_set set = core_make_block(9, 0.35, 11, core_ball);
   uint64_t seed = 17;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -124,7 +124,8 @@ static core_set make_permuted_set(const permuted_case* at)
   return set;
 }
 
-static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, const core_set* set)
+static uint64_t permuted_hash(
+  mcor_context* context, const permuted_case* at, const particle_set* set)
 {
   const double inside = at->boundary == MCOR_BOUNDARY_EIGENVALUE || at->levels ? -10 : 1;
   const double iso = at->field == MCOR_WEIGHT_SUM ? 0.5 : inside;
@@ -150,18 +151,18 @@ static uint64_t permuted_hash(mcor_context* context, const permuted_case* at, co
 /* Whether five other orders of the particles give the same bits. */
 static int order_is_irrelevant(mcor_context* context, const permuted_case* at)
 {
-  core_set set = make_permuted_set(at);
+  particle_set set = make_permuted_set(at);
   const uint64_t expected = permuted_hash(context, at, &set);
   int same = 1;
   for (uint64_t seed = 1; seed <= 5; ++seed)
   {
     int64_t* order = core_make_order(set.count, seed);
-    core_set permuted = core_permute(&set, order);
+    particle_set permuted = core_permute(&set, order);
     same = same && permuted_hash(context, at, &permuted) == expected;
-    core_free_set(&permuted);
+    particle_set_free(&permuted);
     free(order);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
   return same;
 }
 
@@ -184,8 +185,8 @@ static void test_order_of_input(void** state)
 static void test_memory_limit(void** state)
 {
   mcor_context* context = *state;
-  core_set big = core_make_block(16, 0.2, 3, core_slope);
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  particle_set big = core_make_block(16, 0.2, 3, core_slope);
+  particle_set set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_input input = core_input(&set), big_input = core_input(&big);
   mcor_options options = core_options(&iso);
@@ -206,8 +207,8 @@ static void test_memory_limit(void** state)
   mcor_free_surface(&surface);
   options.memory_limit = peak;
   CORE_CHECK(hash_of(context, &input, &options) == expected, "another surface in limited memory");
-  core_free_set(&set);
-  core_free_set(&big);
+  particle_set_free(&set);
+  particle_set_free(&big);
 }
 
 /* A large buffer that was released serves the next that is about as large; others are given back where
@@ -312,7 +313,7 @@ static void test_names(void** state)
 /* Statistics that can be told beforehand, and their relations. */
 static void test_statistics(void** state)
 {
-  core_set set = core_make_block(10, 0, 3, core_ball);
+  particle_set set = core_make_block(10, 0, 3, core_ball);
   set.has_solids = 1;
   for (int64_t i = 0; i < 100; ++i)
   {
@@ -344,7 +345,7 @@ static void test_statistics(void** state)
     s->residual_max);
   CORE_CHECK(s->device[0] && s->platform[0], "no device");
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* As many lanes as the device's compiler has registers for, whatever width the device claims. */
@@ -382,7 +383,7 @@ static void test_build(void** state)
   (void)state;
   mcor_context* context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  particle_set set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_options options = core_options(&iso);
   int told = 0;
@@ -398,7 +399,7 @@ static void test_build(void** state)
       "run %d: %g s of building, told %d times", run, surface.statistics.build_seconds, told);
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
   mcor_free_context(context);
 }
 

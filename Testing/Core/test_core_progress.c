@@ -64,7 +64,7 @@ static mcor_status run_kind(
 static void test_cancel_between_launches(void** state)
 {
   mcor_context* context = *state;
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  particle_set set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
   mcor_input input = core_input(&set);
   input.attributes = &input.scalar;
@@ -96,7 +96,7 @@ static void test_cancel_between_launches(void** state)
     assert_int_equal(again.calls, launches.calls);
   }
   context->report_interval = interval;
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Calls of progress in each phase. */
@@ -122,7 +122,7 @@ static void test_all_phases_ask(void** state)
 {
   mcor_context* context = *state;
   const bool built_in = strcmp(context->cl.platform_name, "built in") == 0;
-  core_set set = core_make_block(12, 0.2, 3, core_slope);
+  particle_set set = core_make_block(12, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
   const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 4,
     [MCOR_PHASE_SEARCH_GRID] = 25,
@@ -149,14 +149,14 @@ static void test_all_phases_ask(void** state)
     }
   }
   context->report_interval = interval;
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Where sums have very many terms, a launch is cut into parts, each worth a report; no bit changes. */
 static void test_long_launches_are_cut(void** state)
 {
   mcor_context* context = *state;
-  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  particle_set set = core_make_block(16, 0.2, 3, core_slope);
   const double half = 0.5, interval = context->report_interval;
   const int units = context->cl.units;
   mcor_input input = core_input(&set);
@@ -181,7 +181,7 @@ static void test_long_launches_are_cut(void** state)
     CORE_CHECK(cut.calls >= whole.calls + 4, "%d reports, %d", cut.calls, whole.calls);
   }
   context->report_interval = interval;
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

@@ -14,7 +14,7 @@
 /* A call, and what its parameters may be changed to. */
 typedef struct reuse_call
 {
-  core_set set, other; /* as many particles each */
+  particle_set set, other; /* as many particles each */
   double iso[2];
   float* single; /* smoothing lengths of `set` */
   double* noise;
@@ -59,8 +59,8 @@ static void start_call(reuse_call* call)
 
 static void end_call(reuse_call* call)
 {
-  core_free_set(&call->set);
-  core_free_set(&call->other);
+  particle_set_free(&call->set);
+  particle_set_free(&call->other);
   free(call->single);
   free(call->noise);
 }

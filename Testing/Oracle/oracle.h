@@ -15,6 +15,7 @@
  * weight is sum V W over fluid particles and, unless ignored, solid ones.
  */
 
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -53,29 +54,41 @@ extern "C"
   /* The integral of x^2 W over that of W, in h^2, in 2 or 3 dimensions. */
   double oracle_kernel_variance(oracle_kernel kernel, int dimensions);
 
-  /* All arrays are owned by the struct; oracle_free_particles frees them. */
-  typedef struct oracle_particles
+  /* Zeroed; ends the program if memory runs out. */
+  void* oracle_allocate(int64_t count, size_t size);
+  /* The array, with room for one more than `count`. */
+  void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size);
+
+  /* Particles of all tests. All arrays are owned by the struct; particle_set_free frees them. */
+  typedef struct particle_set
   {
-    int64_t count;
+    int64_t count, capacity;
     double* position;         /* [count][3] */
     double* smoothing_length; /* [count], unscaled */
     double* volume;           /* [count] */
-    double* scalar;           /* [count]; all 0 for ORACLE_WEIGHT */
+    double* scalar;           /* [count]; the oracle's, all 0 for ORACLE_WEIGHT */
     uint8_t* solid;           /* [count], nonzero: wall */
-    int ignore_solids;
-  } oracle_particles;
+    int has_solids;           /* 0: the core is given no array of solids */
+    int ignore_solids;        /* by the oracle */
+  } particle_set;
 
-  /* Allocates count particles, all zero; 0 if memory ran out. */
-  int oracle_create_particles(oracle_particles* particles, int64_t count);
-  void oracle_free_particles(oracle_particles* particles);
-  double oracle_scalar_range(const oracle_particles* particles); /* over fluid particles */
-  double oracle_smallest_h(const oracle_particles* particles);   /* over fluid particles */
+  /* All zero, arrays of exactly `count` elements. */
+  particle_set particle_set_make(int64_t count);
+  void particle_set_free(particle_set* set);
+  /* One more particle; the arrays grow where they lack room. */
+  void particle_set_add(
+    particle_set* set, const double x[3], double h, double volume, double scalar);
+  /* The same as particle i of `from`, which may be the set itself. */
+  void particle_set_append(particle_set* set, const particle_set* from, int64_t i);
+
+  double oracle_scalar_range(const particle_set* particles); /* over fluid particles */
+  double oracle_smallest_h(const particle_set* particles);   /* over fluid particles */
 
   typedef struct oracle_tree oracle_tree;
 
   typedef struct oracle_field
   {
-    const oracle_particles* particles;
+    const particle_set* particles;
     oracle_kernel kernel;
     oracle_kind kind;
     double h_scale;
@@ -83,16 +96,17 @@ extern "C"
     oracle_tree* tree;
   } oracle_field;
 
-  int oracle_create_field(oracle_field* field, const oracle_particles* particles,
-    oracle_kernel kernel, oracle_kind kind, double h_scale);
+  /* scale: of all smoothing lengths. The set is borrowed. */
+  oracle_field oracle_make_field(
+    const particle_set* particles, oracle_kernel kernel, oracle_kind kind, double scale);
   void oracle_free_field(oracle_field* field);
 
   /* Fills particles->volume: mass / density; with mass alone m_j / (sum_k m_k W(x_j - x_k, h_j) F_j); with neither
    * 1 / (sum_k W(x_j - x_k, h_j) F_j), W that of three dimensions. F_j = 1 for solids, else
    * 1 + 5/3 variance h_j^2 |g|^2 / n^2, n = sum_k h_k^d W(x_j - x_k, h_j), g = the sum of the fluid's
    * h_k^d grad W + t that of the solids', with t from 0 to 1 such that |g| is least. The sums leave out solids that
-   * are ignored. Returns 0 if memory ran out. */
-  int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, int dimensions,
+   * are ignored. */
+  void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int dimensions,
     const double* mass, const double* density);
 
   typedef struct oracle_sample

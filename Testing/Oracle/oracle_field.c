@@ -6,36 +6,54 @@
 #include <stdlib.h>
 #include <string.h>
 
-int oracle_create_particles(oracle_particles* particles, int64_t count)
+/* ---- particles ---- */
+
+particle_set particle_set_make(int64_t count)
 {
-  const size_t n = (size_t)(count > 0 ? count : 1);
-  memset(particles, 0, sizeof(*particles));
-  particles->count = count;
-  particles->position = calloc(3 * n, sizeof(double));
-  particles->smoothing_length = calloc(n, sizeof(double));
-  particles->volume = calloc(n, sizeof(double));
-  particles->scalar = calloc(n, sizeof(double));
-  particles->solid = calloc(n, 1);
-  if (particles->position && particles->smoothing_length && particles->volume &&
-    particles->scalar && particles->solid)
-  {
-    return 1;
-  }
-  oracle_free_particles(particles);
-  return 0;
+  return (particle_set){ .count = count,
+    .capacity = count,
+    .position = oracle_allocate(count, 3 * sizeof(double)),
+    .smoothing_length = oracle_allocate(count, sizeof(double)),
+    .volume = oracle_allocate(count, sizeof(double)),
+    .scalar = oracle_allocate(count, sizeof(double)),
+    .solid = oracle_allocate(count, 1) };
 }
 
-void oracle_free_particles(oracle_particles* particles)
+void particle_set_free(particle_set* set)
 {
-  free(particles->position);
-  free(particles->smoothing_length);
-  free(particles->volume);
-  free(particles->scalar);
-  free(particles->solid);
-  memset(particles, 0, sizeof(*particles));
+  free(set->position);
+  free(set->smoothing_length);
+  free(set->volume);
+  free(set->scalar);
+  free(set->solid);
+  memset(set, 0, sizeof(*set));
 }
 
-double oracle_scalar_range(const oracle_particles* particles)
+void particle_set_add(particle_set* set, const double x[3], double h, double volume, double scalar)
+{
+  const int64_t n = set->count++, capacity = set->capacity;
+  int64_t room[4] = { capacity, capacity, capacity, capacity };
+  set->position = oracle_grow(set->position, n, &room[0], 3 * sizeof(double));
+  set->smoothing_length = oracle_grow(set->smoothing_length, n, &room[1], sizeof(double));
+  set->volume = oracle_grow(set->volume, n, &room[2], sizeof(double));
+  set->scalar = oracle_grow(set->scalar, n, &room[3], sizeof(double));
+  set->solid = oracle_grow(set->solid, n, &set->capacity, 1);
+  memcpy(&set->position[3 * n], x, 3 * sizeof(double));
+  set->smoothing_length[n] = h;
+  set->volume[n] = volume;
+  set->scalar[n] = scalar;
+  set->solid[n] = 0;
+}
+
+void particle_set_append(particle_set* set, const particle_set* from, int64_t i)
+{
+  const double x[3] = { from->position[3 * i], from->position[3 * i + 1],
+    from->position[3 * i + 2] };
+  particle_set_add(set, x, from->smoothing_length[i], from->volume[i], from->scalar[i]);
+  set->solid[set->count - 1] = from->solid[i];
+}
+
+double oracle_scalar_range(const particle_set* particles)
 {
   double low = INFINITY;
   double high = -INFINITY;
@@ -50,7 +68,7 @@ double oracle_scalar_range(const oracle_particles* particles)
   return high >= low ? high - low : 0.0;
 }
 
-double oracle_smallest_h(const oracle_particles* particles)
+double oracle_smallest_h(const particle_set* particles)
 {
   double smallest = INFINITY;
   for (int64_t j = 0; j < particles->count; ++j)
@@ -157,40 +175,29 @@ static void oracle_build_node(
   oracle_build_node(field, items, 2 * n + 2, middle, end);
 }
 
-int oracle_create_field(oracle_field* field, const oracle_particles* particles,
-  oracle_kernel kernel, oracle_kind kind, double h_scale)
+oracle_field oracle_make_field(
+  const particle_set* particles, oracle_kernel kernel, oracle_kind kind, double scale)
 {
-  memset(field, 0, sizeof(*field));
-  field->particles = particles;
-  field->kernel = kernel;
-  field->kind = kind;
-  field->h_scale = h_scale;
-  field->tree = calloc(1, sizeof(*field->tree));
-  const size_t n = (size_t)(particles->count > 0 ? particles->count : 1);
-  oracle_sort_item* items = malloc(n * sizeof(*items));
-  size_t nodes = 1;
-  for (size_t leaf = n; leaf > ORACLE_LEAF_SIZE; leaf = (leaf + 1) / 2)
+  oracle_field field = { .particles = particles,
+    .kernel = kernel,
+    .kind = kind,
+    .h_scale = scale,
+    .tree = oracle_allocate(1, sizeof(oracle_tree)) };
+  oracle_sort_item* items = oracle_allocate(particles->count, sizeof(*items));
+  int64_t nodes = 1;
+  for (int64_t leaf = particles->count; leaf > ORACLE_LEAF_SIZE; leaf = (leaf + 1) / 2)
   {
     nodes = 2 * nodes + 1;
   }
-  if (field->tree)
-  {
-    field->tree->order = malloc(n * sizeof(int64_t));
-    field->tree->node = calloc(nodes, sizeof(oracle_tree_node));
-  }
-  if (!items || !field->tree || !field->tree->order || !field->tree->node)
-  {
-    free(items);
-    oracle_free_field(field);
-    return 0;
-  }
+  field.tree->order = oracle_allocate(particles->count, sizeof(int64_t));
+  field.tree->node = oracle_allocate(nodes, sizeof(oracle_tree_node));
   for (int64_t j = 0; j < particles->count; ++j)
   {
-    field->tree->order[j] = j;
+    field.tree->order[j] = j;
   }
-  oracle_build_node(field, items, 0, 0, particles->count);
+  oracle_build_node(&field, items, 0, 0, particles->count);
   free(items);
-  return 1;
+  return field;
 }
 
 void oracle_free_field(oracle_field* field)
@@ -335,7 +342,7 @@ typedef struct oracle_matrix
 static void oracle_add_matrix(const oracle_field* field, int64_t j, void* user)
 {
   oracle_matrix* sum = user;
-  const oracle_particles* p = field->particles;
+  const particle_set* p = field->particles;
   double gradient[3];
   if (p->solid[j] && p->ignore_solids)
   {
@@ -438,7 +445,7 @@ typedef struct oracle_volume_sum
 static void oracle_add_density(const oracle_field* field, int64_t k, void* user)
 {
   oracle_volume_sum* at = user;
-  const oracle_particles* p = field->particles;
+  const particle_set* p = field->particles;
   if (p->ignore_solids && p->solid[k])
   {
     return;
@@ -478,22 +485,18 @@ static double oracle_one_sided(const oracle_field* field, const oracle_volume_su
   return 1.0 + 5.0 / 3.0 * at->variance * h * h * oracle_dot(g, g) / (at->number * at->number);
 }
 
-int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, int dimensions,
+void oracle_compute_volumes(particle_set* particles, oracle_kernel kernel, int dimensions,
   const double* mass, const double* density)
 {
-  oracle_field field;
   if (mass && density)
   {
     for (int64_t j = 0; j < particles->count; ++j)
     {
       particles->volume[j] = mass[j] / density[j];
     }
-    return 1;
+    return;
   }
-  if (!oracle_create_field(&field, particles, kernel, ORACLE_WEIGHT, 1.0))
-  {
-    return 0;
-  }
+  oracle_field field = oracle_make_field(particles, kernel, ORACLE_WEIGHT, 1.0);
   const double variance = oracle_kernel_variance(kernel, dimensions);
   for (int64_t j = 0; j < particles->count; ++j)
   {
@@ -506,5 +509,4 @@ int oracle_compute_volumes(oracle_particles* particles, oracle_kernel kernel, in
         (particles->solid[j] ? 1.0 : oracle_one_sided(&field, &at));
   }
   oracle_free_field(&field);
-  return 1;
 }

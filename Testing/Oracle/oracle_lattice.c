@@ -27,7 +27,7 @@ typedef struct lattice_descent
   int64_t node_limit;
 } lattice_descent;
 
-static int lattice_counts(const oracle_particles* p, int64_t j)
+static int lattice_counts(const particle_set* p, int64_t j)
 {
   return !p->solid[j] || !p->ignore_solids;
 }
@@ -35,7 +35,7 @@ static int lattice_counts(const oracle_particles* p, int64_t j)
 /* The highest level at which cubes are fine enough for each particle. */
 static void lattice_set_levels(lattice_descent* descent, int level_limit)
 {
-  const oracle_particles* p = descent->field->particles;
+  const particle_set* p = descent->field->particles;
   const double least = oracle_smallest_h(p);
   oracle_lattice* lattice = descent->lattice;
   for (int64_t j = 0; j < p->count; ++j)
@@ -193,7 +193,7 @@ void oracle_place(const oracle_lattice* lattice, const int64_t at[3], double poi
 static void lattice_evaluate(oracle_lattice* lattice, const oracle_field* field, lattice_node* node,
   const int64_t* list, int64_t count)
 {
-  const oracle_particles* p = field->particles;
+  const particle_set* p = field->particles;
   const double support = oracle_support(field->kernel) * (1.0 + 1e-12);
   double point[3];
   double fluid = 0.0;
@@ -264,8 +264,8 @@ static void lattice_descend(
   oracle_lattice* lattice = descent->lattice;
   int64_t reaching = 0;
   int least = LATTICE_LEVELS;
-  int64_t* list = malloc(((size_t)count + 1) * sizeof(int64_t));
-  for (int64_t n = 0; list && n < count; ++n)
+  int64_t* list = oracle_allocate(count, sizeof(int64_t));
+  for (int64_t n = 0; n < count; ++n)
   {
     if (lattice_reaches(descent, above[n], brick))
     {
@@ -302,11 +302,11 @@ static void lattice_descend(
 /* From the eight bricks around the origin of a level at which they hold all supports. */
 static void lattice_descend_all(lattice_descent* descent)
 {
-  const oracle_particles* p = descent->field->particles;
-  int64_t* all = malloc(((size_t)p->count + 1) * sizeof(int64_t));
+  const particle_set* p = descent->field->particles;
+  int64_t* all = oracle_allocate(p->count, sizeof(int64_t));
   int64_t count = 0;
   int level = descent->lattice->top;
-  for (int64_t j = 0; all && j < p->count; ++j)
+  for (int64_t j = 0; j < p->count; ++j)
   {
     const double support =
       oracle_support(descent->field->kernel) * descent->field->h_scale * p->smoothing_length[j];
@@ -340,8 +340,8 @@ static void lattice_balance(oracle_lattice* lattice)
   {
     const int64_t size = lattice_brick_size(level);
     int64_t count = 0;
-    lattice_brick* split = malloc((size_t)lattice->split.count * sizeof(lattice_brick) + 1);
-    for (int64_t n = 0; split && n < lattice->split.capacity; ++n)
+    lattice_brick* split = oracle_allocate(lattice->split.count, sizeof(lattice_brick));
+    for (int64_t n = 0; n < lattice->split.capacity; ++n)
     {
       const int64_t* held = &lattice->split.slots[5 * n];
       if (held[4] >= 0 && held[3] == level)
@@ -369,13 +369,9 @@ static void lattice_balance(oracle_lattice* lattice)
 int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field, const double edge[3],
   int level_limit, int64_t node_limit)
 {
-  lattice_descent descent = { lattice, field,
-    malloc(((size_t)field->particles->count + 1) * sizeof(int)), 0, node_limit };
+  lattice_descent descent = { lattice, field, oracle_allocate(field->particles->count, sizeof(int)),
+    0, node_limit };
   memset(lattice, 0, sizeof(*lattice));
-  if (!descent.level)
-  {
-    return 0;
-  }
   for (int axis = 0; axis < 3; ++axis)
   {
     lattice->edge[axis] = edge[axis];

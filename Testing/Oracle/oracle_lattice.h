@@ -9,8 +9,6 @@
 
 #include "oracle.h"
 
-#include <stddef.h>
-
 #ifdef __cplusplus
 extern "C"
 {
@@ -40,9 +38,6 @@ extern "C"
    * call. NULL: no such key and not `add`. Ends the program if memory runs out. */
   int64_t* oracle_map_find(oracle_map* map, const int64_t at[3], int64_t tag, int add);
   void oracle_map_free(oracle_map* map);
-
-  /* Grown as needed; ends the program if memory runs out. */
-  void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size);
 
   /* Places (at) are in the smallest cubes, which have their corners at whole multiples of their edges. */
   typedef struct lattice_node

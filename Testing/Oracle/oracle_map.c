@@ -6,10 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void lattice_out_of_memory(void)
+static void* oracle_checked(void* block, size_t bytes)
 {
-  fprintf(stderr, "out of memory for the lattice\n");
-  abort();
+  if (!block && bytes > 0)
+  {
+    fprintf(stderr, "out of memory for %zu bytes\n", bytes);
+    abort();
+  }
+  return block;
+}
+
+void* oracle_allocate(int64_t count, size_t size)
+{
+  return oracle_checked(calloc((size_t)count, size), (size_t)count * size);
 }
 
 void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size)
@@ -19,12 +28,7 @@ void* oracle_grow(void* array, int64_t count, int64_t* capacity, size_t size)
     return array;
   }
   *capacity = *capacity > 0 ? 2 * *capacity : 1024;
-  void* grown = realloc(array, (size_t)*capacity * size);
-  if (!grown)
-  {
-    lattice_out_of_memory();
-  }
-  return grown;
+  return oracle_checked(realloc(array, (size_t)*capacity * size), (size_t)*capacity * size);
 }
 
 static int64_t oracle_map_slot(const oracle_map* map, const int64_t at[3], int64_t tag)
@@ -50,11 +54,7 @@ static void oracle_map_grow(oracle_map* map)
 {
   const oracle_map old = *map;
   map->capacity = old.capacity > 0 ? 2 * old.capacity : 1024;
-  map->slots = malloc((size_t)map->capacity * 5 * sizeof(int64_t));
-  if (!map->slots)
-  {
-    lattice_out_of_memory();
-  }
+  map->slots = oracle_allocate(map->capacity, 5 * sizeof(int64_t));
   memset(map->slots, 0xff, (size_t)map->capacity * 5 * sizeof(int64_t));
   for (int64_t n = 0; n < old.capacity; ++n)
   {

@@ -79,7 +79,7 @@ static int period_reaches(
 }
 
 /* Whether an image of particle p, at x, matters. */
-static int period_matters(const oracle_particles* particles, const mcor_options* options, int64_t p,
+static int period_matters(const particle_set* particles, const mcor_options* options, int64_t p,
   const int image[3], double reach, double cube, double x[3])
 {
   int matters = 1;
@@ -93,39 +93,8 @@ static int period_matters(const oracle_particles* particles, const mcor_options*
   return matters;
 }
 
-/* Fills the images in, from number from->count on, or only counts all where `to` is NULL. */
-static int64_t period_list(oracle_particles* to, int64_t* source, const oracle_particles* from,
-  const mcor_options* options, double support, double margin, double cube)
-{
-  int64_t count = from->count;
-  for (int64_t p = 0; p < from->count; ++p)
-  {
-    const double reach = fmax(support * from->smoothing_length[p], margin);
-    for (int n = 0; n < 343; ++n)
-    {
-      const int image[3] = { n % 7 - 3, n / 7 % 7 - 3, n / 49 - 3 };
-      double x[3];
-      if (n == 171 || !period_matters(from, options, p, image, reach, cube, x))
-      {
-        continue;
-      }
-      if (to)
-      {
-        memcpy(&to->position[3 * count], x, sizeof(x));
-        to->smoothing_length[count] = from->smoothing_length[p];
-        to->volume[count] = from->volume[p];
-        to->scalar[count] = from->scalar[p];
-        to->solid[count] = from->solid[p];
-        source[count] = p;
-      }
-      ++count;
-    }
-  }
-  return count;
-}
-
 /* Each where it is within the period. */
-static void period_wrap(oracle_particles* particles, const mcor_options* options)
+static void period_wrap(particle_set* particles, const mcor_options* options)
 {
   for (int64_t i = 0; i < 3 * particles->count; ++i)
   {
@@ -135,32 +104,31 @@ static void period_wrap(oracle_particles* particles, const mcor_options* options
   }
 }
 
-int oracle_add_images(oracle_particles* particles, const mcor_options* options, double support,
-  double margin, double cube, int64_t** source)
+int64_t* oracle_add_images(
+  particle_set* particles, const mcor_options* options, double support, double margin, double cube)
 {
-  oracle_particles all;
+  const int64_t own = particles->count;
+  int64_t capacity = own;
+  int64_t* source = oracle_allocate(own, sizeof(int64_t));
   period_wrap(particles, options);
-  const int64_t count = period_list(NULL, NULL, particles, options, support, margin, cube);
-  *source = malloc(((size_t)count + 1) * sizeof(int64_t));
-  if (!*source || !oracle_create_particles(&all, count))
+  for (int64_t p = 0; p < own; ++p)
   {
-    return 0;
+    const double reach = fmax(support * particles->smoothing_length[p], margin);
+    source[p] = p;
+    for (int n = 0; n < 343; ++n)
+    {
+      const int image[3] = { n % 7 - 3, n / 7 % 7 - 3, n / 49 - 3 };
+      double x[3];
+      if (n != 171 && period_matters(particles, options, p, image, reach, cube, x))
+      {
+        source = oracle_grow(source, particles->count, &capacity, sizeof(int64_t));
+        source[particles->count] = p;
+        particle_set_append(particles, particles, p);
+        memcpy(&particles->position[3 * (particles->count - 1)], x, sizeof(x));
+      }
+    }
   }
-  const size_t n = (size_t)particles->count;
-  memcpy(all.position, particles->position, 3 * n * sizeof(double));
-  memcpy(all.smoothing_length, particles->smoothing_length, n * sizeof(double));
-  memcpy(all.scalar, particles->scalar, n * sizeof(double));
-  memcpy(all.volume, particles->volume, n * sizeof(double));
-  memcpy(all.solid, particles->solid, n);
-  all.ignore_solids = particles->ignore_solids;
-  for (size_t p = 0; p < n; ++p)
-  {
-    (*source)[p] = (int64_t)p;
-  }
-  period_list(&all, *source, particles, options, support, margin, cube);
-  oracle_free_particles(particles);
-  *particles = all;
-  return 1;
+  return source;
 }
 
 void oracle_own_period(
@@ -293,17 +261,16 @@ static void seam_count(seam_edge* edges, int64_t count, oracle_seam* seam)
   }
 }
 
-int oracle_check_seam(const mcor_options* options, const double edge[3],
-  const mcor_surface* surface, const mesh_report* mesh, oracle_seam* seam)
+oracle_seam oracle_check_seam(const mcor_options* options, const double edge[3],
+  const mcor_surface* surface, const mesh_report* mesh)
 {
-  const size_t n = (size_t)mesh->boundary_edges + 1;
-  seam_edge* edges = malloc(n * sizeof(*edges));
-  seam_point* places = malloc(2 * n * sizeof(*places));
-  int32_t* one = malloc(((size_t)surface->point_count + 1) * sizeof(*one));
-  const int enough = edges && places && one;
+  const int64_t n = mesh->boundary_edges;
+  seam_edge* edges = oracle_allocate(n, sizeof(*edges));
+  seam_point* places = oracle_allocate(2 * n, sizeof(*places));
+  int32_t* one = oracle_allocate(surface->point_count, sizeof(*one));
   int64_t count = 0;
-  memset(seam, 0, sizeof(*seam));
-  for (int64_t s = 0; enough && s < mesh->side_count; ++s)
+  oracle_seam seam = { 0 };
+  for (int64_t s = 0; s < mesh->side_count; ++s)
   {
     const mesh_edge* side = &mesh->side[s];
     if (mesh_count_sides(mesh, side->a, side->b) == 1)
@@ -316,23 +283,17 @@ int oracle_check_seam(const mcor_options* options, const double edge[3],
       ++count;
     }
   }
-  if (enough)
-  {
-    seam_glue(options, surface, places, 2 * count, one, seam);
-  }
-  for (int64_t e = 0; enough && e < count; ++e)
+  seam_glue(options, surface, places, 2 * count, one, &seam);
+  for (int64_t e = 0; e < count; ++e)
   {
     const int32_t a = one[edges[e].a], b = one[edges[e].b];
     edges[e].forward = (edges[e].forward != 0) == (a < b);
     edges[e].a = a < b ? a : b;
     edges[e].b = a < b ? b : a;
   }
-  if (enough)
-  {
-    seam_count(edges, count, seam);
-  }
+  seam_count(edges, count, &seam);
   free(edges);
   free(places);
   free(one);
-  return enough;
+  return seam;
 }

@@ -23,10 +23,10 @@ extern "C"
   void oracle_fit_edges(const mcor_options* options, double cube, double edge[3]);
 
   /* Takes the particles into the period, and adds all images whose support (h times `support`), or
-   * `margin` if that is more, reaches it or what lies within two cubes of it. (*source)[i]: what
-   * particle i is an image of; to be freed. 0 if memory ran out. */
-  int oracle_add_images(oracle_particles* particles, const mcor_options* options, double support,
-    double margin, double cube, int64_t** source);
+   * `margin` if that is more, reaches it or what lies within two cubes of it. Returns what
+   * particle i is an image of; to be freed. */
+  int64_t* oracle_add_images(particle_set* particles, const mcor_options* options, double support,
+    double margin, double cube);
 
   /* One period's cells: those with their centres in it. Axes without a period stay as they are. */
   void oracle_own_period(
@@ -41,9 +41,9 @@ extern "C"
   } oracle_seam;
 
   /* Glues opposite sides of the surface together: points that are a period apart become one. edge: of the
-   * cubes. 0 if memory ran out. */
-  int oracle_check_seam(const mcor_options* options, const double edge[3],
-    const mcor_surface* surface, const mesh_report* mesh, oracle_seam* seam);
+   * cubes. */
+  oracle_seam oracle_check_seam(const mcor_options* options, const double edge[3],
+    const mcor_surface* surface, const mesh_report* mesh);
 
 #ifdef __cplusplus
 }

@@ -5,7 +5,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,45 +53,34 @@ static int reference_is_given(const mcor_array* array)
 _Static_assert(
   (int)ORACLE_KERNEL_COUNT == (int)MCOR_SPH_KERNEL_COUNT, "kernels in the core's order");
 
-static oracle_kind reference_kind(mcor_field field)
-{
-  return field == MCOR_SUM ? ORACLE_SUM : field == MCOR_WEIGHT_SUM ? ORACLE_WEIGHT : ORACLE_SHEPARD;
-}
+_Static_assert((int)ORACLE_SUM == (int)MCOR_SUM && (int)ORACLE_WEIGHT == (int)MCOR_WEIGHT_SUM,
+  "fields in the core's order");
 
 /* source: what each is an image of; NULL: of itself. */
-static int reference_volumes(
-  oracle_particles* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
+static void reference_volumes(
+  particle_set* particles, const mcor_input* input, oracle_kernel kernel, const int64_t* source)
 {
-  const size_t n = (size_t)particles->count + 1;
-  double* mass = reference_is_given(&input->mass) ? malloc(n * sizeof(double)) : NULL;
-  double* density = reference_is_given(&input->mass) && reference_is_given(&input->density)
-    ? malloc(n * sizeof(double))
-    : NULL;
-  int enough = (mass || !reference_is_given(&input->mass)) &&
-    (density || !(reference_is_given(&input->mass) && reference_is_given(&input->density)));
-  for (int64_t j = 0; enough && j < particles->count; ++j)
+  const mcor_array* arrays[2] = { &input->mass, &input->density };
+  double* read[2] = { NULL, NULL };
+  for (int a = 0; a < 2 && reference_is_given(arrays[a]); ++a)
   {
-    if (mass)
+    read[a] = oracle_allocate(particles->count, sizeof(double));
+    for (int64_t j = 0; j < particles->count; ++j)
     {
-      mass[j] = reference_read(&input->mass, source ? source[j] : j, 0);
-    }
-    if (density)
-    {
-      density[j] = reference_read(&input->density, source ? source[j] : j, 0);
+      read[a][j] = reference_read(arrays[a], source ? source[j] : j, 0);
     }
   }
-  enough = enough && oracle_compute_volumes(particles, kernel, 3, mass, density);
-  for (int64_t j = 0; enough && source && j < particles->count; ++j)
+  oracle_compute_volumes(particles, kernel, 3, read[0], read[1]);
+  for (int64_t j = 0; source && j < particles->count; ++j)
   {
     particles->volume[j] = particles->volume[source[j]];
   }
-  free(mass);
-  free(density);
-  return enough;
+  free(read[0]);
+  free(read[1]);
 }
 
 static void reference_edges(
-  const oracle_particles* particles, const mcor_options* options, double edge[3])
+  const particle_set* particles, const mcor_options* options, double edge[3])
 {
   const double cube = options->cube_size > 0.0
     ? options->cube_size
@@ -101,8 +89,8 @@ static void reference_edges(
 }
 
 /* All images of a periodic box as particles. */
-static int reference_images(oracle_particles* particles, const mcor_options* options,
-  oracle_kernel kernel, int own_volumes, int64_t** source)
+static int64_t* reference_images(
+  particle_set* particles, const mcor_options* options, oracle_kernel kernel, int own_volumes)
 {
   const double support = oracle_support(kernel);
   double largest = 0.0, edge[3];
@@ -113,17 +101,15 @@ static int reference_images(oracle_particles* particles, const mcor_options* opt
   reference_edges(particles, options, edge);
   /* A computed volume is a sum over the whole support, not scaled. */
   return oracle_add_images(particles, options, support * options->h_scale,
-    own_volumes ? 0.0 : support * largest, fmax(edge[0], fmax(edge[1], edge[2])), source);
+    own_volumes ? 0.0 : support * largest, fmax(edge[0], fmax(edge[1], edge[2])));
 }
 
-static int reference_particles(
-  oracle_particles* particles, const mcor_input* input, const mcor_options* options)
+static void reference_particles(
+  particle_set* particles, const mcor_input* input, const mcor_options* options)
 {
   const oracle_kernel kernel = (oracle_kernel)options->sph_kernel;
-  if (!oracle_create_particles(particles, input->count))
-  {
-    return 0;
-  }
+  const int has_volume = reference_is_given(&input->volume);
+  *particles = particle_set_make(input->count);
   /* Solids count in the weight that trims; nothing but solids trims when the weight itself is
    * contoured. */
   particles->ignore_solids =
@@ -139,20 +125,20 @@ static int reference_particles(
     particles->smoothing_length[j] = reference_read(&input->smoothing_length, j, 0) /
       (input->smoothing_length_is_support_radius ? oracle_support(kernel) : 1.0);
     particles->solid[j] = input->solid && input->solid[j];
-    particles->volume[j] =
-      reference_is_given(&input->volume) ? reference_read(&input->volume, j, 0) : 0.0;
+    particles->volume[j] = has_volume ? reference_read(&input->volume, j, 0) : 0.0;
     particles->scalar[j] = options->field == MCOR_WEIGHT_SUM ? 0.0 : reference_scalar(input, j);
   }
   int64_t* source = NULL;
-  const int enough =
-    (!oracle_is_periodic(options) ||
-      reference_images(particles, options, kernel,
-        reference_is_given(&input->volume) ||
-          (reference_is_given(&input->mass) && reference_is_given(&input->density)),
-        &source)) &&
-    (reference_is_given(&input->volume) || reference_volumes(particles, input, kernel, source));
+  if (oracle_is_periodic(options))
+  {
+    source = reference_images(particles, options, kernel,
+      has_volume || (reference_is_given(&input->mass) && reference_is_given(&input->density)));
+  }
+  if (!has_volume)
+  {
+    reference_volumes(particles, input, kernel, source);
+  }
   free(source);
-  return enough;
 }
 
 static void reference_set_iso(oracle_reference* reference, double iso)
@@ -190,24 +176,18 @@ static int reference_lattice(
 }
 
 int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
-  const mcor_options* options, int64_t node_limit, char message[256])
+  const mcor_options* options, int64_t node_limit)
 {
   memset(reference, 0, sizeof(*reference));
-  message[0] = '\0';
   reference->unit =
     options->precision == MCOR_FLOAT32 ? 0.5 * (double)FLT_EPSILON : 0.5 * DBL_EPSILON;
   reference->by_field = options->topology == MCOR_TOPOLOGY_FIELD;
   reference->limits.node_threshold = options->node_threshold;
   reference->limits.least_weight = 1e-3;
   reference->limits.least_at_vertices = options->sph_kernel == MCOR_M_PRIME_4 ? 0.05 : 1e-3;
-  if (!reference_particles(&reference->particles, input, options) ||
-    !oracle_create_field(&reference->field, &reference->particles,
-      (oracle_kernel)options->sph_kernel, reference_kind(options->field), options->h_scale))
-  {
-    snprintf(message, 256, "out of memory for the particles");
-    oracle_free_reference(reference);
-    return 0;
-  }
+  reference_particles(&reference->particles, input, options);
+  reference->field = oracle_make_field(&reference->particles, (oracle_kernel)options->sph_kernel,
+    (oracle_kind)options->field, options->h_scale);
   reference->range =
     options->field == MCOR_WEIGHT_SUM ? 1.0 : oracle_scalar_range(&reference->particles);
   if (!(reference->range > 0.0))
@@ -217,7 +197,6 @@ int oracle_create_reference(oracle_reference* reference, const mcor_input* input
   }
   if (!reference_lattice(reference, options, node_limit))
   {
-    snprintf(message, 256, "more than %lld nodes, or out of memory", (long long)node_limit);
     oracle_free_reference(reference);
     return 0;
   }
@@ -229,6 +208,6 @@ void oracle_free_reference(oracle_reference* reference)
 {
   oracle_free_lattice(&reference->lattice);
   oracle_free_field(&reference->field);
-  oracle_free_particles(&reference->particles);
+  particle_set_free(&reference->particles);
   memset(reference, 0, sizeof(*reference));
 }

@@ -12,15 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void expect(oracle_suite* suite, int condition, const char* name, const char* what)
-{
-  if (!condition)
-  {
-    printf("  FAILED: %s: %s\n", name, what);
-    ++suite->failures;
-  }
-}
-
 /* Parts that solids play, as the program's --solids. */
 typedef enum adaptive_solids
 {
@@ -33,7 +24,7 @@ typedef enum adaptive_solids
 typedef struct adaptive_entry
 {
   const char* name;
-  int (*make)(particle_set* set, double ratio);
+  particle_set (*make)(double ratio);
   double ratio, iso;
   mcor_field field;
   mcor_sph_kernel kernel;
@@ -45,15 +36,10 @@ static const char* const solids_names[] = { "", "/weight", "/ignore", "/wall" };
 
 static void run_entry(oracle_suite* suite, const adaptive_entry* entry)
 {
-  particle_set set;
+  particle_set set = entry->make(entry->ratio);
   oracle_case at;
   memset(&at, 0, sizeof(at));
-  if (!entry->make(&set, entry->ratio))
-  {
-    expect(suite, 0, entry->name, "no memory");
-    return;
-  }
-  at.input = particle_set_input(&set);
+  at.input = core_input(&set);
   at.options = oracle_case_options(&entry->iso);
   at.options.field = entry->field;
   at.options.sph_kernel = entry->kernel;

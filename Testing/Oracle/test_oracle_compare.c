@@ -24,16 +24,13 @@ typedef struct fixture
 /* A copy with room for a few more. */
 static void* copy_array(const void* data, int64_t count, size_t width)
 {
-  void* copy = calloc((size_t)count + 8, width);
-  ORACLE_CHECK(copy, "no memory");
-  return copy ? memcpy(copy, data, (size_t)count * width) : NULL;
+  return memcpy(oracle_allocate(count + 8, width), data, (size_t)count * width);
 }
 
 /* The sphere as the library extracts it, in double precision, before trimming. */
 static int create_fixture(fixture* f)
 {
   const particle_set_entry* entry = particle_set_find("sphere");
-  char message[256];
   mcor_context* context = NULL;
   mcor_surface made;
   memset(f, 0, sizeof(*f));
@@ -43,13 +40,14 @@ static int create_fixture(fixture* f)
   f->options.precision = MCOR_FLOAT64;
   f->options.tolerance = 1e-12;
   f->options.vertex_threshold = 0.0;
-  if (mcor_create_context(NULL, &context) != MCOR_OK || !entry->make(&f->set))
+  if (mcor_create_context(NULL, &context) != MCOR_OK)
   {
     return 0;
   }
-  const mcor_input input = particle_set_input(&f->set);
+  entry->make(&f->set);
+  const mcor_input input = core_input(&f->set);
   const int good = mcor_extract(context, &input, &f->options, &made) == MCOR_OK &&
-    oracle_create_reference(&f->reference, &input, &f->options, 10000000, message);
+    oracle_create_reference(&f->reference, &input, &f->options, 10000000);
   f->surface.point_count = made.point_count;
   f->surface.triangle_count = made.triangle_count;
   f->surface.points = copy_array(made.points, made.point_count, 3 * sizeof(double));
@@ -75,13 +73,9 @@ static oracle_comparison compare(const fixture* f, int trimmed)
 {
   oracle_comparison comparison;
   mesh_report report;
-  memset(&comparison, 0, sizeof(comparison));
-  ORACLE_CHECK(mesh_check(f->surface.points, f->surface.point_count, f->surface.triangles,
-                 f->surface.triangle_count, &report),
-    "no memory");
-  ORACLE_CHECK(
-    oracle_compare(&f->reference, &f->options, &f->surface, &report, trimmed, &comparison),
-    "no memory");
+  mesh_check(f->surface.points, f->surface.point_count, f->surface.triangles,
+    f->surface.triangle_count, &report);
+  oracle_compare(&f->reference, &f->options, &f->surface, &report, trimmed, &comparison);
   mesh_free_report(&report);
   return comparison;
 }
@@ -213,7 +207,7 @@ static void test_damage(void)
   for (int kind = 0; kind < 13; ++kind)
   {
     fixture f;
-    ORACLE_CHECK(create_fixture(&f), "no memory");
+    ORACLE_CHECK(create_fixture(&f), "no surface");
     const double shown = kind < 10 ? damage(&f, kind) : damage_trimmed(&f, kind - 10);
     ORACLE_CHECK(shown > 0.0, "damage of kind %d was not seen", kind);
     free_fixture(&f);
@@ -224,7 +218,7 @@ static void test_damage(void)
 static void test_vertex_on_node(void)
 {
   fixture f;
-  ORACLE_CHECK(create_fixture(&f), "no memory");
+  ORACLE_CHECK(create_fixture(&f), "no surface");
   const double cube = f.reference.lattice.cube;
   for (int64_t v = 0; v < f.surface.point_count; v += 50)
   {

@@ -5,6 +5,7 @@
 
 #include "oracle_case.h"
 #include "particle_period.h"
+#include "particle_sets.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -38,11 +39,11 @@ static const period_case cases[] = {
 /* unequal: the edges. */
 static void run_case(oracle_suite* suite, const period_case* one, int unequal)
 {
-  oracle_particles particles = particle_period_make(3);
+  particle_set particles = particle_period_make(3);
   oracle_case at;
   double iso = one->iso;
   memset(&at, 0, sizeof(at));
-  at.input = particle_period_input(&particles);
+  at.input = core_input(&particles);
   at.input.volume = one->volumes ? at.input.volume : (mcor_array){ 0 };
   at.options = oracle_case_options(&iso);
   at.options.sph_kernel = one->kernel;
@@ -59,7 +60,7 @@ static void run_case(oracle_suite* suite, const period_case* one, int unequal)
   snprintf(at.name, sizeof(at.name), "period/%s/%g%s%s", one->name, iso,
     one->precise ? "/double" : "", unequal ? "/unequal" : "");
   oracle_run_case(suite, &at);
-  oracle_free_particles(&particles);
+  particle_set_free(&particles);
 }
 
 int main(int argc, char** argv)

@@ -12,10 +12,10 @@
 #include <string.h>
 
 /* A block, a sheet, a thread and lone drops. */
-static core_set make_splash(double jitter, uint64_t seed)
+static particle_set make_splash(double jitter, uint64_t seed)
 {
   const int n = 10, side = 20;
-  core_set set = core_make_set((int64_t)n * n * n + side * side + side + 4);
+  particle_set set = particle_set_make((int64_t)n * n * n + side * side + side + 4);
   for (int64_t p = 0; p < set.count; ++p)
   {
     const int i = (int)p, s = i - n * n * n, t = s - side * side, d = t - side;
@@ -36,19 +36,19 @@ static core_set make_splash(double jitter, uint64_t seed)
   return set;
 }
 
-static core_set make_smooth(void)
+static particle_set make_smooth(void)
 {
   return make_splash(0.3, 1);
 }
 
-static core_set make_rough(void)
+static particle_set make_rough(void)
 {
   return make_splash(0.9, 2);
 }
 
-static core_set make_noise(void)
+static particle_set make_noise(void)
 {
-  core_set set = core_make_random(3000, 14, 0.5, 1.1, 7);
+  particle_set set = core_make_random(3000, 14, 0.5, 1.1, 7);
   uint64_t seed = 12;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -58,14 +58,14 @@ static core_set make_noise(void)
   return set;
 }
 
-static core_set make_graded(void)
+static particle_set make_graded(void)
 {
   return core_make_graded(8, 0.4);
 }
 
-static core_set make_wall(void)
+static particle_set make_wall(void)
 {
-  core_set set = core_make_block(10, 0.4, 3, core_slope);
+  particle_set set = core_make_block(10, 0.4, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.solid[i] = set.position[3 * i] < -2;
@@ -74,16 +74,16 @@ static core_set make_wall(void)
   return set;
 }
 
-static core_set make_period(void)
+static particle_set make_period(void)
 {
   const int length[3] = { 12, 10, 11 };
   return core_make_period(length, 4);
 }
 
 /* All of them in a plane. */
-static core_set make_plane(void)
+static particle_set make_plane(void)
 {
-  core_set set = core_make_random(900, 14, 0.5, 0.8, 9);
+  particle_set set = core_make_random(900, 14, 0.5, 0.8, 9);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i + 1] = 2;
@@ -95,7 +95,7 @@ static core_set make_plane(void)
 typedef struct compact_case
 {
   const char* name;
-  core_set (*make)(void);
+  particle_set (*make)(void);
   mcor_field field;
   double iso[2]; /* two where they differ */
   double cube;
@@ -232,7 +232,8 @@ static void check_triangles(
   mesh_free_report(&after);
 }
 
-static mcor_input input_of(const compact_case* at, const core_set* set, const mcor_array* attribute)
+static mcor_input input_of(
+  const compact_case* at, const particle_set* set, const mcor_array* attribute)
 {
   mcor_input input = core_input(set);
   input.volume =
@@ -247,7 +248,7 @@ static void surfaces(void** state)
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     const compact_case* at = cases + i;
-    core_set set = at->make();
+    particle_set set = at->make();
     const mcor_array attribute = core_array(set.position, 3);
     const mcor_input input = input_of(at, &set, &attribute);
     mcor_options options = options_of(at);
@@ -274,7 +275,7 @@ static void surfaces(void** state)
       (long long)s->vertices_above_tolerance);
     mcor_free_surface(&without);
     mcor_free_surface(&with);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -283,7 +284,7 @@ static void boxes(void** state)
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     const compact_case* at = cases + i;
-    core_set set = at->make();
+    particle_set set = at->make();
     const mcor_array attribute = core_array(set.position, 3);
     const mcor_input input = input_of(at, &set, &attribute);
     mcor_options options = options_of(at);
@@ -294,7 +295,7 @@ static void boxes(void** state)
       options.triangle_normals = 1;
       core_check_these_cuts(*state, at->name, &input, &options, core_cuts + 3, 1);
     }
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 

@@ -186,7 +186,7 @@ static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, 
 }
 
 /* Extracts nothing, but leaves the grid on the device, and the kernels above in the program. */
-static void make_grid(mcor_context* context, const core_set* set, const mcor_options* options)
+static void make_grid(mcor_context* context, const particle_set* set, const mcor_options* options)
 {
   const mcor_input input = core_input_to_keep(set);
   mcor_surface surface = core_extract(context, &input, options);
@@ -194,7 +194,7 @@ static void make_grid(mcor_context* context, const core_set* set, const mcor_opt
   mcor_free_surface(&surface);
 }
 
-static void check_bound(mcor_context* context, const core_set* set, mcor_options* options,
+static void check_bound(mcor_context* context, const particle_set* set, mcor_options* options,
   int boxes, int samples, int decided_at_least)
 {
   uint64_t seed = 11;
@@ -259,7 +259,7 @@ static void test_bound(void** state)
     static const int counts[] = { 6, 150, 1 };
     for (int s = 0; s < 3; ++s)
     {
-      core_set set = core_make_random(counts[s], 5, s == 0 ? 1 : 0.3, 1, 40 + (uint64_t)s);
+      particle_set set = core_make_random(counts[s], 5, s == 0 ? 1 : 0.3, 1, 40 + (uint64_t)s);
       for (int i = 0; i < counts[s]; ++i)
       {
         set.solid[i] = i % 3 == 1;
@@ -273,7 +273,7 @@ static void test_bound(void** state)
       options.seeds = MCOR_PAIRS;
       options.cube_size = 0.13;
       check_bound(*state, &set, &options, 160, 60, s == 2 ? 0 : 10);
-      core_free_set(&set);
+      particle_set_free(&set);
     }
   }
 }
@@ -289,7 +289,7 @@ static void test_many_particles(void** state)
     double volume;
   } cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 0.7 }, { MCOR_CUBIC_SPLINE, MCOR_SUM, 0.9 },
     { MCOR_M_PRIME_4, MCOR_SHEPARD, 1.1 } };
-  core_set set = core_make_random(24000, 0, 1, 1, 50);
+  particle_set set = core_make_random(24000, 0, 1, 1, 50);
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
     for (int i = 0; i < set.count; ++i)
@@ -305,7 +305,7 @@ static void test_many_particles(void** state)
     options.cube_size = 0.1;
     check_bound(*state, &set, &options, 24, 12, 0);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Nodes of a brick where the weight sum is at least iso, the brick's first node being `first`. */
@@ -357,7 +357,7 @@ static void test_inside(void** state)
 {
   mcor_context* context = *state;
   const double far = 1e6;
-  core_set set = core_make_block(9, 0.4, 5, core_slope);
+  particle_set set = core_make_block(9, 0.4, 5, core_slope);
   mcor_options options = core_options(&far);
   options.field = MCOR_WEIGHT_SUM;
   options.cube_size = 0.3;
@@ -378,7 +378,7 @@ static void test_inside(void** state)
     check_inside(context, &p, &options, bricks, 512, iso);
   }
   free_particles(&p);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

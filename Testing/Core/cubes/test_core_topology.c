@@ -10,15 +10,16 @@
 #include <string.h>
 
 /* Particles around the origin, closer together than the cubes, whose scalar is given by `value`. */
-static core_set make_particles(double (*value)(const double x[3], const double end[3], double sign),
-  const double end[3], double sign)
+static particle_set make_particles(
+  double (*value)(const double x[3], const double end[3], double sign), const double end[3],
+  double sign)
 {
   enum
   {
     N = 24
   };
   const double spacing = 0.5;
-  core_set set = core_make_set(N * N * N);
+  particle_set set = particle_set_make(N * N * N);
   for (int i = 0; i < N * N * N; ++i)
   {
     double* x = set.position + 3 * i;
@@ -66,7 +67,7 @@ static double balls(const double x[3], const double end[3], double sign)
 }
 
 /* Checks a closed surface, and returns its parts. */
-static int64_t count_parts(mcor_context* context, const core_set* set, double cube,
+static int64_t count_parts(mcor_context* context, const particle_set* set, double cube,
   mcor_topology topology, mcor_statistics* statistics)
 {
   const double iso = 0;
@@ -98,7 +99,7 @@ static void test_diagonals(void** state)
   for (int i = 0; i < 40; ++i)
   {
     const int apart = i / 20, sign = i % 2 ? 1 : -1, on_face = i / 2 % 10 < 6;
-    core_set set = make_particles(apart ? balls : thread, diagonals[i / 2 % 10], sign);
+    particle_set set = make_particles(apart ? balls : thread, diagonals[i / 2 % 10], sign);
     mcor_statistics s;
     assert_int_equal(count_parts(*state, &set, 0.37, MCOR_TOPOLOGY_TABLE, &s), 1 + apart);
     assert_int_equal(
@@ -108,7 +109,7 @@ static void test_diagonals(void** state)
     assert_int_equal(s.joined_faces, on_face && (sign > 0) != apart);
     assert_int_equal(s.ambiguous_cells, on_face ? 2 * apart : 1);
     assert_int_equal(s.tunnels, !on_face && !apart);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 

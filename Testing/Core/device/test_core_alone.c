@@ -12,7 +12,7 @@
 static mcor_status extract_with(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, uint64_t* hash)
 {
-  core_set set = core_make_block(7, 0.3, 3, core_ball);
+  particle_set set = core_make_block(7, 0.3, 3, core_ball);
   const double iso = 2;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -22,7 +22,7 @@ static mcor_status extract_with(
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   *hash = core_hash(&surface);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
   return status;
 }
 

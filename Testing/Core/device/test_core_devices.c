@@ -16,7 +16,7 @@ enum
 
 static void test_turns_and_shares(void** state)
 {
-  core_set set = core_make_block(7, 0.3, 3, core_ball);
+  particle_set set = core_make_block(7, 0.3, 3, core_ball);
   const double iso = 2;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
@@ -38,7 +38,7 @@ static void test_turns_and_shares(void** state)
     mcor_free_surface(&surface);
     mcor_free_context(context);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A device that is asked for by number is taken; those of one name are taken in turn. */

@@ -303,7 +303,7 @@ static void test_every_call_fails_once(void** state)
 {
   mcor_context* context = *state;
   static const double iso = 0.3;
-  core_set set = core_make_block(6, 0.3, 3, flat);
+  particle_set set = core_make_block(6, 0.3, 3, flat);
   const mcor_array attribute = core_array(set.smoothing_length, 1);
   set.smoothing_length[7] *= 1.5;
   sweep s = { .call = extract,
@@ -327,13 +327,13 @@ static void test_every_call_fails_once(void** state)
   sweep_calls(context, &s, CL_OUT_OF_RESOURCES, 1);
   sweep_calls(context, &s, CL_OUT_OF_HOST_MEMORY, 1);
   sweep_allocations(context, &s);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_probe_and_derive(void** state)
 {
   static const double at[12] = { 0, 0, 0, 1, 0.3, 0.2, 99, 0, 0, -1, -1.2, 0.1 };
-  core_set set = core_make_block(5, 0.3, 3, flat);
+  particle_set set = core_make_block(5, 0.3, 3, flat);
   double* points = core_copy(at, sizeof at);
   const mcor_array attribute = core_array(set.scalar, 1);
   sweep s = { .call = probe,
@@ -352,7 +352,7 @@ static void test_probe_and_derive(void** state)
   sweep_room(*state, &s, 3, 40);
   s.call = flux;
   sweep_room(*state, &s, 3, 40);
-  core_free_set(&set);
+  particle_set_free(&set);
   free(points);
 }
 
@@ -360,7 +360,7 @@ static void test_probe_and_derive(void** state)
 static void test_filled(void** state)
 {
   static const double isos[2] = { -1e9, 0.5 };
-  core_set set = core_make_block(8, 0.1, 3, flat);
+  particle_set set = core_make_block(8, 0.1, 3, flat);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i + 2] = 0;
@@ -372,14 +372,14 @@ static void test_filled(void** state)
   filled.options.filled = 1;
   filled.options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   sweep_room(*state, &filled, 23, 100);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A box, a period, walls; each with what it alone does. */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;
-  core_set set = core_make_block(8, 0.1, 3, flat);
+  particle_set set = core_make_block(8, 0.1, 3, flat);
   sweep box = { .call = extract, .input = core_input(&set), .options = core_options(&iso) };
   sweep period = box, wall = box;
   const double sides[6] = { -9, 0.4, -9, 9, -9, 9 };
@@ -403,13 +403,13 @@ static void test_regions(void** state)
   wall.options.field = MCOR_WEIGHT_SUM;
   wall.options.iso_values = &half;
   sweep_room(*state, &wall, 23, 100);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_adaptive_cubes(void** state)
 {
   static const double half = 0.5;
-  core_set set = core_make_block(5, 0.1, 3, flat);
+  particle_set set = core_make_block(5, 0.1, 3, flat);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.smoothing_length[i] = set.position[3 * i] > 0 ? 2.7 : 1.3;
@@ -423,14 +423,14 @@ static void test_adaptive_cubes(void** state)
   s.options.periodic[0] = -8;
   s.options.periodic[1] = 8;
   sweep_room(*state, &s, 11, 100);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_ranks(void** state)
 {
   mcor_context* context = *state;
   static const double iso = 0.3;
-  core_set set = core_make_block(6, 0.3, 3, flat);
+  particle_set set = core_make_block(6, 0.3, 3, flat);
   sweep s = { .call = extract_as_rank, .input = core_input(&set), .options = core_options(&iso) };
   s.options.ranks = &alone;
   const double sides[6] = { -9, 9, -9, 9, -9, 9 };
@@ -452,7 +452,7 @@ static void test_ranks(void** state)
       "callback %d of %d, %d were made: %s", n, count, callbacks, mcor_status_name(status));
     expect_sound(context, &s, "Another rank");
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A large buffer's pages are asked for through a view of it, which may fail. */
@@ -539,7 +539,7 @@ static void test_no_context(void** state)
 {
   (void)state;
   static const double iso = 0;
-  core_set set = core_make_block(4, 0, 1, core_slope);
+  particle_set set = core_make_block(4, 0, 1, core_slope);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   for (int n = 0, done = 0; !done; ++n)
@@ -562,7 +562,7 @@ static void test_no_context(void** state)
     }
     mcor_free_context(context);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

@@ -219,7 +219,7 @@ static void test_loops(void** state)
 
 static uint64_t extract(mcor_context* context)
 {
-  core_set set = core_make_block(9, 0.3, 3, core_ball);
+  particle_set set = core_make_block(9, 0.3, 3, core_ball);
   const double iso = 3;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
@@ -227,7 +227,7 @@ static uint64_t extract(mcor_context* context)
   assert_true(surface.triangle_count > 100);
   const uint64_t hash = core_hash(&surface);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
   return hash;
 }
 

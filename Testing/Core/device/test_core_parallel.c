@@ -178,7 +178,7 @@ static void test_several_at_once(void** state)
 /* The first of several bad particles is named, whichever thread finds one first. */
 static void test_first_bad_particle(void** state)
 {
-  core_set set = core_make_block(40, 0.2, 3, core_ball);
+  particle_set set = core_make_block(40, 0.2, 3, core_ball);
   assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
   const double iso = 0;
   const mcor_input input = core_input(&set);
@@ -199,7 +199,7 @@ static void test_first_bad_particle(void** state)
       arrays[kind][i] = good;
     }
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Ranges are those of the fluid alone, or of nothing where all are solids; slices may have no

@@ -11,7 +11,7 @@
 
 #define CURVATURES (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
 
-static mcor_surface curved(mcor_context* context, const core_set* set, mcor_options* options)
+static mcor_surface curved(mcor_context* context, const particle_set* set, mcor_options* options)
 {
   const mcor_input input = core_input(set);
   options->outputs |= CURVATURES;
@@ -55,7 +55,7 @@ static void test_ball_and_cylinder(void** state)
   {
     const double radius = cases[c].field == MCOR_WEIGHT_SUM ? 8 : 4;
     const double iso = cases[c].field == MCOR_WEIGHT_SUM ? 0.5 : 0;
-    core_set set = core_make_block(24, 0, 1, core_ball);
+    particle_set set = core_make_block(24, 0, 1, core_ball);
     int64_t kept = 0;
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -95,7 +95,7 @@ static void test_ball_and_cylinder(void** state)
       "case %zu: %lld points, off by %g of 1 / R, %g of 1 / R^2", c, (long long)seen, worst[0],
       worst[1]);
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -105,7 +105,7 @@ static void test_circle(void** state)
   const double iso = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    core_set set = core_make_set(24 * 24);
+    particle_set set = particle_set_make(24 * 24);
     for (int64_t i = 0; i < set.count; ++i)
     {
       const double u = (double)(i % 24) - 11.5, v = (double)(i / 24) - 11.5;
@@ -128,7 +128,7 @@ static void test_circle(void** state)
       CORE_CHECK(fabs(off) < 1e-3 || fabs(u) > 6 || fabs(v) > 6, "axis %d: off by %g", axis, off);
     }
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -174,14 +174,13 @@ static void reference(
  * Where W'' jumps, differences are of no use. */
 static void test_any_field(void** state)
 {
-  core_set set = core_make_block(9, 0.5, 3, core_slope);
+  particle_set set = core_make_block(9, 0.5, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] += 2 * sin((double)i);
     set.solid[i] = i % 17 == 0;
   }
   set.has_solids = 1;
-  const oracle_particles particles = core_oracle(&set);
   for (int run = 0; run < 4; ++run)
   {
     const mcor_sph_kernel kernel = run < 3 ? MCOR_CUBIC_SPLINE : MCOR_M_PRIME_4;
@@ -192,8 +191,7 @@ static void test_any_field(void** state)
     options.field = fields[run % 3];
     options.sph_kernel = kernel;
     mcor_surface surface = curved(*state, &set, &options);
-    oracle_field field;
-    assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, kinds[run % 3], 1));
+    oracle_field field = oracle_make_field(&set, (oracle_kernel)kernel, kinds[run % 3], 1);
     int64_t good = 0, seen = 0;
     for (int64_t p = 0; p < surface.point_count; p += 5, ++seen)
     {
@@ -209,7 +207,7 @@ static void test_any_field(void** state)
     oracle_free_field(&field);
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

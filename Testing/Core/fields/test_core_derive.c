@@ -10,9 +10,9 @@
 #include <string.h>
 
 /* Disordered particles with one h, or with h that varies by a factor of 2. */
-static core_set derive_set(bool varies)
+static particle_set derive_set(bool varies)
 {
-  core_set set = core_make_block(14, 0.15, 77, core_slope);
+  particle_set set = core_make_block(14, 0.15, 77, core_slope);
   uint64_t seed = 5;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -21,7 +21,7 @@ static core_set derive_set(bool varies)
   return set;
 }
 
-static mcor_derivatives derive(mcor_context* context, const core_set* set, const double* values,
+static mcor_derivatives derive(mcor_context* context, const particle_set* set, const double* values,
   int components, mcor_type precision, mcor_gradient form)
 {
   mcor_input input = core_input(set);
@@ -41,7 +41,7 @@ static mcor_derivatives derive(mcor_context* context, const core_set* set, const
 /* v = J x, J with a rotation, a shear and a strain; far from 0. */
 static const double derive_jacobian[3][3] = { { 0.3, -2, 0.5 }, { 2, -0.1, 1 }, { 0, 0.7, 0.4 } };
 
-static double* derive_linear(const core_set* set)
+static double* derive_linear(const particle_set* set)
 {
   double* v = malloc((size_t)set->count * 3 * sizeof(double));
   assert_non_null(v);
@@ -56,7 +56,7 @@ static double* derive_linear(const core_set* set)
 static void derive_check_linear(
   mcor_context* context, bool varies, mcor_type precision, double tolerance)
 {
-  core_set set = derive_set(varies);
+  particle_set set = derive_set(varies);
   double* v = derive_linear(&set);
   mcor_derivatives d = derive(context, &set, v, 3, precision, MCOR_GRADIENT_CORRECTED);
   assert_int_equal(d.statistics.fluid_particles, set.count);
@@ -73,7 +73,7 @@ static void derive_check_linear(
   }
   mcor_free_derivatives(&d);
   free(v);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_linear_is_exact(void** state)
@@ -84,7 +84,7 @@ static void test_linear_is_exact(void** state)
 }
 
 /* The standard form, summed in the test. */
-static void derive_standard(const core_set* set, int64_t i, double gradient[3])
+static void derive_standard(const particle_set* set, int64_t i, double gradient[3])
 {
   gradient[0] = gradient[1] = gradient[2] = 0;
   for (int64_t j = 0; j < set->count; ++j)
@@ -109,7 +109,7 @@ static void derive_standard(const core_set* set, int64_t i, double gradient[3])
 /* Also with solids, whose values play no part. */
 static void test_standard_form(void** state)
 {
-  core_set set = core_make_random(2500, 9, 0.7, 2, 4);
+  particle_set set = core_make_random(2500, 9, 0.7, 2, 4);
   set.has_solids = 1;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -134,14 +134,14 @@ static void test_standard_form(void** state)
     }
   }
   mcor_free_derivatives(&d);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A particle alone, two, three in a plane, and four almost: no matrix can be inverted; of the last, because that
  * would magnify rounding by the square of 100, the sides over the height. */
 static void test_too_few_neighbours(void** state)
 {
-  core_set set = core_make_set(10);
+  particle_set set = particle_set_make(10);
   const double x[10][3] = { { 0, 0, 0 }, { 10, 0, 0 }, { 11, 0, 0 }, { 20, 0, 0 }, { 21, 0, 0 },
     { 20, 1, 0 }, { 30, 0, 0 }, { 31, 0, 0 }, { 30, 1, 0 }, { 31, 1, 0.01 } };
   for (int i = 0; i < 10; ++i)
@@ -163,7 +163,7 @@ static void test_too_few_neighbours(void** state)
     }
   }
   mcor_free_derivatives(&d);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Decomposes matrices whose parts are known. */

@@ -12,9 +12,9 @@
 #define PI 3.14159265358979323846
 
 /* A pool of spacing 1 from 0 to 24, 16 and 12 along x, y and z; its top slopes. */
-static core_set make_pool(double jitter)
+static particle_set make_pool(double jitter)
 {
-  core_set set = core_make_set(24 * 16 * 14);
+  particle_set set = particle_set_make(24 * 16 * 14);
   uint64_t seed = 5;
   int64_t n = 0;
   for (int i = 0; i < 24 * 16 * 14; ++i)
@@ -35,9 +35,9 @@ static core_set make_pool(double jitter)
 }
 
 /* Its middle in a plane of constant x, y or z, of the other coordinates in their order. */
-static core_set make_slice(int axis)
+static particle_set make_slice(int axis)
 {
-  core_set set = core_make_set(24 * 14);
+  particle_set set = particle_set_make(24 * 14);
   int64_t n = 0;
   for (int i = 0; i < 24 * 14; ++i)
   {
@@ -58,7 +58,7 @@ static core_set make_slice(int axis)
 /* Particles with velocities and densities. */
 typedef struct fluid
 {
-  core_set set;
+  particle_set set;
   double *velocity, *density;
   mcor_array attributes[2];
 } fluid;
@@ -80,7 +80,7 @@ static void move_anyhow(const double x[3], double velocity[3], double* density)
   *density = 1000 + 50 * sin(0.4 * x[2] + x[0]);
 }
 
-static fluid make_fluid(core_set set, motion* move)
+static fluid make_fluid(particle_set set, motion* move)
 {
   fluid made = { .set = set,
     .velocity = malloc(3 * (size_t)set.count * sizeof(double)),
@@ -96,7 +96,7 @@ static fluid make_fluid(core_set set, motion* move)
 
 static void free_fluid(fluid* made)
 {
-  core_free_set(&made->set);
+  particle_set_free(&made->set);
   free(made->velocity);
   free(made->density);
 }

@@ -21,9 +21,9 @@ static int pool_has(const double x[3])
     ball + drop * drop < 1.9 * 1.9;
 }
 
-static core_set make_pool(int wave)
+static particle_set make_pool(int wave)
 {
-  core_set set = core_make_set(24 * 16 * 20);
+  particle_set set = particle_set_make(24 * 16 * 20);
   int64_t n = 0;
   for (int i = 0; i < 24 * 16 * 20; ++i)
   {
@@ -126,8 +126,9 @@ static void check_reading(
   }
 }
 
-static void check_lines(mcor_context* context, const core_set* set, const mcor_gauge_line* lines,
-  int count, mcor_sph_kernel kernel, mcor_type precision, gauge_counts* counts)
+static void check_lines(mcor_context* context, const particle_set* set,
+  const mcor_gauge_line* lines, int count, mcor_sph_kernel kernel, mcor_type precision,
+  gauge_counts* counts)
 {
   const mcor_input input = core_input(set);
   mcor_options options = core_options(NULL);
@@ -137,12 +138,10 @@ static void check_lines(mcor_context* context, const core_set* set, const mcor_g
   mcor_gauges gauges;
   CORE_OK(context, mcor_gauge(context, &input, &options, lines, count, &gauges));
   assert_int_equal(gauges.count, count);
-  const oracle_particles particles = core_oracle(set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, ORACLE_WEIGHT, 1));
+  oracle_field field = oracle_make_field(set, (oracle_kernel)kernel, ORACLE_WEIGHT, 1);
   for (int i = 0; i < count; ++i)
   {
-    check_line(&field, &lines[i], &gauges, i, 0.025 * oracle_smallest_h(&particles), counts);
+    check_line(&field, &lines[i], &gauges, i, 0.025 * oracle_smallest_h(set), counts);
     check_reading(&field, &lines[i], &gauges.readings[i]);
   }
   oracle_free_field(&field);
@@ -167,7 +166,7 @@ static mcor_gauge_line* random_lines(int count, const double low[3], const doubl
 
 static void test_pool_with_waves(void** state)
 {
-  core_set set = make_pool(1);
+  particle_set set = make_pool(1);
   const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
   mcor_gauge_line* lines = random_lines(150, low, high);
   for (int i = 0; i < 40; ++i) /* upright, through the bubble and the droplet */
@@ -183,14 +182,14 @@ static void test_pool_with_waves(void** state)
     assert_true(counts.crossings > 200 && counts.wet > 50 && counts.full > 10 && counts.dry > 5);
   }
   free(lines);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Sparse particles in no order: the weight sum is near the level everywhere, and passes it often, and
  * by little. */
 static void test_noise(void** state)
 {
-  core_set set = core_make_random(1500, 10, 0.6, 1.0, 3);
+  particle_set set = core_make_random(1500, 10, 0.6, 1.0, 3);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 0.36;
@@ -207,7 +206,7 @@ static void test_noise(void** state)
       "kernel %d: %d crossings were near each other", kernel, counts.close_pairs);
   }
   free(lines);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* With computed volumes, too, though upper layers lack half of their neighbours: with any kernel and usual smoothing
@@ -223,7 +222,7 @@ static void test_still_pool_of_computed_volumes(void** state)
     { MCOR_QUARTIC_SPLINE, { 1, 1.3 } }, { MCOR_WENDLAND_C4, { 1.5, 2 } },
     { MCOR_WENDLAND_C6, { 1.6, 2 } }, { MCOR_SINC_6, { 1.2, 1.6 } } };
   const mcor_gauge_line line = { .from = { 12.3, 8.1, 3 }, .to = { 12.3, 8.1, 15 } };
-  core_set space = make_pool(0), plane = core_make_set(24 * 10);
+  particle_set space = make_pool(0), plane = particle_set_make(24 * 10);
   for (int64_t i = 0; i < 24 * 10; ++i)
   {
     const double x[3] = { (double)(i % 24) + 0.5, 8.1, (double)(i / 24) + 0.5 };
@@ -250,14 +249,14 @@ static void test_still_pool_of_computed_volumes(void** state)
       mcor_sph_kernel_name(options.sph_kernel), h, c % 2 ? 2 : 3, level);
     mcor_free_gauges(&gauges);
   }
-  core_free_set(&space);
-  core_free_set(&plane);
+  particle_set_free(&space);
+  particle_set_free(&plane);
 }
 
 /* Beyond a period's side there is its image, with the same bits where rounding lets them. */
 static void test_period(void** state)
 {
-  core_set set = make_pool(1);
+  particle_set set = make_pool(1);
   const mcor_gauge_line lines[2] = { { .from = { 3.25, 8, -2 }, .to = { 3.25, 8, 20 } },
     { .from = { 3.25 + 48, 8, -2 }, .to = { 3.25 + 48, 8, 20 } } };
   const mcor_input input = core_input(&set);
@@ -270,13 +269,13 @@ static void test_period(void** state)
   assert_int_equal(gauges.readings[1].crossing_count, 2);
   assert_true(memcmp(gauges.crossings, gauges.crossings + 2, 2 * sizeof(double)) == 0);
   mcor_free_gauges(&gauges);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Readings are the same alone or among others, from particles that stay on the device or do not. */
 static void test_same_bits(void** state)
 {
-  core_set set = make_pool(1);
+  particle_set set = make_pool(1);
   const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
   mcor_gauge_line* lines = random_lines(20, low, high);
   const mcor_input input = core_input(&set), kept = core_input_to_keep(&set);
@@ -297,7 +296,7 @@ static void test_same_bits(void** state)
   }
   free(lines);
   mcor_free_gauges(&all);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Fails with a sentence that has these words. */
@@ -312,7 +311,7 @@ static void refuse(mcor_context* context, const mcor_input* input, const mcor_op
 
 static void test_weird(void** state)
 {
-  core_set set = make_pool(0);
+  particle_set set = make_pool(0);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
@@ -345,7 +344,7 @@ static void test_weird(void** state)
   CORE_OK(*state, mcor_gauge(*state, &input, &options, &good, 1, &gauges));
   assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
   mcor_free_gauges(&gauges);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

@@ -31,8 +31,8 @@ static mcor_options probe_options(void)
 }
 
 /* The set's scalar at points, [count][3]. */
-static mcor_samples probe(mcor_context* context, const core_set* set, const mcor_options* options,
-  const double* points, int64_t count)
+static mcor_samples probe(mcor_context* context, const particle_set* set,
+  const mcor_options* options, const double* points, int64_t count)
 {
   mcor_input input = core_input(set);
   const mcor_array attribute = input.scalar, at = core_array(points, 3);
@@ -91,7 +91,7 @@ static double probe_compare(const oracle_field* field, const double point[3], do
 
 static void probe_case_run(mcor_context* context, const probe_case* c)
 {
-  core_set set = core_make_random(3000, c->size, 0.6, 1.8, 11);
+  particle_set set = core_make_random(3000, c->size, 0.6, 1.8, 11);
   set.has_solids = 1;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -106,10 +106,8 @@ static void probe_case_run(mcor_context* context, const probe_case* c)
   options.field = c->field;
   options.precision = c->precision;
   mcor_samples samples = probe(context, &set, &options, points, count);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)c->sph_kernel,
-    c->field == MCOR_SUM ? ORACLE_SUM : ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(
+    &set, (oracle_kernel)c->sph_kernel, c->field == MCOR_SUM ? ORACLE_SUM : ORACLE_SHEPARD, 1);
   int valid = 0;
   for (int64_t i = 0; i < count; ++i)
   {
@@ -122,7 +120,7 @@ static void probe_case_run(mcor_context* context, const probe_case* c)
   oracle_free_field(&field);
   mcor_free_samples(&samples);
   free(points);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_against_oracle(void** state)
@@ -140,7 +138,7 @@ static void test_against_oracle(void** state)
 }
 
 /* Points within the supports of single particles, small and large ones. */
-static double* points_at(const core_set* set, int64_t count)
+static double* points_at(const particle_set* set, int64_t count)
 {
   double* points = malloc((size_t)count * 3 * sizeof(double));
   assert_non_null(points);
@@ -160,7 +158,7 @@ static double* points_at(const core_set* set, int64_t count)
 /* Smoothing lengths from 1 to 1000: values, weights and gradients in units of what they are made of. */
 static void wide_range_run(mcor_context* context, mcor_type precision, double tolerance)
 {
-  core_set set = core_make_random(3000, 10, 0.004, 4, 23);
+  particle_set set = core_make_random(3000, 10, 0.004, 4, 23);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] =
@@ -172,9 +170,7 @@ static void wide_range_run(mcor_context* context, mcor_type precision, double to
   options.precision = precision;
   options.node_threshold = 0;
   mcor_samples samples = probe(context, &set, &options, points, count);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   double most = 0;
   for (int64_t i = 0; i < count; ++i)
   {
@@ -184,7 +180,7 @@ static void wide_range_run(mcor_context* context, mcor_type precision, double to
   oracle_free_field(&field);
   mcor_free_samples(&samples);
   free(points);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_wide_range_against_oracle(void** state)
@@ -197,7 +193,7 @@ static void test_wide_range_against_oracle(void** state)
  * `size`. */
 static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
 {
-  core_set set = core_make_random(2000, size, h_min, h_max, 3);
+  particle_set set = core_make_random(2000, size, h_min, h_max, 3);
   double* wide = malloc((size_t)set.count * 11 * sizeof(double));
   assert_non_null(wide);
   uint64_t seed = 9;
@@ -239,7 +235,7 @@ static void probe_in_another_order(mcor_context* context, double size, double h_
   free(order);
   free(points);
   free(wide);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_bits_do_not_depend_on_other_points(void** state)
@@ -252,7 +248,7 @@ static void test_bits_do_not_depend_on_other_points(void** state)
 /* Probes at points in a cube of edge `size` around (x, 0, 0), with only the particles nearby, and with all
  * as for another call to take: the same bits. Returns how many points are valid. */
 static int probe_near(
-  mcor_context* context, const core_set* set, bool volumes, double x, double size)
+  mcor_context* context, const particle_set* set, bool volumes, double x, double size)
 {
   const int64_t count = 300;
   double* points = probe_points(count, size, 4);
@@ -291,7 +287,7 @@ static int probe_near(
 
 static void test_only_particles_nearby_are_needed(void** state)
 {
-  core_set set = core_make_random(4000, 12, 0.3, 1.2, 17);
+  particle_set set = core_make_random(4000, 12, 0.3, 1.2, 17);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i] += i % 2 ? 40 : 0;
@@ -304,13 +300,13 @@ static void test_only_particles_nearby_are_needed(void** state)
     assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);   /* between them */
     assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0); /* outside of everything */
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_odd_points(void** state)
 {
   mcor_context* context = *state;
-  core_set set = core_make_block(6, 0, 1, core_slope);
+  particle_set set = core_make_block(6, 0, 1, core_slope);
   mcor_input input = core_input(&set);
   const mcor_array attribute = input.scalar;
   input.attributes = &attribute;
@@ -341,14 +337,14 @@ static void test_odd_points(void** state)
   assert_null(samples.values[0]);
   mcor_free_samples(&samples);
   free(copy);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A weight of exactly the threshold is enough. */
 static void test_threshold_itself(void** state)
 {
   mcor_context* context = *state;
-  core_set set = core_make_block(3, 0.2, 5, core_slope);
+  particle_set set = core_make_block(3, 0.2, 5, core_slope);
   const double at[3] = { 0.3, -0.2, 0.1 };
   const mcor_input input = core_input(&set);
   const mcor_array points = core_array(at, 3);
@@ -365,14 +361,14 @@ static void test_threshold_itself(void** state)
     assert_int_equal(samples.valid[0], !above);
     mcor_free_samples(&samples);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* ---- attributes kept between calls ---- */
 
 typedef struct kept_call
 {
-  core_set set;
+  particle_set set;
   double *points, *other;
   mcor_array attributes[2 * MCOR_ATTRIBUTE_LIMIT];
   mcor_input input;
@@ -474,13 +470,13 @@ static void test_kept_attributes(void** state)
   kept_probe(context, &call, false, "too many, again");
   free(call.points);
   free(call.other);
-  core_free_set(&call.set);
+  particle_set_free(&call.set);
 }
 
 /* Exactly at particles, where the quadratic kernel's gradient has no direction and is 0. */
 static void test_at_particles(void** state)
 {
-  core_set set = core_make_random(3000, 10, 0.6, 6, 11);
+  particle_set set = core_make_random(3000, 10, 0.6, 6, 11);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 1.0 / 3;
@@ -488,9 +484,7 @@ static void test_at_particles(void** state)
   mcor_options options = probe_options();
   options.sph_kernel = MCOR_QUADRATIC;
   mcor_samples samples = probe(*state, &set, &options, set.position, set.count);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_QUADRATIC, ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(&set, ORACLE_QUADRATIC, ORACLE_SHEPARD, 1);
   for (int64_t i = 0; i < set.count; ++i)
   {
     oracle_sample expected;
@@ -505,13 +499,13 @@ static void test_at_particles(void** state)
   }
   oracle_free_field(&field);
   mcor_free_samples(&samples);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A mean is between the least and the greatest value, rounding or not. */
 static void test_means_are_between(void** state)
 {
-  core_set set = core_make_random(3000, 10, 0.6, 1.8, 11);
+  particle_set set = core_make_random(3000, 10, 0.6, 1.8, 11);
   uint64_t seed = 3;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -532,7 +526,7 @@ static void test_means_are_between(void** state)
   CORE_CHECK(zero > 1000 && more > 1000, "%d of 0, %d above", zero, more);
   mcor_free_samples(&samples);
   free(points);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

@@ -159,7 +159,7 @@ static double error_of(const mcor_projection* view, const double* image, int ste
 }
 
 /* Masses in the place of volumes. */
-static mcor_input input_of(const core_set* set)
+static mcor_input input_of(const particle_set* set)
 {
   mcor_input input = core_input(set);
   input.mass = input.volume;
@@ -182,7 +182,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
 {
   const double amount = 2.5, h = 0.7,
                reach = (kernel == MCOR_M_PRIME_4 ? 3.5 : oracle_support((oracle_kernel)kernel)) * h;
-  core_set set = core_make_set(is_plane ? 3 : 1);
+  particle_set set = particle_set_make(is_plane ? 3 : 1);
   const double x[3] = { 3.1, -2.3, 1.7 };
   for (int64_t i = 0; i < set.count; ++i) /* the others lie beyond the image, and make a plane */
   {
@@ -222,7 +222,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
     mcor_sph_kernel_name(kernel), pixels_per_h, mass);
   free(image);
   mcor_free_projection(&found);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_single(void** state)
@@ -249,9 +249,9 @@ static void test_single(void** state)
 /* ---- many ---- */
 
 /* Evrard's sphere: density as 1 / r, h with it; in no order. */
-static core_set make_evrard(int64_t count)
+static particle_set make_evrard(int64_t count)
 {
-  core_set set = core_make_set(count);
+  particle_set set = particle_set_make(count);
   uint64_t seed = 3;
   for (int64_t i = 0; i < count; ++i)
   {
@@ -270,7 +270,7 @@ static core_set make_evrard(int64_t count)
 
 static void test_brute_force(void** state)
 {
-  core_set set = make_evrard(400);
+  particle_set set = make_evrard(400);
   const double directions[3][3] = { { 0, 0, 0 }, { 0, 1, 0 }, { 3, 1, 0.5 } };
   for (int d = 0; d < 6; ++d)
   {
@@ -320,13 +320,13 @@ static void test_brute_force(void** state)
     free(image);
     mcor_free_projection(&found);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A box: its frame is the image, along the line of sight it chooses particles; images are as good as copies. */
 static void test_box(void** state)
 {
-  core_set set = core_make_random(60, 1, 0.05, 0.2, 8), copies = core_make_set(60 * 45);
+  particle_set set = core_make_random(60, 1, 0.05, 0.2, 8), copies = particle_set_make(60 * 45);
   for (int64_t i = 0; i < copies.count; ++i)
   {
     const int64_t from = i % 60, n = i / 60, image[3] = { n % 3 - 1, n / 3 % 5 - 2, n / 15 - 1 };
@@ -365,14 +365,14 @@ static void test_box(void** state)
     "images differ by %.2g", error_of(&found, expected.values, 1) / most);
   mcor_free_projection(&found);
   mcor_free_projection(&expected);
-  core_free_set(&copies);
-  core_free_set(&set);
+  particle_set_free(&copies);
+  particle_set_free(&set);
 }
 
 /* Sums and means of a scalar: by volumes, by a weight, by masses; with volumes that are computed. */
 static void test_weights(void** state)
 {
-  core_set set = make_evrard(300);
+  particle_set set = make_evrard(300);
   double *weight = malloc(300 * sizeof *weight), *product = malloc(300 * sizeof *product);
   assert_true(weight && product);
   for (int i = 0; i < 300; ++i)
@@ -428,14 +428,14 @@ static void test_weights(void** state)
   mcor_free_widening(&widening);
   free(weight);
   free(product);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* ---- the same bits ---- */
 
 typedef struct rank_job
 {
-  const core_set* set;
+  const particle_set* set;
   mcor_projection found[MOST_RANKS];
   mcor_status status[MOST_RANKS];
 } rank_job;
@@ -450,11 +450,11 @@ static void project_part(core_rank* rank, void* data)
 {
   rank_job* job = data;
   const int r = rank->number, count = rank->world->count;
-  core_set part = core_make_set(job->set->count);
+  particle_set part = particle_set_make(job->set->count);
   part.count = 0;
   for (int64_t i = r; i < job->set->count; i += count)
   {
-    core_append(&part, job->set, i);
+    particle_set_append(&part, job->set, i);
   }
   const mcor_input input = input_of(&part);
   mcor_options options = project_options(MCOR_QUINTIC_SPLINE);
@@ -470,7 +470,7 @@ static void project_part(core_rank* rank, void* data)
     core_leave(rank);
   }
   mcor_free_context(context);
-  core_free_set(&part);
+  particle_set_free(&part);
 }
 
 static int same_bits(const mcor_projection* a, const mcor_projection* b)
@@ -482,9 +482,9 @@ static int same_bits(const mcor_projection* a, const mcor_projection* b)
 
 static void test_same_bits(void** state)
 {
-  core_set set = make_evrard(9001);
+  particle_set set = make_evrard(9001);
   int64_t* order = core_make_order(set.count, 4);
-  core_set shuffled = core_permute(&set, order);
+  particle_set shuffled = core_permute(&set, order);
   const mcor_options options = project_options(MCOR_QUINTIC_SPLINE);
   const mcor_view view = view_of_bits();
   mcor_input input = input_of(&set);
@@ -517,16 +517,16 @@ static void test_same_bits(void** state)
   }
   mcor_free_projection(&alone);
   free(order);
-  core_free_set(&shuffled);
-  core_free_set(&set);
+  particle_set_free(&shuffled);
+  particle_set_free(&set);
 }
 
 /* ---- what is refused, or empty ---- */
 
 static void test_bad_input(void** state)
 {
-  core_set set = core_make_block(3, 0.1, 2, core_slope),
-           flat = core_make_block(3, 0, 2, core_slope);
+  particle_set set = core_make_block(3, 0.1, 2, core_slope),
+               flat = core_make_block(3, 0, 2, core_slope);
   for (int i = 0; i < 27; ++i)
   {
     flat.position[3 * i + 1] = 2;
@@ -556,7 +556,7 @@ static void test_bad_input(void** state)
     { { .box = { 0, 1, 0, 20, 0, 1 }, .resolution = 8 }, 6, MCOR_INVALID_ARGUMENT } };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
-    core_set copy = core_permute(cases[i].change == 5 ? &flat : &set,
+    particle_set copy = core_permute(cases[i].change == 5 ? &flat : &set,
       (int64_t[27]){ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
         22, 23, 24, 25, 26 });
     mcor_input input = input_of(&copy);
@@ -587,7 +587,7 @@ static void test_bad_input(void** state)
     CORE_CHECK(status == cases[i].status && *mcor_last_error(*state), "case %d: %s", (int)i,
       mcor_status_name(status));
     assert_true(!found.values && found.size[0] == 0);
-    core_free_set(&copy);
+    particle_set_free(&copy);
   }
   /* Nothing, and nothing in a box; solids and particles that do not count. */
   mcor_input input = input_of(&set);
@@ -614,8 +614,8 @@ static void test_bad_input(void** state)
   view.box[0] = NAN;
   assert_int_equal(mcor_project(*state, &input, &options, &view, &found), MCOR_INVALID_ARGUMENT);
   CORE_CHECK(strstr(mcor_last_error(*state), "numbers"), "%s", mcor_last_error(*state));
-  core_free_set(&set);
-  core_free_set(&flat);
+  particle_set_free(&set);
+  particle_set_free(&flat);
 }
 
 int main(void)

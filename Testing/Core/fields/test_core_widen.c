@@ -13,10 +13,10 @@
 #define WIDEST 2.0
 
 /* A block of n x n x n, a sheet above it, a thread, and lone drops. */
-static core_set make_scene(int n, double jitter, uint64_t seed)
+static particle_set make_scene(int n, double jitter, uint64_t seed)
 {
   const int side = 2 * n;
-  core_set set = core_make_set((int64_t)n * n * n + side * side + side + 4);
+  particle_set set = particle_set_make((int64_t)n * n * n + side * side + side + 4);
   int64_t p = 0;
   for (int i = 0; i < n * n * n; ++i, ++p)
   {
@@ -57,7 +57,7 @@ static double cubic(double q)
     3.14159265358979323846;
 }
 
-static double distance(const core_set* set, int64_t i, int64_t j)
+static double distance(const particle_set* set, int64_t i, int64_t j)
 {
   double sum = 0;
   for (int a = 0; a < 3; ++a)
@@ -68,7 +68,7 @@ static double distance(const core_set* set, int64_t i, int64_t j)
   return sqrt(sum);
 }
 
-static double weight_with(const core_set* set, int64_t j, double s)
+static double weight_with(const particle_set* set, int64_t j, double s)
 {
   const double h = s * set->smoothing_length[j];
   double sum = 0;
@@ -87,7 +87,7 @@ static double ramp(double x, double from, double to)
 
 /* The widest step whose sum is high enough, and the way to the next; a margin where neighbours are on both sides, more
  * where few are on one, and less than the iso value where many are. */
-static double expected_factor(const core_set* set, int64_t j, double iso)
+static double expected_factor(const particle_set* set, int64_t j, double iso)
 {
   double crowd = 0, offset[3] = { 0 };
   for (int64_t k = 0; k < set->count; ++k)
@@ -121,7 +121,7 @@ static double expected_factor(const core_set* set, int64_t j, double iso)
   return 1 + (s - 1) * ramp(crowd, 2.2, 4.5);
 }
 
-static void expect_factors(const core_set* set, const mcor_widening* w, double iso)
+static void expect_factors(const particle_set* set, const mcor_widening* w, double iso)
 {
   double* s = malloc((size_t)set->count * sizeof *s);
   assert_non_null(s);
@@ -159,7 +159,7 @@ static void test_factors(void** state)
 {
   mcor_context* context = *state;
   const double iso = 0.5;
-  core_set set = make_scene(9, 0.24, 3);
+  particle_set set = make_scene(9, 0.24, 3);
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
@@ -172,7 +172,7 @@ static void test_factors(void** state)
     expect_factors(&set, &w, iso);
     mcor_free_widening(&w);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* The surface, but for the array of factors, is that of the widened lengths, in cubes of one size as large. */
@@ -219,7 +219,7 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
  * plane. */
 static void test_surface(void** state)
 {
-  core_set set = make_scene(8, 0.24, 5);
+  particle_set set = make_scene(8, 0.24, 5);
   for (int way = 0; way < 64; ++way)
   {
     for (int64_t j = 0; j < set.count; ++j)
@@ -241,14 +241,14 @@ static void test_surface(void** state)
     }
     check_surface(*state, &input, options);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Cubes follow the lengths themselves; and a call with the same particles has the same result, whatever is kept. */
 static void test_levels_and_reuse(void** state)
 {
   mcor_context* context = *state;
-  core_set set = make_scene(8, 0.24, 7);
+  particle_set set = make_scene(8, 0.24, 7);
   static const double isos[4] = { 2, 3.3, 3.3, 3.3 };
   static const double widest[4] = { 1.7, 1.7, 2, 1 };
   for (int64_t j = 0; j < set.count; ++j)
@@ -278,14 +278,14 @@ static void test_levels_and_reuse(void** state)
       mcor_free_surface(&surface);
     }
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_refused(void** state)
 {
   mcor_context* context = *state;
   const double iso = 0.5;
-  core_set set = make_scene(3, 0, 1);
+  particle_set set = make_scene(3, 0, 1);
   const mcor_input input = core_input(&set);
   mcor_surface surface;
   mcor_options options = core_options(&iso);
@@ -297,7 +297,7 @@ static void test_refused(void** state)
     assert_non_null(strstr(mcor_last_error(context), "widening"));
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

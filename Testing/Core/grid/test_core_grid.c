@@ -35,7 +35,7 @@ static void test_estimate(void** state)
   const double spacings[] = { 1, 1e-3, 250 };
   for (int s = 0; s < 3; ++s)
   {
-    core_set set = core_make_block(30, 0, 1, core_ball);
+    particle_set set = core_make_block(30, 0, 1, core_ball);
     for (int64_t i = 0; i < 3 * set.count; ++i)
     {
       set.position[i] *= spacings[s];
@@ -51,11 +51,11 @@ static void test_estimate(void** state)
       fabs(h / 1.3 - 1) < 0.02 && surface.statistics.smoothing_length_max / spacings[s] == h,
       "estimated smoothing length %g spacings", h);
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
-static uint64_t hash_of(mcor_context* context, const core_set* set, double iso)
+static uint64_t hash_of(mcor_context* context, const particle_set* set, double iso)
 {
   const mcor_input input = core_input(set);
   mcor_options options = core_options(&iso);
@@ -72,7 +72,7 @@ static uint64_t hash_of(mcor_context* context, const core_set* set, double iso)
 /* `count` particles, all in few cells, `coincident` of them at one place, in two orders: the same bits. */
 static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int coincident)
 {
-  core_set set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
+  particle_set set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
   uint64_t seed = 9;
   double iso = 0; /* between the mean of the crowd and that of those beside it */
   for (int i = 0; i < count + 40; ++i)
@@ -88,13 +88,13 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
     }
   }
   int64_t* order = core_make_order(set.count, 4);
-  core_set permuted = core_permute(&set, order);
+  particle_set permuted = core_permute(&set, order);
   const uint64_t expected = hash_of(context, &set, iso);
   CORE_CHECK(hash_of(context, &permuted, iso) == expected && hash_of(gpu, &set, iso) == expected &&
       hash_of(gpu, &permuted, iso) == expected,
     "%d particles, %d at one place: other bits", count, coincident);
-  core_free_set(&permuted);
-  core_free_set(&set);
+  particle_set_free(&permuted);
+  particle_set_free(&set);
   free(order);
 }
 

@@ -22,7 +22,7 @@ enum
 
 typedef struct changed_call
 {
-  core_set set;
+  particle_set set;
   double *before, iso; /* the positions as they were */
   mcor_input input;
   mcor_options options;
@@ -50,7 +50,7 @@ static void begin_call(changed_call* call, int which)
 
 static void free_call(changed_call* call)
 {
-  core_free_set(&call->set);
+  particle_set_free(&call->set);
   free(call->before);
 }
 
@@ -74,7 +74,7 @@ typedef struct changer
 
 static void change(const changer* c)
 {
-  const core_set* set = &c->call->set;
+  const particle_set* set = &c->call->set;
   for (int64_t i = 0; i < set->count; ++i)
   {
     for (int a = 0; a < 3; ++a)

@@ -18,7 +18,7 @@ static void test_far_apart(void** state)
     DROPS = 40
   };
   const double iso = 0.5;
-  core_set set = core_make_set(DROPS);
+  particle_set set = particle_set_make(DROPS);
   uint64_t seed = 5;
   for (int i = 0; i < DROPS; ++i)
   {
@@ -39,14 +39,14 @@ static void test_far_apart(void** state)
   assert_int_equal(surface.point_count, 6 * DROPS);
   assert_int_equal(surface.triangle_count, 8 * DROPS);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Unscaled smoothing lengths that reach far beyond the lattice: pairs, and computed volumes. */
 static void test_far_reach(void** state)
 {
   const double iso = 0;
-  core_set set = core_make_block(6, 0.2, 7, core_slope);
+  particle_set set = core_make_block(6, 0.2, 7, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.smoothing_length[i] = 130;
@@ -73,14 +73,14 @@ static void test_far_reach(void** state)
       "kind %d: %lld triangles in single, %lld in double precision", kind, (long long)triangles[0],
       (long long)triangles[1]);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* The unit of the scalar changes nothing: neither the mesh nor which cut vertices are exact. */
 static void test_magnitude(void** state)
 {
   const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  particle_set set = core_make_block(8, 0.2, 3, core_slope);
   for (int p = 0; p < 2; ++p)
   {
     int64_t points = 0, cut = 0;
@@ -108,14 +108,14 @@ static void test_magnitude(void** state)
       free(scaled);
     }
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A threshold that is some vertex's own weight. */
 static void test_exact_threshold(void** state)
 {
   const double iso = 0;
-  core_set set = core_make_block(7, 0.35, 9, core_slope);
+  particle_set set = core_make_block(7, 0.35, 9, core_slope);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_WEIGHT_SUM;
@@ -133,7 +133,7 @@ static void test_exact_threshold(void** state)
   }
   CORE_CHECK(thresholds > 50, "%d thresholds", thresholds);
   mcor_free_surface(&whole);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Coincident particles: many are sorted in no time, and an earlier scalar leaves no trace. */
@@ -144,8 +144,8 @@ static void test_coincident(void** state)
     PARKED = 200000
   };
   const double iso = 0.1;
-  core_set block = core_make_block(8, 0.2, 3, core_slope);
-  core_set set = core_make_set(block.count + PARKED);
+  particle_set block = core_make_block(8, 0.2, 3, core_slope);
+  particle_set set = particle_set_make(block.count + PARKED);
   uint64_t seed = 11;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -179,8 +179,8 @@ static void test_coincident(void** state)
   mcor_free_surface(&reused);
   mcor_free_surface(&fresh);
   free(other);
-  core_free_set(&set);
-  core_free_set(&block);
+  particle_set_free(&set);
+  particle_set_free(&block);
 }
 
 /* A plateau at the iso value, to within rounding: what another iso value evaluated before does not
@@ -188,7 +188,7 @@ static void test_coincident(void** state)
 static void test_plateau(void** state)
 {
   const double plateau = (double)0.3f;
-  core_set set = core_make_block(16, 0.2, 3, core_slope);
+  particle_set set = core_make_block(16, 0.2, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = set.position[3 * i] < 1 ? 0 : plateau;
@@ -213,14 +213,14 @@ static void test_plateau(void** state)
       (long long)both.triangle_count, (long long)alone);
     mcor_free_surface(&both);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A kernel with negative lobes may leave no density to divide by. */
 static void test_no_density(void** state)
 {
   const double iso = 0.5;
-  core_set set = core_make_set(17);
+  particle_set set = particle_set_make(17);
   for (int i = 0; i < 17; ++i)
   {
     memset(set.position + 3 * i, 0, 3 * sizeof(double));
@@ -242,7 +242,7 @@ static void test_no_density(void** state)
   options.sph_kernel = MCOR_CUBIC_SPLINE;
   surface = core_extract(*state, &input, &options);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: of a lattice of 10^12 cells, a closed surface
@@ -250,10 +250,8 @@ static void test_no_density(void** state)
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");
-  particle_set made = { 0 };
-  assert_true(entry && entry->make(&made));
-  const core_set set = { made.count, made.position, made.smoothing_length, made.volume, made.scalar,
-    made.solid, 0 };
+  particle_set set = { 0 };
+  entry->make(&set);
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&entry->iso);
   options.node_threshold = options.vertex_threshold = 0; /* closed */
@@ -261,10 +259,8 @@ static void test_wide_range(void** state)
   mesh_report report = core_check_mesh(&surface);
   assert_true(surface.triangle_count > 5000 && surface.statistics.virtual_cells > 1000000000000);
   assert_true(report.boundary_edges == 0 && report.components == 1 && report.euler == 2);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
-  const double range = oracle_scalar_range(&particles);
+  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
+  const double range = oracle_scalar_range(&set);
   for (int64_t v = 0; v < surface.point_count; ++v)
   {
     oracle_sample sample;
@@ -275,7 +271,7 @@ static void test_wide_range(void** state)
   oracle_free_field(&field);
   mesh_free_report(&report);
   mcor_free_surface(&surface);
-  particle_set_free(&made);
+  particle_set_free(&set);
 }
 
 int main(void)

@@ -15,13 +15,13 @@
 #define BLOCK (SIDE * SIDE * SIDE)
 
 /* The block, and `more` particles behind it, in which nothing is as it should be. */
-static core_set add_particles(const core_set* block, int more)
+static particle_set add_particles(const particle_set* block, int more)
 {
-  core_set set = core_make_set(block->count + more);
+  particle_set set = particle_set_make(block->count + more);
   set.count = 0;
   for (int64_t i = 0; i < block->count; ++i)
   {
-    core_append(&set, block, i);
+    particle_set_append(&set, block, i);
     set.solid[i] = 0;
   }
   set.count += more;
@@ -40,8 +40,8 @@ static core_set add_particles(const core_set* block, int more)
 }
 
 /* The set's surface is the block's, to the last bit. */
-static void check_same(mcor_context* context, const core_set* block, const core_set* set,
-  mcor_input (*input_of)(const core_set*), const mcor_options* options)
+static void check_same(mcor_context* context, const particle_set* block, const particle_set* set,
+  mcor_input (*input_of)(const particle_set*), const mcor_options* options)
 {
   const mcor_input one = input_of(block), other = input_of(set);
   mcor_surface expected = core_extract(context, &one, options);
@@ -54,14 +54,14 @@ static void check_same(mcor_context* context, const core_set* block, const core_
   mcor_free_surface(&expected);
 }
 
-static mcor_input input_with_solids(const core_set* set)
+static mcor_input input_with_solids(const particle_set* set)
 {
   mcor_input input = core_input(set);
   input.solid = set->solid;
   return input;
 }
 
-static mcor_input input_of_masses(const core_set* set)
+static mcor_input input_of_masses(const particle_set* set)
 {
   mcor_input input = input_with_solids(set);
   input.mass = input.volume;
@@ -69,14 +69,14 @@ static mcor_input input_of_masses(const core_set* set)
   return input;
 }
 
-static mcor_input input_with_estimate(const core_set* set)
+static mcor_input input_with_estimate(const particle_set* set)
 {
   mcor_input input = input_with_solids(set);
   input.estimate_smoothing_length = 1;
   return input;
 }
 
-static mcor_input input_without_solids(const core_set* set)
+static mcor_input input_without_solids(const particle_set* set)
 {
   mcor_input input = input_with_solids(set);
   input.ignore_solids = 1;
@@ -86,8 +86,8 @@ static mcor_input input_without_solids(const core_set* set)
 static void test_absent(void** state)
 {
   const double iso = 0;
-  core_set block = core_make_block(SIDE, 0.2, 3, core_ball);
-  core_set set = add_particles(&block, 5);
+  particle_set block = core_make_block(SIDE, 0.2, 3, core_ball);
+  particle_set set = add_particles(&block, 5);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
   memset(block.solid, 0, (size_t)block.count);
@@ -108,28 +108,28 @@ static void test_absent(void** state)
   mcor_surface surface;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
   assert_non_null(strstr(mcor_last_error(*state), "position of particle 1000"));
-  core_free_set(&set);
-  core_free_set(&block);
+  particle_set_free(&set);
+  particle_set_free(&block);
   /* Many, read in several slices, of which those that count stay in order. */
   set = core_make_block(40, 0.2, 3, core_ball);
   assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
-  block = core_make_set(set.count);
+  block = particle_set_make(set.count);
   block.count = 0;
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.solid[i] = (i * 2654435761 >> 7) % 8 == 0;
-    set.solid[i] ? (void)0 : core_append(&block, &set, i);
+    set.solid[i] ? (void)0 : particle_set_append(&block, &set, i);
   }
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be other numbers */
   check_same(*state, &block, &set, input_without_solids, &options);
-  core_free_set(&set);
-  core_free_set(&block);
+  particle_set_free(&set);
+  particle_set_free(&block);
 }
 
 /* `far` particles at great distances behind the block, else like its first one. */
-static core_set add_far(const core_set* block, int far)
+static particle_set add_far(const particle_set* block, int far)
 {
-  core_set set = add_particles(block, far);
+  particle_set set = add_particles(block, far);
   for (int64_t i = block->count; i < set.count; ++i)
   {
     const double place[3] = { 0.5, i % 2 ? 1e7 : -3e9, 1e6 * (double)(i - block->count) };
@@ -146,8 +146,8 @@ static core_set add_far(const core_set* block, int far)
 static void test_few(void** state)
 {
   const double iso = 0.5;
-  core_set block = core_make_block(SIDE, 0.2, 3, core_ball);
-  core_set set = add_far(&block, 8);
+  particle_set block = core_make_block(SIDE, 0.2, 3, core_ball);
+  particle_set set = add_far(&block, 8);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   for (int widest = 1; widest <= 2; ++widest)
@@ -170,22 +170,22 @@ static void test_few(void** state)
     free(text);
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
   set = add_far(&block, 9);
   input = core_input(&set);
   mcor_surface surface;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
   assert_non_null(strstr(mcor_last_error(*state), "far away"));
-  core_free_set(&set);
-  core_free_set(&block);
+  particle_set_free(&set);
+  particle_set_free(&block);
 }
 
 /* Nine are too many, but not where there is a box, or points. */
 static void test_region(void** state)
 {
   const double iso = 0.5, box[6] = { -3, 20, -2.5, 30, -40, 3 };
-  core_set block = core_make_block(SIDE, 0.2, 3, core_ball);
-  core_set set = add_far(&block, 9);
+  particle_set block = core_make_block(SIDE, 0.2, 3, core_ball);
+  particle_set set = add_far(&block, 9);
   const mcor_input near = core_input(&block), input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
@@ -226,16 +226,16 @@ static void test_region(void** state)
     mcor_free_samples(&one);
     mcor_free_samples(&other);
   }
-  core_free_set(&set);
-  core_free_set(&block);
+  particle_set_free(&set);
+  particle_set_free(&block);
 }
 
 /* A zoom: small particles in a lattice of large ones that reach them all. */
 static void test_zoom(void** state)
 {
   const double iso = 0.5;
-  core_set small = core_make_block(SIDE, 0, 1, core_slope);
-  core_set set = core_make_set(small.count + 64);
+  particle_set small = core_make_block(SIDE, 0, 1, core_slope);
+  particle_set set = particle_set_make(small.count + 64);
   for (int64_t i = 0; i < set.count; ++i)
   {
     const int64_t k = i - small.count;
@@ -273,8 +273,8 @@ static void test_zoom(void** state)
     mcor_free_surface(&surface);
   }
   mcor_free_surface(&expected);
-  core_free_set(&set);
-  core_free_set(&small);
+  particle_set_free(&set);
+  particle_set_free(&small);
 }
 
 int main(void)

@@ -13,7 +13,7 @@
 /* A good call, for a test to spoil. */
 typedef struct bad_call
 {
-  core_set set;
+  particle_set set;
   mcor_input input;
   mcor_options options;
   double iso[2];
@@ -31,7 +31,7 @@ static bad_call make_call(void)
 
 static void free_call(bad_call* call)
 {
-  core_free_set(&call->set);
+  particle_set_free(&call->set);
   free(call->vector);
 }
 

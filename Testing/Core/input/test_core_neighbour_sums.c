@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* sum_j m_j W h^d over all particles and their images; m_j = 1 where there are no masses. */
-static double sum_of_all(const core_set* set, const mcor_options* options, int dimension,
+static double sum_of_all(const particle_set* set, const mcor_options* options, int dimension,
   const double* mass, int64_t i, double h)
 {
   double sum = 0;
@@ -43,9 +43,9 @@ static double sum_of_all(const core_set* set, const mcor_options* options, int d
 }
 
 /* In clusters, so that smoothing lengths vary by a factor of 100. */
-static core_set make_clusters(int64_t count, int dimension, uint64_t seed)
+static particle_set make_clusters(int64_t count, int dimension, uint64_t seed)
 {
-  core_set set = core_make_set(count);
+  particle_set set = particle_set_make(count);
   for (int64_t i = 0; i < count; ++i)
   {
     const double size = pow(0.1, (double)(i % 3));
@@ -65,7 +65,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
 {
   char* why;
   const int64_t count = 400;
-  core_set set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
+  particle_set set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
   mcor_options options = core_options(NULL);
   options.sph_kernel = kernel;
   options.dimension = 0;
@@ -105,7 +105,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   }
   /* In another order the same bits. */
   int64_t* order = core_make_order(count, 5);
-  core_set other = core_make_set(count);
+  particle_set other = particle_set_make(count);
   for (int64_t i = 0; i < count; ++i)
   {
     memcpy(other.position + 3 * i, set.position + 3 * order[i], 3 * sizeof(double));
@@ -154,8 +154,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   free(densities);
   free(mass);
   free(again);
-  core_free_set(&set);
-  core_free_set(&other);
+  particle_set_free(&set);
+  particle_set_free(&other);
 }
 
 static void test_sums(void** state)
@@ -179,7 +179,7 @@ static void test_plummer(void** state)
   char* why;
   const int count = 20000;
   const double radii[2] = { 1, 3 }, isos[2] = { 0.0422, 0.000755 };
-  core_set set = core_make_set(count);
+  particle_set set = particle_set_make(count);
   uint64_t seed = 1;
   for (int i = 0; i < count; ++i)
   {
@@ -220,7 +220,7 @@ static void test_plummer(void** state)
       sum / (double)used, radii[k]);
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Where a particle lies does not matter but for whole periods, however many. */

@@ -18,9 +18,9 @@ typedef struct wall_case
 } wall_case;
 
 /* A block whose particles below a plane that is oblique to the lattice are solid. */
-static core_set make_tank(void)
+static particle_set make_tank(void)
 {
-  core_set set = core_make_block(10, 0.2, 3, core_slope);
+  particle_set set = core_make_block(10, 0.2, 3, core_slope);
   for (int64_t j = 0; j < set.count; ++j)
   {
     const double* x = set.position + 3 * j;
@@ -48,7 +48,7 @@ static double iso_of(const wall_case* at)
 /* Where no solid counts, there is nothing to end at: not a bit changes. */
 static void test_without_solids(void** state)
 {
-  core_set set = make_tank();
+  particle_set set = make_tank();
   const wall_case shares[2] = { { .share = 0 }, { .share = 0.5 } };
   for (int field = 0; field < 3; ++field)
   {
@@ -72,7 +72,7 @@ static void test_without_solids(void** state)
       CORE_CHECK(hash[0] == hash[1], "field %d, ignored %d: the surface changes", field, ignored);
     }
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 typedef struct wall_weight
@@ -87,14 +87,12 @@ static int compare_shares(const void* a, const void* b)
 }
 
 /* The solids' share at the solids, the median by the fluid's weight there; with images a period away along y. */
-static double find_share(const core_set* set, oracle_kernel kernel, double period)
+static double find_share(const particle_set* set, oracle_kernel kernel, double period)
 {
-  oracle_particles particles = core_oracle(set);
-  oracle_field field;
   wall_weight at[1000];
   int count = 0;
   double sum = 0, counted = 0;
-  assert_true(oracle_create_field(&field, &particles, kernel, ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(set, kernel, ORACLE_SHEPARD, 1);
   for (int64_t j = 0; j < set->count; ++j)
   {
     const double* x = set->position + 3 * j;
@@ -131,9 +129,9 @@ static int compare_doubles(const void* a, const void* b)
 }
 
 /* The block with 200 solids: so few that all of them are sampled. */
-static core_set make_small_tank(void)
+static particle_set make_small_tank(void)
 {
-  core_set set = make_tank();
+  particle_set set = make_tank();
   double height[2][1000];
   assert_int_equal(set.count, 1000);
   for (int64_t j = 0; j < set.count; ++j)
@@ -151,7 +149,7 @@ static core_set make_small_tank(void)
 /* The share that is measured is that at the solids next to the fluid, whatever the kernel; over a period, too. */
 static void test_share(void** state)
 {
-  core_set set = make_small_tank();
+  particle_set set = make_small_tank();
   const double iso = 0;
   const mcor_input input = core_input(&set);
   for (int i = 0; i < 2 * MCOR_SPH_KERNEL_COUNT; ++i)
@@ -169,14 +167,14 @@ static void test_share(void** state)
       globals.measured.wall_share, expected);
     mcor_free_globals(&globals);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* It gives what it gives by hand, also where the search grid was made for another share, and with global
  * values. */
 static void test_measured(void** state)
 {
-  core_set set = make_tank();
+  particle_set set = make_tank();
   const double iso = 0;
   const wall_case at = { .share = 0.5 };
   mcor_input input = core_input(&set);
@@ -203,14 +201,14 @@ static void test_measured(void** state)
   CORE_CHECK(hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0],
     "the surface of share %g is another one", globals.measured.wall_share);
   mcor_free_globals(&globals);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* By default the wall share is measured for a scalar, and 0 for the free surface; with global
  * values, too. */
 static void test_auto(void** state)
 {
-  core_set set = make_tank();
+  particle_set set = make_tank();
   const double iso = 0, half = 0.5;
   mcor_options options;
   mcor_set_default_options(&options);
@@ -242,13 +240,13 @@ static void test_auto(void** state)
     CORE_CHECK(hash[0] == hash[1] && hash[0] == hash[2], "field %d: another surface", field);
     mcor_free_globals(&globals);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* The free surface takes one half; global values must have been measured for it. */
 static void test_measured_elsewhere(void** state)
 {
-  core_set set = make_tank();
+  particle_set set = make_tank();
   const double iso = 0.5;
   const wall_case at = { .share = MCOR_WALL_SHARE_MEASURED, .field = MCOR_WEIGHT_SUM };
   const mcor_input input = core_input(&set);
@@ -264,7 +262,7 @@ static void test_measured_elsewhere(void** state)
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   assert_non_null(strstr(mcor_last_error(*state), "no wall share"));
   mcor_free_globals(&globals);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

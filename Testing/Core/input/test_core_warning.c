@@ -12,7 +12,7 @@
 
 typedef struct warning_call
 {
-  core_set set;
+  particle_set set;
   mcor_input input;
   mcor_options options;
   double iso[2];
@@ -48,7 +48,7 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
     free(text);
   }
   mcor_free_surface(&surface);
-  core_free_set(&call->set);
+  particle_set_free(&call->set);
   return count;
 }
 
@@ -108,7 +108,7 @@ static void test_neighbours(void** state)
 }
 
 /* The extent is that of the fluid. */
-static void flatten(core_set* set, double height)
+static void flatten(particle_set* set, double height)
 {
   for (int64_t i = 0; i < set->count; ++i)
   {
@@ -119,7 +119,7 @@ static void flatten(core_set* set, double height)
 }
 
 /* In a plane through the axis y, the last `off` of them by a smoothing length. */
-static void tilt(core_set* set, double height, int off)
+static void tilt(particle_set* set, double height, int off)
 {
   flatten(set, height);
   for (int64_t i = 0; i < set->count; ++i)
@@ -179,15 +179,15 @@ static void test_precision(void** state)
 }
 
 /* A block of particles, and a smaller one beside it, with noise. */
-static core_set far_apart(double smaller)
+static particle_set far_apart(double smaller)
 {
   uint64_t seed = 3;
-  core_set large = core_make_block(6, 0.2, 3, core_slope),
-           small = core_make_block(6, 0.2, 4, core_slope);
-  core_set set = core_make_set(2 * large.count);
+  particle_set large = core_make_block(6, 0.2, 3, core_slope),
+               small = core_make_block(6, 0.2, 4, core_slope);
+  particle_set set = particle_set_make(2 * large.count);
   for (int64_t i = 0; i < set.count; ++i)
   {
-    const core_set* from = i < large.count ? &large : &small;
+    const particle_set* from = i < large.count ? &large : &small;
     const int64_t n = i % large.count;
     const double size = from == &large ? 1 : smaller;
     for (int a = 0; a < 3; ++a)
@@ -198,14 +198,14 @@ static core_set far_apart(double smaller)
     set.volume[i] = size * size * size * from->volume[n];
     set.scalar[i] = random_unit(&seed);
   }
-  core_free_set(&large);
-  core_free_set(&small);
+  particle_set_free(&large);
+  particle_set_free(&small);
   return set;
 }
 
 /* residual_max is what the residual may be, also where positions are rounded much: but for the arithmetic's
  * own rounding, in double precision it is no larger. */
-static void check_told_residual(mcor_context* context, const core_set* set, mcor_field field)
+static void check_told_residual(mcor_context* context, const particle_set* set, mcor_field field)
 {
   const double iso = 0.5;
   mcor_input input = core_input(set);
@@ -238,10 +238,10 @@ static void test_told_residual(void** state)
   static const double sizes[] = { 1.0 / 100, 1.0 / 4000, 1.0 / 10000 };
   for (int i = 0; i < 3; ++i)
   {
-    core_set set = far_apart(sizes[i]);
+    particle_set set = far_apart(sizes[i]);
     check_told_residual(*state, &set, MCOR_WEIGHT_SUM);
     check_told_residual(*state, &set, MCOR_SHEPARD);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -266,7 +266,7 @@ static void test_tolerance(void** state)
     free(text);
   }
   mcor_free_surface(&surface);
-  core_free_set(&call.set);
+  particle_set_free(&call.set);
 }
 
 static void test_trimmed(void** state)
@@ -298,7 +298,7 @@ static void test_without_input(void** state)
   assert_null(mcor_describe_warning(MCOR_WARNING_COUNT, &call.input, &call.options, &surface));
   assert_null(mcor_describe_warning(MCOR_WARN_PLANE, NULL, &call.options, &surface));
   mcor_free_surface(&surface);
-  core_free_set(&call.set);
+  particle_set_free(&call.set);
 }
 
 static void test_single_points(void** state)

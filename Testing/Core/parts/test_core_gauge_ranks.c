@@ -16,9 +16,9 @@
 #define SECTIONS 4
 
 /* A block of particles in no order, with holes. */
-static core_set make_sparse(void)
+static particle_set make_sparse(void)
 {
-  core_set set = core_make_random(2500, 12, 0.6, 1.0, 5);
+  particle_set set = core_make_random(2500, 12, 0.6, 1.0, 5);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 0.4;
@@ -28,7 +28,7 @@ static core_set make_sparse(void)
 
 typedef struct gauge_job
 {
-  const core_set* set;
+  const particle_set* set;
   const mcor_gauge_line* lines;
   const mcor_section* sections; /* NULL: gauges */
   int axis, periodic, volumes;  /* volumes: computed */
@@ -54,7 +54,7 @@ static mcor_options gauge_options(const gauge_job* job)
 }
 
 static mcor_input gauge_input(
-  const gauge_job* job, const core_set* set, mcor_array velocity_and_density[2])
+  const gauge_job* job, const particle_set* set, mcor_array velocity_and_density[2])
 {
   mcor_input input = core_input(set);
   if (job->volumes)
@@ -73,9 +73,9 @@ static mcor_input gauge_input(
 
 /* Takes the particles that the box between two sides needs: nearer than `reach` to it, or to its
  * image a period away. */
-static core_set take_near(const gauge_job* job, double low, double high, double reach)
+static particle_set take_near(const gauge_job* job, double low, double high, double reach)
 {
-  core_set part = core_make_set(job->set->count);
+  particle_set part = particle_set_make(job->set->count);
   part.count = 0;
   for (int64_t i = 0; i < job->set->count; ++i)
   {
@@ -87,7 +87,7 @@ static core_set take_near(const gauge_job* job, double low, double high, double 
     }
     if (is_near)
     {
-      core_append(&part, job->set, i);
+      particle_set_append(&part, job->set, i);
     }
   }
   return part;
@@ -117,7 +117,7 @@ static void gauge_part(core_rank* rank, void* data)
   options.ranks = &rank->ranks;
   const double reach = job->globals.measured.support_max * (job->volumes ? 3 : 1) +
     mcor_reach_margin(&options, &job->globals, 0);
-  core_set part = take_near(job, sides[0], sides[1], reach);
+  particle_set part = take_near(job, sides[0], sides[1], reach);
   mcor_array arrays[2];
   const mcor_input input = gauge_input(job, &part, arrays);
   mcor_context* context = NULL;
@@ -134,7 +134,7 @@ static void gauge_part(core_rank* rank, void* data)
     core_leave(rank);
   }
   mcor_free_context(context);
-  core_free_set(&part);
+  particle_set_free(&part);
 }
 
 static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
@@ -175,7 +175,7 @@ static void make_lines(mcor_gauge_line* lines, int axis)
 
 static void test_same_bits(void** state)
 {
-  core_set set = make_sparse();
+  particle_set set = make_sparse();
   for (int kind = 0; kind < 6; ++kind)
   {
     mcor_gauge_line lines[LINES];
@@ -207,7 +207,7 @@ static void test_same_bits(void** state)
     mcor_free_globals(&job.globals);
     mcor_free_gauges(&alone);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
@@ -233,7 +233,7 @@ static void test_same_fluxes(void** state)
     { .shape = MCOR_SECTION_BOX, .points = points[2], .point_count = 2 },
     { .shape = MCOR_SECTION_TRIANGLES, .points = points[3], .point_count = 3 }
   };
-  core_set set = make_sparse();
+  particle_set set = make_sparse();
   for (int kind = 0; kind < 4; ++kind)
   {
     gauge_job job = { .set = &set,
@@ -262,13 +262,13 @@ static void test_same_fluxes(void** state)
     mcor_free_globals(&job.globals);
     mcor_free_fluxes(&alone);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Cubes so small that a box lacks the particles around it. */
 static void test_small_cubes(void** state)
 {
-  core_set set = make_sparse();
+  particle_set set = make_sparse();
   mcor_gauge_line line = { .from = { 0, 0, -7 }, .to = { 0, 0, 7 } };
   gauge_job job = { .set = &set, .lines = &line };
   mcor_array arrays[2];
@@ -282,7 +282,7 @@ static void test_small_cubes(void** state)
   assert_int_equal(mcor_gauge(*state, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
   assert_non_null(strstr(mcor_last_error(*state), "Leave the cube size"));
   mcor_free_globals(&job.globals);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

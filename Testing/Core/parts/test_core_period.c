@@ -50,23 +50,22 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
 /* Opposite sides are alike to the last bit, but for what is trimmed. */
 static void check_sides(const char* name, const mcor_surface* s, const mcor_options* options)
 {
-  oracle_seam seam;
   mesh_report report = core_check_mesh(s);
-  assert_true(oracle_check_seam(options, s->statistics.cube_edges, s, &report, &seam));
+  const oracle_seam seam = oracle_check_seam(options, s->statistics.cube_edges, s, &report);
   CORE_CHECK(seam.joined > 20 && seam.open == 0 && seam.torn == 0 && seam.different == 0,
     "%s: %lld edges of borders are one, %lld are open, %lld torn, %lld points differ", name,
     (long long)seam.joined, (long long)seam.open, (long long)seam.torn, (long long)seam.different);
   mesh_free_report(&report);
 }
 
-static void check_images(mcor_context* context, const char* name, const core_set* set,
+static void check_images(mcor_context* context, const char* name, const particle_set* set,
   const mcor_options* options, int computed)
 {
   mcor_input input = core_input(set);
   input.volume = computed ? (mcor_array){ 0 } : input.volume;
   mcor_surface surface = core_extract(context, &input, options);
   check_sides(name, &surface, options);
-  core_set all = core_add_images(set, options->periodic);
+  particle_set all = core_add_images(set, options->periodic);
   mcor_input other = core_input(&all);
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
@@ -84,7 +83,7 @@ static void check_images(mcor_context* context, const char* name, const core_set
   check_same(name, &surface, &expected);
   mcor_free_surface(&surface);
   mcor_free_surface(&expected);
-  core_free_set(&all);
+  particle_set_free(&all);
 }
 
 static void images_count(void** state)
@@ -92,14 +91,14 @@ static void images_count(void** state)
   const double iso = 0.2, half = 0.5;
   const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
-  core_set set = core_make_period(cube, 5);
+  particle_set set = core_make_period(cube, 5);
   mcor_options options = core_period_options(&iso, around);
   check_images(*state, "all axes", &set, &options, 0);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
   check_images(*state, "computed volumes", &set, &options, 1);
   options.sph_kernel = MCOR_M_PRIME_4;
   check_images(*state, "computed volumes, tensor kernel", &set, &options, 1);
-  core_free_set(&set);
+  particle_set_free(&set);
   set = core_make_period(slab, 6);
   options = core_period_options(&iso, along);
   check_images(*state, "two axes", &set, &options, 0);
@@ -117,7 +116,7 @@ static void images_count(void** state)
     set.scalar[i] = sin(2 * PI * (x / 12 + set.position[3 * i + 1] / 8));
   }
   check_images(*state, "pairs", &set, &options, 0);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Adaptive cubes: levels go around the period, too, of which the finest particles are at a side. With
@@ -129,7 +128,7 @@ static void adaptive_cubes(void** state)
   const double along[6] = { 0, 16, 0, 16, 0, 0 }, around[6] = { 0, 14, 0, 14, 0, 14 };
   for (int i = 0; i < 3; ++i)
   {
-    core_set set = core_make_period(i < 2 ? length : cube, 5);
+    particle_set set = core_make_period(i < 2 ? length : cube, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
@@ -159,7 +158,7 @@ static void adaptive_cubes(void** state)
       options.capping = 0;
     }
     check_images(*state, i == 0 ? "adaptive" : i == 1 ? "free" : "fewer levels", &set, &options, 0);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -170,7 +169,7 @@ static void shifts(void** state)
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, step[3] = { 1.5, -3.5, 21 };
-  core_set set = core_make_period(cube, 7);
+  particle_set set = core_make_period(cube, 7);
   mcor_options options = core_period_options(&iso, around);
   options.cube_size = 0.5;
   mcor_input input = core_input(&set);
@@ -203,7 +202,7 @@ static void shifts(void** state)
   }
   mcor_free_surface(&surface);
   mcor_free_surface(&other);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Cubes fit periods of different lengths; what cannot be is said. */
@@ -228,7 +227,7 @@ static void lengths(void** state)
     { { 0, NAN, 0, 8, 0, 8 }, { 0 }, MCOR_INVALID_ARGUMENT, "along x" } };
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
-  core_set set = core_make_period(cube, 5);
+  particle_set set = core_make_period(cube, 5);
   mcor_input input = core_input(&set);
   input.smoothing_length = (mcor_array){ .constant = 1.3 };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
@@ -253,7 +252,7 @@ static void lengths(void** state)
     }
     mcor_free_surface(&surface);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Adaptive cubes with an edge for each axis: closed but for the sides, where all points have partners, as exact
@@ -265,7 +264,7 @@ static void adaptive_unequal(void** state)
   for (int i = 0; i < 3; ++i)
   {
     double around[6] = { 0, 16, 0, 16, 0, 16 };
-    core_set set = core_make_period(length, 5);
+    particle_set set = core_make_period(length, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
@@ -299,7 +298,7 @@ static void adaptive_unequal(void** state)
     CORE_CHECK(fabs(area / expected - 1) < 0.02, "area %g, expected %g", area, expected);
     mcor_free_surface(&uniform);
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -308,7 +307,7 @@ static void rounded_length(void** state)
 {
   static const double around[6] = { 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16 };
   const double iso = 0.5;
-  core_set set = core_make_random(60, 4, 0.3, 0.3, 4);
+  particle_set set = core_make_random(60, 4, 0.3, 0.3, 4);
   const mcor_input input = core_input(&set);
   mcor_options options = core_period_options(&iso, around);
   assert_true(around[1] / 0.1 > 48);
@@ -318,7 +317,7 @@ static void rounded_length(void** state)
   CORE_CHECK(
     fabs(surface.statistics.cube_size - 0.1) < 1e-9, "cube size %g", surface.statistics.cube_size);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Sides of very many nodes: caps take memory and time for what particles reach of them. What would take all
@@ -326,7 +325,7 @@ static void rounded_length(void** state)
 static void large_sides(void** state)
 {
   const double iso = 0.5, half = 0.5;
-  core_set set = core_make_random(200, 1, 0.05, 0.05, 9);
+  particle_set set = core_make_random(200, 1, 0.05, 0.05, 9);
   mcor_input input = core_input(&set);
   const double around[6] = { -0.5, 0.5, -0.5, 0.5, -0.5, 0.5 };
   mcor_options options = core_period_options(&half, around);
@@ -357,12 +356,12 @@ static void large_sides(void** state)
   CORE_CHECK(surface.statistics.cap_triangles > 1000, "%lld triangles of caps",
     (long long)surface.statistics.cap_triangles);
   mesh_report report;
-  assert_true(mesh_check(
-    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report));
+  mesh_check(
+    surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
   assert_int_equal(report.boundary_edges, 0);
   mesh_free_report(&report);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

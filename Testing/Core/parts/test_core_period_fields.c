@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* The set's scalar as an attribute, which is all that is evaluated. */
-static mcor_input attribute_input(const core_set* set, mcor_array* attribute)
+static mcor_input attribute_input(const particle_set* set, mcor_array* attribute)
 {
   mcor_input input = core_input(set);
   *attribute = input.scalar;
@@ -35,7 +35,7 @@ static void check_equal(const double* values, const double* expected, int count,
 
 /* The field at points, and of those that are in the period with all images as particles. */
 static void check_points(
-  mcor_context* context, const core_set* set, mcor_options* options, uint64_t version)
+  mcor_context* context, const particle_set* set, mcor_options* options, uint64_t version)
 {
   double points[2][3 * POINTS];
   uint64_t seed = 9;
@@ -52,7 +52,7 @@ static void check_points(
   input.particles_version = input.scalar_version = version;
   mcor_samples samples, moved, expected;
   CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &samples));
-  core_set all = core_add_images(set, options->periodic);
+  particle_set all = core_add_images(set, options->periodic);
   const mcor_input other = attribute_input(&all, &images_attribute);
   mcor_options plain = *options;
   memset(plain.periodic, 0, sizeof plain.periodic);
@@ -79,7 +79,7 @@ static void check_points(
   mcor_free_samples(&samples);
   mcor_free_samples(&moved);
   mcor_free_samples(&expected);
-  core_free_set(&all);
+  particle_set_free(&all);
 }
 
 static void points_see_images(void** state)
@@ -88,7 +88,7 @@ static void points_see_images(void** state)
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
   for (int i = 0; i < 8; ++i)
   {
-    core_set set = core_make_period(i % 2 ? slab : cube, 5);
+    particle_set set = core_make_period(i % 2 ? slab : cube, 5);
     mcor_options options = core_period_options(NULL, i % 2 ? along : around);
     options.iso_count = 0;
     options.precision = i % 4 < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
@@ -98,7 +98,7 @@ static void points_see_images(void** state)
       core_stretch_period(&set, options.periodic);
     }
     check_points(*state, &set, &options, i == 1 ? 77 : 0);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -144,7 +144,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
 {
   const int cube[3] = { 8, 8, 8 };
   double around[6] = { 0, 8, 0, 8, 0, 8 };
-  core_set set = core_make_period(cube, 8);
+  particle_set set = core_make_period(cube, 8);
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     set.position[i] = i % 11 == 0 ? 0 : floor(set.position[i] * 1024) / 1024;
@@ -153,7 +153,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   {
     core_stretch_period(&set, around);
   }
-  core_set all = core_add_images(&set, around);
+  particle_set all = core_add_images(&set, around);
   mcor_array attribute, images_attribute;
   const mcor_input input = attribute_input(&set, &attribute);
   const mcor_input other = attribute_input(&all, &images_attribute);
@@ -194,8 +194,8 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   }
   mcor_free_derivatives(&found);
   mcor_free_derivatives(&expected);
-  core_free_set(&all);
-  core_free_set(&set);
+  particle_set_free(&all);
+  particle_set_free(&set);
 }
 
 static void derivatives_see_images(void** state)

@@ -14,30 +14,30 @@
 
 /* ---- Who has what ---- */
 
-typedef int (*split_function)(const core_set* set, int64_t i, int ranks);
+typedef int (*split_function)(const particle_set* set, int64_t i, int ranks);
 
-static int split_scattered(const core_set* set, int64_t i, int ranks)
+static int split_scattered(const particle_set* set, int64_t i, int ranks)
 {
   (void)set;
   uint64_t seed = (uint64_t)i + 1;
   return (int)(random_bits(&seed) % (uint64_t)ranks);
 }
 
-static int split_to_last(const core_set* set, int64_t i, int ranks)
+static int split_to_last(const particle_set* set, int64_t i, int ranks)
 {
   (void)set;
   (void)i;
   return ranks - 1;
 }
 
-static int split_slabs(const core_set* set, int64_t i, int ranks)
+static int split_slabs(const particle_set* set, int64_t i, int ranks)
 {
   const double at = (set->position[3 * i] / 14 + 0.5) * ranks;
   return at < 0 ? 0 : at < ranks ? (int)at : ranks - 1;
 }
 
 /* All but a few particles on the first one. */
-static int split_uneven(const core_set* set, int64_t i, int ranks)
+static int split_uneven(const particle_set* set, int64_t i, int ranks)
 {
   (void)set;
   return i < ranks ? (int)i : 0;
@@ -50,16 +50,16 @@ static const char* const split_names[] = { "scattered", "all on one", "slabs", "
 #define SPLITS (sizeof splits / sizeof splits[0])
 
 /* The particles of one rank, backwards. */
-static core_set take_part(const core_set* set, split_function split, int ranks, int rank)
+static particle_set take_part(const particle_set* set, split_function split, int ranks, int rank)
 {
-  core_set part = core_make_set(set->count);
+  particle_set part = particle_set_make(set->count);
   part.has_solids = set->has_solids;
   part.count = 0;
   for (int64_t i = set->count - 1; i >= 0; --i)
   {
     if (split(set, i, ranks) == rank)
     {
-      core_append(&part, set, i);
+      particle_set_append(&part, set, i);
     }
   }
   return part;
@@ -76,7 +76,7 @@ typedef struct measure_case
 
 typedef struct measure_job
 {
-  const core_set* set;
+  const particle_set* set;
   const measure_case* what;
   split_function split;
   mcor_status status[CORE_MOST_RANKS];
@@ -86,7 +86,7 @@ typedef struct measure_job
 } measure_job;
 
 static mcor_input measure_input(
-  const core_set* set, const measure_case* what, mcor_array attributes[3])
+  const particle_set* set, const measure_case* what, mcor_array attributes[3])
 {
   mcor_input input = core_input(set);
   input.estimate_smoothing_length = what->estimate;
@@ -117,7 +117,7 @@ static void measure_part(core_rank* rank, void* data)
   measure_job* job = data;
   mcor_array attributes[3];
   const int r = rank->number;
-  core_set part = take_part(job->set, job->split, rank->world->count, r);
+  particle_set part = take_part(job->set, job->split, rank->world->count, r);
   if (r == job->failing)
   {
     part.position[7] = NAN;
@@ -137,7 +137,7 @@ static void measure_part(core_rank* rank, void* data)
     core_leave(rank);
   }
   mcor_free_context(context);
-  core_free_set(&part);
+  particle_set_free(&part);
 }
 
 static int same_globals(const mcor_globals* a, const mcor_globals* b)
@@ -153,7 +153,7 @@ static int same_globals(const mcor_globals* a, const mcor_globals* b)
   return same;
 }
 
-static void check_globals(mcor_context* context, const core_set* set, const measure_case* what)
+static void check_globals(mcor_context* context, const particle_set* set, const measure_case* what)
 {
   mcor_array attributes[3];
   const mcor_input input = measure_input(set, what, attributes);
@@ -182,9 +182,9 @@ static void check_globals(mcor_context* context, const core_set* set, const meas
   mcor_free_globals(&expected);
 }
 
-static core_set make_set(void)
+static particle_set make_set(void)
 {
-  core_set set = core_make_random(3000, 14, 0.7, 2, 17);
+  particle_set set = core_make_random(3000, 14, 0.7, 2, 17);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] += core_ball(set.position + 3 * i);
@@ -199,7 +199,7 @@ static void global_values(void** state)
   const measure_case cases[] = { { "volumes", 0, 0, MCOR_SHEPARD },
     { "masses, estimate", 1, 1, MCOR_SHEPARD }, { "sum", 0, 1, MCOR_SUM },
     { "free surface", 1, 0, MCOR_WEIGHT_SUM } };
-  core_set set = make_set();
+  particle_set set = make_set();
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     check_globals(*state, &set, &cases[i]);
@@ -213,13 +213,13 @@ static void global_values(void** state)
     set.position[3 * i + 2] = i % 2 ? 0 : set.position[3 * i + 2];
   }
   check_globals(*state, &set, &rough);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void not_finite_attributes(void** state)
 {
   const measure_case what = { "not finite", 0, 1, MCOR_WEIGHT_SUM };
-  core_set set = make_set();
+  particle_set set = make_set();
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = i == 1 ? 1 : 2; /* where uneven, ranks have one value each, but not the same */
@@ -227,7 +227,7 @@ static void not_finite_attributes(void** state)
   check_globals(*state, &set, &what);
   set.scalar[1234] = INFINITY;
   check_globals(*state, &set, &what);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* One rank's fault is an error on all, and nobody waits. */
@@ -235,7 +235,7 @@ static void faults(void** state)
 {
   (void)state;
   const measure_case what = { "fault", 0, 0, MCOR_SHEPARD };
-  core_set set = make_set();
+  particle_set set = make_set();
   for (int failing = 0; failing < 3; ++failing)
   {
     measure_job job = { .set = &set, .what = &what, .split = split_slabs, .failing = failing };
@@ -249,7 +249,7 @@ static void faults(void** state)
       assert_null(job.globals[r].components);
     }
   }
-  core_set none = core_make_set(0);
+  particle_set none = particle_set_make(0);
   measure_job job = { .set = &none, .what = &what, .split = split_slabs, .failing = -1 };
   core_world world;
   core_run_ranks(2, measure_part, &job, &world);
@@ -257,15 +257,15 @@ static void faults(void** state)
   {
     assert_int_equal(job.status[r], MCOR_INVALID_DATA);
   }
-  core_free_set(&none);
-  core_free_set(&set);
+  particle_set_free(&none);
+  particle_set_free(&set);
 }
 
 /* ---- Surfaces of parts ---- */
 
 typedef struct parts_job
 {
-  const core_set* set;
+  const particle_set* set;
   const mcor_options* options;
   const double* sides; /* [ranks - 1], along x */
   mcor_globals globals;
@@ -284,7 +284,7 @@ static void extract_part(core_rank* rank, void* data)
   memcpy(options.box, box, sizeof box);
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
-  core_set near = core_take_near(job->set, box, job->margin);
+  particle_set near = core_take_near(job->set, box, job->margin);
   const mcor_input input = core_input(&near);
   mcor_context* context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
@@ -298,13 +298,13 @@ static void extract_part(core_rank* rank, void* data)
     core_leave(rank);
   }
   mcor_free_context(context);
-  core_free_set(&near);
+  particle_set_free(&near);
 }
 
 /* A surface that winds. */
-static core_set make_band(void)
+static particle_set make_band(void)
 {
-  core_set set = core_make_block(14, 0.2, 3, core_slope);
+  particle_set set = core_make_block(14, 0.2, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     const double* x = set.position + 3 * i;
@@ -313,7 +313,7 @@ static core_set make_band(void)
   return set;
 }
 
-static void check_parts(mcor_context* context, const core_set* set, const mcor_options* options,
+static void check_parts(mcor_context* context, const particle_set* set, const mcor_options* options,
   int ranks, const double* sides, double margin, int64_t least)
 {
   const mcor_input input = core_input(set);
@@ -347,7 +347,7 @@ static void parts_of_a_band(void** state)
   const double iso[2] = { 0.3, 2 };
   const double two[] = { 0.4 }, three[] = { -1.2, -1.0 },
                eight[] = { -1000, -7, -3, -0.05, 0.1, 4.4, 1000 };
-  core_set set = make_band();
+  particle_set set = make_band();
   mcor_options options = core_options(iso);
   options.iso_count = 2;
   check_parts(*state, &set, &options, 1, NULL, 9, 1000);
@@ -357,14 +357,14 @@ static void parts_of_a_band(void** state)
   options.compact = 1;
   check_parts(*state, &set, &options, 3, three, 14, 1000);
   check_parts(*state, &set, &options, 8, eight, 14, 1000);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Lines in the plane, on squares of one size and of several. */
 static void lines_of_parts(void** state)
 {
   const double iso = 0.3, two[] = { 0.4 }, three[] = { -3.1, 2.9 };
-  core_set set = core_make_set(30 * 30);
+  particle_set set = particle_set_make(30 * 30);
   uint64_t seed = 8;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -394,7 +394,7 @@ static void lines_of_parts(void** state)
     check_parts(*state, &set, &options, 2, two, 80, 100);
     check_parts(*state, &set, &options, 3, three, 80, 100);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

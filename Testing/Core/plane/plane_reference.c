@@ -38,7 +38,7 @@ static double plane_margin(const plane_field* f, const plane_sample* s, const do
 /* Volumes of particles are areas. */
 plane_sample plane_evaluate(const plane_field* f, double u, double v)
 {
-  const core_set* set = f->set;
+  const particle_set* set = f->set;
   const mcor_options* o = f->options;
   plane_sample s = { 0 };
   double sum = 0, slope[2] = { 0, 0 }, moments[3] = { 0, 0, 0 };
@@ -161,9 +161,9 @@ mcor_options plane_options(const double* iso)
   return options;
 }
 
-core_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed)
+particle_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed)
 {
-  core_set set = core_make_set((int64_t)n * n);
+  particle_set set = particle_set_make((int64_t)n * n);
   for (int64_t i = 0; i < set.count; ++i)
   {
     double* x = set.position + 3 * i;

@@ -11,7 +11,7 @@
 
 typedef struct plane_field
 {
-  const core_set* set;
+  const particle_set* set;
   const mcor_options* options;
   int axis;
   const double* region; /* [4] or NULL: from, to along u and v, where centres of squares are */
@@ -47,6 +47,6 @@ mcor_options plane_options(const double* iso);
 
 /* n x n particles of spacing 1 around the origin, displaced by up to `jitter` in the plane, smoothing length
  * 1.3 to 1.3 spread, volume 1. */
-core_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed);
+particle_set plane_make(int n, double jitter, double spread, int axis, double at, uint64_t seed);
 
 #endif

@@ -19,8 +19,8 @@ static mcor_options fill_options(const double* isos, int count)
   return options;
 }
 
-static fill_report extract(mcor_context* context, const core_set* set, const mcor_options* options,
-  int axis, mcor_surface* surface)
+static fill_report extract(mcor_context* context, const particle_set* set,
+  const mcor_options* options, int axis, mcor_surface* surface)
 {
   const mcor_input input = core_input(set);
   const plane_field field = { set, options, axis, NULL };
@@ -42,7 +42,7 @@ static void test_free_surface(void** state)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      core_set set = plane_make(12, 0.3, 1.4, axis, 2 * axis - 3, (uint64_t)(1 + k));
+      particle_set set = plane_make(12, 0.3, 1.4, axis, 2 * axis - 3, (uint64_t)(1 + k));
       mcor_options options = fill_options(&iso, 1);
       options.field = MCOR_WEIGHT_SUM;
       options.sph_kernel = kernels[k];
@@ -57,7 +57,7 @@ static void test_free_surface(void** state)
       CORE_CHECK(report.inverted == 0, "inverted %g", report.inverted);
       options.preview ? (void)0 : fill_check_points(&field, &surface);
       mcor_free_surface(&surface);
-      core_free_set(&set);
+      particle_set_free(&set);
     }
   }
 }
@@ -66,7 +66,7 @@ static void test_free_surface(void** state)
 static void test_bands(void** state)
 {
   const double isos[7] = { 3, -60, 5.5, -20, 3, 1e9, 0 };
-  core_set set = plane_make(20, 0.2, 1.2, 1, 4, 3);
+  particle_set set = plane_make(20, 0.2, 1.2, 1, 4, 3);
   mcor_options options = fill_options(isos, 7);
   mcor_surface surface;
   const plane_field field = { &set, &options, 1, NULL };
@@ -105,7 +105,7 @@ static void test_bands(void** state)
   {
     check_close(bands[i], area[i] - area[i + 1], 1e-9, "a band");
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Inside of the fluid only: by weight, by eigenvalue, at walls. */
@@ -114,7 +114,7 @@ static void test_trimming(void** state)
   const double isos[3] = { -1e3, -2.2, 3.1 };
   for (int mode = 0; mode < 6; ++mode)
   {
-    core_set set = plane_make(16, 0.25, 1, 0, 2, (uint64_t)(4 + mode));
+    particle_set set = plane_make(16, 0.25, 1, 0, 2, (uint64_t)(4 + mode));
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.scalar[i] = set.position[3 * i + 1] + 0.3 * set.position[3 * i + 2];
@@ -148,7 +148,7 @@ static void test_trimming(void** state)
     }
     CORE_CHECK(mode < 4 || report.area < 16 * 12.5, "%g reaches into the wall", report.area);
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -160,8 +160,8 @@ static void test_random(void** state)
   for (int round = 0; round < 40; ++round)
   {
     const int axis = (int)(random_bits(&seed) % 3), count = 1 + (int)(random_bits(&seed) % 5);
-    core_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
-      axis, 3 * random_unit(&seed), seed);
+    particle_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45,
+      1 + 2 * random_unit(&seed), axis, 3 * random_unit(&seed), seed);
     double isos[5];
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -189,7 +189,7 @@ static void test_random(void** state)
     area += report.area;
     inverted += report.inverted;
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
   /* Where noise crosses two values more than once on one edge. */
   CORE_CHECK(inverted < 1e-4 * area, "%g of %g is inverted", inverted, area);
@@ -201,19 +201,19 @@ static void test_boxes(void** state)
   static const core_cut cuts[] = { { "4 boxes", { 0, 1, 1 }, { { 0 }, { 0.1 }, { -0.7 } } },
     { "thin ones", { 0, 2, 0 }, { { 0 }, { 1.1, 1.3 } } } };
   const double isos[2] = { -8, 2 };
-  core_set set = plane_make(14, 0.3, 1.3, 0, 4, 9);
+  particle_set set = plane_make(14, 0.3, 1.3, 0, 4, 9);
   mcor_options options = fill_options(isos, 2);
   const mcor_input input = core_input(&set);
   core_ask_for_all(&options);
   core_check_these_cuts(*state, "filled", &input, &options, cuts, 2);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* One period is filled from side to side: with fluid everywhere, all of it. */
 static void test_period(void** state)
 {
   const double isos[2] = { -1e3, 2 };
-  core_set set = plane_make(12, 0.2, 1.2, 1, 0.5, 2);
+  particle_set set = plane_make(12, 0.2, 1.2, 1, 0.5, 2);
   mcor_options options = fill_options(isos, 2);
   const double period[6] = { -6, 6, 0, 0, -6, 6 };
   memcpy(options.periodic, period, sizeof period);
@@ -226,16 +226,16 @@ static void test_period(void** state)
   const fill_report strip = extract(*state, &set, &options, 1, &surface);
   CORE_CHECK(fabs(strip.area - 144) < 8, "a strip of %g", strip.area);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Seeds, order of particles, what is kept, plane: the same bits. */
 static void test_bits(void** state)
 {
   const double isos[2] = { -3, 4 };
-  core_set set = plane_make(12, 0.3, 1.5, 2, 2, 5);
+  particle_set set = plane_make(12, 0.3, 1.5, 2, 2, 5);
   int64_t* order = core_make_order(set.count, 6);
-  core_set other = core_permute(&set, order);
+  particle_set other = core_permute(&set, order);
   mcor_options options = fill_options(isos, 2);
   uint64_t hash[5];
   for (int i = 0; i < 5; ++i)
@@ -252,8 +252,8 @@ static void test_bits(void** state)
     CORE_CHECK(hash[i] == hash[0], "other bits: %d", i);
   }
   free(order);
-  core_free_set(&other);
-  core_free_set(&set);
+  particle_set_free(&other);
+  particle_set_free(&set);
 }
 
 /* Attributes of nodes are those of a probe there. */
@@ -261,7 +261,7 @@ static void test_attributes(void** state)
 {
   mcor_context* context = *state;
   const double isos[2] = { -20, 1 };
-  core_set set = plane_make(10, 0.3, 1.2, 0, 1, 8);
+  particle_set set = plane_make(10, 0.3, 1.2, 0, 1, 8);
   enum
   {
     ARRAYS = 5
@@ -300,11 +300,11 @@ static void test_attributes(void** state)
   mcor_free_samples(&samples);
   mcor_free_surface(&surface);
   free(values);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void expect_error(
-  mcor_context* context, const core_set* set, const mcor_options* options, const char* words)
+  mcor_context* context, const particle_set* set, const mcor_options* options, const char* words)
 {
   mcor_surface surface;
   const mcor_input input = core_input(set);
@@ -317,7 +317,7 @@ static void expect_error(
 static void test_what_is_not_filled(void** state)
 {
   const double iso = -1;
-  core_set set = plane_make(8, 0.2, 1, 2, 0, 1);
+  particle_set set = plane_make(8, 0.2, 1, 2, 0, 1);
   mcor_options options = fill_options(&iso, 1);
   options.field = MCOR_SUM;
   options.node_threshold = 0;
@@ -352,7 +352,7 @@ static void test_what_is_not_filled(void** state)
   surface = core_extract(*state, &input, &options);
   assert_true(surface.band_value == NULL && surface.triangles == NULL && surface.iso_value == NULL);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

@@ -35,7 +35,7 @@ static void test_kernels_integrate_to_1(void** state)
 static void test_weight_is_1_inside(void** state)
 {
   mcor_context* context = *state;
-  core_set set = plane_make(20, 0, 1, 1, 3, 1);
+  particle_set set = plane_make(20, 0, 1, 1, 3, 1);
   const double points[5][3] = { { 0, 3, 0 }, { 0.3, 3, -1.2 }, { 2.25, 3, 1.5 }, { -3.1, 3, 0.77 },
     { 0, 3.5, 0 } };
   const mcor_array at = core_array(points[0], 3);
@@ -65,7 +65,7 @@ static void test_weight_is_1_inside(void** state)
       mcor_free_samples(&samples);
     }
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* -0 is 0, wherever the particles with it are in the order. */
@@ -73,7 +73,7 @@ static void test_minus_zero(void** state)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    core_set set = plane_make(10, 0.1, 1, axis, 0, 7);
+    particle_set set = plane_make(10, 0.1, 1, axis, 0, 7);
     const double iso = 0;
     const mcor_input input = core_input(&set);
     const mcor_options options = plane_options(&iso);
@@ -90,7 +90,7 @@ static void test_minus_zero(void** state)
       mcor_free_surface(&other);
     }
     mcor_free_surface(&zero);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -105,7 +105,7 @@ static void expect_error(
 
 static void test_what_is_no_plane(void** state)
 {
-  core_set set = plane_make(10, 0.1, 1, 2, 1, 7);
+  particle_set set = plane_make(10, 0.1, 1, 2, 1, 7);
   const double iso = 0;
   mcor_options options = plane_options(&iso);
   mcor_input input = core_input(&set);
@@ -134,13 +134,13 @@ static void test_what_is_no_plane(void** state)
   mcor_free_surface(&surface);
   set.solid[1] = 0;
   expect_error(*state, &input, &options, "particle 1");
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Sides are those of the caller's axes; a flat box around the particles is one. */
 static void test_sentences_of_sides(void** state)
 {
-  core_set set = plane_make(10, 0.1, 1, 1, 1, 7);
+  particle_set set = plane_make(10, 0.1, 1, 1, 1, 7);
   const double iso = 0;
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(&iso);
@@ -165,14 +165,14 @@ static void test_sentences_of_sides(void** state)
   assert_int_equal(flat.line_count, 0);
   mcor_free_surface(&flat);
   mcor_free_surface(&whole);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Walls in another plane than the fluid, also where nobody says that there are two dimensions; but not if they
  * play no part, or are in no plane. */
 static void test_walls_in_another_plane(void** state)
 {
-  core_set set = plane_make(10, 0.1, 1, 1, -2, 7);
+  particle_set set = plane_make(10, 0.1, 1, 1, -2, 7);
   const double iso = 0;
   mcor_options options = plane_options(&iso);
   for (int64_t i = 0; i < 20; ++i)
@@ -200,7 +200,7 @@ static void test_walls_in_another_plane(void** state)
   mcor_surface surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 3);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Exact for what is linear; the reading of a gauge is where the weight is 0.5. */
@@ -209,7 +209,7 @@ static void test_derivatives_and_gauges(void** state)
   mcor_context* context = *state;
   for (int axis = 0; axis < 3; ++axis)
   {
-    core_set set = plane_make(14, 0.2, 1.2, axis, 5, 3);
+    particle_set set = plane_make(14, 0.2, 1.2, axis, 5, 3);
     double* velocity = malloc((size_t)set.count * 3 * sizeof *velocity);
     assert_non_null(velocity);
     for (int64_t i = 0; i < set.count; ++i)
@@ -262,7 +262,7 @@ static void test_derivatives_and_gauges(void** state)
       mcor_gauge(context, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
     assert_non_null(strstr(mcor_last_error(context), "leaves the plane"));
     free(velocity);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -270,7 +270,7 @@ static void test_derivatives_and_gauges(void** state)
  * value. */
 static void test_pairs_and_reuse(void** state)
 {
-  core_set set = plane_make(20, 0.2, 1, 2, -1, 4);
+  particle_set set = plane_make(20, 0.2, 1, 2, -1, 4);
   const double isos[2] = { -20, 2 };
   for (int64_t p = 0; p < set.count; ++p)
   {
@@ -295,16 +295,16 @@ static void test_pairs_and_reuse(void** state)
     assert_int_equal(hash[0], hash[1]);
     assert_int_equal(hash[0], hash[2]);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Bits do not depend on the order of the particles, nor, but for what is turned, on the plane. */
 static void test_bits(void** state)
 {
   const double iso = 0.4;
-  core_set set = plane_make(12, 0.3, 3, 1, 2, 5);
+  particle_set set = plane_make(12, 0.3, 3, 1, 2, 5);
   int64_t* order = core_make_order(set.count, 6);
-  core_set other = core_permute(&set, order);
+  particle_set other = core_permute(&set, order);
   mcor_options options = plane_options(&iso);
   options.level_limit = 1;
   options.vertex_threshold = 0.5;
@@ -336,8 +336,8 @@ static void test_bits(void** state)
   assert_int_equal(hash[0], hash[1]);
   assert_int_equal(hash[0], hash[2]);
   free(order);
-  core_free_set(&other);
-  core_free_set(&set);
+  particle_set_free(&other);
+  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

@@ -12,7 +12,7 @@
 /* A call, and where its caps are on the plane's two axes; infinite where there are none. */
 typedef struct caps_case
 {
-  const core_set* set;
+  const particle_set* set;
   mcor_options options;
   int axis;
   double side[4]; /* low u, high u, low v, high v */
@@ -168,7 +168,7 @@ static void test_sides(void** state)
     const int axis = round % 3, where = round / 3 % 4;
     const mcor_field field = (mcor_field)(round / 12);
     const double iso = field == MCOR_SUM ? 0.35 : field == MCOR_SHEPARD ? 0.1 : 0.9;
-    core_set set = plane_make(12, 0.45, 1.4, axis, 3, (uint64_t)(round + 1));
+    particle_set set = plane_make(12, 0.45, 1.4, axis, 3, (uint64_t)(round + 1));
     uint64_t seed = (uint64_t)round + 77;
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -195,7 +195,7 @@ static void test_sides(void** state)
     /* In a whole period there is fluid everywhere; else the edge of the fluid ends lines of a scalar. */
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
   CORE_CHECK(all > 36 * 5, "caps of %g", all);
 }
@@ -207,7 +207,7 @@ static void test_trimmed_sides(void** state)
   for (int mode = 0; mode < 9; ++mode)
   {
     const int axis = mode % 3;
-    core_set set = plane_make(14, 0.25, 1.2, axis, -2, (uint64_t)(4 + mode));
+    particle_set set = plane_make(14, 0.25, 1.2, axis, -2, (uint64_t)(4 + mode));
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.solid[i] = set.position[3 * i + (axis + 2) % 3] < -4;
@@ -225,7 +225,7 @@ static void test_trimmed_sides(void** state)
     c.options.box[2 * axis + 1] = 3;
     const double all = caps_check(*state, &c, 1);
     CORE_CHECK(all > 18 && all < 32, "mode %d: caps of %g", mode, all);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -233,7 +233,7 @@ static void test_trimmed_sides(void** state)
 static void test_values_and_order(void** state)
 {
   const double isos[2] = { 0.9, 0.6 };
-  core_set set = plane_make(12, 0.45, 1.3, 2, 0, 6);
+  particle_set set = plane_make(12, 0.45, 1.3, 2, 0, 6);
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(isos);
   options.field = MCOR_WEIGHT_SUM;
@@ -256,7 +256,7 @@ static void test_values_and_order(void** state)
   CORE_CHECK(fabs(sum - area[0] - area[1]) < 1e-9 * sum, "%g, not %g", sum, area[0] + area[1]);
   mcor_free_surface(&both);
   int64_t* order = core_make_order(set.count, 6);
-  core_set other = core_permute(&set, order);
+  particle_set other = core_permute(&set, order);
   const mcor_input permuted = core_input(&other);
   mcor_surface a = core_extract(*state, &input, &options),
                b = core_extract(*state, &permuted, &options);
@@ -264,14 +264,14 @@ static void test_values_and_order(void** state)
   mcor_free_surface(&a);
   mcor_free_surface(&b);
   free(order);
-  core_free_set(&other);
-  core_free_set(&set);
+  particle_set_free(&other);
+  particle_set_free(&set);
 }
 
 static void test_what_is_not_capped(void** state)
 {
   const double iso = 0.5;
-  core_set set = plane_make(8, 0.2, 1, 1, 0, 1);
+  particle_set set = plane_make(8, 0.2, 1, 1, 0, 1);
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(&iso);
   mcor_surface surface;
@@ -291,7 +291,7 @@ static void test_what_is_not_capped(void** state)
   surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.line_count, 0);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

@@ -22,7 +22,7 @@ static int64_t compare(
 }
 
 static int64_t compare_set(
-  mcor_context* context, const core_set* set, const mcor_options* options, int axis, int closed)
+  mcor_context* context, const particle_set* set, const mcor_options* options, int axis, int closed)
 {
   const mcor_input input = core_input(set);
   const plane_field field = { set, options, axis, NULL };
@@ -30,27 +30,24 @@ static int64_t compare_set(
 }
 
 /* W in the plane is plane_norm h times the oracle's, which is that of three dimensions. */
-static void compute_volumes(core_set* set, mcor_sph_kernel kernel)
+static void compute_volumes(particle_set* set, mcor_sph_kernel kernel)
 {
-  oracle_particles particles = core_oracle(set);
-  assert_true(oracle_compute_volumes(&particles, (oracle_kernel)kernel, 2, NULL, NULL));
+  oracle_compute_volumes(set, (oracle_kernel)kernel, 2, NULL, NULL);
   for (int64_t i = 0; i < set->count; ++i)
   {
     set->volume[i] /= plane_norm(kernel) * set->smoothing_length[i];
   }
 }
 
-static core_set copy_fluid(const core_set* set)
+static particle_set copy_fluid(const particle_set* set)
 {
-  core_set fluid = core_make_set(set->count);
-  fluid.count = 0;
+  particle_set fluid = { 0 };
   for (int64_t i = 0; i < set->count; ++i)
   {
-    memcpy(fluid.position + 3 * fluid.count, set->position + 3 * i, 3 * sizeof(double));
-    fluid.smoothing_length[fluid.count] = set->smoothing_length[i];
-    fluid.volume[fluid.count] = set->volume[i];
-    fluid.scalar[fluid.count] = set->scalar[i];
-    fluid.count += !set->solid[i];
+    if (!set->solid[i])
+    {
+      particle_set_append(&fluid, set, i);
+    }
   }
   return fluid;
 }
@@ -64,8 +61,8 @@ static void test_random_lines(void** state)
   for (int round = 0; round < 60; ++round)
   {
     const int axis = (int)(random_bits(&seed) % 3);
-    core_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
-      axis, 3 * random_unit(&seed), seed);
+    particle_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45,
+      1 + 2 * random_unit(&seed), axis, 3 * random_unit(&seed), seed);
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.scalar[i] = 2 * random_unit(&seed) - 1;
@@ -90,7 +87,7 @@ static void test_random_lines(void** state)
       round % 5 == 3 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     options.wall_share = shares[round / 4 % 3];
     mcor_input input = core_input(&set);
-    core_set fluid = copy_fluid(&set);
+    particle_set fluid = copy_fluid(&set);
     if (round % 7 == 2)
     {
       compute_volumes(&set, options.sph_kernel);
@@ -104,8 +101,8 @@ static void test_random_lines(void** state)
       set.has_solids && (input.ignore_solids || (options.field == MCOR_WEIGHT_SUM && !ends));
     const plane_field field = { fluid_alone ? &fluid : &set, &options, axis, NULL };
     compare(*state, &input, &field, options.field == MCOR_WEIGHT_SUM && !ends);
-    core_free_set(&fluid);
-    core_free_set(&set);
+    particle_set_free(&fluid);
+    particle_set_free(&set);
   }
 }
 
@@ -113,7 +110,7 @@ static void test_random_lines(void** state)
 static void test_estimated_length(void** state)
 {
   const double iso = 0.5;
-  core_set set = plane_make(16, 0.1, 1, 1, 2, 8);
+  particle_set set = plane_make(16, 0.1, 1, 1, 2, 8);
   mcor_options options = plane_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   mcor_input input = core_input(&set);
@@ -129,13 +126,13 @@ static void test_estimated_length(void** state)
   }
   const plane_field field = { &set, &options, 1, NULL };
   CORE_CHECK(compare(*state, &input, &field, 1) > 60, "few edges");
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* The set and its images around it. */
-static core_set with_images(const core_set* set, int axis, double period)
+static particle_set with_images(const particle_set* set, int axis, double period)
 {
-  core_set all = core_make_set(9 * set->count);
+  particle_set all = particle_set_make(9 * set->count);
   for (int64_t i = 0; i < all.count; ++i)
   {
     const int64_t from = i % set->count, image = i / set->count;
@@ -160,7 +157,7 @@ static void test_adaptive_lines(void** state)
   for (int round = 0; round < 30; ++round)
   {
     const int axis = round % 3, mixed = round % 2;
-    core_set set = core_make_set(220);
+    particle_set set = particle_set_make(220);
     for (int64_t i = 0; i < set.count; ++i)
     {
       double* x = set.position + 3 * i;
@@ -195,7 +192,7 @@ static void test_adaptive_lines(void** state)
     CORE_CHECK(levels > 1, "round %d: %d levels", round, levels);
     deep += levels > 2;
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
   assert_true(deep > 10);
 }
@@ -210,7 +207,7 @@ static void test_periods(void** state)
   for (int round = 0; round < 18; ++round)
   {
     const int axis = round % 3, both = round % 2, boxed = round % 4 == 3, uniform = round % 5 == 4;
-    core_set set = core_make_set(120);
+    particle_set set = particle_set_make(120);
     for (int64_t i = 0; i < set.count; ++i)
     {
       double* x = set.position + 3 * i;
@@ -249,7 +246,7 @@ static void test_periods(void** state)
       options.box[2 * axis] = -INFINITY;
       options.box[2 * axis + 1] = INFINITY;
     }
-    core_set all = with_images(&set, axis, period);
+    particle_set all = with_images(&set, axis, period);
     const plane_field field = { &all, &options, axis, region };
     if (!both)
     {
@@ -266,8 +263,8 @@ static void test_periods(void** state)
       round, surface.statistics.highest_level);
     several += surface.statistics.cells_of_level[0] > 2 && surface.statistics.cells_of_level[1] > 2;
     mcor_free_surface(&surface);
-    core_free_set(&all);
-    core_free_set(&set);
+    particle_set_free(&all);
+    particle_set_free(&set);
   }
   assert_true(several > 10);
 }
@@ -278,7 +275,7 @@ static void test_points_and_rows(void** state)
   const double iso = 0.1;
   for (int count = 1; count < 12; count += 10)
   {
-    core_set set = core_make_set(count);
+    particle_set set = particle_set_make(count);
     for (int i = 0; i < count; ++i)
     {
       set.position[3 * i] = i;
@@ -293,7 +290,7 @@ static void test_points_and_rows(void** state)
     mcor_free_surface(&surface);
     options.dimension = 2;
     compare_set(*state, &set, &options, 2, 1);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 

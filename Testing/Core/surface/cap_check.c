@@ -15,21 +15,16 @@ void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed)
   assert_true(closed->statistics.residual_max == open->statistics.residual_max);
 }
 
-void cap_check_volume(const mcor_surface* closed, const core_set* set, const mcor_options* options,
-  const double planes[6])
+void cap_check_volume(const mcor_surface* closed, const particle_set* set,
+  const mcor_options* options, const double planes[6])
 {
   enum
   {
     SAMPLES = 20000
   };
-  const oracle_particles particles = core_oracle(set);
   const double share = options->wall_share > 0 ? options->wall_share : 1;
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)options->sph_kernel,
-    options->field == MCOR_WEIGHT_SUM ? ORACLE_WEIGHT
-      : options->field == MCOR_SUM    ? ORACLE_SUM
-                                      : ORACLE_SHEPARD,
-    1));
+  oracle_field field =
+    oracle_make_field(set, (oracle_kernel)options->sph_kernel, (oracle_kind)options->field, 1);
   uint64_t seed = 3;
   int inside = 0;
   for (int i = 0; i < SAMPLES; ++i)

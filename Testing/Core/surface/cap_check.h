@@ -11,7 +11,7 @@
 void cap_check_prefix(const mcor_surface* open, const mcor_surface* closed);
 /* Fails unless the volume is that between `planes` where the field is above the iso value, and solids have no more than
  * the wall share, if there is one, of all weight: the oracle's, at random places. */
-void cap_check_volume(const mcor_surface* closed, const core_set* set, const mcor_options* options,
-  const double planes[6]);
+void cap_check_volume(const mcor_surface* closed, const particle_set* set,
+  const mcor_options* options, const double planes[6]);
 
 #endif

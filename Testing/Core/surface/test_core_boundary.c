@@ -125,7 +125,7 @@ static void test_eigenvalues(void** state)
 static void check_surface(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, mcor_field field_kind)
 {
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  particle_set set = core_make_block(8, 0.2, 3, core_slope);
   /* Each variant is a program to build. */
   set.has_solids = kernel == MCOR_CUBIC_SPLINE && field_kind == MCOR_SHEPARD;
   for (int64_t j = 0; j < set.count; ++j)
@@ -134,9 +134,7 @@ static void check_surface(
   }
   const double iso = 0.5;
   const mcor_input input = core_input(&set);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, (oracle_kernel)kernel, ORACLE_WEIGHT, 1));
+  oracle_field field = oracle_make_field(&set, (oracle_kernel)kernel, ORACLE_WEIGHT, 1);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_BOUNDARY_FLAG;
   options.sph_kernel = kernel;
@@ -174,7 +172,7 @@ static void check_surface(
       (long long)of_flag[2]);
   }
   oracle_free_field(&field);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_surfaces(void** state)

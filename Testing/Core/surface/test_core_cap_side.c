@@ -37,13 +37,11 @@ static void find_planes(const mcor_options* options, const mcor_surface* s, doub
 }
 
 /* Points of caps alone are on planes, with the oracle's values; their normals point out. */
-static void check_points(const core_set* all, const mcor_options* options, const mcor_surface* open,
-  const mcor_surface* closed, const double planes[6])
+static void check_points(const particle_set* all, const mcor_options* options,
+  const mcor_surface* open, const mcor_surface* closed, const double planes[6])
 {
-  const oracle_particles particles = core_oracle(all);
-  oracle_field field;
-  assert_true(
-    oracle_create_field(&field, &particles, (oracle_kernel)options->sph_kernel, ORACLE_SHEPARD, 1));
+  oracle_field field =
+    oracle_make_field(all, (oracle_kernel)options->sph_kernel, ORACLE_SHEPARD, 1);
   for (int64_t p = open->point_count; p < closed->point_count; ++p)
   {
     const double* x = closed->points + 3 * p;
@@ -118,7 +116,7 @@ static void check_open_edges(const mcor_surface* s, int is_closed)
 
 /* is_closed: nothing is trimmed. */
 static void check_caps(
-  mcor_context* context, const core_set* set, mcor_options options, int is_closed)
+  mcor_context* context, const particle_set* set, mcor_options options, int is_closed)
 {
   mcor_input input = core_input(set);
   const mcor_array attribute = input.scalar;
@@ -131,7 +129,7 @@ static void check_caps(
   mcor_surface open = core_extract(context, &input, &options);
   options.capping = capping;
   mcor_surface closed = core_extract(context, &input, &options);
-  core_set all = core_add_images(set, options.periodic);
+  particle_set all = core_add_images(set, options.periodic);
   find_planes(&options, &closed, planes);
   cap_check_prefix(&open, &closed);
   check_points(&all, &options, &open, &closed, planes);
@@ -150,7 +148,7 @@ static void check_caps(
   }
   mcor_free_surface(&open);
   mcor_free_surface(&closed);
-  core_free_set(&all);
+  particle_set_free(&all);
 }
 
 /* Cubes of one edge, and with an edge for each axis. */
@@ -176,7 +174,7 @@ static void test_periods(void** state)
   {
     const cap_case* at = cases + i / 2;
     double period[6] = { 0, 12, 0, 10, 0, 10 };
-    core_set set = core_make_period(length, 3);
+    particle_set set = core_make_period(length, 3);
     i % 2 ? core_stretch_period(&set, period) : (void)0;
     for (int side = 0; side < 6; ++side)
     {
@@ -193,7 +191,7 @@ static void test_periods(void** state)
       at->eigenvalue > 0 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     options.capping = MCOR_CAP_PERIOD;
     check_caps(*state, &set, options, at->open == 0 || at->field == MCOR_WEIGHT_SUM);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -205,7 +203,7 @@ static void test_boxes(void** state)
   static const double boxes[][6] = { { -3.3, 4.1, -5.2, 3.7, -6.6, 2.9 },
     { -INFINITY, 1.3, -INFINITY, INFINITY, -INFINITY, INFINITY },
     { 0.4, INFINITY, -2.2, INFINITY, -INFINITY, 5.05 }, { -3, 3.2, -2, 2, -1, 4 } };
-  core_set set = core_make_block(16, 0, 1, core_slope);
+  particle_set set = core_make_block(16, 0, 1, core_slope);
   int64_t n = 0;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -230,7 +228,7 @@ static void test_boxes(void** state)
     }
     check_caps(*state, &set, options, 1);
   }
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

@@ -23,13 +23,13 @@ static mcor_options wall_options(double share)
 }
 
 /* A tank with a step in its ground, half full, with waves, a hole and a drop; particles are off a lattice. */
-static core_set make_tank(double noise)
+static particle_set make_tank(double noise)
 {
   enum
   {
     N = 20
   };
-  core_set set = core_make_set(N * N * N);
+  particle_set set = particle_set_make(N * N * N);
   uint64_t seed = 17;
   int64_t n = 0;
   for (int i = 0; i < N * N * N; ++i)
@@ -57,7 +57,7 @@ static core_set make_tank(double noise)
 
 static void check_tank(mcor_context* context, double share, mcor_topology topology)
 {
-  core_set set = make_tank(0.2);
+  particle_set set = make_tank(0.2);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(share);
   options.topology = topology;
@@ -83,7 +83,7 @@ static void check_tank(mcor_context* context, double share, mcor_topology topolo
   }
   mcor_free_surface(&open);
   mcor_free_surface(&closed);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_tank(void** state)
@@ -95,16 +95,14 @@ static void test_tank(void** state)
 /* Points of caps alone are where solids have the share, and in fluid. */
 static void check_share(mcor_context* context, double noise)
 {
-  core_set set = make_tank(noise);
+  particle_set set = make_tank(noise);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.35);
   options.capping = MCOR_CAP_PERIOD;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface;
   CORE_OK(context, mcor_extract(context, &input, &options, &surface));
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1));
+  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1);
   int64_t caps = 0;
   for (int64_t p = 0; p < surface.point_count; ++p)
   {
@@ -122,7 +120,7 @@ static void check_share(mcor_context* context, double noise)
   assert_int_equal(surface.statistics.trim_vertices_linear, 0);
   oracle_free_field(&field);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_share(void** state)
@@ -134,7 +132,7 @@ static void test_share(void** state)
 /* Full to the lid: caps alone, somewhat inside of half the way to the solids. */
 static void test_full(void** state)
 {
-  core_set set = core_make_block(14, 0.1, 5, core_ball);
+  particle_set set = core_make_block(14, 0.1, 5, core_ball);
   for (int64_t i = 0; i < set.count; ++i)
   {
     double far = 0;
@@ -154,13 +152,13 @@ static void test_full(void** state)
   assert_int_equal(surface.triangle_count, surface.statistics.cap_triangles);
   cap_check_volume(&surface, &set, &options, tank);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Boxes make the whole, with all that its points carry; sides of boxes and of a period are closed beside walls. */
 static void test_parts(void** state)
 {
-  core_set set = make_tank(0.2);
+  particle_set set = make_tank(0.2);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.5);
   options.capping = MCOR_CAP_PERIOD;
@@ -176,7 +174,7 @@ static void test_parts(void** state)
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
   assert_true(surface.statistics.is_closed && surface.statistics.cap_triangles > 500);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

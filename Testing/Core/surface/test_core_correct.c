@@ -34,7 +34,7 @@ static void test_every_particle_counts(void** state)
   for (size_t run = 0; run < 2 * sizeof at / sizeof at[0]; ++run)
   {
     const size_t k = run / 2;
-    core_set set = core_make_block(8, 0.3, 4 + k, at[k].value);
+    particle_set set = core_make_block(8, 0.3, 4 + k, at[k].value);
     uint64_t seed = 9;
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -53,11 +53,9 @@ static void test_every_particle_counts(void** state)
     options.tolerance = 1e-11;
     options.iteration_limit = 255;
     mcor_surface surface = core_extract(*state, &input, &options);
-    const oracle_particles particles = core_oracle(&set);
-    const double range = oracle_scalar_range(&particles);
+    const double range = oracle_scalar_range(&set);
     double worst = 0;
-    oracle_field field;
-    assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+    oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
       oracle_sample sample;
@@ -68,7 +66,7 @@ static void test_every_particle_counts(void** state)
     CORE_CHECK(surface.point_count > 20 && worst < 1e-10, "run %d: residual %.3g at one of %lld",
       (int)run, worst, (long long)surface.point_count);
     mcor_free_surface(&surface);
-    core_free_set(&set);
+    particle_set_free(&set);
   }
 }
 
@@ -76,7 +74,7 @@ static void test_every_particle_counts(void** state)
  * are not greater. */
 static void test_reported_numbers(void** state)
 {
-  core_set set = core_make_block(8, 0.3, 4, core_ball);
+  particle_set set = core_make_block(8, 0.3, 4, core_ball);
   const double iso = 1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -113,9 +111,7 @@ static void test_reported_numbers(void** state)
   worst += 2 * FLT_EPSILON * fmax(iso - s->scalar_min, s->scalar_max - iso);
   CORE_CHECK(fabs(worst - s->residual_max) <= 1e-6 * worst, "residual %g, statistics %g", worst,
     s->residual_max);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   for (int64_t i = 0; i < corrected.point_count; ++i)
   {
     oracle_sample sample;
@@ -128,13 +124,13 @@ static void test_reported_numbers(void** state)
   CORE_CHECK(preview.statistics.correction_max == 0, "a preview corrects nothing");
   mcor_free_surface(&preview);
   mcor_free_surface(&corrected);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* More steps never make the worst residual larger; the limit is never passed. */
 static void test_iteration_limit(void** state)
 {
-  core_set set = core_make_block(8, 0.3, 4, steep);
+  particle_set set = core_make_block(8, 0.3, 4, steep);
   const double iso = 0.1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -157,13 +153,13 @@ static void test_iteration_limit(void** state)
     mcor_free_surface(&surface);
   }
   CORE_CHECK(last < 1e-5, "residual %g in the end", last);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* A looser tolerance is kept, too, and costs fewer evaluations. */
 static void test_tolerance(void** state)
 {
-  core_set set = core_make_block(8, 0.3, 4, core_ball);
+  particle_set set = core_make_block(8, 0.3, 4, core_ball);
   const double iso = 1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -181,7 +177,7 @@ static void test_tolerance(void** state)
   }
   CORE_CHECK(evaluations[1] < evaluations[0], "%lld and %lld evaluations",
     (long long)evaluations[0], (long long)evaluations[1]);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static double core_waves(const double x[3])
@@ -193,7 +189,7 @@ static double core_waves(const double x[3])
  * passes 0 where that of both is about 1: a mean then has a pole, which is no place of the surface. */
 static void check_poles(mcor_context* context, uint64_t seed, double spread, int level_limit)
 {
-  core_set set = core_make_block(12, 0.45, seed, core_waves);
+  particle_set set = core_make_block(12, 0.45, seed, core_waves);
   set.has_solids = 1;
   for (int64_t j = 0; j < set.count; ++j)
   {
@@ -210,9 +206,7 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
   options.level_limit = level_limit;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
   mcor_surface surface = core_extract(context, &input, &options);
-  oracle_particles particles = core_oracle(&set);
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &particles, ORACLE_M_PRIME_4, ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(&set, ORACLE_M_PRIME_4, ORACLE_SHEPARD, 1);
   int64_t lacking = 0;
   for (int64_t v = 0; v < surface.point_count; ++v)
   {
@@ -235,7 +229,7 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
   mesh_free_report(&report);
   oracle_free_field(&field);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_poles(void** state)

@@ -52,7 +52,7 @@ static void check_triangle_normals(const mcor_surface* surface)
 /* Checks normals likewise; they look outwards, too. */
 static void test_triangle_normals(void** state)
 {
-  core_set set = core_make_block(10, 0.1, 3, core_ball);
+  particle_set set = core_make_block(10, 0.1, 3, core_ball);
   const double iso = 1.5;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -83,14 +83,14 @@ static void test_triangle_normals(void** state)
       !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle,
     "arrays that nobody asked for");
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Attributes: a constant, a linear function, a vector, more components than one batch holds, and
  * a single-precision array; all against the double-precision Shepard mean. */
 static void check_attributes(mcor_context* context, int solids)
 {
-  core_set set = core_make_block(10, 0.2, 3, core_ball);
+  particle_set set = core_make_block(10, 0.2, 3, core_ball);
   const int64_t n = set.count;
   double* constant = malloc((size_t)n * sizeof(double));
   double* many = malloc((size_t)n * 9 * sizeof(double));
@@ -115,13 +115,11 @@ static void check_attributes(mcor_context* context, int solids)
   input.attributes = attributes;
   input.attribute_count = 4;
   mcor_surface surface = core_extract(context, &input, &options);
-  const oracle_particles particles = core_oracle(&set);
-  oracle_particles fluid = particles;
+  particle_set fluid = set;
   uint8_t* none = calloc((size_t)n, 1);
   assert_non_null(none);
   fluid.solid = solids ? set.solid : none;
-  oracle_field field;
-  assert_true(oracle_create_field(&field, &fluid, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1));
+  oracle_field field = oracle_make_field(&fluid, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   double* component = malloc((size_t)n * sizeof(double));
   assert_non_null(component);
   assert_int_equal(surface.attribute_count, 4);
@@ -148,7 +146,7 @@ static void check_attributes(mcor_context* context, int solids)
   CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
   oracle_free_field(&field);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
   free(constant);
   free(many);
   free(single);
@@ -165,7 +163,7 @@ static void test_attributes(void** state)
 /* The nearest fluid particle by brute force; h_ratio: largest over smallest smoothing length. */
 static void check_nearest(mcor_context* context, double h_ratio, int solids)
 {
-  core_set set = core_make_random(300, 5, 1.2 / h_ratio, 1.2, 6);
+  particle_set set = core_make_random(300, 5, 1.2 / h_ratio, 1.2, 6);
   const double iso = 0;
   set.has_solids = solids;
   for (int64_t i = 0; i < set.count; ++i)
@@ -202,7 +200,7 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
   CORE_CHECK(wrong == 0, "h ratio %g, solids %d: %lld of %lld are not the nearest", h_ratio, solids,
     (long long)wrong, (long long)surface.point_count);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 static void test_nearest(void** state)

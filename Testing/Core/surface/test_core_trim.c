@@ -13,7 +13,7 @@
  * flagged. */
 static void test_thresholds(void** state)
 {
-  core_set set = core_make_block(8, 0.2, 3, core_slope);
+  particle_set set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -40,7 +40,7 @@ static void test_thresholds(void** state)
   mcor_surface surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.triangle_count, 0);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 /* Vertices of the trim boundary are counted on top of those of the surface. */
@@ -50,7 +50,7 @@ static void test_vertex_limit(void** state)
   static const int corners[3] = { 0, 1, 2 };
   static const float weights[3] = { 0.2f, 0.8f, 0.9f };
   const double iso = 0;
-  core_set set = core_make_block(3, 0, 1, core_slope);
+  particle_set set = core_make_block(3, 0, 1, core_slope);
   const mcor_input input = core_input_to_keep(&set);
   mcor_options options = core_options(&iso);
   mcor_surface surface = core_extract(context, &input, &options);
@@ -66,7 +66,7 @@ static void test_vertex_limit(void** state)
     strstr(mcor_last_error(context), "2147479553 vertices"), "%s", mcor_last_error(context));
   mcor_release_memory(context);
   mcor_free_surface(&surface);
-  core_free_set(&set);
+  particle_set_free(&set);
 }
 
 int main(void)

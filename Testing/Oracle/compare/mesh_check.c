@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh_check.h"
+#include "oracle.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -312,15 +313,11 @@ static void mesh_check_triples(double* quads, int64_t count, mesh_fault fault, m
   }
 }
 
-static int mesh_check_duplicates(
+static void mesh_check_duplicates(
   const double* points, const int32_t* triangles, mesh_report* report)
 {
   const int64_t most = report->points > report->triangles ? report->points : report->triangles;
-  double* quads = malloc(((size_t)most + 1) * 4 * sizeof(double));
-  if (!quads)
-  {
-    return 0;
-  }
+  double* quads = oracle_allocate(most, 4 * sizeof(double));
   for (int64_t p = 0; p < report->points; ++p)
   {
     memcpy(&quads[4 * p], &points[3 * p], 3 * sizeof(double));
@@ -339,10 +336,9 @@ static int mesh_check_duplicates(
   }
   mesh_check_triples(quads, report->triangles, MESH_DUPLICATE_TRIANGLE, report);
   free(quads);
-  return 1;
 }
 
-int mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
+void mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
   int64_t triangle_count, mesh_report* report)
 {
   memset(report, 0, sizeof(*report));
@@ -350,36 +346,26 @@ int mesh_check(const double* points, int64_t point_count, const int32_t* triangl
   report->triangles = triangle_count;
   if (!mesh_check_ranges(points, triangles, report))
   {
-    return 1;
+    return;
   }
-  const size_t n = (size_t)triangle_count + 1;
-  int64_t* corner_parent = malloc(3 * n * sizeof(int64_t));
-  int64_t* fan = malloc(((size_t)point_count + 1) * sizeof(int64_t));
-  report->side = malloc(3 * n * sizeof(mesh_edge));
-  report->component = malloc(n * sizeof(int64_t));
-  const int enough = corner_parent && fan && report->side && report->component &&
-    mesh_check_duplicates(points, triangles, report);
-  if (enough)
+  int64_t* corner_parent = oracle_allocate(3 * triangle_count, sizeof(int64_t));
+  int64_t* fan = oracle_allocate(point_count, sizeof(int64_t));
+  report->side = oracle_allocate(3 * triangle_count, sizeof(mesh_edge));
+  report->component = oracle_allocate(triangle_count, sizeof(int64_t));
+  mesh_check_duplicates(points, triangles, report);
+  for (int64_t t = 0; t < triangle_count; ++t)
   {
-    for (int64_t t = 0; t < triangle_count; ++t)
+    mesh_measure_triangle(points, &triangles[3 * t], t, report);
+    report->component[t] = t;
+    for (int64_t c = 3 * t; c < 3 * t + 3; ++c)
     {
-      mesh_measure_triangle(points, &triangles[3 * t], t, report);
-      report->component[t] = t;
-      for (int64_t c = 3 * t; c < 3 * t + 3; ++c)
-      {
-        corner_parent[c] = c;
-      }
+      corner_parent[c] = c;
     }
-    mesh_list_sides(triangles, report);
-    mesh_check_edges(triangles, report, corner_parent, report->component);
-    mesh_check_fans(triangles, report, corner_parent, fan);
-    mesh_number_components(report);
   }
+  mesh_list_sides(triangles, report);
+  mesh_check_edges(triangles, report, corner_parent, report->component);
+  mesh_check_fans(triangles, report, corner_parent, fan);
+  mesh_number_components(report);
   free(corner_parent);
   free(fan);
-  if (!enough)
-  {
-    mesh_free_report(report);
-  }
-  return enough;
 }

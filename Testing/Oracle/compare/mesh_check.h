@@ -52,9 +52,9 @@ extern "C"
     int64_t* component; /* [triangles], 0 .. components - 1 */
   } mesh_report;
 
-  /* points: [point_count][3]; triangles: [triangle_count][3]. 0 if memory ran out. If there are bad
+  /* points: [point_count][3]; triangles: [triangle_count][3]. If there are bad
    * indices or coordinates nothing else is checked. Free the report with mesh_free_report. */
-  int mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
+  void mesh_check(const double* points, int64_t point_count, const int32_t* triangles,
     int64_t triangle_count, mesh_report* report);
   void mesh_free_report(mesh_report* report);
 

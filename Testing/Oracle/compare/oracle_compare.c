@@ -5,31 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-int oracle_compare(const oracle_reference* reference, const mcor_options* options,
+void oracle_compare(const oracle_reference* reference, const mcor_options* options,
   const mcor_surface* surface, const mesh_report* mesh, int trimmed, oracle_comparison* comparison)
 {
-  memset(comparison, 0, sizeof(*comparison));
-  const size_t points = (size_t)surface->point_count + 1;
-  const size_t components = (size_t)reference->lattice.component_count + 1;
-  const size_t edges = (size_t)reference->lattice.edge_count + 1;
+  const int64_t points = surface->point_count, edges = reference->lattice.edge_count;
+  const int64_t components = reference->lattice.component_count;
   compare_state state = { reference, options, surface, mesh, trimmed, comparison,
-    malloc(points * sizeof(int64_t)), malloc(edges * sizeof(int64_t)),
-    malloc(edges * sizeof(int64_t)), malloc(3 * points * sizeof(double)),
-    malloc(points * sizeof(double)) };
-  int64_t* count = calloc(2 * components, sizeof(int64_t));
-  int enough = state.vertex_edge && state.edge_vertex && state.second_vertex && state.gradient &&
-    state.vertex_cube && count;
-  if (enough)
-  {
-    compare_edges(&state, count, count + components);
-    compare_vertices(&state);
-    enough = compare_orientation(&state);
-  }
+    oracle_allocate(points, sizeof(int64_t)), oracle_allocate(edges, sizeof(int64_t)),
+    oracle_allocate(edges, sizeof(int64_t)), oracle_allocate(points, 3 * sizeof(double)),
+    oracle_allocate(points, sizeof(double)) };
+  int64_t* count = oracle_allocate(2 * components, sizeof(int64_t));
+  memset(comparison, 0, sizeof(*comparison));
+  compare_edges(&state, count, count + components);
+  compare_vertices(&state);
+  compare_orientation(&state);
   free(state.vertex_edge);
   free(state.edge_vertex);
   free(state.second_vertex);
   free(state.gradient);
   free(state.vertex_cube);
   free(count);
-  return enough;
 }

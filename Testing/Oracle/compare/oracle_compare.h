@@ -21,7 +21,7 @@ extern "C"
   /* A field on its lattice, classified for one iso value. */
   typedef struct oracle_reference
   {
-    oracle_particles particles;
+    particle_set particles;
     oracle_field field;
     oracle_lattice lattice;
     int by_field; /* topology is */
@@ -33,10 +33,10 @@ extern "C"
     double unit;            /* roundoff of the working precision */
   } oracle_reference;
 
-  /* Reads input and options in the way mcor.h describes, evaluates the whole lattice. 0 with a
-   * reason in message if that is impossible. */
+  /* Reads input and options in the way mcor.h describes, evaluates the whole lattice. 0 if it has more
+   * than node_limit nodes. */
   int oracle_create_reference(oracle_reference* reference, const mcor_input* input,
-    const mcor_options* options, int64_t node_limit, char message[256]);
+    const mcor_options* options, int64_t node_limit);
   void oracle_free_reference(oracle_reference* reference);
 
   typedef struct oracle_comparison
@@ -77,8 +77,8 @@ extern "C"
   } oracle_comparison;
 
   /* trimmed: the surface was trimmed at options->vertex_threshold; otherwise every edge must be
-   * there. mesh: the report on the same surface. 0 if memory ran out. */
-  int oracle_compare(const oracle_reference* reference, const mcor_options* options,
+   * there. mesh: the report on the same surface. */
+  void oracle_compare(const oracle_reference* reference, const mcor_options* options,
     const mcor_surface* surface, const mesh_report* mesh, int trimmed,
     oracle_comparison* comparison);
 

@@ -55,6 +55,6 @@ void compare_edges(compare_state* state, int64_t* present, int64_t* absent);
 /* ---- oracle_compare_mesh.c ---- */
 
 void compare_vertices(compare_state* state);
-int compare_orientation(compare_state* state); /* 0 if memory ran out */
+void compare_orientation(compare_state* state);
 
 #endif

@@ -278,15 +278,11 @@ void compare_vertices(compare_state* state)
 
 /* ---- triangles ---- */
 
-int compare_orientation(compare_state* state)
+void compare_orientation(compare_state* state)
 {
   const mcor_surface* surface = state->surface;
   const int64_t components = state->mesh->components;
-  double* balance = calloc((size_t)components + 1, sizeof(double));
-  if (!balance)
-  {
-    return 0;
-  }
+  double* balance = oracle_allocate(components, sizeof(double));
   for (int64_t t = 0; t < surface->triangle_count; ++t)
   {
     const int32_t* c = &surface->triangles[3 * t];
@@ -308,5 +304,4 @@ int compare_orientation(compare_state* state)
     state->result->inverted_components += balance[c] < 0.0;
   }
   free(balance);
-  return 1;
 }

@@ -6,42 +6,10 @@
 #include "particle_sets.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-static int graded_reserve(particle_set* set)
-{
-  memset(set, 0, sizeof(*set));
-  set->capacity = 400000;
-  set->position = calloc(3 * (size_t)set->capacity, sizeof(double));
-  set->smoothing_length = calloc((size_t)set->capacity, sizeof(double));
-  set->volume = calloc((size_t)set->capacity, sizeof(double));
-  set->scalar = calloc((size_t)set->capacity, sizeof(double));
-  set->solid = calloc((size_t)set->capacity, 1);
-  if (!set->position || !set->smoothing_length || !set->volume || !set->scalar || !set->solid)
-  {
-    particle_set_free(set);
-    return 0;
-  }
-  return 1;
-}
 
 static double length_of(const double x[3])
 {
   return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-}
-
-static void graded_add(particle_set* set, const double x[3], double h, double volume, double scalar)
-{
-  const int64_t j = set->count;
-  if (j < set->capacity)
-  {
-    memcpy(&set->position[3 * j], x, 3 * sizeof(double));
-    set->smoothing_length[j] = h;
-    set->volume[j] = volume;
-    set->scalar[j] = scalar;
-    ++set->count;
-  }
 }
 
 /* A ball of particles, jittered. */
@@ -65,19 +33,16 @@ static void graded_drop(particle_set* set, const double centre[3], double radius
       {
         x[axis] += centre[axis];
       }
-      graded_add(set, x, 1.2 * spacing, pow(spacing, 3.0), scalar);
+      particle_set_add(set, x, 1.2 * spacing, pow(spacing, 3.0), scalar);
     }
   }
 }
 
-int particle_set_drops(particle_set* set, double ratio)
+particle_set particle_set_drops(double ratio)
 {
+  particle_set set = { 0 };
   uint64_t state = 11;
   double centre[3] = { 0.0, 0.0, 0.0 };
-  if (!graded_reserve(set))
-  {
-    return 0;
-  }
   const int drops = 5;
   for (int drop = 0; drop < drops; ++drop)
   {
@@ -89,20 +54,17 @@ int particle_set_drops(particle_set* set, double ratio)
     centre[0] += away * cos(turn);
     centre[1] += away * sin(turn);
     centre[2] += 0.05 * away;
-    graded_drop(set, centre, radius, &state);
+    graded_drop(&set, centre, radius, &state);
   }
-  return 1;
+  return set;
 }
 
-int particle_set_medium(particle_set* set, double ratio)
+particle_set particle_set_medium(double ratio)
 {
+  particle_set set = { 0 };
   const double fineness = 0.3; /* spacing / distance from the origin */
   const double least = 1.0 / ratio;
   uint64_t state = 12;
-  if (!graded_reserve(set))
-  {
-    return 0;
-  }
   /* Blocks around the origin, each but the first without the one before it. */
   for (double size = least; size < 1.6; size *= 2.0)
   {
@@ -125,11 +87,11 @@ int particle_set_medium(particle_set* set, double ratio)
         const double r = length_of(x);
         const double from[3] = { x[0] - 0.7 - 0.5 * least, x[1], x[2] };
         const double scalar = (length_of(from) - 0.7) / (r + least);
-        graded_add(set, x, 1.3 * fineness * fmax(r, 0.7 * least), pow(spacing, 3.0), scalar);
+        particle_set_add(&set, x, 1.3 * fineness * fmax(r, 0.7 * least), pow(spacing, 3.0), scalar);
       }
     }
   }
-  return 1;
+  return set;
 }
 
 /* Particles of a box, on a lattice, jittered; their number along an axis is made whole. */
@@ -151,25 +113,22 @@ static void graded_block(particle_set* set, const double low[3], const double hi
       x[axis] = low[axis] + ((double)at[axis] + 0.5 + jitter) * spacing;
     }
     const double scalar = x[0] - 0.1 + 0.4 * sin(3.0 * x[1]) + 0.3 * cos(4.0 * x[2]);
-    graded_add(set, x, 1.3 * spacing, pow(spacing, 3.0), scalar);
+    particle_set_add(set, x, 1.3 * spacing, pow(spacing, 3.0), scalar);
     set->solid[set->count - 1] = (uint8_t)solid;
   }
 }
 
-int particle_set_basin(particle_set* set, double ratio)
+particle_set particle_set_basin(double ratio)
 {
+  particle_set set = { 0 };
   const double coarse = 0.25, fine = coarse / ratio, floor_spacing = 0.1;
   const double low[3] = { -1.0, -0.6, 0.0 }, high[3] = { 0.0, 0.6, 0.8 };
   const double fine_low[3] = { 0.0, -0.6, 0.0 }, fine_high[3] = { 0.6, 0.6, 0.6 };
   const double floor_low[3] = { -1.4, -0.8, -0.3 }, floor_high[3] = { 0.9, 0.8, 0.0 };
   uint64_t state = 13;
-  if (!graded_reserve(set))
-  {
-    return 0;
-  }
-  set->has_solids = 1;
-  graded_block(set, low, high, coarse, 0, &state);
-  graded_block(set, fine_low, fine_high, fine, 0, &state);
-  graded_block(set, floor_low, floor_high, floor_spacing, 1, &state);
-  return 1;
+  set.has_solids = 1;
+  graded_block(&set, low, high, coarse, 0, &state);
+  graded_block(&set, fine_low, fine_high, fine, 0, &state);
+  graded_block(&set, floor_low, floor_high, floor_spacing, 1, &state);
+  return set;
 }

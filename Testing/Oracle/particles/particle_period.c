@@ -30,15 +30,11 @@ static double on_grid(double x)
   return floor(x * 0x1p16) * 0x1p-16;
 }
 
-oracle_particles particle_period_make(uint64_t seed)
+particle_set particle_period_make(uint64_t seed)
 {
-  oracle_particles p;
   const int64_t n[3] = { (int64_t)particle_period_lengths[0], (int64_t)particle_period_lengths[1],
     (int64_t)particle_period_lengths[2] };
-  if (!oracle_create_particles(&p, n[0] * n[1] * n[2]))
-  {
-    return p;
-  }
+  particle_set p = particle_set_make(n[0] * n[1] * n[2]);
   for (int64_t i = 0; i < p.count; ++i)
   {
     const int64_t at[3] = { i % n[0], i / n[0] % n[1], i / n[0] / n[1] };
@@ -56,18 +52,6 @@ oracle_particles particle_period_make(uint64_t seed)
   return p;
 }
 
-mcor_input particle_period_input(const oracle_particles* p)
-{
-  mcor_input input;
-  memset(&input, 0, sizeof(input));
-  input.count = p->count;
-  input.positions = particle_array(p->position, 3, 0.0);
-  input.smoothing_length = particle_array(p->smoothing_length, 1, 0.0);
-  input.volume = particle_array(p->volume, 1, 0.0);
-  input.scalar = particle_array(p->scalar, 1, 0.0);
-  return input;
-}
-
 void particle_period_set(mcor_options* options, const char* open)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -78,7 +62,7 @@ void particle_period_set(mcor_options* options, const char* open)
   }
 }
 
-void particle_period_stretch(oracle_particles* particles, mcor_options* options)
+void particle_period_stretch(particle_set* particles, mcor_options* options)
 {
   static const double factors[3] = { 1.0, 1.0331, 1.0713 };
   for (int64_t i = 0; i < 3 * particles->count; ++i)

@@ -12,14 +12,12 @@
 extern const double particle_period_lengths[3];
 
 /* Jittered; the scalar is the density, the smoothing length goes with it. Positions are multiples of
- * 2^-16, so that shifts by multiples of 1/2 leave them exact. count is 0 if memory ran out. */
-oracle_particles particle_period_make(uint64_t seed);
+ * 2^-16, so that shifts by multiples of 1/2 leave them exact. */
+particle_set particle_period_make(uint64_t seed);
 
-/* Borrowed. */
-mcor_input particle_period_input(const oracle_particles* particles);
 /* Sets the period along all axes but those named. */
 void particle_period_set(mcor_options* options, const char* open);
 /* Stretches particles and periods, each axis by another factor: no cube then divides two periods. */
-void particle_period_stretch(oracle_particles* particles, mcor_options* options);
+void particle_period_stretch(particle_set* particles, mcor_options* options);
 
 #endif

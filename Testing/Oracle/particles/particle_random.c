@@ -3,7 +3,6 @@
 #include "particle_sets.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static int64_t random_below(uint64_t* state, int64_t n)
@@ -32,7 +31,7 @@ static void random_scalar(particle_set* set, int64_t j, int sort, uint64_t* stat
 }
 
 /* One block of particles, a lattice that may be jittered or shot full of holes. */
-static int random_block(particle_set* set, int64_t capacity, uint64_t* state)
+static void random_block(particle_set* set, int64_t capacity, uint64_t* state)
 {
   const double spacing = 0.05 + 0.15 * random_unit(state);
   const double jitter = random_below(state, 3) == 0 ? 0.0 : 0.5 * random_unit(state);
@@ -50,57 +49,43 @@ static int random_block(particle_set* set, int64_t capacity, uint64_t* state)
   for (int64_t c = 0; c < n[0] * n[1] * n[2] && set->count < capacity; ++c)
   {
     const int64_t at[3] = { c % n[0], c / n[0] % n[1], c / n[0] / n[1] };
-    const int64_t j = set->count;
+    double x[3];
     if (random_unit(state) > keep)
     {
       continue;
     }
     for (int axis = 0; axis < 3; ++axis)
     {
-      set->position[3 * j + axis] =
+      x[axis] =
         corner[axis] + spacing * ((double)at[axis] + jitter * (2.0 * random_unit(state) - 1.0));
     }
-    set->smoothing_length[j] = ratio * spacing * exp2(spread * random_unit(state));
-    set->volume[j] = pow(spacing, 3.0) * (0.5 + random_unit(state));
-    ++set->count;
+    const double h = ratio * spacing * exp2(spread * random_unit(state));
+    particle_set_add(set, x, h, pow(spacing, 3.0) * (0.5 + random_unit(state)), 0.0);
   }
-  return 1;
 }
 
-int particle_set_random(particle_set* set, uint64_t seed)
+particle_set particle_set_random(uint64_t seed)
 {
   uint64_t state = seed;
-  const int64_t capacity = 1500;
-  memset(set, 0, sizeof(*set));
-  set->capacity = capacity;
-  set->position = calloc(3 * (size_t)capacity, sizeof(double));
-  set->smoothing_length = calloc((size_t)capacity, sizeof(double));
-  set->volume = calloc((size_t)capacity, sizeof(double));
-  set->scalar = calloc((size_t)capacity, sizeof(double));
-  set->solid = calloc((size_t)capacity, 1);
-  if (!set->position || !set->smoothing_length || !set->volume || !set->scalar || !set->solid)
-  {
-    particle_set_free(set);
-    return 0;
-  }
+  particle_set set = { 0 };
   const int64_t blocks = 1 + random_below(&state, 6);
   const int sort = (int)random_below(&state, 4);
   const int solids = random_below(&state, 3) == 0;
   for (int64_t b = 0; b < blocks; ++b)
   {
-    const int64_t first = set->count;
-    random_block(set, capacity, &state);
+    const int64_t first = set.count;
+    random_block(&set, 1500, &state);
     const int solid = solids && b > 0 && random_below(&state, 2) == 0;
-    for (int64_t j = first; j < set->count; ++j)
+    for (int64_t j = first; j < set.count; ++j)
     {
-      random_scalar(set, j, sort, &state);
-      set->solid[j] = (uint8_t)solid;
-      set->has_solids = set->has_solids || solid;
+      random_scalar(&set, j, sort, &state);
+      set.solid[j] = (uint8_t)solid;
+      set.has_solids = set.has_solids || solid;
     }
   }
-  if (set->count > 1 && random_below(&state, 5) == 0) /* two at one place */
+  if (set.count > 1 && random_below(&state, 5) == 0) /* two at one place */
   {
-    memcpy(&set->position[3], set->position, 3 * sizeof(double));
+    memcpy(&set.position[3], set.position, 3 * sizeof(double));
   }
-  return 1;
+  return set;
 }

@@ -3,7 +3,6 @@
 #include "particle_sets.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 uint64_t random_bits(uint64_t* state)
@@ -20,47 +19,6 @@ double random_unit(uint64_t* state)
   return (double)(random_bits(state) >> 11) * 0x1p-53;
 }
 
-void particle_set_free(particle_set* set)
-{
-  free(set->position);
-  free(set->smoothing_length);
-  free(set->volume);
-  free(set->scalar);
-  free(set->solid);
-  memset(set, 0, sizeof(*set));
-}
-
-static int set_grow(double** array, int64_t values)
-{
-  double* grown = realloc(*array, (size_t)values * sizeof(double));
-  *array = grown ? grown : *array;
-  return grown != NULL;
-}
-
-static int set_add(particle_set* set, const double x[3], double h, double volume, double scalar)
-{
-  if (set->count == set->capacity)
-  {
-    const int64_t capacity = set->capacity > 0 ? 2 * set->capacity : 1024;
-    uint8_t* solid = realloc(set->solid, (size_t)capacity);
-    set->solid = solid ? solid : set->solid;
-    if (!solid || !set_grow(&set->position, 3 * capacity) ||
-      !set_grow(&set->smoothing_length, capacity) || !set_grow(&set->volume, capacity) ||
-      !set_grow(&set->scalar, capacity))
-    {
-      return 0;
-    }
-    set->capacity = capacity;
-  }
-  memcpy(&set->position[3 * set->count], x, 3 * sizeof(double));
-  set->smoothing_length[set->count] = h;
-  set->volume[set->count] = volume;
-  set->scalar[set->count] = scalar;
-  set->solid[set->count] = 0;
-  ++set->count;
-  return 1;
-}
-
 /* A block of a jittered lattice: cells of the given spacing centred in [-size/2, size/2]. */
 typedef struct set_block
 {
@@ -74,7 +32,7 @@ typedef struct set_block
   double (*scalar)(const double x[3]); /* NULL: random, either -1 or 1 */
 } set_block;
 
-static int set_fill(particle_set* set, const set_block* block)
+static void set_fill(particle_set* set, const set_block* block)
 {
   int64_t n[3];
   uint64_t state = block->seed;
@@ -94,13 +52,11 @@ static int set_fill(particle_set* set, const set_block* block)
         ((double)at[axis] + 0.5 - 0.5 * (double)n[axis] + jitter) * block->spacing;
     }
     const double value = block->scalar ? block->scalar(x) : (random_bits(&state) & 1 ? 1.0 : -1.0);
-    if ((!block->inside || block->inside(x)) &&
-      !set_add(set, x, block->ratio * block->spacing, pow(block->spacing, 3.0), value))
+    if (!block->inside || block->inside(x))
     {
-      return 0;
+      particle_set_add(set, x, block->ratio * block->spacing, pow(block->spacing, 3.0), value);
     }
   }
-  return 1;
 }
 
 /* ---- shapes and scalars ---- */
@@ -175,87 +131,81 @@ static int in_puddle(const double x[3])
 
 /* ---- the sets ---- */
 
-static int fill_ball(particle_set* set, double (*scalar)(const double x[3]))
+static void fill_ball(particle_set* set, double (*scalar)(const double x[3]))
 {
   const set_block block = { { 2.0, 2.0, 2.0 }, { 0.0, 0.0, 0.0 }, 0.11, 1.3, 0.2, 1, in_ball,
     scalar };
-  return set_fill(set, &block);
+  set_fill(set, &block);
 }
 
-static int fill_box(
+static void fill_box(
   particle_set* set, double spacing, double jitter, double (*scalar)(const double x[3]))
 {
   const set_block block = { { 1.2, 1.3, 1.1 }, { 0.013, -0.021, 0.007 }, spacing, 1.25, jitter, 2,
     NULL, scalar };
-  return set_fill(set, &block);
+  set_fill(set, &block);
 }
 
-static int make_sphere(particle_set* set)
+static void make_sphere(particle_set* set)
 {
-  return fill_ball(set, radius);
+  fill_ball(set, radius);
 }
 
-static int make_torus(particle_set* set)
+static void make_torus(particle_set* set)
 {
-  return fill_ball(set, scalar_torus);
+  fill_ball(set, scalar_torus);
 }
 
-static int make_gyroid(particle_set* set)
+static void make_gyroid(particle_set* set)
 {
-  return fill_box(set, 0.1, 0.25, scalar_gyroid);
+  fill_box(set, 0.1, 0.25, scalar_gyroid);
 }
 
-static int make_saddle(particle_set* set)
+static void make_saddle(particle_set* set)
 {
-  return fill_box(set, 0.1, 0.1, scalar_saddle);
+  fill_box(set, 0.1, 0.1, scalar_saddle);
 }
 
-static int make_noise(particle_set* set)
+static void make_noise(particle_set* set)
 {
-  return fill_box(set, 0.12, 0.4, NULL);
+  fill_box(set, 0.12, 0.4, NULL);
 }
 
 /* A sheet of high values one particle thick inside fluid, and a sheet of particles on its own. */
-static int make_sheets(particle_set* set)
+static void make_sheets(particle_set* set)
 {
   const set_block alone = { { 1.0, 1.0, 0.09 }, { 0.0, 0.0, 1.1 }, 0.1, 1.3, 0.05, 3, NULL,
     scalar_one };
-  return fill_box(set, 0.1, 0.1, scalar_sheet) && set_fill(set, &alone);
+  fill_box(set, 0.1, 0.1, scalar_sheet);
+  set_fill(set, &alone);
 }
 
 /* Single particles with nothing in reach, heavy enough for a surface of their own, two pairs, and
  * single high values within fluid. */
-static int make_blobs(particle_set* set)
+static void make_blobs(particle_set* set)
 {
   const double lone[7][3] = { { 2.0, 0.1, 0.2 }, { 2.03, 1.07, -0.3 }, { 2.5, 2.5, 2.5 },
     { 2.6, 2.5, 2.5 }, { -2.0, 0.0, 0.0 }, { -2.0, 0.15, 0.0 }, { 0.01, 0.02, -3.0 } };
-  if (!fill_box(set, 0.1, 0.2, scalar_one))
-  {
-    return 0;
-  }
+  fill_box(set, 0.1, 0.2, scalar_one);
   for (int64_t j = 0; j < set->count; ++j)
   {
     set->scalar[j] = j % 97 == 5 ? 1.0 : 0.0;
   }
   for (int n = 0; n < 7; ++n)
   {
-    if (!set_add(set, lone[n], 0.125, 4.0 * pow(0.125, 3.0), n % 2 ? 1.0 : 0.4))
-    {
-      return 0;
-    }
+    particle_set_add(set, lone[n], 0.125, 4.0 * pow(0.125, 3.0), n % 2 ? 1.0 : 0.4);
   }
-  return 1;
 }
 
-static int make_drops(particle_set* set)
+static void make_drops(particle_set* set)
 {
   const set_block block = { { 2.2, 1.2, 1.2 }, { 0.0, 0.0, 0.0 }, 0.08, 1.3, 0.15, 4, in_drops,
     scalar_one };
-  return set_fill(set, &block);
+  set_fill(set, &block);
 }
 
 /* A shallow puddle with a wavy surface on a floor and against one wall of solid particles. */
-static int make_puddle(particle_set* set)
+static void make_puddle(particle_set* set)
 {
   const set_block water = { { 1.6, 1.2, 0.4 }, { 0.0, 0.0, 0.2 }, 0.06, 1.3, 0.1, 5, in_puddle,
     scalar_wave };
@@ -263,23 +213,20 @@ static int make_puddle(particle_set* set)
     scalar_wave };
   const set_block wall = { { 0.12, 1.4, 0.4 }, { -0.86, 0.0, 0.2 }, 0.06, 1.3, 0.0, 7, NULL,
     scalar_wave };
-  const int made = set_fill(set, &water);
+  set_fill(set, &water);
   const int64_t fluid = set->count;
-  if (!made || !set_fill(set, &floor_block) || !set_fill(set, &wall))
-  {
-    return 0;
-  }
+  set_fill(set, &floor_block);
+  set_fill(set, &wall);
   for (int64_t j = fluid; j < set->count; ++j)
   {
     set->solid[j] = 1;
     set->scalar[j] = 1000.0; /* must not be seen in any value or range */
   }
   set->has_solids = 1;
-  return 1;
 }
 
 /* Cells are halved until they are small enough for their distance from the centre. */
-static int set_refine(particle_set* set, const double center[3], double size, double finest,
+static void set_refine(particle_set* set, const double center[3], double size, double finest,
   double coarsest, uint64_t* state)
 {
   const double r = radius(center);
@@ -290,12 +237,9 @@ static int set_refine(particle_set* set, const double center[3], double size, do
     {
       const double child[3] = { center[0] + (c & 1 ? 0.25 : -0.25) * size,
         center[1] + (c & 2 ? 0.25 : -0.25) * size, center[2] + (c & 4 ? 0.25 : -0.25) * size };
-      if (!set_refine(set, child, 0.5 * size, finest, coarsest, state))
-      {
-        return 0;
-      }
+      set_refine(set, child, 0.5 * size, finest, coarsest, state);
     }
-    return 1;
+    return;
   }
   double x[3];
   for (int axis = 0; axis < 3; ++axis)
@@ -304,64 +248,65 @@ static int set_refine(particle_set* set, const double center[3], double size, do
   }
   /* log r, disturbed so that the surface has some shape at every scale. */
   const double scalar = log(radius(x) + 1e-3) + 0.3 * sin(9.0 * atan2(x[1], x[0]));
-  return set_add(set, x, 1.4 * size, size * size * size, scalar);
+  particle_set_add(set, x, 1.4 * size, size * size * size, scalar);
 }
 
-static int fill_graded(particle_set* set, double finest, double coarsest)
+static void fill_graded(particle_set* set, double finest, double coarsest)
 {
   const double center[3] = { 0.0, 0.0, 0.0 };
   uint64_t state = 8;
-  return set_refine(set, center, 2.0, finest, coarsest, &state);
+  set_refine(set, center, 2.0, finest, coarsest, &state);
 }
 
-static int make_variable_4(particle_set* set)
+static void make_variable_4(particle_set* set)
 {
-  return fill_graded(set, 0.0625, 0.25);
+  fill_graded(set, 0.0625, 0.25);
 }
 
-static int make_variable_16(particle_set* set)
+static void make_variable_16(particle_set* set)
 {
-  return fill_graded(set, 0.015625, 0.25);
+  fill_graded(set, 0.015625, 0.25);
 }
 
-static int make_variable_128(particle_set* set)
+static void make_variable_128(particle_set* set)
 {
-  return fill_graded(set, 0.25 / 128.0, 0.25);
+  fill_graded(set, 0.25 / 128.0, 0.25);
 }
 
-static int make_variable_1024(particle_set* set)
+static void make_variable_1024(particle_set* set)
 {
-  return fill_graded(set, 0.25 / 1024.0, 0.25);
+  fill_graded(set, 0.25 / 1024.0, 0.25);
 }
 
 /* Symmetric about x = 0 with A = x, spacing a power of 2: the surface A = 0 runs through nodes. */
-static int make_on_nodes(particle_set* set)
+static void make_on_nodes(particle_set* set)
 {
   const set_block block = { { 1.5, 1.5, 1.5 }, { 0.0, 0.0, 0.0 }, 0.125, 1.0, 0.0, 9, NULL,
     scalar_x };
-  return set_fill(set, &block);
+  set_fill(set, &block);
 }
 
 /* Values that are exactly the iso value over a whole region. */
-static int make_plateau(particle_set* set)
+static void make_plateau(particle_set* set)
 {
   const set_block block = { { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, 0.1, 1.3, 0.2, 10, NULL,
     scalar_step };
-  return set_fill(set, &block);
+  set_fill(set, &block);
 }
 
-static int make_single(particle_set* set)
+static void make_single(particle_set* set)
 {
   const double x[3] = { 0.3, 0.2, 0.1 };
-  return set_add(set, x, 0.1, 4.0 * pow(0.1, 3.0), 1.0);
+  particle_set_add(set, x, 0.1, 4.0 * pow(0.1, 3.0), 1.0);
 }
 
 /* Every particle twice, at the same place. */
-static int make_coincident(particle_set* set)
+static void make_coincident(particle_set* set)
 {
   const set_block block = { { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, 0.1, 1.3, 0.2, 11, NULL,
     scalar_wave };
-  return set_fill(set, &block) && set_fill(set, &block);
+  set_fill(set, &block);
+  set_fill(set, &block);
 }
 
 const particle_set_entry particle_sets[] = {
@@ -398,28 +343,19 @@ const particle_set_entry* particle_set_find(const char* name)
   return NULL;
 }
 
-mcor_array particle_array(const double* data, int components, double constant)
+mcor_array core_array(const double* data, int components)
 {
-  mcor_array array;
-  memset(&array, 0, sizeof(array));
-  array.data = data;
-  array.type = MCOR_FLOAT64;
-  array.components = components;
-  array.constant = constant;
-  return array;
+  return (mcor_array){ .data = data, .type = MCOR_FLOAT64, .components = components };
 }
 
-mcor_input particle_set_input(const particle_set* set)
+mcor_input core_input(const particle_set* set)
 {
-  mcor_input input;
-  memset(&input, 0, sizeof(input));
-  input.count = set->count;
-  input.positions = particle_array(set->position, 3, 0.0);
-  input.smoothing_length = particle_array(set->smoothing_length, 1, 0.0);
-  input.volume = particle_array(set->volume, 1, 0.0);
-  input.scalar = particle_array(set->scalar, 1, 0.0);
-  input.solid = set->has_solids ? set->solid : NULL;
-  return input;
+  return (mcor_input){ .count = set->count,
+    .positions = core_array(set->position, 3),
+    .smoothing_length = core_array(set->smoothing_length, 1),
+    .volume = core_array(set->volume, 1),
+    .scalar = core_array(set->scalar, 1),
+    .solid = set->has_solids ? set->solid : NULL };
 }
 
 void particle_set_transform(particle_set* set, double scale, const double offset[3])

@@ -89,7 +89,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   const int eigenvalue = at->boundary == MCOR_BOUNDARY_EIGENVALUE;
   const double small_iso = eigenvalue && !at->mixed ? 5 : 6;
   const double iso = small && at->field != MCOR_WEIGHT_SUM && !noise ? small_iso : at->iso;
-  particle_set set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
+  CORE_SET set = core_make_block(small ? (noise ? 5 : 4) : 10, 0.3, 8, core_ball);
   uint64_t seed = 4;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -125,7 +125,7 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   options.compact = at->smooth & 1;
   options.widen = at->smooth & 2 ? 2 : 1;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE;
-  mcor_surface surface = { 0 };
+  CORE_SURFACE surface = { 0 };
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   const mcor_statistics* statistics = &surface.statistics;
   const int trimmed = statistics->trim_vertices > statistics->trim_vertices_linear;
@@ -156,8 +156,6 @@ static int run_case(mcor_context* context, const bits_case* at, int small, uint6
   {
     core_keep_surface(at->name, &input, &surface);
   }
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
   return good;
 }
 
@@ -194,7 +192,7 @@ static int run_kernels(mcor_context* context)
 static int run_device(int device, uint64_t expected[])
 {
   char number[16];
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   snprintf(number, sizeof number, "%d", device);
   int good = mcor_create_context(number, &context) == MCOR_OK;
   if (!good)
@@ -210,7 +208,6 @@ static int run_device(int device, uint64_t expected[])
       expected[i] = device == 0 ? hash : expected[i];
     }
   }
-  mcor_free_context(context);
   return good;
 }
 

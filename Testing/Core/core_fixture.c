@@ -6,6 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+void core_free_context(mcor_context** context)
+{
+  mcor_free_context(*context);
+}
+
+void core_free_block(void* pointer)
+{
+  void* block;
+  memcpy(&block, pointer, sizeof block);
+  free(block);
+}
+
 int core_set_up(void** state)
 {
   mcor_context* context = NULL;
@@ -148,8 +160,7 @@ mcor_options core_options(const double* iso)
 
 int64_t* core_make_order(int64_t count, uint64_t seed)
 {
-  int64_t* order = malloc((size_t)count * sizeof *order);
-  assert_non_null(order);
+  int64_t* order = oracle_allocate(count, sizeof *order);
   for (int64_t i = 0; i < count; ++i)
   {
     const int64_t j = (int64_t)(random_bits(&seed) % (uint64_t)(i + 1));
@@ -205,9 +216,8 @@ mesh_report core_check_pinched_mesh(const mcor_surface* surface)
 
 void core_check_flags(const mcor_surface* surface)
 {
-  mesh_report report = core_check_mesh(surface);
-  uint8_t* on_boundary = calloc((size_t)surface->point_count + 1, 1);
-  assert_non_null(on_boundary);
+  CORE_REPORT report = core_check_mesh(surface);
+  CORE_FREED uint8_t* on_boundary = oracle_allocate(surface->point_count + 1, 1);
   for (int64_t s = 0; s < report.side_count; ++s)
   {
     const mesh_edge* e = report.side + s;
@@ -222,8 +232,6 @@ void core_check_flags(const mcor_surface* surface)
       "point %lld: flag %d, on boundary %d", (long long)i, surface->boundary_flag[i],
       on_boundary[i]);
   }
-  mesh_free_report(&report);
-  free(on_boundary);
 }
 
 uint64_t core_hash_bytes(uint64_t hash, const void* data, size_t bytes)

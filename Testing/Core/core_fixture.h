@@ -37,6 +37,22 @@
       mcor_last_error(context));                                                                   \
   } while (0)
 
+/* Before a declaration: what it declares is freed at the end of its block, in reverse order. */
+#define CORE_OWNED(free_it) __attribute__((cleanup(free_it)))
+#define CORE_SET CORE_OWNED(particle_set_free) particle_set
+#define CORE_SURFACE CORE_OWNED(mcor_free_surface) mcor_surface
+#define CORE_REPORT CORE_OWNED(mesh_free_report) mesh_report
+#define CORE_FIELD CORE_OWNED(oracle_free_field) oracle_field
+#define CORE_SAMPLES CORE_OWNED(mcor_free_samples) mcor_samples
+#define CORE_GAUGES CORE_OWNED(mcor_free_gauges) mcor_gauges
+#define CORE_FLUXES CORE_OWNED(mcor_free_fluxes) mcor_fluxes
+#define CORE_PROJECTION CORE_OWNED(mcor_free_projection) mcor_projection
+#define CORE_WIDENING CORE_OWNED(mcor_free_widening) mcor_widening
+#define CORE_CONTEXT CORE_OWNED(core_free_context) mcor_context*
+#define CORE_FREED CORE_OWNED(core_free_block) /* pointers that free() frees */
+void core_free_context(mcor_context** context);
+void core_free_block(void* pointer);
+
 /* Group fixtures: *state is a mcor_context*. */
 int core_set_up(void** state);
 int core_tear_down(void** state);

@@ -66,7 +66,7 @@ static void modules_end(
 static int modules_surface(
   mcor_context* context, const char* name, const mcor_input* input, const mcor_options* options)
 {
-  mcor_surface surface;
+  CORE_SURFACE surface;
   const mcor_status status = mcor_extract(context, input, options, &surface);
   int levels = 0;
   for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
@@ -78,7 +78,6 @@ static int modules_surface(
   const int good = status == MCOR_OK && surface.triangle_count > 0 &&
     (levels > 1 || options->level_limit == 0) &&
     (surface.statistics.cap_triangles > 0 || !options->capping);
-  mcor_free_surface(&surface);
   return good;
 }
 
@@ -140,7 +139,7 @@ static int modules_uniform(mcor_context* context, const mcor_input* input)
 static int modules_plane(mcor_context* context, const mcor_input* input)
 {
   int good = 1;
-  particle_set set = modules_set();
+  CORE_SET set = modules_set();
   for (int i = 9; i < 18; ++i)
   {
     memcpy(set.position + 3 * i, set.position + 3 * (i + 18), 3 * sizeof(double));
@@ -166,7 +165,7 @@ static int modules_plane(mcor_context* context, const mcor_input* input)
     options.vertex_threshold = 0.2;
     options.cube_size_factor = 0.5;
     options.node_threshold = 0.05;
-    mcor_surface surface;
+    CORE_SURFACE surface;
     const mcor_status status = mcor_extract(context, &flat, &options, &surface);
     char name[32];
     snprintf(name, sizeof name, "plane_%d_%d", levels, field);
@@ -174,22 +173,20 @@ static int modules_plane(mcor_context* context, const mcor_input* input)
     core_keep_surface(name, &flat, &surface);
     good = status == MCOR_OK && surface.line_count > 0 &&
       (surface.statistics.cells_of_level[1] > 0) == (levels > 0) && good;
-    mcor_free_surface(&surface);
   }
-  particle_set_free(&set);
   return good;
 }
 
 static int modules_probe(mcor_context* context, const mcor_input* input)
 {
   const double at[15] = { 0, 0, 0, 1.2, 0.3, 0.7, 10.5, 2, 3, 60, 0, 0, 2, 2, 2 };
-  double* points = core_copy(at, sizeof at);
+  CORE_FREED double* points = core_copy(at, sizeof at);
   const mcor_array array = core_array(points, 3);
   int good = 1;
   for (int field = MCOR_SHEPARD; field <= MCOR_SUM; ++field)
   {
     mcor_options options = modules_options((mcor_field)field);
-    mcor_samples samples;
+    CORE_SAMPLES samples;
     const mcor_status status = mcor_probe(context, input, &options, &array, 5, &samples);
     good = status == MCOR_OK && samples.valid[0] && !samples.valid[3] && good;
     char name[32];
@@ -204,9 +201,7 @@ static int modules_probe(mcor_context* context, const mcor_input* input)
       modules_add(&hash, samples.gradients[a], 3 * bytes);
     }
     modules_end(context, &hash, samples.count, 0);
-    mcor_free_samples(&samples);
   }
-  free(points);
   return good;
 }
 
@@ -239,13 +234,12 @@ static int modules_gauge(mcor_context* context, const mcor_input* input)
     { .from = { -3, 0.2, 0.3 }, .to = { 30, 7, 9 } },
     { .from = { 99, 0, 0 }, .to = { 99, 0, 1 } } };
   const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
-  mcor_gauges found;
+  CORE_GAUGES found;
   const mcor_status status = mcor_gauge(context, input, &options, lines, 3, &found);
   modules_hash hash = { "gauge", CORE_HASH_OF_NOTHING };
   modules_add(&hash, found.crossings, (size_t)found.crossing_count * sizeof(double));
   modules_end(context, &hash, found.count, found.crossing_count);
   const int good = status == MCOR_OK && found.crossing_count > 3;
-  mcor_free_gauges(&found);
   return good;
 }
 
@@ -258,7 +252,7 @@ static int modules_flux(mcor_context* context, const mcor_input* input)
     { .shape = MCOR_SECTION_DISC, .points = disc, .point_count = 2, .radius = 3 }
   };
   const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
-  mcor_fluxes found;
+  CORE_FLUXES found;
   const mcor_status status = mcor_flux(context, input, &options, sections, 2, &found);
   modules_hash hash = { "flux", CORE_HASH_OF_NOTHING };
   int good = status == MCOR_OK;
@@ -270,7 +264,6 @@ static int modules_flux(mcor_context* context, const mcor_input* input)
     good = good && reading->area > 1;
   }
   modules_end(context, &hash, found.count, 0);
-  mcor_free_fluxes(&found);
   return good;
 }
 
@@ -341,7 +334,7 @@ static int tank_run(mcor_context* context, const tank_case* at)
 {
   static const double levels[3] = { 5.3, 0.5, 8 };
   const int has = at->has;
-  particle_set set = tank_set(has & TANK_FLAT);
+  CORE_SET set = tank_set(has & TANK_FLAT);
   uint64_t seed = 3;
   for (int64_t i = 0; i < set.count && has & TANK_TOPOLOGY; ++i)
   {
@@ -387,7 +380,7 @@ static int tank_run(mcor_context* context, const tank_case* at)
     mcor_free_surface(&first);
     options.iso_values = levels + 2;
   }
-  mcor_surface surface;
+  CORE_SURFACE surface;
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   const mcor_statistics* s = &surface.statistics;
   const int64_t cells = surface.triangle_count + surface.line_count;
@@ -404,8 +397,6 @@ static int tank_run(mcor_context* context, const tank_case* at)
       at->name, (long long)cells, (long long)s->cells_of_level[1], (long long)s->cap_triangles,
       (long long)s->joined_faces, (long long)s->trim_vertices);
   }
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
   return good;
 }
 
@@ -462,7 +453,7 @@ static int modules_project(mcor_context* context, const mcor_input* input)
     .resolution = 40,
     .weight = input->smoothing_length };
   const mcor_options options = modules_options(MCOR_WEIGHT_SUM);
-  mcor_projection found;
+  CORE_PROJECTION found;
   const mcor_status status = mcor_project(context, input, &options, &view, &found);
   modules_hash hash = { "project", CORE_HASH_OF_NOTHING };
   const int64_t pixels = (int64_t)found.size[0] * found.size[1];
@@ -474,7 +465,6 @@ static int modules_project(mcor_context* context, const mcor_input* input)
   }
   modules_add(&hash, found.values, (size_t)pixels * sizeof(double));
   modules_end(context, &hash, found.size[0], found.size[1]);
-  mcor_free_projection(&found);
   return status == MCOR_OK && sum > 1;
 }
 
@@ -497,7 +487,7 @@ int main(int argc, char** argv)
     mcor_free_context(context);
     return 1;
   }
-  particle_set set = modules_set();
+  CORE_SET set = modules_set();
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
   mcor_input input = core_input(&set);
@@ -514,6 +504,5 @@ int main(int argc, char** argv)
     good = (!wanted || runs[i].run(context, &input)) && good;
   }
   mcor_free_context(context);
-  particle_set_free(&set);
   return good ? 0 : 1;
 }

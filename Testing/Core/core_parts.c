@@ -113,8 +113,7 @@ void core_expect_same(const char* name, core_triangles* all, core_triangles* who
 /* Points that no triangle uses, or triangles without a point, are nobody's. */
 static void check_points(const mcor_surface* s)
 {
-  uint8_t* used = calloc((size_t)s->point_count + 1, 1);
-  assert_non_null(used);
+  CORE_FREED uint8_t* used = oracle_allocate(s->point_count + 1, 1);
   for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
   {
     assert_in_range(s->triangles[i], 0, s->point_count - 1);
@@ -124,7 +123,6 @@ static void check_points(const mcor_surface* s)
   {
     assert_int_equal(used[i], 1);
   }
-  free(used);
 }
 
 /* Each point has a key of its own, and they ascend; so do those of triangles, which share them. Boxes'
@@ -183,7 +181,7 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
     const int at[3] = { i % n, i / n % m, i / n / m };
     mcor_options own = *options;
     core_set_box(&own, cut, at);
-    mcor_surface part = core_extract(context, input, &own);
+    CORE_SURFACE part = core_extract(context, input, &own);
     check_points(&part);
     check_keys(&part);
     core_add_surface(&all, input, &part);
@@ -196,7 +194,6 @@ static void check_cut(mcor_context* context, const char* name, const mcor_input*
       cells_of_level[l] += part.statistics.cells_of_level[l];
       triangles_of_level[l] += part.statistics.triangles_of_level[l];
     }
-    mcor_free_surface(&part);
   }
   char both[100];
   snprintf(both, sizeof both, "%s, %s", name, cut->name);

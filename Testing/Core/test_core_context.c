@@ -21,32 +21,31 @@ static void ask_for_all(mcor_options* options)
 
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  mcor_surface surface = core_extract(context, input, options);
+  CORE_SURFACE surface = core_extract(context, input, options);
   CORE_CHECK(surface.triangle_count > 0, "no triangles");
   CORE_CHECK(options->boundary_detection == MCOR_BOUNDARY_WEIGHT_SUM ||
       surface.statistics.trim_vertices > surface.statistics.trim_vertices_linear,
     "nothing trimmed by the eigenvalue");
   const uint64_t hash = core_hash(&surface);
-  mcor_free_surface(&surface);
   return hash;
 }
 
 /* Several iso values at once are the surfaces of each. */
 static void test_several_iso_values(void** state)
 {
-  particle_set set = core_make_block(9, 0.3, 3, core_ball);
+  CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
   const double iso[3] = { 5, 0, 2.5 };
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(iso);
   ask_for_all(&options);
   options.iso_count = 3;
-  mcor_surface all = core_extract(*state, &input, &options);
+  CORE_SURFACE all = core_extract(*state, &input, &options);
   int64_t point = 0, triangle = 0;
   options.iso_count = 1;
   for (int i = 0; i < 3; ++i)
   {
     options.iso_values = iso + i;
-    mcor_surface one = core_extract(*state, &input, &options);
+    CORE_SURFACE one = core_extract(*state, &input, &options);
     CORE_CHECK(point + one.point_count <= all.point_count &&
         triangle + one.triangle_count <= all.triangle_count,
       "too few");
@@ -64,12 +63,9 @@ static void test_several_iso_values(void** state)
     }
     point += one.point_count;
     triangle += one.triangle_count;
-    mcor_free_surface(&one);
   }
   assert_int_equal(point, all.point_count);
   assert_int_equal(triangle, all.triangle_count);
-  mcor_free_surface(&all);
-  particle_set_free(&set);
 }
 
 typedef struct permuted_case
@@ -151,18 +147,15 @@ static uint64_t permuted_hash(
 /* Whether five other orders of the particles give the same bits. */
 static int order_is_irrelevant(mcor_context* context, const permuted_case* at)
 {
-  particle_set set = make_permuted_set(at);
+  CORE_SET set = make_permuted_set(at);
   const uint64_t expected = permuted_hash(context, at, &set);
   int same = 1;
   for (uint64_t seed = 1; seed <= 5; ++seed)
   {
-    int64_t* order = core_make_order(set.count, seed);
-    particle_set permuted = core_permute(&set, order);
+    CORE_FREED int64_t* order = core_make_order(set.count, seed);
+    CORE_SET permuted = core_permute(&set, order);
     same = same && permuted_hash(context, at, &permuted) == expected;
-    particle_set_free(&permuted);
-    free(order);
   }
-  particle_set_free(&set);
   return same;
 }
 
@@ -185,8 +178,8 @@ static void test_order_of_input(void** state)
 static void test_memory_limit(void** state)
 {
   mcor_context* context = *state;
-  particle_set big = core_make_block(16, 0.2, 3, core_slope);
-  particle_set set = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET big = core_make_block(16, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_input input = core_input(&set), big_input = core_input(&big);
   mcor_options options = core_options(&iso);
@@ -207,8 +200,6 @@ static void test_memory_limit(void** state)
   mcor_free_surface(&surface);
   options.memory_limit = peak;
   CORE_CHECK(hash_of(context, &input, &options) == expected, "another surface in limited memory");
-  particle_set_free(&set);
-  particle_set_free(&big);
 }
 
 /* A large buffer that was released serves the next that is about as large; others are given back where
@@ -268,7 +259,7 @@ static void test_devices(void** state)
   const char* const unknown[] = { "no such device", "99999", "-1", "1e9" };
   for (int i = 0; i < 4; ++i)
   {
-    mcor_context* context = NULL;
+    CORE_CONTEXT context = NULL;
     assert_int_equal(mcor_create_context(unknown[i], &context), MCOR_DEVICE_ERROR);
     assert_non_null(context);
     assert_non_null(strstr(mcor_last_error(context), unknown[i]));
@@ -276,7 +267,6 @@ static void test_devices(void** state)
     const mcor_options options = core_options(NULL);
     mcor_surface surface = { 0 };
     assert_int_equal(mcor_extract(context, &input, &options, &surface), MCOR_DEVICE_ERROR);
-    mcor_free_context(context);
   }
   /* Part of the default device's name, in capitals and in small letters. */
   const mcor_context* context_of_default = *state;
@@ -291,9 +281,8 @@ static void test_devices(void** state)
   const char* const known[] = { "", "0", NULL, upper, lower + 1 };
   for (int i = 0; i < 5; ++i)
   {
-    mcor_context* context = NULL;
+    CORE_CONTEXT context = NULL;
     CORE_OK(context, mcor_create_context(known[i], &context));
-    mcor_free_context(context);
   }
 }
 
@@ -313,7 +302,7 @@ static void test_names(void** state)
 /* Statistics that can be told beforehand, and their relations. */
 static void test_statistics(void** state)
 {
-  particle_set set = core_make_block(10, 0, 3, core_ball);
+  CORE_SET set = core_make_block(10, 0, 3, core_ball);
   set.has_solids = 1;
   for (int64_t i = 0; i < 100; ++i)
   {
@@ -322,7 +311,7 @@ static void test_statistics(void** state)
   const double iso = 0;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   const mcor_statistics* s = &surface.statistics;
   assert_int_equal(s->fluid_particles, 900);
   assert_int_equal(s->solid_particles, 100);
@@ -344,8 +333,6 @@ static void test_statistics(void** state)
     "%lld vertices above the tolerance, worst residual %g", (long long)s->vertices_above_tolerance,
     s->residual_max);
   CORE_CHECK(s->device[0] && s->platform[0], "no device");
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* As many lanes as the device's compiler has registers for, whatever width the device claims. */
@@ -381,9 +368,9 @@ static int on_building(void* user, double fraction, const char* phase)
 static void test_build(void** state)
 {
   (void)state;
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
-  particle_set set = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   mcor_options options = core_options(&iso);
   int told = 0;
@@ -394,13 +381,10 @@ static void test_build(void** state)
   {
     options.sph_kernel = run == 2 ? MCOR_QUADRATIC : MCOR_CUBIC_SPLINE;
     told = 0;
-    mcor_surface surface = core_extract(context, &input, &options);
+    CORE_SURFACE surface = core_extract(context, &input, &options);
     CORE_CHECK((surface.statistics.build_seconds > 0) == (run != 1) && (told > 0) == (run != 1),
       "run %d: %g s of building, told %d times", run, surface.statistics.build_seconds, told);
-    mcor_free_surface(&surface);
   }
-  particle_set_free(&set);
-  mcor_free_context(context);
 }
 
 int main(void)

@@ -11,10 +11,9 @@
 
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
-  mcor_surface surface = core_extract(context, input, options);
+  CORE_SURFACE surface = core_extract(context, input, options);
   const uint64_t hash = core_hash(&surface);
   CORE_CHECK(surface.triangle_count > 0, "no triangles");
-  mcor_free_surface(&surface);
   return hash;
 }
 
@@ -64,7 +63,7 @@ static mcor_status run_kind(
 static void test_cancel_between_launches(void** state)
 {
   mcor_context* context = *state;
-  particle_set set = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
   mcor_input input = core_input(&set);
   input.attributes = &input.scalar;
@@ -96,7 +95,6 @@ static void test_cancel_between_launches(void** state)
     assert_int_equal(again.calls, launches.calls);
   }
   context->report_interval = interval;
-  particle_set_free(&set);
 }
 
 /* Calls of progress in each phase. */
@@ -122,7 +120,7 @@ static void test_all_phases_ask(void** state)
 {
   mcor_context* context = *state;
   const bool built_in = strcmp(context->cl.platform_name, "built in") == 0;
-  particle_set set = core_make_block(12, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(12, 0.2, 3, core_slope);
   const double iso = 0, interval = context->report_interval;
   const int expected[MCOR_PHASE_COUNT] = { [MCOR_PHASE_INPUT] = 4,
     [MCOR_PHASE_SEARCH_GRID] = 25,
@@ -149,14 +147,13 @@ static void test_all_phases_ask(void** state)
     }
   }
   context->report_interval = interval;
-  particle_set_free(&set);
 }
 
 /* Where sums have very many terms, a launch is cut into parts, each worth a report; no bit changes. */
 static void test_long_launches_are_cut(void** state)
 {
   mcor_context* context = *state;
-  particle_set set = core_make_block(16, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(16, 0.2, 3, core_slope);
   const double half = 0.5, interval = context->report_interval;
   const int units = context->cl.units;
   mcor_input input = core_input(&set);
@@ -181,7 +178,6 @@ static void test_long_launches_are_cut(void** state)
     CORE_CHECK(cut.calls >= whole.calls + 4, "%d reports, %d", cut.calls, whole.calls);
   }
   context->report_interval = interval;
-  particle_set_free(&set);
 }
 
 int main(void)

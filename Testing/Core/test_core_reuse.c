@@ -234,25 +234,23 @@ static const reuse_step steps[] = { AT(ARRAYS, count), AT(ARRAYS, positions),
 /* Hashes the surface and the counts of cells that go with it. */
 static uint64_t hash_of(mcor_context* context, const reuse_call* call, const char* step)
 {
-  mcor_surface surface = core_extract(context, &call->input, &call->options);
+  CORE_SURFACE surface = core_extract(context, &call->input, &call->options);
   const mcor_statistics* s = &surface.statistics;
   CORE_CHECK(surface.triangle_count > 0, "%s: no triangles", step);
   CORE_CHECK(s->seed_cells > s->seed_cells_not_intersected, "%s: no seeds", step);
   const uint64_t hash = core_hash(&surface) + 1000003 * (uint64_t)s->seed_cells +
     7919 * (uint64_t)s->seed_cells_not_intersected + (uint64_t)s->cells_used;
-  mcor_free_surface(&surface);
   return hash;
 }
 
 /* Returns the hash of a context that never saw anything else. */
 static uint64_t fresh_hash(const reuse_call* call, const char* step)
 {
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
   reuse_call alone = *call;
   alone.input.particles_version = alone.input.scalar_version = 0;
   const uint64_t hash = hash_of(context, &alone, step);
-  mcor_free_context(context);
   return hash;
 }
 

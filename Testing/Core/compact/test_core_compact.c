@@ -213,7 +213,7 @@ static uint64_t hash_border(const mcor_surface* s)
 static void check_triangles(
   const compact_case* at, const mcor_surface* without, const mcor_surface* with)
 {
-  mesh_report before = core_check_pinched_mesh(without), after = core_check_pinched_mesh(with);
+  CORE_REPORT before = core_check_pinched_mesh(without), after = core_check_pinched_mesh(with);
   int64_t sharp, turned, sharp_before, turned_before;
   measure(without, &sharp_before, &turned_before);
   measure(with, &sharp, &turned);
@@ -228,8 +228,6 @@ static void check_triangles(
   CORE_CHECK(turned <= turned_before, "%s: %lld turned over", at->name, (long long)turned);
   CORE_CHECK((double)sharp <= at->sharp * (double)after.triangles, "%s: %lld sharp of %lld",
     at->name, (long long)sharp, (long long)after.triangles);
-  mesh_free_report(&before);
-  mesh_free_report(&after);
 }
 
 static mcor_input input_of(
@@ -248,13 +246,13 @@ static void surfaces(void** state)
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     const compact_case* at = cases + i;
-    particle_set set = at->make();
+    CORE_SET set = at->make();
     const mcor_array attribute = core_array(set.position, 3);
     const mcor_input input = input_of(at, &set, &attribute);
     mcor_options options = options_of(at);
-    mcor_surface without = core_extract(*state, &input, &options);
+    CORE_SURFACE without = core_extract(*state, &input, &options);
     options.compact = 1;
-    mcor_surface with = core_extract(*state, &input, &options);
+    CORE_SURFACE with = core_extract(*state, &input, &options);
     const mcor_statistics *s = &with.statistics, *old = &without.statistics;
     if (with.line_offsets)
     {
@@ -273,9 +271,6 @@ static void surfaces(void** state)
         s->vertices_above_tolerance <= old->vertices_above_tolerance,
       "%s: residual %g, before %g; %lld above", at->name, s->residual_max, old->residual_max,
       (long long)s->vertices_above_tolerance);
-    mcor_free_surface(&without);
-    mcor_free_surface(&with);
-    particle_set_free(&set);
   }
 }
 
@@ -284,7 +279,7 @@ static void boxes(void** state)
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     const compact_case* at = cases + i;
-    particle_set set = at->make();
+    CORE_SET set = at->make();
     const mcor_array attribute = core_array(set.position, 3);
     const mcor_input input = input_of(at, &set, &attribute);
     mcor_options options = options_of(at);
@@ -295,7 +290,6 @@ static void boxes(void** state)
       options.triangle_normals = 1;
       core_check_these_cuts(*state, at->name, &input, &options, core_cuts + 3, 1);
     }
-    particle_set_free(&set);
   }
 }
 

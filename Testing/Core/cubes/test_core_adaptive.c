@@ -21,16 +21,13 @@ static mcor_options adaptive_options(const double* iso, mcor_field field)
 static void one_level_is_uniform(void** state)
 {
   static const double iso = 0;
-  particle_set set = core_make_block(9, 0.3, 3, core_ball);
+  CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  mcor_surface adaptive = core_extract(*state, &input, &options);
+  CORE_SURFACE adaptive = core_extract(*state, &input, &options);
   options.level_limit = 0;
-  mcor_surface uniform = core_extract(*state, &input, &options);
+  CORE_SURFACE uniform = core_extract(*state, &input, &options);
   assert_true(core_hash(&adaptive) == core_hash(&uniform) && uniform.point_count > 100);
-  mcor_free_surface(&adaptive);
-  mcor_free_surface(&uniform);
-  particle_set_free(&set);
 }
 
 /* Half of the lattice has values above, the other half below. Nodes are evaluated only between
@@ -40,19 +37,17 @@ static void few_nodes_are_evaluated(void** state)
 {
   static const double iso = 0.1;
   mcor_context* context = *state;
-  particle_set set = core_make_graded(16, 0.4);
+  CORE_SET set = core_make_graded(16, 0.4);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = set.position[3 * i + 2] > 0.3 ? 1 : -1;
   }
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   const int64_t nodes = surface.statistics.nodes_evaluated;
   assert_in_range(nodes, 64, 38 * (int64_t)context->tree.leaf_count); /* of 64 */
   assert_true(surface.statistics.cells_used > 100);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Two groups whose sizes, and distance, differ by thousands: nothing is of the size of the finest
@@ -60,7 +55,7 @@ static void few_nodes_are_evaluated(void** state)
 static void far_apart(void** state)
 {
   static const double half = 0.5;
-  particle_set set = particle_set_make(2 * 216);
+  CORE_SET set = particle_set_make(2 * 216);
   for (int64_t i = 0; i < set.count; ++i)
   {
     const double size = i < 216 ? 1 : 4000;
@@ -74,14 +69,11 @@ static void far_apart(void** state)
   }
   const mcor_input input = core_input(&set);
   const mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
-  mcor_surface surface = core_extract(*state, &input, &options);
-  mesh_report report = core_check_mesh(&surface);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
+  CORE_REPORT report = core_check_mesh(&surface);
   assert_int_equal(report.components, 2);
   assert_int_equal(report.boundary_edges, 0);
   assert_true(surface.triangle_count < 20000);
-  mesh_free_report(&report);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -57,8 +57,7 @@ typedef struct particles
 
 static float* read_reals(mcor_context* context, const mcor_buffer* buffer, int count)
 {
-  float* data = malloc((size_t)count * sizeof *data);
-  assert_non_null(data);
+  float* data = oracle_allocate(count, sizeof *data);
   CORE_OK(context, mcor_read(context, buffer, 0, data, (size_t)count * sizeof *data));
   return data;
 }
@@ -189,9 +188,8 @@ static cl_int4 make_box(const particles* p, const mcor_lattice* lattice, int b, 
 static void make_grid(mcor_context* context, const particle_set* set, const mcor_options* options)
 {
   const mcor_input input = core_input_to_keep(set);
-  mcor_surface surface = core_extract(context, &input, options);
+  CORE_SURFACE surface = core_extract(context, &input, options);
   core_extend_program(context, source);
-  mcor_free_surface(&surface);
 }
 
 static void check_bound(mcor_context* context, const particle_set* set, mcor_options* options,
@@ -204,9 +202,8 @@ static void check_bound(mcor_context* context, const particle_set* set, mcor_opt
   make_grid(context, set, options);
   options->iso_values = &iso;
   particles p = read_particles(context);
-  cl_int4* box = calloc((size_t)boxes, sizeof *box);
-  float* out = calloc((size_t)boxes * 7, sizeof *out);
-  assert_true(box && out);
+  CORE_FREED cl_int4* box = oracle_allocate(boxes, sizeof *box);
+  CORE_FREED float* out = oracle_allocate(boxes * 7, sizeof *out);
   for (int b = 0; b < boxes; ++b)
   {
     box[b] = make_box(&p, &context->lattice, b, &seed);
@@ -234,8 +231,6 @@ static void check_bound(mcor_context* context, const particle_set* set, mcor_opt
   mcor_release(context, &box_buffer);
   mcor_release(context, &results);
   free_particles(&p);
-  free(box);
-  free(out);
 }
 
 static void test_bound(void** state)
@@ -259,7 +254,7 @@ static void test_bound(void** state)
     static const int counts[] = { 6, 150, 1 };
     for (int s = 0; s < 3; ++s)
     {
-      particle_set set = core_make_random(counts[s], 5, s == 0 ? 1 : 0.3, 1, 40 + (uint64_t)s);
+      CORE_SET set = core_make_random(counts[s], 5, s == 0 ? 1 : 0.3, 1, 40 + (uint64_t)s);
       for (int i = 0; i < counts[s]; ++i)
       {
         set.solid[i] = i % 3 == 1;
@@ -273,7 +268,6 @@ static void test_bound(void** state)
       options.seeds = MCOR_PAIRS;
       options.cube_size = 0.13;
       check_bound(*state, &set, &options, 160, 60, s == 2 ? 0 : 10);
-      particle_set_free(&set);
     }
   }
 }
@@ -289,7 +283,7 @@ static void test_many_particles(void** state)
     double volume;
   } cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, 0.7 }, { MCOR_CUBIC_SPLINE, MCOR_SUM, 0.9 },
     { MCOR_M_PRIME_4, MCOR_SHEPARD, 1.1 } };
-  particle_set set = core_make_random(24000, 0, 1, 1, 50);
+  CORE_SET set = core_make_random(24000, 0, 1, 1, 50);
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
     for (int i = 0; i < set.count; ++i)
@@ -305,7 +299,6 @@ static void test_many_particles(void** state)
     options.cube_size = 0.1;
     check_bound(*state, &set, &options, 24, 12, 0);
   }
-  particle_set_free(&set);
 }
 
 /* Nodes of a brick where the weight sum is at least iso, the brick's first node being `first`. */
@@ -331,8 +324,7 @@ static void check_inside(mcor_context* context, const particles* p, const mcor_o
   const cl_int4* bricks, int count, double iso)
 {
   mcor_buffer box_buffer = { 0 }, results = { 0 };
-  int* inside = calloc((size_t)count, sizeof *inside);
-  assert_non_null(inside);
+  CORE_FREED int* inside = oracle_allocate(count, sizeof *inside);
   CORE_OK(context, mcor_write(context, &box_buffer, bricks, (size_t)count * sizeof *bricks));
   CORE_OK(context, mcor_reserve(context, &results, (size_t)count * sizeof *inside));
   CORE_OK(context,
@@ -350,14 +342,13 @@ static void check_inside(mcor_context* context, const particles* p, const mcor_o
   CORE_CHECK(iso > 0.5 || found > 20, "iso %g: only %d of %d bricks inside", iso, found, count);
   mcor_release(context, &box_buffer);
   mcor_release(context, &results);
-  free(inside);
 }
 
 static void test_inside(void** state)
 {
   mcor_context* context = *state;
   const double far = 1e6;
-  particle_set set = core_make_block(9, 0.4, 5, core_slope);
+  CORE_SET set = core_make_block(9, 0.4, 5, core_slope);
   mcor_options options = core_options(&far);
   options.field = MCOR_WEIGHT_SUM;
   options.cube_size = 0.3;
@@ -378,7 +369,6 @@ static void test_inside(void** state)
     check_inside(context, &p, &options, bricks, 512, iso);
   }
   free_particles(&p);
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -77,11 +77,10 @@ static void check_closed(lattice* l, double volume_above)
     .point_count = l->point_count,
     .triangles = l->triangles,
     .triangle_count = l->triangle_count };
-  mesh_report report = core_check_mesh(&surface);
+  CORE_REPORT report = core_check_mesh(&surface);
   assert_int_equal(report.boundary_edges, 0);
   CORE_CHECK(report.volume > 0.4 * volume_above, "%lld triangles, volume %g of %g",
     (long long)report.triangles, report.volume, volume_above);
-  mesh_free_report(&report);
   free(l->above);
   free(l->vertex);
   free(l->points);

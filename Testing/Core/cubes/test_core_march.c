@@ -14,7 +14,7 @@ static void test_outlier(void** state)
 {
   for (int sign = -1; sign <= 1; sign += 2)
   {
-    particle_set set = core_make_block(9, 0, 1, core_ball);
+    CORE_SET set = core_make_block(9, 0, 1, core_ball);
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.scalar[i] = i == set.count / 2 ? sign * 1e30 : 0;
@@ -22,8 +22,8 @@ static void test_outlier(void** state)
     const double iso = sign, reach = 2 * set.smoothing_length[0];
     const mcor_input input = core_input(&set);
     const mcor_options options = core_options(&iso);
-    mcor_surface surface = core_extract(*state, &input, &options);
-    mesh_report report = core_check_mesh(&surface);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
+    CORE_REPORT report = core_check_mesh(&surface);
     CORE_CHECK(report.triangles >= 8 && report.boundary_edges == 0,
       "sign %d: %lld triangles, %lld boundary edges", sign, (long long)report.triangles,
       (long long)report.boundary_edges);
@@ -33,9 +33,6 @@ static void test_outlier(void** state)
       const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
       CORE_CHECK(r > 0.9 * reach && r < 1.01 * reach, "sign %d: a point at distance %g", sign, r);
     }
-    mesh_free_report(&report);
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -70,11 +67,11 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   mcor_options options = core_options(&iso);
   options.outputs |=
     MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL | MCOR_OUT_NEAREST_PARTICLE;
-  particle_set part = make_mixed(0), whole = make_mixed(1);
+  CORE_SET part = make_mixed(0), whole = make_mixed(1);
   mcor_input input = core_input(&part);
-  mcor_surface a = core_extract(*state, &input, &options);
+  CORE_SURFACE a = core_extract(*state, &input, &options);
   input = core_input(&whole);
-  mcor_surface b = core_extract(*state, &input, &options);
+  CORE_SURFACE b = core_extract(*state, &input, &options);
   int64_t i = 0;
   for (int64_t j = 0; j < b.point_count; ++j)
   {
@@ -91,11 +88,6 @@ static void test_parts_have_the_bits_of_the_whole(void** state)
   }
   assert_int_equal(i, a.point_count);
   assert_true(i > 100 && i < b.point_count);
-
-  mcor_free_surface(&a);
-  mcor_free_surface(&b);
-  particle_set_free(&part);
-  particle_set_free(&whole);
 }
 
 /* ---- Node by node: a particle on a node reaches no other one, so that the value there is its own,
@@ -214,7 +206,7 @@ static void check_pattern(
   options.cube_size = 1;
   options.vertex_threshold = 0;
   options.topology = topology;
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   int64_t pinched = 0;
   for (int k = 0; k < 6; ++k)
   {
@@ -223,7 +215,7 @@ static void check_pattern(
   assert_int_equal(surface.point_count, p->points);
   CORE_CHECK(topology == MCOR_TOPOLOGY_FIELD || surface.triangle_count == p->triangles,
     "%lld triangles, not %lld", (long long)surface.triangle_count, (long long)p->triangles);
-  mesh_report report;
+  CORE_REPORT report;
   mesh_check(
     surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
   for (int fault = 0; fault < MESH_FAULT_COUNT; ++fault)
@@ -233,8 +225,6 @@ static void check_pattern(
       "topology %d, %lld of: %s; %s", (int)topology, (long long)report.faults[fault],
       mesh_fault_name(fault), report.first[fault]);
   }
-  mesh_free_report(&report);
-  mcor_free_surface(&surface);
 }
 
 static void test_node_by_node(void** state)

@@ -37,9 +37,8 @@ static marked_cells read_cells(mcor_context* context)
 {
   marked_cells m = { .count = 0 };
   const int bricks = context->bricks.now.count;
-  cl_int* brick = calloc((size_t)bricks + 1, 4 * sizeof *brick);
-  uint64_t* cells = calloc((size_t)bricks + 1, 2 * sizeof *cells);
-  assert_true(brick && cells);
+  CORE_FREED cl_int* brick = oracle_allocate(bricks + 1, 4 * sizeof *brick);
+  CORE_FREED uint64_t* cells = oracle_allocate(bricks + 1, 2 * sizeof *cells);
   const uint64_t* used = cells + bricks;
   CORE_OK(context,
     mcor_read(context, &context->bricks.now.bricks, 0, brick, (size_t)bricks * 4 * sizeof *brick));
@@ -69,8 +68,6 @@ static marked_cells read_cells(mcor_context* context)
       m.hits += marked && used[b] >> c & 1;
     }
   }
-  free(brick);
-  free(cells);
   return m;
 }
 
@@ -116,7 +113,7 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   options.seeds = MCOR_PAIRS;
   options.node_threshold = 0;
   options.cube_size = cube;
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   marked_cells m = read_cells(context);
   assert_int_equal(surface.statistics.seed_cells, m.count);
   assert_int_equal(surface.statistics.seed_cells_not_intersected, m.count - m.hits);
@@ -147,7 +144,6 @@ static void check_pairs(mcor_context* context, const particle_set* set, double c
   {
     CORE_CHECK(m.cell[i] != 1, "cell %lld is marked, but on no line", (long long)i);
   }
-  mcor_free_surface(&surface);
   free(m.cell);
 }
 
@@ -162,7 +158,7 @@ static void test_line(void** state)
   uint64_t seed = 6;
   for (int i = 0; i < 40; ++i)
   {
-    particle_set set = particle_set_make(2);
+    CORE_SET set = particle_set_make(2);
     double length = 0;
     for (int c = 0; c < 6; ++c)
     {
@@ -180,7 +176,6 @@ static void test_line(void** state)
       set.scalar[j] = j ? 1 : -1;
     }
     check_pairs(*state, &set, 0.125);
-    particle_set_free(&set);
   }
 }
 
@@ -189,10 +184,9 @@ static void test_pairs(void** state)
 {
   for (uint64_t seed = 1; seed <= 4; ++seed)
   {
-    particle_set set = core_make_random(25, 2, 0.4, seed % 2 ? 0.4 : 1.2, seed + 20);
+    CORE_SET set = core_make_random(25, 2, 0.4, seed % 2 ? 0.4 : 1.2, seed + 20);
     set.smoothing_length[7] = 0.8;
     check_pairs(*state, &set, 0.07);
-    particle_set_free(&set);
   }
 }
 
@@ -220,12 +214,10 @@ static void test_pairs_in_each_form(void** state)
   int64_t cells[2];
   for (int form = 0; form < 2; ++form)
   {
-    mcor_context* context = NULL;
+    CORE_CONTEXT context = NULL;
     core_create_form(&context, form ? "gpu" : "cpu");
-    mcor_surface surface = core_extract(context, &input, &options);
+    CORE_SURFACE surface = core_extract(context, &input, &options);
     cells[form] = surface.statistics.seed_cells;
-    mcor_free_surface(&surface);
-    mcor_free_context(context);
   }
   assert_true(cells[0] > 1000 && cells[0] < 11000);
   assert_int_equal(cells[0], cells[1]);
@@ -247,17 +239,15 @@ static void test_rounding(void** state)
   uint64_t hash[2];
   for (int fresh = 0; fresh < 2; ++fresh)
   {
-    mcor_context* context = NULL;
+    CORE_CONTEXT context = NULL;
     assert_int_equal(mcor_create_context(NULL, &context), MCOR_OK);
     for (int i = fresh; i < 2; ++i)
     {
       const mcor_options options = core_options(&iso[i]);
-      mcor_surface surface = core_extract(context, &input, &options);
+      CORE_SURFACE surface = core_extract(context, &input, &options);
       assert_true(surface.triangle_count > 0);
       hash[fresh] = core_hash(&surface);
-      mcor_free_surface(&surface);
     }
-    mcor_free_context(context);
   }
   assert_true(hash[0] == hash[1]);
   particle_set_free(&set);

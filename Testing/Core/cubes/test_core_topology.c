@@ -75,15 +75,13 @@ static int64_t count_parts(mcor_context* context, const particle_set* set, doubl
   mcor_options options = core_options(&iso);
   options.cube_size = cube;
   options.topology = topology;
-  mcor_surface surface = core_extract(context, &input, &options);
-  mesh_report report = core_check_mesh(&surface);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
+  CORE_REPORT report = core_check_mesh(&surface);
   const int64_t parts = report.components;
   *statistics = surface.statistics;
   CORE_CHECK(report.boundary_edges == 0 && report.euler == 2 * parts,
     "%lld boundary edges, %lld components, Euler number %lld", (long long)report.boundary_edges,
     (long long)parts, (long long)report.euler);
-  mesh_free_report(&report);
-  mcor_free_surface(&surface);
   return parts;
 }
 
@@ -99,7 +97,7 @@ static void test_diagonals(void** state)
   for (int i = 0; i < 40; ++i)
   {
     const int apart = i / 20, sign = i % 2 ? 1 : -1, on_face = i / 2 % 10 < 6;
-    particle_set set = make_particles(apart ? balls : thread, diagonals[i / 2 % 10], sign);
+    CORE_SET set = make_particles(apart ? balls : thread, diagonals[i / 2 % 10], sign);
     mcor_statistics s;
     assert_int_equal(count_parts(*state, &set, 0.37, MCOR_TOPOLOGY_TABLE, &s), 1 + apart);
     assert_int_equal(
@@ -109,7 +107,6 @@ static void test_diagonals(void** state)
     assert_int_equal(s.joined_faces, on_face && (sign > 0) != apart);
     assert_int_equal(s.ambiguous_cells, on_face ? 2 * apart : 1);
     assert_int_equal(s.tunnels, !on_face && !apart);
-    particle_set_free(&set);
   }
 }
 

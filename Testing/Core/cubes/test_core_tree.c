@@ -29,7 +29,7 @@ static void level_limit(void** state)
   mcor_context* context = *state;
   mcor_options options;
   mcor_input input;
-  particle_set set = core_make_random(20000, 200, 0.5, 20, 7);
+  CORE_SET set = core_make_random(20000, 200, 0.5, 20, 7);
   for (int limit = 2; limit <= 24; limit += 22)
   {
     measure(context, &set, limit, &options, &input);
@@ -39,7 +39,6 @@ static void level_limit(void** state)
     assert_int_equal(context->tree.first_block[top + 1], context->tree.block_count);
   }
   context->run.options = NULL;
-  particle_set_free(&set);
 }
 
 /* A level begins at exactly 2^L times the smallest h. */
@@ -61,13 +60,12 @@ static void more_bricks_than_numbers(void** state)
   mcor_context* context = *state;
   mcor_options options;
   mcor_input input;
-  particle_set set = core_make_block(4, 0, 1, core_slope);
+  CORE_SET set = core_make_block(4, 0, 1, core_slope);
   measure(context, &set, 24, &options, &input);
   context->lattice.levels = 24; /* as with h 1:10^7 and a cube size that lets the lattice be */
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(strstr(mcor_last_error(context), "24 levels"), "%s", mcor_last_error(context));
   context->run.options = NULL;
-  particle_set_free(&set);
 }
 
 /* Particles that reach far beyond their volume: that there are too many leaves is known before the sets
@@ -77,7 +75,7 @@ static void more_leaves_than_the_limit(void** state)
   mcor_context* context = *state;
   mcor_options options;
   mcor_input input;
-  particle_set set = core_make_random(3, 40, 1, 1, 3);
+  CORE_SET set = core_make_random(3, 40, 1, 1, 3);
   set.smoothing_length[0] = 8;
   measure(context, &set, 24, &options, &input);
   options.h_scale = 220;
@@ -92,7 +90,6 @@ static void more_leaves_than_the_limit(void** state)
   CORE_CHECK(room < 50000000, "%lld bytes", (long long)room);
   mcor_release_tree(&context->tree);
   context->run.options = NULL;
-  particle_set_free(&set);
 }
 
 /* Each level alone is within the limit. Where they are sparse, bricks that have to be divided because of
@@ -102,7 +99,7 @@ static void more_leaves_of_all_levels(void** state)
   mcor_context* context = *state;
   mcor_options options;
   mcor_input input;
-  particle_set set = core_make_random(90000, 1, 3e-6, 0.03, 3);
+  CORE_SET set = core_make_random(90000, 1, 3e-6, 0.03, 3);
   measure(context, &set, 24, &options, &input);
   assert_int_equal(mcor_make_tree(context, &input), MCOR_OUT_OF_CAPACITY);
   CORE_CHECK(strstr(mcor_last_error(context), "leaves"), "%s", mcor_last_error(context));
@@ -113,7 +110,6 @@ static void more_leaves_of_all_levels(void** state)
   assert_null(context->tree.leaves);
   mcor_release_tree(&context->tree);
   context->run.options = NULL;
-  particle_set_free(&set);
 }
 
 static int stop_at(void* user, double fraction, const char* phase)
@@ -136,7 +132,7 @@ static void making_leaves_can_be_cancelled(void** state)
   const double interval = context->report_interval;
   mcor_options options;
   mcor_input input;
-  particle_set set = core_make_random(6000, 20, 0.2, 4, 5);
+  CORE_SET set = core_make_random(6000, 20, 0.2, 4, 5);
   int left = often;
   measure(context, &set, 24, &options, &input);
   options.h_scale = 20;
@@ -159,7 +155,6 @@ static void making_leaves_can_be_cancelled(void** state)
   assert_int_equal(often - left, calls);
   context->report_interval = interval;
   context->run.options = NULL;
-  particle_set_free(&set);
 }
 
 int main(void)

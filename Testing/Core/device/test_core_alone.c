@@ -12,17 +12,15 @@
 static mcor_status extract_with(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, uint64_t* hash)
 {
-  particle_set set = core_make_block(7, 0.3, 3, core_ball);
+  CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
   const double iso = 2;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.sph_kernel = kernel;
   options.precision = precision;
-  mcor_surface surface = { 0 };
+  CORE_SURFACE surface = { 0 };
   const mcor_status status = mcor_extract(context, &input, &options, &surface);
   *hash = core_hash(&surface);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
   return status;
 }
 
@@ -43,7 +41,7 @@ static void test_names_what_is_missing(void** state)
   } cases[] = { { MCOR_SINC_6, MCOR_FLOAT32, "SPH kernel sinc6: they were not compiled", "single" },
     { MCOR_QUARTIC_SPLINE, MCOR_FLOAT64, "SPH kernel quartic in double precision:", "single" },
     { MCOR_CUBIC_SPLINE, MCOR_FLOAT64, "library. Use single precision, install an", "Install" } };
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
@@ -56,14 +54,13 @@ static void test_names_what_is_missing(void** state)
           !strstr(text, cases[c].others)),
       "%s", text);
   }
-  mcor_free_context(context);
 }
 
 /* A call for what no device can do fails, and the next ones are as if it had not been. */
 static void test_goes_on(void** state)
 {
   (void)state;
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   CORE_OK(context, mcor_create_context(NULL, &context));
   assert_string_equal(context->cl.platform_name, "built in");
   uint64_t before, after;
@@ -76,7 +73,6 @@ static void test_goes_on(void** state)
   unsetenv("MCOR_LANES");
   CORE_OK(context, extract(context, &after));
   assert_true(after == before);
-  mcor_free_context(context);
 }
 
 int main(void)

@@ -16,7 +16,7 @@ enum
 
 static void test_turns_and_shares(void** state)
 {
-  particle_set set = core_make_block(7, 0.3, 3, core_ball);
+  CORE_SET set = core_make_block(7, 0.3, 3, core_ball);
   const double iso = 2;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
@@ -38,7 +38,6 @@ static void test_turns_and_shares(void** state)
     mcor_free_surface(&surface);
     mcor_free_context(context);
   }
-  particle_set_free(&set);
 }
 
 /* A device that is asked for by number is taken; those of one name are taken in turn. */
@@ -61,10 +60,9 @@ static void test_named_device(void** state)
 static void test_no_such_place(void** state)
 {
   (void)state;
-  mcor_context* context;
+  CORE_CONTEXT context;
   assert_int_equal(mcor_create_shared_context(NULL, 2, 2, &context), MCOR_INVALID_ARGUMENT);
   assert_non_null(strstr(mcor_last_error(context), "place is 2"));
-  mcor_free_context(context);
 }
 
 int main(void)

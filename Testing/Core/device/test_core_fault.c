@@ -32,14 +32,13 @@ typedef struct sweep
 static mcor_status extract(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {
-  mcor_surface surface;
+  CORE_SURFACE surface;
   const mcor_status status = mcor_extract(context, input, &s->options, &surface);
   *hash = core_hash(&surface);
   CORE_CHECK(status == MCOR_OK ? surface.triangle_count > 20
                                : !surface.points && !surface.triangles && !surface.attributes &&
         !surface.point_keys && !surface.triangle_keys && surface.point_count == 0,
     "%s: %d triangles", mcor_status_name(status), (int)surface.triangle_count);
-  mcor_free_surface(&surface);
   return status;
 }
 
@@ -51,7 +50,7 @@ static uint64_t hash_numbers(const double* values, int64_t count)
 static mcor_status probe(
   mcor_context* context, const sweep* s, const mcor_input* input, uint64_t* hash)
 {
-  mcor_samples samples;
+  CORE_SAMPLES samples;
   const mcor_status status =
     mcor_probe(context, input, &s->options, &s->points, s->point_count, &samples);
   const int64_t n = samples.count;
@@ -62,7 +61,6 @@ static mcor_status probe(
   *hash = status != MCOR_OK ? 0
                             : hash_numbers(samples.weight_sum, n) +
       3 * hash_numbers(samples.values[0], n) + 5 * hash_numbers(samples.gradients[0], 3 * n);
-  mcor_free_samples(&samples);
   return status;
 }
 
@@ -86,13 +84,12 @@ static mcor_status gauge(
 {
   static const mcor_gauge_line lines[2] = { { .from = { 0.1, 0.2, -9 }, .to = { 0.1, 0.2, 9 } },
     { .from = { -3, 0, 0 }, .to = { 1, 1, 1 } } };
-  mcor_gauges found;
+  CORE_GAUGES found;
   const mcor_status status = mcor_gauge(context, input, &s->options, lines, 2, &found);
   CORE_CHECK(status == MCOR_OK ? found.count == 2 && found.crossing_count == 3
                                : !found.readings && !found.crossings && found.count == 0,
     "%s: %d crossings", mcor_status_name(status), (int)found.crossing_count);
   *hash = hash_numbers(found.crossings, found.crossing_count);
-  mcor_free_gauges(&found);
   return status;
 }
 
@@ -104,13 +101,12 @@ static mcor_status flux(
   mcor_input moving = *input;
   const mcor_array velocity = moving.positions;
   moving.attributes = &velocity;
-  mcor_fluxes found;
+  CORE_FLUXES found;
   const mcor_status status = mcor_flux(context, &moving, &s->options, &section, 1, &found);
   CORE_CHECK(status == MCOR_OK ? found.count == 1 && found.readings[0].area > 1
                                : !found.readings && found.count == 0,
     "%s: %d sections", mcor_status_name(status), (int)found.count);
   *hash = status == MCOR_OK ? hash_numbers(&found.readings[0].area, 2) : 0;
-  mcor_free_fluxes(&found);
   return status;
 }
 
@@ -303,7 +299,7 @@ static void test_every_call_fails_once(void** state)
 {
   mcor_context* context = *state;
   static const double iso = 0.3;
-  particle_set set = core_make_block(6, 0.3, 3, flat);
+  CORE_SET set = core_make_block(6, 0.3, 3, flat);
   const mcor_array attribute = core_array(set.smoothing_length, 1);
   set.smoothing_length[7] *= 1.5;
   sweep s = { .call = extract,
@@ -327,13 +323,12 @@ static void test_every_call_fails_once(void** state)
   sweep_calls(context, &s, CL_OUT_OF_RESOURCES, 1);
   sweep_calls(context, &s, CL_OUT_OF_HOST_MEMORY, 1);
   sweep_allocations(context, &s);
-  particle_set_free(&set);
 }
 
 static void test_probe_and_derive(void** state)
 {
   static const double at[12] = { 0, 0, 0, 1, 0.3, 0.2, 99, 0, 0, -1, -1.2, 0.1 };
-  particle_set set = core_make_block(5, 0.3, 3, flat);
+  CORE_SET set = core_make_block(5, 0.3, 3, flat);
   double* points = core_copy(at, sizeof at);
   const mcor_array attribute = core_array(set.scalar, 1);
   sweep s = { .call = probe,
@@ -352,7 +347,6 @@ static void test_probe_and_derive(void** state)
   sweep_room(*state, &s, 3, 40);
   s.call = flux;
   sweep_room(*state, &s, 3, 40);
-  particle_set_free(&set);
   free(points);
 }
 
@@ -360,7 +354,7 @@ static void test_probe_and_derive(void** state)
 static void test_filled(void** state)
 {
   static const double isos[2] = { -1e9, 0.5 };
-  particle_set set = core_make_block(8, 0.1, 3, flat);
+  CORE_SET set = core_make_block(8, 0.1, 3, flat);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i + 2] = 0;
@@ -372,14 +366,13 @@ static void test_filled(void** state)
   filled.options.filled = 1;
   filled.options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
   sweep_room(*state, &filled, 23, 100);
-  particle_set_free(&set);
 }
 
 /* A box, a period, walls; each with what it alone does. */
 static void test_regions(void** state)
 {
   static const double iso = 0.3, half = 0.5;
-  particle_set set = core_make_block(8, 0.1, 3, flat);
+  CORE_SET set = core_make_block(8, 0.1, 3, flat);
   sweep box = { .call = extract, .input = core_input(&set), .options = core_options(&iso) };
   sweep period = box, wall = box;
   const double sides[6] = { -9, 0.4, -9, 9, -9, 9 };
@@ -403,13 +396,12 @@ static void test_regions(void** state)
   wall.options.field = MCOR_WEIGHT_SUM;
   wall.options.iso_values = &half;
   sweep_room(*state, &wall, 23, 100);
-  particle_set_free(&set);
 }
 
 static void test_adaptive_cubes(void** state)
 {
   static const double half = 0.5;
-  particle_set set = core_make_block(5, 0.1, 3, flat);
+  CORE_SET set = core_make_block(5, 0.1, 3, flat);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.smoothing_length[i] = set.position[3 * i] > 0 ? 2.7 : 1.3;
@@ -423,14 +415,13 @@ static void test_adaptive_cubes(void** state)
   s.options.periodic[0] = -8;
   s.options.periodic[1] = 8;
   sweep_room(*state, &s, 11, 100);
-  particle_set_free(&set);
 }
 
 static void test_ranks(void** state)
 {
   mcor_context* context = *state;
   static const double iso = 0.3;
-  particle_set set = core_make_block(6, 0.3, 3, flat);
+  CORE_SET set = core_make_block(6, 0.3, 3, flat);
   sweep s = { .call = extract_as_rank, .input = core_input(&set), .options = core_options(&iso) };
   s.options.ranks = &alone;
   const double sides[6] = { -9, 9, -9, 9, -9, 9 };
@@ -452,7 +443,6 @@ static void test_ranks(void** state)
       "callback %d of %d, %d were made: %s", n, count, callbacks, mcor_status_name(status));
     expect_sound(context, &s, "Another rank");
   }
-  particle_set_free(&set);
 }
 
 /* A large buffer's pages are asked for through a view of it, which may fail. */
@@ -539,12 +529,12 @@ static void test_no_context(void** state)
 {
   (void)state;
   static const double iso = 0;
-  particle_set set = core_make_block(4, 0, 1, core_slope);
+  CORE_SET set = core_make_block(4, 0, 1, core_slope);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   for (int n = 0, done = 0; !done; ++n)
   {
-    mcor_context* context = NULL;
+    CORE_CONTEXT context = NULL;
     core_fail_call(n, CL_OUT_OF_RESOURCES);
     const mcor_status status = mcor_create_context(NULL, &context);
     core_fail_nothing();
@@ -560,9 +550,7 @@ static void test_no_context(void** state)
         core_failed_call(), mcor_last_error(context));
       assert_int_equal(surface.point_count, 0);
     }
-    mcor_free_context(context);
   }
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -184,8 +184,7 @@ static void mark(void* data, size_t first, size_t last)
 
 static void check_loops(mcor_pool* pool)
 {
-  marks* m = calloc(1, sizeof *m);
-  assert_non_null(m);
+  CORE_FREED marks* m = oracle_allocate(1, sizeof *m);
   for (int i = 0; i < 200; ++i)
   {
     const size_t first = (size_t)i, last = sizeof m->seen - (size_t)i * 7;
@@ -197,7 +196,6 @@ static void check_loops(mcor_pool* pool)
     }
   }
   assert_int_equal(m->rounding, 0);
-  free(m);
 }
 
 static void test_loops(void** state)
@@ -219,15 +217,13 @@ static void test_loops(void** state)
 
 static uint64_t extract(mcor_context* context)
 {
-  particle_set set = core_make_block(9, 0.3, 3, core_ball);
+  CORE_SET set = core_make_block(9, 0.3, 3, core_ball);
   const double iso = 3;
   const mcor_input input = core_input(&set);
   const mcor_options options = core_options(&iso);
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   assert_true(surface.triangle_count > 100);
   const uint64_t hash = core_hash(&surface);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
   return hash;
 }
 
@@ -284,7 +280,7 @@ static void test_little_room_for_drivers(void** state)
     static const char* const names[] = { "built in", "0", "", "pocl" };
     for (int i = 0; i < 4; ++i)
     {
-      mcor_context* context = NULL;
+      CORE_CONTEXT context = NULL;
       const int status = mcor_create_context(names[i], &context);
       const int refused = status == MCOR_DEVICE_ERROR && strstr(mcor_last_error(context), "pocl") &&
         strstr(mcor_last_error(context), "ulimit");
@@ -293,7 +289,6 @@ static void test_little_room_for_drivers(void** state)
         fprintf(stderr, "\"%s\": %d, %s\n", names[i], status, mcor_last_error(context));
         _exit(2);
       }
-      mcor_free_context(context);
     }
     _exit(0);
   }
@@ -304,9 +299,8 @@ static void test_little_room_for_drivers(void** state)
 
 static void* extract_alone(void* hash)
 {
-  mcor_context* context = make_native();
+  CORE_CONTEXT context = make_native();
   *(uint64_t*)hash = extract(context);
-  mcor_free_context(context);
   return NULL;
 }
 
@@ -348,13 +342,12 @@ static void test_shares(void** state)
   for (int count = 1; count < 4; ++count)
   {
     const int most = mcor_limit_threads(mcor_processors(1)), share = mcor_processors(count);
-    mcor_context* context = NULL;
+    CORE_CONTEXT context = NULL;
     CORE_OK(context, mcor_create_shared_context("built in", count - 1, count, &context));
     assert_int_equal(context->cl.units, share < most ? share : most);
     const uint64_t own = extract(context);
     assert_true(count == 1 || own == hash);
     hash = own;
-    mcor_free_context(context);
   }
 }
 

@@ -178,7 +178,7 @@ static void test_several_at_once(void** state)
 /* The first of several bad particles is named, whichever thread finds one first. */
 static void test_first_bad_particle(void** state)
 {
-  particle_set set = core_make_block(40, 0.2, 3, core_ball);
+  CORE_SET set = core_make_block(40, 0.2, 3, core_ball);
   assert_true(set.count > 4 * MCOR_HEAVY_GRAIN);
   const double iso = 0;
   const mcor_input input = core_input(&set);
@@ -199,7 +199,6 @@ static void test_first_bad_particle(void** state)
       arrays[kind][i] = good;
     }
   }
-  particle_set_free(&set);
 }
 
 /* Ranges are those of the fluid alone, or of nothing where all are solids; slices may have no
@@ -208,8 +207,8 @@ static void test_ranges(void** state)
 {
   (void)state;
   const int64_t count = 4 * MCOR_MEMORY_GRAIN;
-  float* values = malloc((size_t)count * sizeof *values);
-  uint8_t* solid = malloc((size_t)count);
+  CORE_FREED float* values = malloc((size_t)count * sizeof *values);
+  CORE_FREED uint8_t* solid = malloc((size_t)count);
   assert_true(values && solid);
   for (int64_t i = 0; i < count; ++i)
   {
@@ -227,8 +226,6 @@ static void test_ranges(void** state)
   memset(solid, 1, (size_t)count);
   mcor_find_range(NULL, &array, solid, MCOR_SKIP_SOLIDS, count, 0, range);
   assert_true(range[0] > range[1] && mcor_largest_of(range[0], range[1]) == 0);
-  free(values);
-  free(solid);
 }
 
 int main(void)

@@ -55,7 +55,7 @@ static void test_ball_and_cylinder(void** state)
   {
     const double radius = cases[c].field == MCOR_WEIGHT_SUM ? 8 : 4;
     const double iso = cases[c].field == MCOR_WEIGHT_SUM ? 0.5 : 0;
-    particle_set set = core_make_block(24, 0, 1, core_ball);
+    CORE_SET set = core_make_block(24, 0, 1, core_ball);
     int64_t kept = 0;
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -74,7 +74,7 @@ static void test_ball_and_cylinder(void** state)
     mcor_options options = core_options(&iso);
     options.field = cases[c].field;
     options.sph_kernel = MCOR_QUINTIC_SPLINE;
-    mcor_surface surface = curved(*state, &set, &options);
+    CORE_SURFACE surface = curved(*state, &set, &options);
     int64_t seen = 0;
     double worst[2] = { 0, 0 };
     for (int64_t p = 0; p < surface.point_count; ++p)
@@ -94,8 +94,6 @@ static void test_ball_and_cylinder(void** state)
     CORE_CHECK(seen > 100 && worst[0] < 1e-3 && worst[1] < 2e-3,
       "case %zu: %lld points, off by %g of 1 / R, %g of 1 / R^2", c, (long long)seen, worst[0],
       worst[1]);
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -105,7 +103,7 @@ static void test_circle(void** state)
   const double iso = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    particle_set set = particle_set_make(24 * 24);
+    CORE_SET set = particle_set_make(24 * 24);
     for (int64_t i = 0; i < set.count; ++i)
     {
       const double u = (double)(i % 24) - 11.5, v = (double)(i / 24) - 11.5;
@@ -118,7 +116,7 @@ static void test_circle(void** state)
     }
     mcor_options options = core_options(&iso);
     options.sph_kernel = MCOR_QUINTIC_SPLINE;
-    mcor_surface surface = curved(*state, &set, &options);
+    CORE_SURFACE surface = curved(*state, &set, &options);
     assert_true(surface.point_count > 10 && surface.mean_curvature && !surface.gauss_curvature);
     for (int64_t p = 0; p < surface.point_count; ++p)
     {
@@ -127,8 +125,6 @@ static void test_circle(void** state)
       const double off = surface.mean_curvature[p] * sqrt(u * u + v * v) - 1;
       CORE_CHECK(fabs(off) < 1e-3 || fabs(u) > 6 || fabs(v) > 6, "axis %d: off by %g", axis, off);
     }
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -174,7 +170,7 @@ static void reference(
  * Where W'' jumps, differences are of no use. */
 static void test_any_field(void** state)
 {
-  particle_set set = core_make_block(9, 0.5, 3, core_slope);
+  CORE_SET set = core_make_block(9, 0.5, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] += 2 * sin((double)i);
@@ -190,8 +186,8 @@ static void test_any_field(void** state)
     mcor_options options = core_options(&iso);
     options.field = fields[run % 3];
     options.sph_kernel = kernel;
-    mcor_surface surface = curved(*state, &set, &options);
-    oracle_field field = oracle_make_field(&set, (oracle_kernel)kernel, kinds[run % 3], 1);
+    CORE_SURFACE surface = curved(*state, &set, &options);
+    CORE_FIELD field = oracle_make_field(&set, (oracle_kernel)kernel, kinds[run % 3], 1);
     int64_t good = 0, seen = 0;
     for (int64_t p = 0; p < surface.point_count; p += 5, ++seen)
     {
@@ -204,10 +200,7 @@ static void test_any_field(void** state)
     CORE_CHECK(seen > 100 && (double)good > 0.99 * (double)seen,
       "%s, field %d: %lld of %lld points", mcor_sph_kernel_name(kernel), run % 3, (long long)good,
       (long long)seen);
-    oracle_free_field(&field);
-    mcor_free_surface(&surface);
   }
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -43,8 +43,7 @@ static const double derive_jacobian[3][3] = { { 0.3, -2, 0.5 }, { 2, -0.1, 1 }, 
 
 static double* derive_linear(const particle_set* set)
 {
-  double* v = malloc((size_t)set->count * 3 * sizeof(double));
-  assert_non_null(v);
+  double* v = oracle_allocate(set->count * 3, sizeof(double));
   for (int64_t i = 0; i < 3 * set->count; ++i)
   {
     const double *x = set->position + i / 3 * 3, *j = derive_jacobian[i % 3];
@@ -56,8 +55,8 @@ static double* derive_linear(const particle_set* set)
 static void derive_check_linear(
   mcor_context* context, bool varies, mcor_type precision, double tolerance)
 {
-  particle_set set = derive_set(varies);
-  double* v = derive_linear(&set);
+  CORE_SET set = derive_set(varies);
+  CORE_FREED double* v = derive_linear(&set);
   mcor_derivatives d = derive(context, &set, v, 3, precision, MCOR_GRADIENT_CORRECTED);
   assert_int_equal(d.statistics.fluid_particles, set.count);
   assert_true(d.statistics.seconds[MCOR_PHASE_CORRECTION] > 0);
@@ -72,8 +71,6 @@ static void derive_check_linear(
     }
   }
   mcor_free_derivatives(&d);
-  free(v);
-  particle_set_free(&set);
 }
 
 static void test_linear_is_exact(void** state)
@@ -109,7 +106,7 @@ static void derive_standard(const particle_set* set, int64_t i, double gradient[
 /* Also with solids, whose values play no part. */
 static void test_standard_form(void** state)
 {
-  particle_set set = core_make_random(2500, 9, 0.7, 2, 4);
+  CORE_SET set = core_make_random(2500, 9, 0.7, 2, 4);
   set.has_solids = 1;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -134,14 +131,13 @@ static void test_standard_form(void** state)
     }
   }
   mcor_free_derivatives(&d);
-  particle_set_free(&set);
 }
 
 /* A particle alone, two, three in a plane, and four almost: no matrix can be inverted; of the last, because that
  * would magnify rounding by the square of 100, the sides over the height. */
 static void test_too_few_neighbours(void** state)
 {
-  particle_set set = particle_set_make(10);
+  CORE_SET set = particle_set_make(10);
   const double x[10][3] = { { 0, 0, 0 }, { 10, 0, 0 }, { 11, 0, 0 }, { 20, 0, 0 }, { 21, 0, 0 },
     { 20, 1, 0 }, { 30, 0, 0 }, { 31, 0, 0 }, { 30, 1, 0 }, { 31, 1, 0.01 } };
   for (int i = 0; i < 10; ++i)
@@ -163,7 +159,6 @@ static void test_too_few_neighbours(void** state)
     }
   }
   mcor_free_derivatives(&d);
-  particle_set_free(&set);
 }
 
 /* Decomposes matrices whose parts are known. */

@@ -135,11 +135,10 @@ static mcor_flux_reading flux_of(
   mcor_context* context, const mcor_input* input, const mcor_options* options, const shape* of)
 {
   const mcor_section section = section_of(of);
-  mcor_fluxes found;
+  CORE_FLUXES found;
   CORE_OK(context, mcor_flux(context, input, options, &section, 1, &found));
   assert_int_equal(found.count, 1);
   const mcor_flux_reading reading = found.readings[0];
-  mcor_free_fluxes(&found);
   return reading;
 }
 
@@ -176,7 +175,7 @@ static void test_uniform(void** state)
         0 },
       21, 63 },
   };
-  fluid made = make_fluid(make_pool(0.2), move_uniform);
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.2), move_uniform);
   mcor_input input = fluid_input(&made);
   const mcor_options options = flux_options(MCOR_FLOAT32);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
@@ -187,7 +186,6 @@ static void test_uniform(void** state)
   input.attribute_count = 1;
   const mcor_flux_reading r = flux_of(*state, &input, &options, &cases[0].section);
   assert_true(isnan(r.mass_flux) && fabs(r.volume_flux - 30) < 1e-4);
-  free_fluid(&made);
 }
 
 /* In a plane a section is its line there. The axes that are not constant, in their order, are u and v. */
@@ -209,7 +207,7 @@ static void test_uniform_in_a_plane(void** state)
   for (int axis = 0; axis < 3; ++axis)
   {
     const int to[3] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2, axis };
-    fluid made = make_fluid(make_slice(axis), move_uniform);
+    CORE_OWNED(free_fluid) fluid made = make_fluid(make_slice(axis), move_uniform);
     for (int64_t i = 0; i < made.set.count; ++i)
     {
       made.velocity[3 * i + to[0]] = 1;
@@ -244,7 +242,6 @@ static void test_uniform_in_a_plane(void** state)
     }
     mcor_flux_reading r = flux_of(*state, &input, &options, &line);
     check_reading(&r, 4, 4, "two components, axis", (size_t)axis);
-    free_fluid(&made);
   }
 }
 
@@ -270,19 +267,19 @@ static void test_half_out_of_the_water(void** state)
 {
   const double x = 8.2, low = 5, y0 = 2, y1 = 14;
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { x, y0, low, x, y1, low, x, y0, 14 }, 0 };
-  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   const mcor_input input = fluid_input(&made);
   const mcor_options options = flux_options(MCOR_FLOAT64);
-  mcor_gauge_line* lines = calloc(COLUMNS, sizeof *lines);
-  double* points = malloc(3 * COLUMNS * ROWS * sizeof(double));
-  double* share = malloc(COLUMNS * ROWS * sizeof(double));
+  CORE_FREED mcor_gauge_line* lines = calloc(COLUMNS, sizeof *lines);
+  CORE_FREED double* points = malloc(3 * COLUMNS * ROWS * sizeof(double));
+  CORE_FREED double* share = malloc(COLUMNS * ROWS * sizeof(double));
   double width[COLUMNS], area = 0, flux = 0;
   for (int i = 0; i < COLUMNS; ++i)
   {
     const double y = gauss_point(y0, y1, i, COLUMNS, &width[i]);
     lines[i] = (mcor_gauge_line){ .from = { x, y, low }, .to = { x, y, 14 } };
   }
-  mcor_gauges gauges;
+  CORE_GAUGES gauges;
   CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, COLUMNS, &gauges));
   for (int i = 0; i < COLUMNS; ++i)
   {
@@ -296,7 +293,7 @@ static void test_half_out_of_the_water(void** state)
       share[i * ROWS + j] = width[i] * part;
     }
   }
-  mcor_samples samples;
+  CORE_SAMPLES samples;
   const mcor_array where = core_array(points, 3);
   CORE_OK(*state, mcor_probe(*state, &input, &options, &where, COLUMNS * ROWS, &samples));
   for (int i = 0; i < COLUMNS * ROWS; ++i)
@@ -308,19 +305,13 @@ static void test_half_out_of_the_water(void** state)
     "area %.9g, expected %.9g", r.area, area);
   CORE_CHECK(fabs(r.mass_flux - flux) < 1e-6 * fabs(flux), "mass flux %.9g, expected %.9g",
     r.mass_flux, flux);
-  mcor_free_samples(&samples);
-  mcor_free_gauges(&gauges);
-  free_fluid(&made);
-  free(lines);
-  free(points);
-  free(share);
 }
 
 /* A corner on the level itself, alone in fluid: nothing, and a number. */
 static void test_corner_on_the_level(void** state)
 {
   const shape wall = { MCOR_SECTION_RECTANGLE, 3, { 8.2, 6, 11.5, 8.2, 7, 13.5, 8.2, 6, 13.5 }, 0 };
-  fluid made = make_fluid(make_pool(0), move_anyhow);
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0), move_anyhow);
   const mcor_input input = fluid_input(&made);
   mcor_options options = flux_options(MCOR_FLOAT32);
   mcor_samples samples;
@@ -333,7 +324,6 @@ static void test_corner_on_the_level(void** state)
   const mcor_flux_reading r = flux_of(*state, &input, &options, &wall);
   CORE_CHECK(level > 0.05 && level < 0.9 && r.area >= 0 && r.area < 1e-3, "level %g: area %g",
     level, r.area);
-  free_fluid(&made);
 }
 
 /* Alone and among others, from particles that stay on the device or do not, from any threads. */
@@ -343,12 +333,12 @@ static void test_same_bits(void** state)
                                     { 8.2, 2, 5, 8.2, 19, 5, 8.2, 2, 14 }, 0 },
     { MCOR_SECTION_DISC, 2, { 10, 8, 10, 1, 2, -1 }, 5 },
     { MCOR_SECTION_BOX, 2, { -3, 3, 3, 9.3, 5, 17.1 }, 0 } };
-  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   mcor_input input = fluid_input(&made);
   const mcor_options options = flux_options(MCOR_FLOAT32);
   const mcor_section sections[3] = { section_of(&shapes[0]), section_of(&shapes[1]),
     section_of(&shapes[2]) };
-  mcor_fluxes all;
+  CORE_FLUXES all;
   CORE_OK(*state, mcor_flux(*state, &input, &options, sections, 3, &all));
   for (int i = 0; i < 3; ++i)
   {
@@ -357,15 +347,13 @@ static void test_same_bits(void** state)
     assert_true(one.area == all.readings[i].area && one.mass_flux == all.readings[i].mass_flux &&
       one.volume_flux == all.readings[i].volume_flux && one.area > 1);
   }
-  mcor_free_fluxes(&all);
-  free_fluid(&made);
 }
 
 /* Beyond a period's side there is its image. */
 static void test_period(void** state)
 {
   shape wall = { MCOR_SECTION_RECTANGLE, 3, { 22.25, 2, 5, 22.25, 9, 5, 26.25, 2, 9 }, 0 };
-  fluid made = make_fluid(make_pool(0.4), move_anyhow);
+  CORE_OWNED(free_fluid) fluid made = make_fluid(make_pool(0.4), move_anyhow);
   const mcor_input input = fluid_input(&made);
   mcor_options options = flux_options(MCOR_FLOAT32);
   options.periodic[1] = 24;
@@ -377,7 +365,6 @@ static void test_period(void** state)
   const mcor_flux_reading there = flux_of(*state, &input, &options, &wall);
   CORE_CHECK(fabs(here.area - 7 * sqrt(32)) < 1e-4 && here.mass_flux == there.mass_flux,
     "%g, %.17g, %.17g", here.area, here.mass_flux, there.mass_flux);
-  free_fluid(&made);
 }
 
 /* Fails with a sentence that has these words. */
@@ -446,8 +433,7 @@ static void test_weird(void** state)
   CORE_OK(*state, mcor_flux(*state, &input, &options, NULL, 0, &fluxes));
   assert_int_equal(fluxes.count, 0);
   mcor_free_fluxes(&fluxes);
-  free_fluid(&made);
-  fluid slice = make_fluid(make_slice(1), move_uniform);
+  CORE_OWNED(free_fluid) fluid slice = make_fluid(make_slice(1), move_uniform);
   input = fluid_input(&slice);
   const shape off[3] = { { MCOR_SECTION_LINES, 2, { 5, 3, 3, 5, 3, 8 }, 0 },
     { MCOR_SECTION_RECTANGLE, 3, { 5, 3, 3, 5, 9, 4, 5, 3, 8 }, 0 },
@@ -458,7 +444,6 @@ static void test_weird(void** state)
     refuse(
       *state, &input, &options, &section_off, "is not a line in the plane y = 8 of the particles");
   }
-  free_fluid(&slice);
 }
 
 int main(void)

@@ -135,23 +135,20 @@ static void check_lines(mcor_context* context, const particle_set* set,
   options.iso_count = 0;
   options.precision = precision;
   options.sph_kernel = kernel;
-  mcor_gauges gauges;
+  CORE_GAUGES gauges;
   CORE_OK(context, mcor_gauge(context, &input, &options, lines, count, &gauges));
   assert_int_equal(gauges.count, count);
-  oracle_field field = oracle_make_field(set, (oracle_kernel)kernel, ORACLE_WEIGHT, 1);
+  CORE_FIELD field = oracle_make_field(set, (oracle_kernel)kernel, ORACLE_WEIGHT, 1);
   for (int i = 0; i < count; ++i)
   {
     check_line(&field, &lines[i], &gauges, i, 0.025 * oracle_smallest_h(set), counts);
     check_reading(&field, &lines[i], &gauges.readings[i]);
   }
-  oracle_free_field(&field);
-  mcor_free_gauges(&gauges);
 }
 
 static mcor_gauge_line* random_lines(int count, const double low[3], const double high[3])
 {
-  mcor_gauge_line* lines = calloc((size_t)count, sizeof *lines);
-  assert_non_null(lines);
+  mcor_gauge_line* lines = oracle_allocate(count, sizeof *lines);
   uint64_t seed = 7;
   for (int i = 0; i < count; ++i)
   {
@@ -166,9 +163,9 @@ static mcor_gauge_line* random_lines(int count, const double low[3], const doubl
 
 static void test_pool_with_waves(void** state)
 {
-  particle_set set = make_pool(1);
+  CORE_SET set = make_pool(1);
   const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
-  mcor_gauge_line* lines = random_lines(150, low, high);
+  CORE_FREED mcor_gauge_line* lines = random_lines(150, low, high);
   for (int i = 0; i < 40; ++i) /* upright, through the bubble and the droplet */
   {
     lines[i] =
@@ -181,21 +178,19 @@ static void test_pool_with_waves(void** state)
       *state, &set, lines, 150, MCOR_CUBIC_SPLINE, p ? MCOR_FLOAT64 : MCOR_FLOAT32, &counts);
     assert_true(counts.crossings > 200 && counts.wet > 50 && counts.full > 10 && counts.dry > 5);
   }
-  free(lines);
-  particle_set_free(&set);
 }
 
 /* Sparse particles in no order: the weight sum is near the level everywhere, and passes it often, and
  * by little. */
 static void test_noise(void** state)
 {
-  particle_set set = core_make_random(1500, 10, 0.6, 1.0, 3);
+  CORE_SET set = core_make_random(1500, 10, 0.6, 1.0, 3);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 0.36;
   }
   const double low[3] = { -6, -6, -6 }, high[3] = { 6, 6, 6 };
-  mcor_gauge_line* lines = random_lines(1000, low, high);
+  CORE_FREED mcor_gauge_line* lines = random_lines(1000, low, high);
   for (int kernel = 0; kernel < MCOR_SPH_KERNEL_COUNT; ++kernel)
   {
     const mcor_sph_kernel k = (mcor_sph_kernel)kernel;
@@ -205,8 +200,6 @@ static void test_noise(void** state)
     CORE_CHECK(counts.close_pairs > (k == MCOR_CUBIC_SPLINE ? 5 : 0),
       "kernel %d: %d crossings were near each other", kernel, counts.close_pairs);
   }
-  free(lines);
-  particle_set_free(&set);
 }
 
 /* With computed volumes, too, though upper layers lack half of their neighbours: with any kernel and usual smoothing
@@ -222,7 +215,7 @@ static void test_still_pool_of_computed_volumes(void** state)
     { MCOR_QUARTIC_SPLINE, { 1, 1.3 } }, { MCOR_WENDLAND_C4, { 1.5, 2 } },
     { MCOR_WENDLAND_C6, { 1.6, 2 } }, { MCOR_SINC_6, { 1.2, 1.6 } } };
   const mcor_gauge_line line = { .from = { 12.3, 8.1, 3 }, .to = { 12.3, 8.1, 15 } };
-  particle_set space = make_pool(0), plane = particle_set_make(24 * 10);
+  CORE_SET space = make_pool(0), plane = particle_set_make(24 * 10);
   for (int64_t i = 0; i < 24 * 10; ++i)
   {
     const double x[3] = { (double)(i % 24) + 0.5, 8.1, (double)(i / 24) + 0.5 };
@@ -242,61 +235,52 @@ static void test_still_pool_of_computed_volumes(void** state)
     input.smoothing_length = (mcor_array){ .constant = h };
     input.volume = (mcor_array){ 0 };
     input.mass = (mcor_array){ .constant = c & 2 ? 3 : 0 };
-    mcor_gauges gauges;
+    CORE_GAUGES gauges;
     CORE_OK(*state, mcor_gauge(*state, &input, &options, &line, 1, &gauges));
     const double level = gauges.readings[0].place[2];
     CORE_CHECK(fabs(level - 10) < 0.05, "%s, h %g, %d dimensions: level %g",
       mcor_sph_kernel_name(options.sph_kernel), h, c % 2 ? 2 : 3, level);
-    mcor_free_gauges(&gauges);
   }
-  particle_set_free(&space);
-  particle_set_free(&plane);
 }
 
 /* Beyond a period's side there is its image, with the same bits where rounding lets them. */
 static void test_period(void** state)
 {
-  particle_set set = make_pool(1);
+  CORE_SET set = make_pool(1);
   const mcor_gauge_line lines[2] = { { .from = { 3.25, 8, -2 }, .to = { 3.25, 8, 20 } },
     { .from = { 3.25 + 48, 8, -2 }, .to = { 3.25 + 48, 8, 20 } } };
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
   options.periodic[1] = 24;
-  mcor_gauges gauges;
+  CORE_GAUGES gauges;
   CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, 2, &gauges));
   assert_int_equal(gauges.readings[0].crossing_count, 2);
   assert_int_equal(gauges.readings[1].crossing_count, 2);
   assert_true(memcmp(gauges.crossings, gauges.crossings + 2, 2 * sizeof(double)) == 0);
-  mcor_free_gauges(&gauges);
-  particle_set_free(&set);
 }
 
 /* Readings are the same alone or among others, from particles that stay on the device or do not. */
 static void test_same_bits(void** state)
 {
-  particle_set set = make_pool(1);
+  CORE_SET set = make_pool(1);
   const double low[3] = { -4, -4, -4 }, high[3] = { 28, 20, 24 };
-  mcor_gauge_line* lines = random_lines(20, low, high);
+  CORE_FREED mcor_gauge_line* lines = random_lines(20, low, high);
   const mcor_input input = core_input(&set), kept = core_input_to_keep(&set);
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
-  mcor_gauges all;
+  CORE_GAUGES all;
   CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, 20, &all));
   for (int i = 0; i < 20; ++i)
   {
-    mcor_gauges one;
+    CORE_GAUGES one;
     CORE_OK(*state, mcor_gauge(*state, i % 2 ? &input : &kept, &options, &lines[i], 1, &one));
     const mcor_gauge_reading *a = &all.readings[i], *b = &one.readings[0];
     assert_int_equal(a->crossing_count, b->crossing_count);
     assert_true(memcmp(&a->first, &b->first, sizeof a->first) == 0 && a->depth == b->depth);
     assert_true(memcmp(all.crossings + a->first_crossing, one.crossings,
                   (size_t)a->crossing_count * sizeof(double)) == 0);
-    mcor_free_gauges(&one);
   }
-  free(lines);
-  mcor_free_gauges(&all);
-  particle_set_free(&set);
 }
 
 /* Fails with a sentence that has these words. */
@@ -311,7 +295,7 @@ static void refuse(mcor_context* context, const mcor_input* input, const mcor_op
 
 static void test_weird(void** state)
 {
-  particle_set set = make_pool(0);
+  CORE_SET set = make_pool(0);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
@@ -328,7 +312,7 @@ static void test_weird(void** state)
   options.iso_count = 1;
   refuse(*state, &input, &options, &good, "iso value above 0");
   options.iso_count = 0;
-  mcor_gauges gauges;
+  CORE_GAUGES gauges;
   CORE_OK(*state, mcor_gauge(*state, &input, &options, &far, 1, &gauges));
   assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
   mcor_free_gauges(&gauges);
@@ -343,8 +327,6 @@ static void test_weird(void** state)
   input.count = 0;
   CORE_OK(*state, mcor_gauge(*state, &input, &options, &good, 1, &gauges));
   assert_true(gauges.readings[0].state == MCOR_GAUGE_DRY && gauges.readings[0].outside);
-  mcor_free_gauges(&gauges);
-  particle_set_free(&set);
 }
 
 int main(void)

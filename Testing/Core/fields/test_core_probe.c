@@ -13,8 +13,7 @@
 /* `count` points in a cube of edge `size` around the origin; free with free(). */
 static double* probe_points(int64_t count, double size, uint64_t seed)
 {
-  double* points = malloc((size_t)count * 3 * sizeof(double));
-  assert_non_null(points);
+  double* points = oracle_allocate(count * 3, sizeof(double));
   for (int64_t i = 0; i < 3 * count; ++i)
   {
     points[i] = size * (random_unit(&seed) - 0.5);
@@ -91,7 +90,7 @@ static double probe_compare(const oracle_field* field, const double point[3], do
 
 static void probe_case_run(mcor_context* context, const probe_case* c)
 {
-  particle_set set = core_make_random(3000, c->size, 0.6, 1.8, 11);
+  CORE_SET set = core_make_random(3000, c->size, 0.6, 1.8, 11);
   set.has_solids = 1;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -100,13 +99,13 @@ static void probe_case_run(mcor_context* context, const probe_case* c)
     set.scalar[i] += c->offset;
   }
   const int64_t count = 2000;
-  double* points = probe_points(count, 1.2 * c->size, 5);
+  CORE_FREED double* points = probe_points(count, 1.2 * c->size, 5);
   mcor_options options = probe_options();
   options.sph_kernel = c->sph_kernel;
   options.field = c->field;
   options.precision = c->precision;
-  mcor_samples samples = probe(context, &set, &options, points, count);
-  oracle_field field = oracle_make_field(
+  CORE_SAMPLES samples = probe(context, &set, &options, points, count);
+  CORE_FIELD field = oracle_make_field(
     &set, (oracle_kernel)c->sph_kernel, c->field == MCOR_SUM ? ORACLE_SUM : ORACLE_SHEPARD, 1);
   int valid = 0;
   for (int64_t i = 0; i < count; ++i)
@@ -117,10 +116,6 @@ static void probe_case_run(mcor_context* context, const probe_case* c)
     valid += samples.valid[i];
   }
   assert_in_range(valid, count / 4, count - 1);
-  oracle_free_field(&field);
-  mcor_free_samples(&samples);
-  free(points);
-  particle_set_free(&set);
 }
 
 static void test_against_oracle(void** state)
@@ -140,8 +135,7 @@ static void test_against_oracle(void** state)
 /* Points within the supports of single particles, small and large ones. */
 static double* points_at(const particle_set* set, int64_t count)
 {
-  double* points = malloc((size_t)count * 3 * sizeof(double));
-  assert_non_null(points);
+  double* points = oracle_allocate(count * 3, sizeof(double));
   uint64_t seed = 31;
   for (int64_t i = 0; i < count; ++i)
   {
@@ -158,29 +152,25 @@ static double* points_at(const particle_set* set, int64_t count)
 /* Smoothing lengths from 1 to 1000: values, weights and gradients in units of what they are made of. */
 static void wide_range_run(mcor_context* context, mcor_type precision, double tolerance)
 {
-  particle_set set = core_make_random(3000, 10, 0.004, 4, 23);
+  CORE_SET set = core_make_random(3000, 10, 0.004, 4, 23);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] =
       0.8 * pow(set.smoothing_length[i], 2); /* the small ones weigh most where they are */
   }
   const int64_t count = 3000;
-  double* points = points_at(&set, count);
+  CORE_FREED double* points = points_at(&set, count);
   mcor_options options = probe_options();
   options.precision = precision;
   options.node_threshold = 0;
-  mcor_samples samples = probe(context, &set, &options, points, count);
-  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
+  CORE_SAMPLES samples = probe(context, &set, &options, points, count);
+  CORE_FIELD field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   double most = 0;
   for (int64_t i = 0; i < count; ++i)
   {
     most = fmax(most, probe_compare(&field, points + 3 * i, 0, 1, true, tolerance, &samples, i));
   }
   assert_true(most > 20); /* some points are at small particles */
-  oracle_free_field(&field);
-  mcor_free_samples(&samples);
-  free(points);
-  particle_set_free(&set);
 }
 
 static void test_wide_range_against_oracle(void** state)
@@ -193,9 +183,8 @@ static void test_wide_range_against_oracle(void** state)
  * `size`. */
 static void probe_in_another_order(mcor_context* context, double size, double h_min, double h_max)
 {
-  particle_set set = core_make_random(2000, size, h_min, h_max, 3);
-  double* wide = malloc((size_t)set.count * 11 * sizeof(double));
-  assert_non_null(wide);
+  CORE_SET set = core_make_random(2000, size, h_min, h_max, 3);
+  CORE_FREED double* wide = oracle_allocate(set.count * 11, sizeof(double));
   uint64_t seed = 9;
   for (int64_t i = 0; i < set.count * 11; ++i)
   {
@@ -207,16 +196,15 @@ static void probe_in_another_order(mcor_context* context, double size, double h_
   input.attribute_count = 2;
   const mcor_options options = probe_options();
   const int64_t count = 700;
-  double* points = probe_points(count, size, 21);
-  int64_t* order = core_make_order(count, 8);
-  double* moved = malloc((size_t)count * 3 * sizeof(double));
-  assert_non_null(moved);
+  CORE_FREED double* points = probe_points(count, size, 21);
+  CORE_FREED int64_t* order = core_make_order(count, 8);
+  CORE_FREED double* moved = oracle_allocate(count * 3, sizeof(double));
   for (int64_t i = 0; i < count; ++i)
   {
     memcpy(moved + 3 * i, points + 3 * order[i], 3 * sizeof(double));
   }
   mcor_array at = core_array(points, 3);
-  mcor_samples one, other;
+  CORE_SAMPLES one, other;
   CORE_OK(context, mcor_probe(context, &input, &options, &at, count, &one));
   at.data = moved;
   CORE_OK(context, mcor_probe(context, &input, &options, &at, count / 2, &other));
@@ -229,13 +217,6 @@ static void probe_in_another_order(mcor_context* context, double size, double h_
     assert_memory_equal(
       other.gradients[1] + 33 * i, one.gradients[1] + 33 * j, 33 * sizeof(double));
   }
-  mcor_free_samples(&one);
-  mcor_free_samples(&other);
-  free(moved);
-  free(order);
-  free(points);
-  free(wide);
-  particle_set_free(&set);
 }
 
 static void test_bits_do_not_depend_on_other_points(void** state)
@@ -251,7 +232,7 @@ static int probe_near(
   mcor_context* context, const particle_set* set, bool volumes, double x, double size)
 {
   const int64_t count = 300;
-  double* points = probe_points(count, size, 4);
+  CORE_FREED double* points = probe_points(count, size, 4);
   for (int64_t i = 0; i < count; ++i)
   {
     points[3 * i] += x;
@@ -265,7 +246,7 @@ static int probe_near(
     near.volume = all.volume = (mcor_array){ 0 };
   }
   const mcor_options options = probe_options();
-  mcor_samples one, other;
+  CORE_SAMPLES one, other;
   CORE_OK(context, mcor_probe(context, &near, &options, &at, count, &one));
   const int staged = context->grid.count;
   CORE_OK(context, mcor_probe(context, &all, &options, &at, count, &other));
@@ -279,15 +260,12 @@ static int probe_near(
   {
     valid += one.valid[i];
   }
-  mcor_free_samples(&one);
-  mcor_free_samples(&other);
-  free(points);
   return valid;
 }
 
 static void test_only_particles_nearby_are_needed(void** state)
 {
-  particle_set set = core_make_random(4000, 12, 0.3, 1.2, 17);
+  CORE_SET set = core_make_random(4000, 12, 0.3, 1.2, 17);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.position[3 * i] += i % 2 ? 40 : 0;
@@ -300,13 +278,12 @@ static void test_only_particles_nearby_are_needed(void** state)
     assert_int_equal(probe_near(*state, &set, volumes, 20, 2), 0);   /* between them */
     assert_int_equal(probe_near(*state, &set, volumes, 1000, 2), 0); /* outside of everything */
   }
-  particle_set_free(&set);
 }
 
 static void test_odd_points(void** state)
 {
   mcor_context* context = *state;
-  particle_set set = core_make_block(6, 0, 1, core_slope);
+  CORE_SET set = core_make_block(6, 0, 1, core_slope);
   mcor_input input = core_input(&set);
   const mcor_array attribute = input.scalar;
   input.attributes = &attribute;
@@ -314,9 +291,9 @@ static void test_odd_points(void** state)
   mcor_options options = core_options(NULL);
   options.iso_count = 0;
   const double points[] = { 0, 0, 0, NAN, 0, 0, 1e300, 0, 0, INFINITY, 0, 0, -40, 0, 0 };
-  double* copy = core_copy(points, sizeof points);
+  CORE_FREED double* copy = core_copy(points, sizeof points);
   const mcor_array at = core_array(copy, 3);
-  mcor_samples samples;
+  CORE_SAMPLES samples;
   CORE_OK(context, mcor_probe(context, &input, &options, &at, 5, &samples));
   assert_int_equal(samples.valid[0], 1);
   assert_int_equal(samples.statistics.fluid_particles, set.count);
@@ -335,16 +312,13 @@ static void test_odd_points(void** state)
   CORE_OK(context, mcor_probe(context, &input, &options, &at, 5, &samples));
   assert_int_equal(samples.attribute_not_finite[0], 3);
   assert_null(samples.values[0]);
-  mcor_free_samples(&samples);
-  free(copy);
-  particle_set_free(&set);
 }
 
 /* A weight of exactly the threshold is enough. */
 static void test_threshold_itself(void** state)
 {
   mcor_context* context = *state;
-  particle_set set = core_make_block(3, 0.2, 5, core_slope);
+  CORE_SET set = core_make_block(3, 0.2, 5, core_slope);
   const double at[3] = { 0.3, -0.2, 0.1 };
   const mcor_input input = core_input(&set);
   const mcor_array points = core_array(at, 3);
@@ -361,7 +335,6 @@ static void test_threshold_itself(void** state)
     assert_int_equal(samples.valid[0], !above);
     mcor_free_samples(&samples);
   }
-  particle_set_free(&set);
 }
 
 /* ---- attributes kept between calls ---- */
@@ -383,8 +356,8 @@ static void kept_probe(mcor_context* context, const kept_call* call, bool reused
 {
   const mcor_array at = core_array(call->points, 3);
   mcor_input alone = call->input;
-  mcor_context* fresh = NULL;
-  mcor_samples got, expected;
+  CORE_CONTEXT fresh = NULL;
+  CORE_SAMPLES got, expected;
   alone.particles_version = alone.scalar_version = alone.attributes_version = 0;
   /* Where what is kept is taken, nobody asks for the array's values. */
   double* const values = (double*)call->attributes[0].data;
@@ -405,18 +378,14 @@ static void kept_probe(mcor_context* context, const kept_call* call, bool reused
         memcmp(got.values[a], expected.values[a], bytes) == 0, "%s: values of %d", step, a);
     }
   }
-  mcor_free_samples(&got);
-  mcor_free_samples(&expected);
-  mcor_free_context(fresh);
 }
 
 static void kept_extract(mcor_context* context, const kept_call* call)
 {
   const double iso = 0.3;
   mcor_options options = core_options(&iso);
-  mcor_surface surface;
+  CORE_SURFACE surface;
   CORE_OK(context, mcor_extract(context, &call->input, &options, &surface));
-  mcor_free_surface(&surface);
 }
 
 static void test_kept_attributes(void** state)
@@ -476,15 +445,15 @@ static void test_kept_attributes(void** state)
 /* Exactly at particles, where the quadratic kernel's gradient has no direction and is 0. */
 static void test_at_particles(void** state)
 {
-  particle_set set = core_make_random(3000, 10, 0.6, 6, 11);
+  CORE_SET set = core_make_random(3000, 10, 0.6, 6, 11);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 1.0 / 3;
   }
   mcor_options options = probe_options();
   options.sph_kernel = MCOR_QUADRATIC;
-  mcor_samples samples = probe(*state, &set, &options, set.position, set.count);
-  oracle_field field = oracle_make_field(&set, ORACLE_QUADRATIC, ORACLE_SHEPARD, 1);
+  CORE_SAMPLES samples = probe(*state, &set, &options, set.position, set.count);
+  CORE_FIELD field = oracle_make_field(&set, ORACLE_QUADRATIC, ORACLE_SHEPARD, 1);
   for (int64_t i = 0; i < set.count; ++i)
   {
     oracle_sample expected;
@@ -497,25 +466,22 @@ static void test_at_particles(void** state)
         samples.gradients[0][3 * i + a], expected.gradient[a]);
     }
   }
-  oracle_free_field(&field);
-  mcor_free_samples(&samples);
-  particle_set_free(&set);
 }
 
 /* A mean is between the least and the greatest value, rounding or not. */
 static void test_means_are_between(void** state)
 {
-  particle_set set = core_make_random(3000, 10, 0.6, 1.8, 11);
+  CORE_SET set = core_make_random(3000, 10, 0.6, 1.8, 11);
   uint64_t seed = 3;
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.volume[i] = 1.0 / 3;
     set.scalar[i] = set.position[3 * i] < 4 ? 0 : 12421.7 * random_unit(&seed);
   }
-  double* points = probe_points(20000, 10, 5);
+  CORE_FREED double* points = probe_points(20000, 10, 5);
   mcor_options options = probe_options();
   options.outputs &= ~(unsigned)MCOR_OUT_GRADIENTS;
-  mcor_samples samples = probe(*state, &set, &options, points, 20000);
+  CORE_SAMPLES samples = probe(*state, &set, &options, points, 20000);
   int zero = 0, more = 0;
   for (int64_t i = 0; i < 20000; ++i)
   {
@@ -524,9 +490,6 @@ static void test_means_are_between(void** state)
     more += samples.values[0][i] > 1;
   }
   CORE_CHECK(zero > 1000 && more > 1000, "%d of 0, %d above", zero, more);
-  mcor_free_samples(&samples);
-  free(points);
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -182,7 +182,7 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
 {
   const double amount = 2.5, h = 0.7,
                reach = (kernel == MCOR_M_PRIME_4 ? 3.5 : oracle_support((oracle_kernel)kernel)) * h;
-  particle_set set = particle_set_make(is_plane ? 3 : 1);
+  CORE_SET set = particle_set_make(is_plane ? 3 : 1);
   const double x[3] = { 3.1, -2.3, 1.7 };
   for (int64_t i = 0; i < set.count; ++i) /* the others lie beyond the image, and make a plane */
   {
@@ -204,15 +204,14 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
     view.box[2 * a] = x[a] - 0.5 * side + 0.37 * h / pixels_per_h * (a == 0 ? 1 : -0.6);
     view.box[2 * a + 1] = view.box[2 * a] + side;
   }
-  mcor_projection found;
+  CORE_PROJECTION found;
   CORE_OK(context, mcor_project(context, &input, &options, &view, &found));
   const column c = make_column(kernel, is_plane, &found);
   const int pixels = found.size[0] * found.size[1],
             step = cells_per_h == 8 ? 9
     : pixels > 3000                 ? pixels / 1500
                                     : 1;
-  double* image = calloc((size_t)pixels, sizeof *image);
-  assert_non_null(image);
+  CORE_FREED double* image = oracle_allocate(pixels, sizeof *image);
   const double most = fmax(add_particle(&c, &found, x, h, amount, cells_per_h, step, image),
     step > 1 ? amount * density_at(&c, 0, 0) / (h * h) : 0);
   const double error = error_of(&found, image, step), mass = total_of(&found);
@@ -220,9 +219,6 @@ static void check_single(mcor_context* context, mcor_sph_kernel kernel, const do
     mcor_sph_kernel_name(kernel), pixels_per_h, error / most, most);
   CORE_CHECK(fabs(mass - amount) <= ALLOWED * amount, "%s, h = %g pixels: mass %.9g",
     mcor_sph_kernel_name(kernel), pixels_per_h, mass);
-  free(image);
-  mcor_free_projection(&found);
-  particle_set_free(&set);
 }
 
 static void test_single(void** state)
@@ -270,7 +266,7 @@ static particle_set make_evrard(int64_t count)
 
 static void test_brute_force(void** state)
 {
-  particle_set set = make_evrard(400);
+  CORE_SET set = make_evrard(400);
   const double directions[3][3] = { { 0, 0, 0 }, { 0, 1, 0 }, { 3, 1, 0.5 } };
   for (int d = 0; d < 6; ++d)
   {
@@ -284,11 +280,10 @@ static void test_brute_force(void** state)
     }
     mcor_view view = { .resolution = 40 };
     memcpy(view.direction, directions[d % 3], sizeof view.direction);
-    mcor_projection found;
+    CORE_PROJECTION found;
     CORE_OK(*state, mcor_project(*state, &input, &options, &view, &found));
     const column c = make_column(MCOR_CUBIC_SPLINE, 0, &found);
-    double *image = calloc(40 * 40, sizeof *image), most = 0, mass = 0;
-    assert_non_null(image);
+    double *image = oracle_allocate(40 * 40, sizeof *image), most = 0, mass = 0;
     for (int64_t i = 0; i < set.count; ++i)
     {
       double x[3];
@@ -318,15 +313,13 @@ static void test_brute_force(void** state)
     CORE_CHECK(d == 5 || fabs(total_of(&found) - mass) <= ALLOWED * mass,
       "case %d: mass %.9g of %.9g", d, total_of(&found), mass);
     free(image);
-    mcor_free_projection(&found);
   }
-  particle_set_free(&set);
 }
 
 /* A box: its frame is the image, along the line of sight it chooses particles; images are as good as copies. */
 static void test_box(void** state)
 {
-  particle_set set = core_make_random(60, 1, 0.05, 0.2, 8), copies = particle_set_make(60 * 45);
+  CORE_SET set = core_make_random(60, 1, 0.05, 0.2, 8), copies = particle_set_make(60 * 45);
   for (int64_t i = 0; i < copies.count; ++i)
   {
     const int64_t from = i % 60, n = i / 60, image[3] = { n % 3 - 1, n / 3 % 5 - 2, n / 15 - 1 };
@@ -343,7 +336,7 @@ static void test_box(void** state)
   mcor_options options = project_options(MCOR_WENDLAND_C4);
   const mcor_input with_copies = input_of(&copies);
   mcor_input input = input_of(&set);
-  mcor_projection expected, found;
+  CORE_PROJECTION expected, found;
   mcor_view whole = view;
   whole.box[4] = -0.5; /* the infinite side is the period's */
   CORE_OK(*state, mcor_project(*state, &with_copies, &options, &whole, &expected));
@@ -363,18 +356,14 @@ static void test_box(void** state)
   }
   CORE_CHECK(most > 0 && error_of(&found, expected.values, 1) < 1e-12 * most,
     "images differ by %.2g", error_of(&found, expected.values, 1) / most);
-  mcor_free_projection(&found);
-  mcor_free_projection(&expected);
-  particle_set_free(&copies);
-  particle_set_free(&set);
 }
 
 /* Sums and means of a scalar: by volumes, by a weight, by masses; with volumes that are computed. */
 static void test_weights(void** state)
 {
-  particle_set set = make_evrard(300);
-  double *weight = malloc(300 * sizeof *weight), *product = malloc(300 * sizeof *product);
-  assert_true(weight && product);
+  CORE_SET set = make_evrard(300);
+  double *weight = oracle_allocate(300, sizeof *weight),
+         *product = oracle_allocate(300, sizeof *product);
   for (int i = 0; i < 300; ++i)
   {
     weight[i] = 1 + i % 3;
@@ -412,7 +401,7 @@ static void test_weights(void** state)
   mcor_free_projection(&by_mass);
   mcor_free_projection(&sums[0]);
 
-  mcor_widening widening;
+  CORE_WIDENING widening;
   options.widen = 2;
   input.volume = input.mass = view.weight = (mcor_array){ 0 };
   CORE_OK(*state, mcor_widen(*state, &input, &options, &widening));
@@ -425,10 +414,8 @@ static void test_weights(void** state)
     "computed volumes: off by %g", error);
   mcor_free_projection(&sums[0]);
   mcor_free_projection(&sums[1]);
-  mcor_free_widening(&widening);
   free(weight);
   free(product);
-  particle_set_free(&set);
 }
 
 /* ---- the same bits ---- */
@@ -450,7 +437,7 @@ static void project_part(core_rank* rank, void* data)
 {
   rank_job* job = data;
   const int r = rank->number, count = rank->world->count;
-  particle_set part = particle_set_make(job->set->count);
+  CORE_SET part = particle_set_make(job->set->count);
   part.count = 0;
   for (int64_t i = r; i < job->set->count; i += count)
   {
@@ -460,7 +447,7 @@ static void project_part(core_rank* rank, void* data)
   mcor_options options = project_options(MCOR_QUINTIC_SPLINE);
   options.ranks = &rank->ranks;
   const mcor_view view = view_of_bits();
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
   job->status[r] = job->status[r] == MCOR_OK
     ? mcor_project(context, &input, &options, &view, &job->found[r])
@@ -469,8 +456,6 @@ static void project_part(core_rank* rank, void* data)
   {
     core_leave(rank);
   }
-  mcor_free_context(context);
-  particle_set_free(&part);
 }
 
 static int same_bits(const mcor_projection* a, const mcor_projection* b)
@@ -482,9 +467,9 @@ static int same_bits(const mcor_projection* a, const mcor_projection* b)
 
 static void test_same_bits(void** state)
 {
-  particle_set set = make_evrard(9001);
-  int64_t* order = core_make_order(set.count, 4);
-  particle_set shuffled = core_permute(&set, order);
+  CORE_SET set = make_evrard(9001);
+  CORE_FREED int64_t* order = core_make_order(set.count, 4);
+  CORE_SET shuffled = core_permute(&set, order);
   const mcor_options options = project_options(MCOR_QUINTIC_SPLINE);
   const mcor_view view = view_of_bits();
   mcor_input input = input_of(&set);
@@ -494,13 +479,12 @@ static void test_same_bits(void** state)
   for (int threads = 1; threads <= 5; threads += 4)
   {
     char text[2] = { (char)('0' + threads), 0 };
-    mcor_context* context;
+    CORE_CONTEXT context;
     setenv("MCOR_THREADS", text, 1);
     CORE_OK(context, mcor_create_context(NULL, &context));
     CORE_OK(context, mcor_project(context, &input, &options, &view, &other));
     assert_true(same_bits(&alone, &other));
     mcor_free_projection(&other);
-    mcor_free_context(context);
   }
   unsetenv("MCOR_THREADS");
   for (int count = 1; count <= MOST_RANKS; ++count)
@@ -516,17 +500,14 @@ static void test_same_bits(void** state)
     }
   }
   mcor_free_projection(&alone);
-  free(order);
-  particle_set_free(&shuffled);
-  particle_set_free(&set);
 }
 
 /* ---- what is refused, or empty ---- */
 
 static void test_bad_input(void** state)
 {
-  particle_set set = core_make_block(3, 0.1, 2, core_slope),
-               flat = core_make_block(3, 0, 2, core_slope);
+  CORE_SET set = core_make_block(3, 0.1, 2, core_slope),
+           flat = core_make_block(3, 0, 2, core_slope);
   for (int i = 0; i < 27; ++i)
   {
     flat.position[3 * i + 1] = 2;
@@ -556,7 +537,7 @@ static void test_bad_input(void** state)
     { { .box = { 0, 1, 0, 20, 0, 1 }, .resolution = 8 }, 6, MCOR_INVALID_ARGUMENT } };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
-    particle_set copy = core_permute(cases[i].change == 5 ? &flat : &set,
+    CORE_SET copy = core_permute(cases[i].change == 5 ? &flat : &set,
       (int64_t[27]){ 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
         22, 23, 24, 25, 26 });
     mcor_input input = input_of(&copy);
@@ -587,7 +568,6 @@ static void test_bad_input(void** state)
     CORE_CHECK(status == cases[i].status && *mcor_last_error(*state), "case %d: %s", (int)i,
       mcor_status_name(status));
     assert_true(!found.values && found.size[0] == 0);
-    particle_set_free(&copy);
   }
   /* Nothing, and nothing in a box; solids and particles that do not count. */
   mcor_input input = input_of(&set);
@@ -614,8 +594,6 @@ static void test_bad_input(void** state)
   view.box[0] = NAN;
   assert_int_equal(mcor_project(*state, &input, &options, &view, &found), MCOR_INVALID_ARGUMENT);
   CORE_CHECK(strstr(mcor_last_error(*state), "numbers"), "%s", mcor_last_error(*state));
-  particle_set_free(&set);
-  particle_set_free(&flat);
 }
 
 int main(void)

@@ -123,8 +123,7 @@ static double expected_factor(const particle_set* set, int64_t j, double iso)
 
 static void expect_factors(const particle_set* set, const mcor_widening* w, double iso)
 {
-  double* s = malloc((size_t)set->count * sizeof *s);
-  assert_non_null(s);
+  CORE_FREED double* s = oracle_allocate(set->count, sizeof *s);
   for (int64_t j = 0; j < set->count; ++j)
   {
     s[j] = expected_factor(set, j, iso);
@@ -152,45 +151,41 @@ static void expect_factors(const particle_set* set, const mcor_widening* w, doub
   CORE_CHECK(wide > 50 && narrow >= 4, "%d wide, %d narrow", wide, narrow);
   CORE_CHECK(outside > 10 && w->statistics.widening_outside == outside, "%d outside, expected %d",
     (int)w->statistics.widening_outside, outside);
-  free(s);
 }
 
 static void test_factors(void** state)
 {
   mcor_context* context = *state;
   const double iso = 0.5;
-  particle_set set = make_scene(9, 0.24, 3);
+  CORE_SET set = make_scene(9, 0.24, 3);
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   options.widen = WIDEST;
   for (int precision = 0; precision < 2; ++precision)
   {
-    mcor_widening w;
+    CORE_WIDENING w;
     options.precision = precision ? MCOR_FLOAT64 : MCOR_FLOAT32;
     CORE_OK(context, mcor_widen(context, &input, &options, &w));
     expect_factors(&set, &w, iso);
-    mcor_free_widening(&w);
   }
-  particle_set_free(&set);
 }
 
 /* The surface, but for the array of factors, is that of the widened lengths, in cubes of one size as large. */
 static void check_surface(mcor_context* context, const mcor_input* asked, mcor_options options)
 {
   mcor_input input = *asked;
-  mcor_widening w;
+  CORE_WIDENING w;
   options.widen = WIDEST;
   options.level_limit = 0;
   CORE_OK(context, mcor_widen(context, &input, &options, &w));
-  mcor_surface widened = core_extract(context, &input, &options);
+  CORE_SURFACE widened = core_extract(context, &input, &options);
   assert_int_equal(w.volume != NULL, !mcor_is_given(&input.volume));
   const mcor_statistics* s = &widened.statistics;
   CORE_CHECK(s->widening_min == 1 && s->widening_max > 1.99 && s->widening_mean > 1.1, "%g %g %g",
     s->widening_min, s->widening_mean, s->widening_max);
   assert_int_equal(s->widening_outside, w.statistics.widening_outside);
-  double* length = malloc((size_t)input.count * sizeof *length);
-  assert_non_null(length);
+  CORE_FREED double* length = oracle_allocate(input.count, sizeof *length);
   for (int64_t j = 0; j < input.count; ++j)
   {
     CORE_CHECK(!(input.solid && input.solid[j]) || w.factor[j] == 1, "a solid has %g", w.factor[j]);
@@ -200,7 +195,7 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
   options.cube_size = 0.5 * 1.1;
   input.smoothing_length.data = length;
   input.volume = w.volume ? core_array(w.volume, 1) : input.volume;
-  mcor_surface plain = core_extract(context, &input, &options);
+  CORE_SURFACE plain = core_extract(context, &input, &options);
   CORE_CHECK(plain.point_count > 30 && plain.point_count == widened.point_count,
     "%lld and %lld points", (long long)plain.point_count, (long long)widened.point_count);
   assert_true(core_hash(&plain) == core_hash(&widened));
@@ -209,17 +204,13 @@ static void check_surface(mcor_context* context, const mcor_input* asked, mcor_o
     CORE_CHECK(
       widened.widening[p] > 0.999 && widened.widening[p] < 2.001, "%g", widened.widening[p]);
   }
-  mcor_free_surface(&plain);
-  mcor_free_surface(&widened);
-  mcor_free_widening(&w);
-  free(length);
 }
 
 /* Bits of a way: a scalar, volumes that are computed, periods, lengths that differ, solids. The last ways are in a
  * plane. */
 static void test_surface(void** state)
 {
-  particle_set set = make_scene(8, 0.24, 5);
+  CORE_SET set = make_scene(8, 0.24, 5);
   for (int way = 0; way < 64; ++way)
   {
     for (int64_t j = 0; j < set.count; ++j)
@@ -241,14 +232,13 @@ static void test_surface(void** state)
     }
     check_surface(*state, &input, options);
   }
-  particle_set_free(&set);
 }
 
 /* Cubes follow the lengths themselves; and a call with the same particles has the same result, whatever is kept. */
 static void test_levels_and_reuse(void** state)
 {
   mcor_context* context = *state;
-  particle_set set = make_scene(8, 0.24, 7);
+  CORE_SET set = make_scene(8, 0.24, 7);
   static const double isos[4] = { 2, 3.3, 3.3, 3.3 };
   static const double widest[4] = { 1.7, 1.7, 2, 1 };
   for (int64_t j = 0; j < set.count; ++j)
@@ -265,7 +255,7 @@ static void test_levels_and_reuse(void** state)
     {
       const int k = i % 4;
       mcor_options options = core_options(&isos[k]);
-      mcor_surface surface;
+      CORE_SURFACE surface;
       options.field = MCOR_SHEPARD;
       options.widen = widest[k];
       options.level_limit = 8;
@@ -275,17 +265,15 @@ static void test_levels_and_reuse(void** state)
       expected[k] = reuse == 0 ? core_hash(&surface) : expected[k];
       CORE_CHECK(expected[k] == core_hash(&surface), "call %d differs with reuse", i);
       CORE_CHECK((surface.widening == NULL) == (widest[k] == 1), "%d: widening", i);
-      mcor_free_surface(&surface);
     }
   }
-  particle_set_free(&set);
 }
 
 static void test_refused(void** state)
 {
   mcor_context* context = *state;
   const double iso = 0.5;
-  particle_set set = make_scene(3, 0, 1);
+  CORE_SET set = make_scene(3, 0, 1);
   const mcor_input input = core_input(&set);
   mcor_surface surface;
   mcor_options options = core_options(&iso);
@@ -297,7 +285,6 @@ static void test_refused(void** state)
     assert_non_null(strstr(mcor_last_error(context), "widening"));
     mcor_free_surface(&surface);
   }
-  particle_set_free(&set);
 }
 
 int main(void)

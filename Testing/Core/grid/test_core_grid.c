@@ -35,7 +35,7 @@ static void test_estimate(void** state)
   const double spacings[] = { 1, 1e-3, 250 };
   for (int s = 0; s < 3; ++s)
   {
-    particle_set set = core_make_block(30, 0, 1, core_ball);
+    CORE_SET set = core_make_block(30, 0, 1, core_ball);
     for (int64_t i = 0; i < 3 * set.count; ++i)
     {
       set.position[i] *= spacings[s];
@@ -45,13 +45,11 @@ static void test_estimate(void** state)
     input.volume = (mcor_array){ 0 };
     input.estimate_smoothing_length = 1;
     const mcor_options options = core_options(&iso);
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     const double h = surface.statistics.smoothing_length_min / spacings[s];
     CORE_CHECK(
       fabs(h / 1.3 - 1) < 0.02 && surface.statistics.smoothing_length_max / spacings[s] == h,
       "estimated smoothing length %g spacings", h);
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -62,17 +60,16 @@ static uint64_t hash_of(mcor_context* context, const particle_set* set, double i
   options.cube_size = 0.5;
   options.node_threshold = options.vertex_threshold = 0.01;
   options.outputs |= MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_RESIDUAL;
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   CORE_CHECK(surface.triangle_count > 50, "%lld triangles", (long long)surface.triangle_count);
   const uint64_t hash = core_hash(&surface);
-  mcor_free_surface(&surface);
   return hash;
 }
 
 /* `count` particles, all in few cells, `coincident` of them at one place, in two orders: the same bits. */
 static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int coincident)
 {
-  particle_set set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
+  CORE_SET set = core_make_random(count + 40, 0.5, 2, 2, (uint64_t)(count + coincident));
   uint64_t seed = 9;
   double iso = 0; /* between the mean of the crowd and that of those beside it */
   for (int i = 0; i < count + 40; ++i)
@@ -87,15 +84,12 @@ static void check_crowd(mcor_context* context, mcor_context* gpu, int count, int
       set.volume[i] = i < coincident ? 1 : set.volume[i];
     }
   }
-  int64_t* order = core_make_order(set.count, 4);
-  particle_set permuted = core_permute(&set, order);
+  CORE_FREED int64_t* order = core_make_order(set.count, 4);
+  CORE_SET permuted = core_permute(&set, order);
   const uint64_t expected = hash_of(context, &set, iso);
   CORE_CHECK(hash_of(context, &permuted, iso) == expected && hash_of(gpu, &set, iso) == expected &&
       hash_of(gpu, &permuted, iso) == expected,
     "%d particles, %d at one place: other bits", count, coincident);
-  particle_set_free(&permuted);
-  particle_set_free(&set);
-  free(order);
 }
 
 /* Cells with more particles than one work-item sorts, and more coincident ones. */
@@ -103,13 +97,12 @@ static void test_crowds(void** state)
 {
   static const int counts[][2] = { { 63, 0 }, { 64, 64 }, { 65, 65 }, { 129, 129 }, { 128, 0 },
     { 257, 0 }, { 1000, 130 }, { 1000, 1000 }, { 5000, 700 }, { 20000, 0 }, { 20000, 9000 } };
-  mcor_context* gpu = NULL;
+  CORE_CONTEXT gpu = NULL;
   core_create_form(&gpu, "gpu");
   for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i)
   {
     check_crowd(*state, gpu, counts[i][0], counts[i][1]);
   }
-  mcor_free_context(gpu);
 }
 
 int main(void)

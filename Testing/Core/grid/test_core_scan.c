@@ -58,8 +58,7 @@ static int set_up(void** state)
 static void check_scan(mcor_context* context, int count, int largest)
 {
   uint64_t seed = (uint64_t)count;
-  int* counts = calloc((size_t)count + 1, sizeof(int));
-  assert_non_null(counts);
+  CORE_FREED int* counts = oracle_allocate(count + 1, sizeof(int));
   for (int i = 0; i < count; ++i)
   {
     counts[i] = (int)(random_bits(&seed) % (unsigned)(largest + 1));
@@ -68,7 +67,7 @@ static void check_scan(mcor_context* context, int count, int largest)
   int total = -1;
   CORE_OK(context, mcor_write(context, &buffer, counts, ((size_t)count + 1) * sizeof(int)));
   CORE_OK(context, mcor_scan(context, &buffer, count, &total));
-  int* scanned = read_back(context, &buffer, count + 1, sizeof(int));
+  CORE_FREED int* scanned = read_back(context, &buffer, count + 1, sizeof(int));
   int sum = 0;
   for (int i = 0; i <= count; ++i)
   {
@@ -77,8 +76,6 @@ static void check_scan(mcor_context* context, int count, int largest)
   }
   assert_int_equal(total, sum);
   mcor_release(context, &buffer);
-  free(counts);
-  free(scanned);
 }
 
 static void test_scan(void** state)
@@ -130,15 +127,14 @@ static void test_argument_count(void** state)
 static void check_keys(mcor_context* context, int kind, int count)
 {
   const uint64_t limit = kinds[kind].limit;
-  uint64_t* keys = make_keys(kind, count);
+  CORE_FREED uint64_t* keys = make_keys(kind, count);
   mcor_buffer buffer = { 0 }, order = { 0 }, buckets = { 0 }, distinct = { 0 }, index_of = { 0 },
               runs = { 0 };
   CORE_OK(context, mcor_write(context, &buffer, keys, (size_t)count * sizeof *keys));
   CORE_OK(context, mcor_sort(context, &buffer, &order, count, limit));
-  uint64_t* sorted = read_back(context, &buffer, count, sizeof *keys);
-  int* from = read_back(context, &order, count, sizeof(int));
-  uint8_t* seen = calloc((size_t)count + 1, 1);
-  assert_non_null(seen);
+  CORE_FREED uint64_t* sorted = read_back(context, &buffer, count, sizeof *keys);
+  CORE_FREED int* from = read_back(context, &order, count, sizeof(int));
+  CORE_FREED uint8_t* seen = oracle_allocate(count + 1, 1);
   for (int i = 0; i < count; ++i)
   {
     CORE_CHECK(from[i] >= 0 && from[i] < count && !seen[from[i]], "%s, size %d: value %d is %d",
@@ -154,7 +150,7 @@ static void check_keys(mcor_context* context, int kind, int count)
   const uint64_t bucket_count = (limit >> shift) + 2;
   CORE_CHECK(bucket_count <= 4 * (uint64_t)count + (1 << 20) + 2, "%s, size %d: %llu buckets",
     kinds[kind].name, count, (unsigned long long)bucket_count);
-  int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
+  CORE_FREED int* first = read_back(context, &buckets, (int)bucket_count, sizeof(int));
   for (uint64_t b = 0; b < bucket_count; ++b)
   {
     while (next < count && sorted[next] >> shift < b)
@@ -169,12 +165,12 @@ static void check_keys(mcor_context* context, int kind, int count)
   int expected = 0;
   if (count > 0)
   {
-    uint64_t* values = read_back(context, &distinct, found, sizeof *values);
-    int* index = read_back(context, &index_of, count, sizeof(int));
+    CORE_FREED uint64_t* values = read_back(context, &distinct, found, sizeof *values);
+    CORE_FREED int* index = read_back(context, &index_of, count, sizeof(int));
     int run_count = -1;
     CORE_OK(context, mcor_list_runs(context, &buffer, count, &distinct, &runs, &run_count));
     assert_int_equal(run_count, found);
-    int* begins = read_back(context, &runs, found + 1, sizeof(int));
+    CORE_FREED int* begins = read_back(context, &runs, found + 1, sizeof(int));
     assert_int_equal(begins[found], count);
     for (int i = 0; i < count; ++i)
     {
@@ -187,9 +183,6 @@ static void check_keys(mcor_context* context, int kind, int count)
         ++expected;
       }
     }
-    free(values);
-    free(index);
-    free(begins);
   }
   assert_int_equal(found, expected);
   mcor_buffer* const buffers[] = { &buffer, &order, &buckets, &distinct, &index_of, &runs };
@@ -197,11 +190,6 @@ static void check_keys(mcor_context* context, int kind, int count)
   {
     mcor_release(context, buffers[i]);
   }
-  free(keys);
-  free(sorted);
-  free(from);
-  free(seen);
-  free(first);
 }
 
 static void test_keys(void** state)
@@ -237,12 +225,11 @@ static void test_parts(void** state)
   {
     CORE_OK(gpu,
       MCOR_LAUNCH(gpu, "test_visit", MCOR_HEAVY, ITEMS, MCOR_INT(ITEMS), MCOR_BUFFER(&visits)));
-    int* count = read_back(gpu, &visits, ITEMS, sizeof(int));
+    CORE_FREED int* count = read_back(gpu, &visits, ITEMS, sizeof(int));
     for (int i = 0; i < ITEMS; ++i)
     {
       CORE_CHECK(count[i] == round, "work-item %d ran %d times in %d launches", i, count[i], round);
     }
-    free(count);
   }
   mcor_release(gpu, &visits);
   check_scan(gpu, 100003, 20000);

@@ -77,7 +77,7 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
   {
     offsets[i] = reach * (2 * random_unit(&seed) - 1);
   }
-  double* w = evaluate(context, kernel, offsets, N, 1 / h);
+  CORE_FREED double* w = evaluate(context, kernel, offsets, N, 1 / h);
   for (int i = 0; i < N; ++i)
   {
     double gradient[3];
@@ -94,7 +94,6 @@ static void check_values(mcor_context* context, mcor_sph_kernel kernel)
         h * h * h * gradient[a]);
     }
   }
-  free(w);
 }
 
 /* Exactly 0 from the support radius on; not 0 just inside; at 0 no slope. */
@@ -103,7 +102,7 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
   const double support = mcor_support_factor(kernel);
   const double offsets[6][3] = { { support, 0, 0 }, { 0, -support * 1.5, 0 },
     { 0, 0, support * 1e6 }, { 0, support * 0.98, 0 }, { 0, 0, 0 }, { -support * 1.0001, 0.1, 0 } };
-  double* w = evaluate(context, kernel, offsets[0], 6, 1);
+  CORE_FREED double* w = evaluate(context, kernel, offsets[0], 6, 1);
   for (int i = 0; i < 6; ++i)
   {
     const double* at = w + 5 * i;
@@ -116,7 +115,6 @@ static void check_support(mcor_context* context, mcor_sph_kernel kernel)
         mcor_sph_kernel_name(kernel), at[2], at[3], at[4], i);
     }
   }
-  free(w);
 }
 
 /* In single precision, whose formulas are others here and there: within 1.5e-6 of the greatest W, and of

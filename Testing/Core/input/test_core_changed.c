@@ -119,14 +119,13 @@ static void test_changes_at_each_launch(void** state)
         call.options.progress = change_once;
         call.options.progress_user = &c;
         context->report_interval = 0; /* each launch */
-        mcor_surface surface;
+        CORE_SURFACE surface;
         const mcor_status status = mcor_extract(context, &call.input, &call.options, &surface);
         CORE_CHECK(status == MCOR_OK || status == MCOR_INVALID_DATA ||
             status == MCOR_INVALID_ARGUMENT || status == MCOR_OUT_OF_CAPACITY,
           "%s: %s", mcor_status_name(status), mcor_last_error(context));
         ++calls;
         done = c.calls <= at;
-        mcor_free_surface(&surface);
         free_call(&call);
       }
     }
@@ -145,7 +144,7 @@ static void test_other_globals(void** state)
     changed_call call;
     begin_call(&call, KEEP);
     mcor_globals globals;
-    mcor_surface surface;
+    CORE_SURFACE surface;
     CORE_OK(context, mcor_measure_globals(context, &call.input, &call.options, &globals));
     call.options.globals = &globals;
     CORE_OK(context, mcor_extract(context, &call.input, &call.options, &surface));
@@ -160,7 +159,6 @@ static void test_other_globals(void** state)
       kind == NO_NUMBER ? "is not a number" : "options.globals was measured over";
     CORE_CHECK(within || strstr(mcor_last_error(context), sentence), "change %d: %s", kind,
       mcor_last_error(context));
-    mcor_free_surface(&surface);
     mcor_free_globals(&globals);
     free_call(&call);
   }
@@ -197,7 +195,7 @@ static void test_changes_all_the_time(void** state)
   {
     changed_call call;
     begin_call(&call, which);
-    mcor_surface surface = core_extract(context, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(context, &call.input, &call.options);
     const uint64_t expected = core_hash(&surface);
     mcor_free_surface(&surface);
     writer w = { .call = &call };
@@ -216,7 +214,6 @@ static void test_changes_all_the_time(void** state)
     memcpy(call.set.position, call.before, (size_t)call.set.count * 3 * sizeof(double));
     surface = core_extract(context, &call.input, &call.options);
     CORE_CHECK(core_hash(&surface) == expected, "case %d is another one afterwards", which);
-    mcor_free_surface(&surface);
     free_call(&call);
   }
   print_message("%d calls of %d noticed\n", noticed, 60 * CASES);

@@ -18,7 +18,7 @@ static void test_far_apart(void** state)
     DROPS = 40
   };
   const double iso = 0.5;
-  particle_set set = particle_set_make(DROPS);
+  CORE_SET set = particle_set_make(DROPS);
   uint64_t seed = 5;
   for (int i = 0; i < DROPS; ++i)
   {
@@ -35,18 +35,16 @@ static void test_far_apart(void** state)
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   options.cube_size = 1;
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.point_count, 6 * DROPS);
   assert_int_equal(surface.triangle_count, 8 * DROPS);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Unscaled smoothing lengths that reach far beyond the lattice: pairs, and computed volumes. */
 static void test_far_reach(void** state)
 {
   const double iso = 0;
-  particle_set set = core_make_block(6, 0.2, 7, core_slope);
+  CORE_SET set = core_make_block(6, 0.2, 7, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.smoothing_length[i] = 130;
@@ -65,29 +63,27 @@ static void test_far_reach(void** state)
     for (int p = 0; p < 2; ++p)
     {
       options.precision = p ? MCOR_FLOAT64 : MCOR_FLOAT32;
-      mcor_surface surface = core_extract(*state, &input, &options);
+      CORE_SURFACE surface = core_extract(*state, &input, &options);
       triangles[p] = surface.triangle_count;
-      mcor_free_surface(&surface);
     }
     CORE_CHECK(triangles[0] > 100 && triangles[0] == triangles[1],
       "kind %d: %lld triangles in single, %lld in double precision", kind, (long long)triangles[0],
       (long long)triangles[1]);
   }
-  particle_set_free(&set);
 }
 
 /* The unit of the scalar changes nothing: neither the mesh nor which cut vertices are exact. */
 static void test_magnitude(void** state)
 {
   const double units[2][4] = { { 1, 1e-28, 1e22, 1e29 }, { 1, 1e-160, 1e160, 1e280 } };
-  particle_set set = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   for (int p = 0; p < 2; ++p)
   {
     int64_t points = 0, cut = 0;
     for (int u = 0; u < 4; ++u)
     {
       const double iso = 0;
-      double* scaled = core_copy(set.scalar, (size_t)set.count * sizeof(double));
+      CORE_FREED double* scaled = core_copy(set.scalar, (size_t)set.count * sizeof(double));
       for (int64_t i = 0; i < set.count; ++i)
       {
         scaled[i] *= units[p][u];
@@ -96,7 +92,7 @@ static void test_magnitude(void** state)
       input.scalar = core_array(scaled, 1);
       mcor_options options = core_options(&iso);
       options.precision = p ? MCOR_FLOAT64 : MCOR_FLOAT32;
-      mcor_surface surface = core_extract(*state, &input, &options);
+      CORE_SURFACE surface = core_extract(*state, &input, &options);
       points = u == 0 ? surface.point_count : points;
       cut = u == 0 ? surface.statistics.trim_vertices : cut;
       CORE_CHECK(surface.point_count == points && surface.statistics.trim_vertices == cut &&
@@ -104,36 +100,30 @@ static void test_magnitude(void** state)
         "precision %d, unit %g: %lld points, %lld cut, %lld of them linear", p, units[p][u],
         (long long)surface.point_count, (long long)surface.statistics.trim_vertices,
         (long long)surface.statistics.trim_vertices_linear);
-      mcor_free_surface(&surface);
-      free(scaled);
     }
   }
-  particle_set_free(&set);
 }
 
 /* A threshold that is some vertex's own weight. */
 static void test_exact_threshold(void** state)
 {
   const double iso = 0;
-  particle_set set = core_make_block(7, 0.35, 9, core_slope);
+  CORE_SET set = core_make_block(7, 0.35, 9, core_slope);
   mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_WEIGHT_SUM;
   options.vertex_threshold = 0;
-  mcor_surface whole = core_extract(*state, &input, &options);
+  CORE_SURFACE whole = core_extract(*state, &input, &options);
   int thresholds = 0;
   for (int64_t v = 0; v < whole.point_count; v += 3)
   {
     options.vertex_threshold = (double)whole.weight_sum[v];
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     mesh_report report = core_check_mesh(&surface);
     mesh_free_report(&report);
     thresholds += surface.triangle_count > 0;
-    mcor_free_surface(&surface);
   }
   CORE_CHECK(thresholds > 50, "%d thresholds", thresholds);
-  mcor_free_surface(&whole);
-  particle_set_free(&set);
 }
 
 /* Coincident particles: many are sorted in no time, and an earlier scalar leaves no trace. */
@@ -144,8 +134,8 @@ static void test_coincident(void** state)
     PARKED = 200000
   };
   const double iso = 0.1;
-  particle_set block = core_make_block(8, 0.2, 3, core_slope);
-  particle_set set = particle_set_make(block.count + PARKED);
+  CORE_SET block = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET set = particle_set_make(block.count + PARKED);
   uint64_t seed = 11;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -159,7 +149,7 @@ static void test_coincident(void** state)
     set.volume[i] = i < block.count ? 0.5 : 1.0 / PARKED;
     set.scalar[i] = i < block.count ? (i % 2 ? -1 : 1) : random_unit(&seed) - 2;
   }
-  double* other = core_copy(set.scalar, (size_t)set.count * sizeof(double));
+  CORE_FREED double* other = core_copy(set.scalar, (size_t)set.count * sizeof(double));
   for (int64_t i = 0; i < block.count; ++i)
   {
     other[i] = set.position[3 * (i / 2 * 2)];
@@ -171,16 +161,11 @@ static void test_coincident(void** state)
   mcor_free_surface(&first);
   input.scalar = core_array(other, 1);
   ++input.scalar_version;
-  mcor_surface reused = core_extract(*state, &input, &options);
+  CORE_SURFACE reused = core_extract(*state, &input, &options);
   mcor_release_memory(*state);
-  mcor_surface fresh = core_extract(*state, &input, &options);
+  CORE_SURFACE fresh = core_extract(*state, &input, &options);
   CORE_CHECK(fresh.point_count > 50, "%lld points", (long long)fresh.point_count);
   assert_int_equal(core_hash(&reused), core_hash(&fresh));
-  mcor_free_surface(&reused);
-  mcor_free_surface(&fresh);
-  free(other);
-  particle_set_free(&set);
-  particle_set_free(&block);
 }
 
 /* A plateau at the iso value, to within rounding: what another iso value evaluated before does not
@@ -188,7 +173,7 @@ static void test_coincident(void** state)
 static void test_plateau(void** state)
 {
   const double plateau = (double)0.3f;
-  particle_set set = core_make_block(16, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(16, 0.2, 3, core_slope);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = set.position[3 * i] < 1 ? 0 : plateau;
@@ -202,25 +187,22 @@ static void test_plateau(void** state)
     for (int i = 0; i < 2; ++i)
     {
       options.iso_values = isos + i;
-      mcor_surface surface = core_extract(*state, &input, &options);
+      CORE_SURFACE surface = core_extract(*state, &input, &options);
       alone += surface.triangle_count;
-      mcor_free_surface(&surface);
     }
     options.iso_values = isos;
     options.iso_count = 2;
-    mcor_surface both = core_extract(*state, &input, &options);
+    CORE_SURFACE both = core_extract(*state, &input, &options);
     CORE_CHECK(both.triangle_count == alone, "%g below: %lld triangles, not %lld", 3e-8 * k,
       (long long)both.triangle_count, (long long)alone);
-    mcor_free_surface(&both);
   }
-  particle_set_free(&set);
 }
 
 /* A kernel with negative lobes may leave no density to divide by. */
 static void test_no_density(void** state)
 {
   const double iso = 0.5;
-  particle_set set = particle_set_make(17);
+  CORE_SET set = particle_set_make(17);
   for (int i = 0; i < 17; ++i)
   {
     memset(set.position + 3 * i, 0, 3 * sizeof(double));
@@ -236,13 +218,11 @@ static void test_no_density(void** state)
   mcor_options options = core_options(&iso);
   input.volume = (mcor_array){ 0 };
   options.sph_kernel = MCOR_M_PRIME_4;
-  mcor_surface surface = { 0 };
+  CORE_SURFACE surface = { 0 };
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_DATA);
   assert_non_null(strstr(mcor_last_error(*state), "volume of particle 0"));
   options.sph_kernel = MCOR_CUBIC_SPLINE;
   surface = core_extract(*state, &input, &options);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Smoothing lengths 1:1024 with cubes as small as the smallest asks for: of a lattice of 10^12 cells, a closed surface
@@ -250,16 +230,16 @@ static void test_no_density(void** state)
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");
-  particle_set set = { 0 };
+  CORE_SET set = { 0 };
   entry->make(&set);
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&entry->iso);
   options.node_threshold = options.vertex_threshold = 0; /* closed */
-  mcor_surface surface = core_extract(*state, &input, &options);
-  mesh_report report = core_check_mesh(&surface);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
+  CORE_REPORT report = core_check_mesh(&surface);
   assert_true(surface.triangle_count > 5000 && surface.statistics.virtual_cells > 1000000000000);
   assert_true(report.boundary_edges == 0 && report.components == 1 && report.euler == 2);
-  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
+  CORE_FIELD field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
   const double range = oracle_scalar_range(&set);
   for (int64_t v = 0; v < surface.point_count; ++v)
   {
@@ -268,10 +248,6 @@ static void test_wide_range(void** state)
     CORE_CHECK(fabs(sample.value - entry->iso) <= 5e-6 * range, "vertex %lld is off by %g of %g",
       (long long)v, sample.value - entry->iso, range);
   }
-  oracle_free_field(&field);
-  mesh_free_report(&report);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(void)

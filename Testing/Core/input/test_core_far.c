@@ -44,14 +44,12 @@ static void check_same(mcor_context* context, const particle_set* block, const p
   mcor_input (*input_of)(const particle_set*), const mcor_options* options)
 {
   const mcor_input one = input_of(block), other = input_of(set);
-  mcor_surface expected = core_extract(context, &one, options);
-  mcor_surface surface = core_extract(context, &other, options);
+  CORE_SURFACE expected = core_extract(context, &one, options);
+  CORE_SURFACE surface = core_extract(context, &other, options);
   assert_true(expected.triangle_count > 0);
   assert_true(core_hash(&surface) == core_hash(&expected));
   assert_int_equal(surface.statistics.fluid_particles, expected.statistics.fluid_particles);
   assert_true(surface.statistics.neighbours_median == expected.statistics.neighbours_median);
-  mcor_free_surface(&surface);
-  mcor_free_surface(&expected);
 }
 
 static mcor_input input_with_solids(const particle_set* set)
@@ -86,8 +84,8 @@ static mcor_input input_without_solids(const particle_set* set)
 static void test_absent(void** state)
 {
   const double iso = 0;
-  particle_set block = core_make_block(SIDE, 0.2, 3, core_ball);
-  particle_set set = add_particles(&block, 5);
+  CORE_SET block = core_make_block(SIDE, 0.2, 3, core_ball);
+  CORE_SET set = add_particles(&block, 5);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
   memset(block.solid, 0, (size_t)block.count);
@@ -122,8 +120,6 @@ static void test_absent(void** state)
   }
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be other numbers */
   check_same(*state, &block, &set, input_without_solids, &options);
-  particle_set_free(&set);
-  particle_set_free(&block);
 }
 
 /* `far` particles at great distances behind the block, else like its first one. */
@@ -146,8 +142,8 @@ static particle_set add_far(const particle_set* block, int far)
 static void test_few(void** state)
 {
   const double iso = 0.5;
-  particle_set block = core_make_block(SIDE, 0.2, 3, core_ball);
-  particle_set set = add_far(&block, 8);
+  CORE_SET block = core_make_block(SIDE, 0.2, 3, core_ball);
+  CORE_SET set = add_far(&block, 8);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   for (int widest = 1; widest <= 2; ++widest)
@@ -159,16 +155,14 @@ static void test_few(void** state)
   mcor_input input = core_input_to_keep(&set);
   for (int again = 0; again < 2; ++again) /* nothing of such a run is kept */
   {
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     assert_int_equal(surface.statistics.far_particles, 8);
     assert_int_equal(surface.statistics.far_first, BLOCK);
     assert_true(surface.statistics.far_place[1] == -3e9);
-    char* text = mcor_describe_warning(MCOR_WARN_FAR, &input, &options, &surface);
+    CORE_FREED char* text = mcor_describe_warning(MCOR_WARN_FAR, &input, &options, &surface);
     assert_non_null(text);
     assert_non_null(strstr(text, "8 particles"));
     assert_non_null(strstr(text, "particle 1000"));
-    free(text);
-    mcor_free_surface(&surface);
   }
   particle_set_free(&set);
   set = add_far(&block, 9);
@@ -176,16 +170,14 @@ static void test_few(void** state)
   mcor_surface surface;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
   assert_non_null(strstr(mcor_last_error(*state), "far away"));
-  particle_set_free(&set);
-  particle_set_free(&block);
 }
 
 /* Nine are too many, but not where there is a box, or points. */
 static void test_region(void** state)
 {
   const double iso = 0.5, box[6] = { -3, 20, -2.5, 30, -40, 3 };
-  particle_set block = core_make_block(SIDE, 0.2, 3, core_ball);
-  particle_set set = add_far(&block, 9);
+  CORE_SET block = core_make_block(SIDE, 0.2, 3, core_ball);
+  CORE_SET set = add_far(&block, 9);
   const mcor_input near = core_input(&block), input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
@@ -218,24 +210,20 @@ static void test_region(void** state)
   for (int kept = 0; kept < 2; ++kept)
   {
     const mcor_input kept_near = core_input_to_keep(&block), kept_all = core_input_to_keep(&set);
-    mcor_samples one, other;
+    CORE_SAMPLES one, other;
     CORE_OK(*state, mcor_probe(*state, kept ? &kept_near : &near, &options, &points, 2, &one));
     CORE_OK(*state, mcor_probe(*state, kept ? &kept_all : &input, &options, &points, 2, &other));
     assert_true(one.weight_sum[0] > 0.9 && one.weight_sum[0] == other.weight_sum[0]);
     assert_true(one.weight_sum[1] == other.weight_sum[1]);
-    mcor_free_samples(&one);
-    mcor_free_samples(&other);
   }
-  particle_set_free(&set);
-  particle_set_free(&block);
 }
 
 /* A zoom: small particles in a lattice of large ones that reach them all. */
 static void test_zoom(void** state)
 {
   const double iso = 0.5;
-  particle_set small = core_make_block(SIDE, 0, 1, core_slope);
-  particle_set set = particle_set_make(small.count + 64);
+  CORE_SET small = core_make_block(SIDE, 0, 1, core_slope);
+  CORE_SET set = particle_set_make(small.count + 64);
   for (int64_t i = 0; i < set.count; ++i)
   {
     const int64_t k = i - small.count;
@@ -258,7 +246,7 @@ static void test_zoom(void** state)
   const double box[6] = { -20, 20, -20, 20, -20, 20 };
   memcpy(options.box, box, sizeof box);
   options.field = MCOR_WEIGHT_SUM;
-  mcor_surface expected = core_extract(*state, &alone, &options);
+  CORE_SURFACE expected = core_extract(*state, &alone, &options);
   options.field = MCOR_SUM;
   for (int uniform = 0; uniform < 2; ++uniform)
   {
@@ -272,9 +260,6 @@ static void test_zoom(void** state)
       "%g for %g", surface.statistics.volume, expected.statistics.volume);
     mcor_free_surface(&surface);
   }
-  mcor_free_surface(&expected);
-  particle_set_free(&set);
-  particle_set_free(&small);
 }
 
 int main(void)

@@ -59,23 +59,20 @@ static void expect(
 /* After all that went wrong a good call works. */
 static void expect_good(mcor_context* context)
 {
-  bad_call call = make_call();
+  CORE_OWNED(free_call) bad_call call = make_call();
   call.options.iso_values = call.iso;
-  mcor_surface surface = core_extract(context, &call.input, &call.options);
+  CORE_SURFACE surface = core_extract(context, &call.input, &call.options);
   CORE_CHECK(surface.triangle_count > 0, "no triangles");
   assert_string_equal(mcor_last_error(context), "");
-  mcor_free_surface(&surface);
-  free_call(&call);
 }
 
 #define BAD(context, status, words, ...)                                                           \
   do                                                                                               \
   {                                                                                                \
-    bad_call call = make_call();                                                                   \
+    CORE_OWNED(free_call) bad_call call = make_call();                                             \
     call.options.iso_values = call.iso;                                                            \
     __VA_ARGS__;                                                                                   \
     expect(context, &call, status, words);                                                         \
-    free_call(&call);                                                                              \
   } while (0)
 
 #define ARGUMENT(words, ...) BAD(*state, MCOR_INVALID_ARGUMENT, words, __VA_ARGS__)
@@ -258,7 +255,7 @@ static void test_lattice_limits(void** state)
 static void test_null_arguments(void** state)
 {
   mcor_context* context = *state;
-  bad_call call = make_call();
+  CORE_OWNED(free_call) bad_call call = make_call();
   mcor_surface surface = { .point_count = 3 };
   assert_int_equal(mcor_extract(NULL, &call.input, &call.options, &surface), MCOR_INVALID_ARGUMENT);
   assert_int_equal(mcor_extract(context, &call.input, &call.options, NULL), MCOR_INVALID_ARGUMENT);
@@ -273,7 +270,6 @@ static void test_null_arguments(void** state)
   mcor_free_context(NULL);
   mcor_free_surface(NULL);
   mcor_release_memory(NULL);
-  free_call(&call);
   expect_good(context);
 }
 
@@ -282,17 +278,15 @@ static void test_empty_results(void** state)
 {
   for (int kind = 0; kind < 5; ++kind)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     call.options.iso_values = call.iso;
     call.iso[0] = kind == 2 ? 1e30 : kind == 3 ? -100 : call.set.scalar[0];
     call.options.iso_count = kind != 1;
     call.input.count = kind == 0 ? 0 : kind == 4 ? 1 : call.input.count;
-    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     CORE_CHECK(surface.point_count == 0 && surface.triangle_count == 0, "kind %d: %lld triangles",
       kind, (long long)surface.triangle_count);
     mcor_free_surface(&surface);
-    mcor_free_surface(&surface);
-    free_call(&call);
   }
   expect_good(*state);
 }
@@ -309,7 +303,7 @@ static void test_endless_range(void** state)
     { 1e200, MCOR_FLOAT32, false }, { 1e200, MCOR_FLOAT64, true }, { 1e30, MCOR_FLOAT32, true } };
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     call.options.iso_values = call.iso;
     call.options.precision = cases[k].precision;
     for (int64_t i = 0; i < call.set.count; ++i)
@@ -319,17 +313,14 @@ static void test_endless_range(void** state)
     if (!cases[k].is_good)
     {
       expect(*state, &call, MCOR_INVALID_DATA, "too large for|precision");
-      free_call(&call);
       continue;
     }
-    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     CORE_CHECK(surface.triangle_count > 0, "no surface with %g", cases[k].most);
     for (int64_t i = 0; i < 3 * surface.point_count; ++i)
     {
       CORE_CHECK(isfinite(surface.normals[i]), "a normal with %g is not finite", cases[k].most);
     }
-    mcor_free_surface(&surface);
-    free_call(&call);
   }
   expect_good(*state);
 }
@@ -340,15 +331,15 @@ static void test_bad_attributes(void** state)
   const double bad[] = { NAN, INFINITY, -INFINITY };
   for (int k = 0; k < 3; ++k)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     call.options.iso_values = call.iso;
     const mcor_array attributes[] = { core_array(call.set.volume, 1), core_array(call.vector, 3),
       { .constant = bad[k] }, core_array(call.set.scalar, 1) };
     call.input.attributes = attributes;
     call.input.attribute_count = 4;
-    mcor_surface good = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE good = core_extract(*state, &call.input, &call.options);
     call.vector[3 * 21 + 2] = call.vector[3 * 40] = bad[k];
-    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     const size_t n = (size_t)surface.point_count;
     CORE_CHECK(n > 20 && good.point_count == (int64_t)n, "%zu points", n);
     const int64_t expected[] = { -1, 21, 0, -1 };
@@ -360,9 +351,6 @@ static void test_bad_attributes(void** state)
     assert_int_equal(good.attribute_not_finite[1], -1);
     assert_memory_equal(good.attributes[0], surface.attributes[0], n * sizeof(double));
     assert_memory_equal(good.attributes[3], surface.attributes[3], n * sizeof(double));
-    mcor_free_surface(&good);
-    mcor_free_surface(&surface);
-    free_call(&call);
   }
   expect_good(*state);
 }
@@ -374,7 +362,7 @@ static void test_values_of_solids(void** state)
   uint64_t expected = 0;
   for (int k = 0; k < 4; ++k)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     call.options.iso_values = call.iso;
     for (int64_t i = 0; i < call.set.count; ++i)
     {
@@ -386,12 +374,10 @@ static void test_values_of_solids(void** state)
     const mcor_array attribute = core_array(call.vector, 3);
     call.input.attributes = &attribute;
     call.input.attribute_count = 1;
-    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     expected = k == 0 ? core_hash(&surface) : expected;
     CORE_CHECK(surface.point_count > 20 && core_hash(&surface) == expected, "value %g", values[k]);
     assert_int_equal(surface.attribute_not_finite[0], -1);
-    mcor_free_surface(&surface);
-    free_call(&call);
   }
 }
 
@@ -420,16 +406,14 @@ static void test_magnitudes(void** state)
   int64_t points = 0;
   for (int k = 0; k < 4; ++k)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     make_vectors(&call, units[k]);
-    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     points = k == 0 ? surface.point_count : points;
     CORE_CHECK(points > 20 && surface.point_count == points, "unit %g: %lld points, not %lld",
       units[k], (long long)surface.point_count, (long long)points);
     const double most = surface.statistics.scalar_max / units[k];
     CORE_CHECK(most > 10 && most < 20, "unit %g: magnitudes up to %g", units[k], most);
-    mcor_free_surface(&surface);
-    free_call(&call);
   }
 }
 
@@ -445,23 +429,20 @@ static void test_bad_products(void** state)
   DATA("dot product|particle 1", make_vectors(&call, 1); call.options.precision = MCOR_FLOAT32;
        call.vector[3] = 1e250; call.vector[4] = 1e249; call.input.scalar_dot = call.input.scalar);
   /* On the way, inf - inf; in the end, a number. */
-  bad_call call = make_call();
+  CORE_OWNED(free_call) bad_call call = make_call();
   make_vectors(&call, 1);
-  double* other = core_copy(call.vector, (size_t)call.set.count * 3 * sizeof(double));
+  CORE_FREED double* other = core_copy(call.vector, (size_t)call.set.count * 3 * sizeof(double));
   call.input.scalar_dot = core_array(other, 3);
   call.iso[0] = 100;
   call.vector[3] = call.vector[4] = other[3] = 1e200;
   other[4] = -1e200;
-  mcor_surface surface = core_extract(*state, &call.input, &call.options);
+  CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
   CORE_CHECK(surface.point_count > 20 && surface.statistics.scalar_min == 0, "%lld points, from %g",
     (long long)surface.point_count, surface.statistics.scalar_min);
   for (int64_t i = 0; i < 3 * surface.point_count; ++i)
   {
     CORE_CHECK(isfinite(surface.points[i]) && isfinite(surface.normals[i]), "not finite");
   }
-  mcor_free_surface(&surface);
-  free(other);
-  free_call(&call);
   expect_good(*state);
 }
 
@@ -482,10 +463,10 @@ static void test_computed_volumes(void** state)
 static void test_units_of_length(void** state)
 {
   const double units[] = { 1, 0x1p-300, 0x1p300, 0x1p-340, 0x1p340 };
-  mcor_surface first = { 0 };
+  CORE_SURFACE first = { 0 };
   for (int k = 0; k < 5; ++k)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     for (int64_t i = 0; i < 3 * call.set.count; ++i)
     {
       call.set.position[i] *= units[k];
@@ -497,7 +478,6 @@ static void test_units_of_length(void** state)
     if (k > 2)
     {
       expect(*state, &call, MCOR_OUT_OF_CAPACITY, "cube size|between|unit of length");
-      free_call(&call);
       continue;
     }
     mcor_surface surface = core_extract(*state, &call.input, &call.options);
@@ -509,9 +489,7 @@ static void test_units_of_length(void** state)
       CORE_CHECK(surface.normals[i] == first.normals[i], "unit %g: another normal", units[k]);
     }
     k == 0 ? (void)(first = surface) : mcor_free_surface(&surface);
-    free_call(&call);
   }
-  mcor_free_surface(&first);
   expect_good(*state);
 }
 
@@ -521,7 +499,7 @@ static void test_far_options(void** state)
   const double far[] = { 1e36, 1e39, 1e308 };
   for (int k = 0; k < 24; ++k)
   {
-    bad_call call = make_call();
+    CORE_OWNED(free_call) bad_call call = make_call();
     call.iso[0] = k < 12 ? (k % 2 ? -1 : 1) * far[k % 3] : 0;
     call.options.node_threshold = k >= 12 && k % 2 ? far[k % 3] : 0.1;
     call.options.vertex_threshold = k >= 12 && k % 2 == 0 ? far[k % 3] : 0.5;
@@ -529,11 +507,9 @@ static void test_far_options(void** state)
       k % 4 / 2 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     call.options.field = k / 6 % 2 ? MCOR_SUM : MCOR_SHEPARD;
     call.options.iso_values = call.iso;
-    mcor_surface surface = core_extract(*state, &call.input, &call.options);
+    CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
     CORE_CHECK(
       surface.triangle_count == 0, "case %d: %lld triangles", k, (long long)surface.triangle_count);
-    mcor_free_surface(&surface);
-    free_call(&call);
   }
   expect_good(*state);
 }

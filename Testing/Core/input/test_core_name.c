@@ -145,10 +145,9 @@ static void test_iso_values(void** state)
   {
     count = 200001
   };
-  double* value = malloc(count * sizeof *value);
-  double* sorted = malloc(count * sizeof *sorted);
-  uint8_t* solid = calloc(count, 1);
-  assert_true(value && sorted && solid);
+  CORE_FREED double* value = oracle_allocate(count, sizeof *value);
+  CORE_FREED double* sorted = oracle_allocate(count, sizeof *sorted);
+  uint8_t* solid = oracle_allocate(count, 1);
   for (int kind = 0; kind < 8; ++kind)
   {
     int64_t fluid = 0;
@@ -190,8 +189,6 @@ static void test_iso_values(void** state)
   double range[2] = { 1, 2 }, iso = 3;
   assert_false(mcor_find_iso_value(&none, NULL, range, &iso));
   assert_true(range[0] == 1 && range[1] == 2 && iso == 3);
-  free(value);
-  free(sorted);
   free(solid);
 }
 
@@ -206,8 +203,7 @@ static int count_wrong(void* user, mcor_reduction reduction, int64_t* values, in
 static void test_iso_value_of_wrong_scalars(void** state)
 {
   (void)state;
-  double* three = malloc(2 * 3 * sizeof *three);
-  assert_non_null(three);
+  CORE_FREED double* three = oracle_allocate(2 * 3, sizeof *three);
   for (int i = 0; i < 6; ++i)
   {
     three[i] = i;
@@ -237,7 +233,6 @@ static void test_iso_value_of_wrong_scalars(void** state)
   const mcor_input last = { .count = 2, .scalar = vector, .scalar_component = 2 };
   assert_true(mcor_find_iso_value(&last, NULL, range, &iso));
   assert_true(range[0] == 2 && range[1] == 5 && iso >= 2 && iso <= 5);
-  free(three);
 }
 
 int main(void)

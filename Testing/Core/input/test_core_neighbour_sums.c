@@ -65,7 +65,7 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
 {
   char* why;
   const int64_t count = 400;
-  particle_set set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
+  CORE_SET set = make_clusters(count, dimension, 3 + (uint64_t)kernel);
   mcor_options options = core_options(NULL);
   options.sph_kernel = kernel;
   options.dimension = 0;
@@ -75,10 +75,10 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
     options.periodic[2 * a + 1] = 1.4;
   }
   mcor_input input = core_input(&set);
-  double *lengths = calloc((size_t)count, sizeof *lengths),
-         *densities = calloc((size_t)count, sizeof *densities),
-         *mass = calloc((size_t)count, sizeof *mass), *again = calloc((size_t)count, sizeof *again);
-  assert_true(lengths && densities && mass && again);
+  double *lengths = oracle_allocate(count, sizeof *lengths),
+         *densities = oracle_allocate(count, sizeof *densities),
+         *mass = oracle_allocate(count, sizeof *mass),
+         *again = oracle_allocate(count, sizeof *again);
   assert_int_equal(
     mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths, &why), MCOR_OK);
   double least = INFINITY, most = 0;
@@ -104,8 +104,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
       (int)i, densities[i], expected);
   }
   /* In another order the same bits. */
-  int64_t* order = core_make_order(count, 5);
-  particle_set other = particle_set_make(count);
+  CORE_FREED int64_t* order = core_make_order(count, 5);
+  CORE_SET other = particle_set_make(count);
   for (int64_t i = 0; i < count; ++i)
   {
     memcpy(other.position + 3 * i, set.position + 3 * order[i], 3 * sizeof(double));
@@ -120,9 +120,8 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   /* Sums at some particles, with all as neighbours; particles that play no part might as well
    * not be there. */
   input = core_input(&set);
-  uint8_t* marks = calloc((size_t)count, 1);
-  double* some = calloc((size_t)count, sizeof *some);
-  assert_true(marks && some);
+  CORE_FREED uint8_t* marks = oracle_allocate(count, 1);
+  CORE_FREED double* some = oracle_allocate(count, sizeof *some);
   const int64_t part = count / 3;
   assert_int_equal(mcor_find_smoothing_lengths(&input, &options, 1.3, part, some, &why), MCOR_OK);
   assert_memory_equal(some, lengths, (size_t)part * sizeof *some);
@@ -147,15 +146,10 @@ static void check_sums(mcor_sph_kernel kernel, int dimension, int periodic)
   assert_int_equal(mcor_sum_densities(&input, &options, count, again, &why), MCOR_OK);
   assert_true(again[0] > 0 && again[part] == 0);
   other.count = count;
-  free(marks);
-  free(some);
-  free(order);
   free(lengths);
   free(densities);
   free(mass);
   free(again);
-  particle_set_free(&set);
-  particle_set_free(&other);
 }
 
 static void test_sums(void** state)
@@ -179,7 +173,7 @@ static void test_plummer(void** state)
   char* why;
   const int count = 20000;
   const double radii[2] = { 1, 3 }, isos[2] = { 0.0422, 0.000755 };
-  particle_set set = particle_set_make(count);
+  CORE_SET set = particle_set_make(count);
   uint64_t seed = 1;
   for (int i = 0; i < count; ++i)
   {
@@ -205,7 +199,7 @@ static void test_plummer(void** state)
     options.field = MCOR_SUM;
     options.node_threshold = options.vertex_threshold = 0;
     options.level_limit = MCOR_CUBE_LEVELS - 1;
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     double sum = 0;
     int64_t used = 0;
     for (int64_t p = 0; p < surface.point_count; ++p)
@@ -218,9 +212,7 @@ static void test_plummer(void** state)
     assert_true(used > 1000);
     CORE_CHECK(fabs(sum / (double)used / radii[k] - 1) < 0.03, "radius %g, not %g",
       sum / (double)used, radii[k]);
-    mcor_free_surface(&surface);
   }
-  particle_set_free(&set);
 }
 
 /* Where a particle lies does not matter but for whole periods, however many. */

@@ -48,7 +48,7 @@ static double iso_of(const wall_case* at)
 /* Where no solid counts, there is nothing to end at: not a bit changes. */
 static void test_without_solids(void** state)
 {
-  particle_set set = make_tank();
+  CORE_SET set = make_tank();
   const wall_case shares[2] = { { .share = 0 }, { .share = 0.5 } };
   for (int field = 0; field < 3; ++field)
   {
@@ -64,15 +64,13 @@ static void test_without_solids(void** state)
         input.solid = ignored ? set.solid : NULL;
         input.ignore_solids = ignored;
         const mcor_options options = make_options(&at, &iso);
-        mcor_surface surface = core_extract(*state, &input, &options);
+        CORE_SURFACE surface = core_extract(*state, &input, &options);
         hash[share] = core_hash(&surface);
         CORE_CHECK(surface.triangle_count > 0, "field %d: no surface", field);
-        mcor_free_surface(&surface);
       }
       CORE_CHECK(hash[0] == hash[1], "field %d, ignored %d: the surface changes", field, ignored);
     }
   }
-  particle_set_free(&set);
 }
 
 typedef struct wall_weight
@@ -149,7 +147,7 @@ static particle_set make_small_tank(void)
 /* The share that is measured is that at the solids next to the fluid, whatever the kernel; over a period, too. */
 static void test_share(void** state)
 {
-  particle_set set = make_small_tank();
+  CORE_SET set = make_small_tank();
   const double iso = 0;
   const mcor_input input = core_input(&set);
   for (int i = 0; i < 2 * MCOR_SPH_KERNEL_COUNT; ++i)
@@ -167,14 +165,13 @@ static void test_share(void** state)
       globals.measured.wall_share, expected);
     mcor_free_globals(&globals);
   }
-  particle_set_free(&set);
 }
 
 /* It gives what it gives by hand, also where the search grid was made for another share, and with global
  * values. */
 static void test_measured(void** state)
 {
-  particle_set set = make_tank();
+  CORE_SET set = make_tank();
   const double iso = 0;
   const wall_case at = { .share = 0.5 };
   mcor_input input = core_input(&set);
@@ -201,14 +198,13 @@ static void test_measured(void** state)
   CORE_CHECK(hash[1] == hash[2] && hash[1] == hash[3] && hash[1] != hash[0],
     "the surface of share %g is another one", globals.measured.wall_share);
   mcor_free_globals(&globals);
-  particle_set_free(&set);
 }
 
 /* By default the wall share is measured for a scalar, and 0 for the free surface; with global
  * values, too. */
 static void test_auto(void** state)
 {
-  particle_set set = make_tank();
+  CORE_SET set = make_tank();
   const double iso = 0, half = 0.5;
   mcor_options options;
   mcor_set_default_options(&options);
@@ -231,22 +227,20 @@ static void test_auto(void** state)
         assert_true((globals.measured.wall_share > 0) == (field != MCOR_WEIGHT_SUM));
       }
       options.globals = i == 1 ? &globals : NULL;
-      mcor_surface surface = core_extract(*state, &input, &options);
+      CORE_SURFACE surface = core_extract(*state, &input, &options);
       assert_true((surface.statistics.wall_share > 0) == (field != MCOR_WEIGHT_SUM));
       assert_true(surface.triangle_count > 0);
       hash[i] = core_hash(&surface);
-      mcor_free_surface(&surface);
     }
     CORE_CHECK(hash[0] == hash[1] && hash[0] == hash[2], "field %d: another surface", field);
     mcor_free_globals(&globals);
   }
-  particle_set_free(&set);
 }
 
 /* The free surface takes one half; global values must have been measured for it. */
 static void test_measured_elsewhere(void** state)
 {
-  particle_set set = make_tank();
+  CORE_SET set = make_tank();
   const double iso = 0.5;
   const wall_case at = { .share = MCOR_WALL_SHARE_MEASURED, .field = MCOR_WEIGHT_SUM };
   const mcor_input input = core_input(&set);
@@ -262,7 +256,6 @@ static void test_measured_elsewhere(void** state)
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   assert_non_null(strstr(mcor_last_error(*state), "no wall share"));
   mcor_free_globals(&globals);
-  particle_set_free(&set);
 }
 
 int main(void)

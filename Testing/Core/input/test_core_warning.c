@@ -31,11 +31,12 @@ static void begin_call(warning_call* call)
 static int check_call(mcor_context* context, warning_call* call, const char* name,
   mcor_warning expected, const char* words)
 {
-  mcor_surface surface = core_extract(context, &call->input, &call->options);
+  CORE_SURFACE surface = core_extract(context, &call->input, &call->options);
   int count = 0;
   for (int w = 0; w < MCOR_WARNING_COUNT; ++w)
   {
-    char* text = mcor_describe_warning((mcor_warning)w, &call->input, &call->options, &surface);
+    CORE_FREED char* text =
+      mcor_describe_warning((mcor_warning)w, &call->input, &call->options, &surface);
     count += text != NULL;
     CORE_CHECK((text != NULL) == (words && w == (int)expected), "%s: warning %d: %s", name, w,
       text ? text : "not given");
@@ -45,9 +46,7 @@ static int check_call(mcor_context* context, warning_call* call, const char* nam
     {
       CORE_CHECK(strstr(text, word), "%s: no \"%s\" in: %s", name, word, text);
     }
-    free(text);
   }
-  mcor_free_surface(&surface);
   particle_set_free(&call->set);
   return count;
 }
@@ -182,8 +181,8 @@ static void test_precision(void** state)
 static particle_set far_apart(double smaller)
 {
   uint64_t seed = 3;
-  particle_set large = core_make_block(6, 0.2, 3, core_slope),
-               small = core_make_block(6, 0.2, 4, core_slope);
+  CORE_SET large = core_make_block(6, 0.2, 3, core_slope),
+           small = core_make_block(6, 0.2, 4, core_slope);
   particle_set set = particle_set_make(2 * large.count);
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -198,8 +197,6 @@ static particle_set far_apart(double smaller)
     set.volume[i] = size * size * size * from->volume[n];
     set.scalar[i] = random_unit(&seed);
   }
-  particle_set_free(&large);
-  particle_set_free(&small);
   return set;
 }
 
@@ -212,9 +209,9 @@ static void check_told_residual(mcor_context* context, const particle_set* set, 
   mcor_options options = core_options(&iso);
   options.field = field;
   options.level_limit = MCOR_CUBE_LEVELS - 1;
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   const mcor_array points = { .data = surface.points, .type = MCOR_FLOAT64, .components = 3 };
-  mcor_samples exact;
+  CORE_SAMPLES exact;
   options.precision = MCOR_FLOAT64;
   input.attributes = &input.scalar;
   input.attribute_count = 1;
@@ -229,8 +226,6 @@ static void check_told_residual(mcor_context* context, const particle_set* set, 
   CORE_CHECK(surface.point_count > 1000 && worst <= told + 2e-6 && told <= 4 * worst,
     "field %d, %lld points: residual %g, told %g", field, (long long)surface.point_count, worst,
     told);
-  mcor_free_samples(&exact);
-  mcor_free_surface(&surface);
 }
 
 static void test_told_residual(void** state)
@@ -238,10 +233,9 @@ static void test_told_residual(void** state)
   static const double sizes[] = { 1.0 / 100, 1.0 / 4000, 1.0 / 10000 };
   for (int i = 0; i < 3; ++i)
   {
-    particle_set set = far_apart(sizes[i]);
+    CORE_SET set = far_apart(sizes[i]);
     check_told_residual(*state, &set, MCOR_WEIGHT_SUM);
     check_told_residual(*state, &set, MCOR_SHEPARD);
-    particle_set_free(&set);
   }
 }
 
@@ -255,17 +249,16 @@ static void test_tolerance(void** state)
   warning_call call; /* what rounding leaves is told by the statistics alone */
   begin_call(&call);
   call.options.tolerance = 1e-6;
-  mcor_surface surface = core_extract(*state, &call.input, &call.options);
+  CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
   for (int i = 0; i < 2; ++i)
   {
     surface.statistics.vertices_above_tolerance = 2;
     surface.statistics.residual_max =
       (i ? 2e-5 : 2e-6) * (surface.statistics.scalar_max - surface.statistics.scalar_min);
-    char* text = mcor_describe_warning(MCOR_WARN_TOLERANCE, &call.input, &call.options, &surface);
+    CORE_FREED char* text =
+      mcor_describe_warning(MCOR_WARN_TOLERANCE, &call.input, &call.options, &surface);
     CORE_CHECK((text != NULL) == (i == 1), "%s", text ? text : "not given");
-    free(text);
   }
-  mcor_free_surface(&surface);
   particle_set_free(&call.set);
 }
 
@@ -294,10 +287,9 @@ static void test_without_input(void** state)
 {
   warning_call call;
   begin_call(&call);
-  mcor_surface surface = core_extract(*state, &call.input, &call.options);
+  CORE_SURFACE surface = core_extract(*state, &call.input, &call.options);
   assert_null(mcor_describe_warning(MCOR_WARNING_COUNT, &call.input, &call.options, &surface));
   assert_null(mcor_describe_warning(MCOR_WARN_PLANE, NULL, &call.options, &surface));
-  mcor_free_surface(&surface);
   particle_set_free(&call.set);
 }
 

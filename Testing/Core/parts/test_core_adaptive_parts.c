@@ -22,7 +22,7 @@ static mcor_options adaptive_options(const double* iso, mcor_field field)
 static void smooth_surfaces(void** state)
 {
   static const double half = 0.5, isos[2] = { 0.2, -0.3 };
-  particle_set set = core_make_graded(12, 0.4);
+  CORE_SET set = core_make_graded(12, 0.4);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.solid[i] = set.position[3 * i] < -0.6 * set.smoothing_length[i] && i % 3 == 0;
@@ -40,14 +40,13 @@ static void smooth_surfaces(void** state)
   options.wall_share = 0.3;
   options.triangle_normals = 1;
   core_check_cuts(*state, "two values, solids, normals of triangles", &input, &options);
-  particle_set_free(&set);
 }
 
 /* Noise of all sizes next to each other: levels change everywhere, edges are pinched. */
 static void rough_surfaces(void** state)
 {
   static const double iso = 0.1;
-  particle_set set = core_make_random(4000, 14, 0.3, 3, 7);
+  CORE_SET set = core_make_random(4000, 14, 0.3, 3, 7);
   uint64_t seed = 12;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -66,7 +65,6 @@ static void rough_surfaces(void** state)
   options.preview = 1;
   options.sph_kernel = MCOR_M_PRIME_4;
   core_check_cuts(*state, "M'4, preview", &input, &options);
-  particle_set_free(&set);
 }
 
 /* Particles of the set whose supports reach the box, with six cubes of their level around it. */
@@ -89,7 +87,7 @@ static particle_set take_reaching(
 static void given_levels(void** state)
 {
   static const double iso = 0.2;
-  particle_set set = core_make_graded(40, 0.3);
+  CORE_SET set = core_make_graded(40, 0.3);
   mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&iso, MCOR_SHEPARD);
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* would be numbers of other inputs */
@@ -106,13 +104,12 @@ static void given_levels(void** state)
   {
     const int at[3] = { i & 1, i >> 1 & 1, i >> 2 };
     core_set_box(&options, core_cuts + 3, at);
-    particle_set near = take_reaching(&set, options.box, &globals, globals.measured.cube);
+    CORE_SET near = take_reaching(&set, options.box, &globals, globals.measured.cube);
     fewest = near.count < fewest ? near.count : fewest;
     input = core_input(&near);
     surface = core_extract(*state, &input, &options);
     core_add_surface(&all, &input, &surface);
     mcor_free_surface(&surface);
-    particle_set_free(&near);
   }
   assert_in_range(fewest, 1, set.count - 100);
   core_expect_same("eight boxes", &all, &whole);
@@ -129,7 +126,6 @@ static void given_levels(void** state)
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
   CORE_CHECK(strstr(mcor_last_error(*state), "uniform cubes"), "%s", mcor_last_error(*state));
   mcor_free_globals(&globals);
-  particle_set_free(&set);
 }
 
 /* Through cubes of high levels: the particles that matter there are many small cubes away. */
@@ -139,12 +135,11 @@ static void cuts_through_large_cubes(void** state)
   /* Just beside the centres of cubes 64 times the smallest, of 0.18. */
   static const core_cut cuts[] = { { "3 boxes far out", { 2, 0, 0 }, { { -86.41, -74.89 } } },
     { "6 boxes far out", { 0, 1, 2 }, { { 0 }, { -74.87 }, { -86.39, 74.87 } } } };
-  particle_set set = core_make_graded(150, 0.3);
+  CORE_SET set = core_make_graded(150, 0.3);
   const mcor_input input = core_input(&set);
   mcor_options options = adaptive_options(&half, MCOR_WEIGHT_SUM);
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE; /* as that needs all around */
   core_check_these_cuts(*state, "large cubes", &input, &options, cuts, 2);
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -28,7 +28,7 @@ static particle_set make_block(void)
 static void trimmed_surfaces(void** state)
 {
   const double iso[2] = { -8, -30 };
-  particle_set set = make_block();
+  CORE_SET set = make_block();
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3),
     core_array(set.smoothing_length, 1) };
@@ -48,14 +48,13 @@ static void trimmed_surfaces(void** state)
   options.vertex_threshold = 0.3;
   options.preview = 1;
   core_check_cuts(*state, "eigenvalue, preview", &input, &options);
-  particle_set_free(&set);
 }
 
 /* Noise, so that faces are ambiguous and edges pinched. */
 static void rough_surfaces(void** state)
 {
   const double iso = 0.1;
-  particle_set set = make_block();
+  CORE_SET set = make_block();
   uint64_t seed = 12;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -71,13 +70,12 @@ static void rough_surfaces(void** state)
   core_check_cuts(*state, "noise", &input, &options);
   options.topology = MCOR_TOPOLOGY_FIELD;
   core_check_cuts(*state, "topology", &input, &options);
-  particle_set_free(&set);
 }
 
 static void other_fields(void** state)
 {
   const double half = 0.5, iso = -8;
-  particle_set set = core_make_random(6000, 14, 0.3, 3, 7);
+  CORE_SET set = core_make_random(6000, 14, 0.3, 3, 7);
   mcor_input input = core_input(&set);
   input.volume = (mcor_array){ 0 };
   mcor_options options = core_options(&half);
@@ -95,7 +93,6 @@ static void other_fields(void** state)
   options.sph_kernel = MCOR_M_PRIME_4;
   options.field = MCOR_SUM;
   core_check_cuts(*state, "sum with the tensor kernel", &input, &options);
-  particle_set_free(&set);
 }
 
 /* Masses alone, so that volumes are computed, and solids; the particles' x is uneven enough for a
@@ -117,7 +114,7 @@ static mcor_input input_of(const particle_set* set, mcor_array attributes[3])
 static void given_globals(void** state)
 {
   const double iso = 1;
-  particle_set set = core_make_random(6000, 14, 0.7, 2, 17);
+  CORE_SET set = core_make_random(6000, 14, 0.7, 2, 17);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] += core_ball(set.position + 3 * i);
@@ -144,7 +141,7 @@ static void given_globals(void** state)
   {
     const int at[3] = { i & 1, i >> 1 & 1, i >> 2 };
     core_set_box(&options, core_cuts + 3, at);
-    particle_set near = core_take_near(&set, options.box, 8.5);
+    CORE_SET near = core_take_near(&set, options.box, 8.5);
     fewest = near.count < fewest ? near.count : fewest;
     input = input_of(&near, attributes);
     input.particles_version = input.scalar_version = 1000 + (uint64_t)i;
@@ -155,7 +152,6 @@ static void given_globals(void** state)
     surface = core_extract(*state, &input, &options);
     core_add_surface(&all, &input, &surface);
     mcor_free_surface(&surface);
-    particle_set_free(&near);
   }
   assert_in_range(fewest, 1, set.count - 100);
   core_expect_same("eight boxes", &all, &whole);
@@ -167,21 +163,20 @@ static void given_globals(void** state)
   mcor_free_globals(&globals);
   free(whole.bytes);
   free(all.bytes);
-  particle_set_free(&set);
 }
 
 /* Reading costs what reaches the box; one beside all particles takes nothing. */
 static void small_boxes(void** state)
 {
   const double iso = 0;
-  particle_set set = core_make_block(24, 0.3, 8, core_ball);
+  CORE_SET set = core_make_block(24, 0.3, 8, core_ball);
   const mcor_input input = core_input_to_keep(&set);
   mcor_options options = core_options(&iso);
-  mcor_surface whole = core_extract(*state, &input, &options);
+  CORE_SURFACE whole = core_extract(*state, &input, &options);
   assert_int_equal(whole.statistics.particles_in_reach, set.count);
   const double box[6] = { 2, 4, -1, 1, -1, 1 };
   memcpy(options.box, box, sizeof box);
-  mcor_surface part = core_extract(*state, &input, &options);
+  CORE_SURFACE part = core_extract(*state, &input, &options);
   assert_in_range(part.triangle_count, 10, whole.triangle_count / 4);
   assert_in_range(part.statistics.particles_in_reach, 10, set.count / 8);
   assert_in_range(part.statistics.nodes_evaluated, 10, whole.statistics.nodes_evaluated / 3);
@@ -200,16 +195,13 @@ static void small_boxes(void** state)
   assert_int_equal(part.statistics.particles_in_reach, 0);
   assert_int_equal(part.statistics.virtual_cells, 0);
   assert_true(part.statistics.cube_size == whole.statistics.cube_size);
-  mcor_free_surface(&part);
-  mcor_free_surface(&whole);
-  particle_set_free(&set);
 }
 
 /* Data kept from one box do not show in the next call. */
 static void kept_particles(void** state)
 {
   const double iso[2] = { 2, 4 };
-  particle_set set = core_make_random(3000, 14, 0.8, 1.6, 9);
+  CORE_SET set = core_make_random(3000, 14, 0.8, 1.6, 9);
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] += core_ball(set.position + 3 * i);
@@ -223,18 +215,14 @@ static void kept_particles(void** state)
     options.outputs = call >= 3 ? options.outputs | MCOR_OUT_NEAREST_PARTICLE
                                 : options.outputs & ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
     options.iso_values = iso + (call == 2);
-    mcor_surface surface = core_extract(*state, &kept, &options);
-    mcor_context* other = NULL;
+    CORE_SURFACE surface = core_extract(*state, &kept, &options);
+    CORE_CONTEXT other = NULL;
     CORE_OK(other, mcor_create_context(NULL, &other));
-    mcor_surface expected = core_extract(other, &fresh, &options);
+    CORE_SURFACE expected = core_extract(other, &fresh, &options);
     CORE_CHECK(surface.triangle_count > 10 && core_hash(&surface) == core_hash(&expected),
       "call %d: %lld triangles, expected %lld", call, (long long)surface.triangle_count,
       (long long)expected.triangle_count);
-    mcor_free_surface(&surface);
-    mcor_free_surface(&expected);
-    mcor_free_context(other);
   }
-  particle_set_free(&set);
 }
 
 static void bad_boxes(void** state)
@@ -243,7 +231,7 @@ static void bad_boxes(void** state)
     { 0, 1, 0, 1, NAN, 1 }, { INFINITY, INFINITY, 0, 1, 0, 1 } };
   const char* words[] = { "along x", "along y", "along z", "along z", "along x" };
   const double iso = 0;
-  particle_set set = core_make_block(4, 0, 8, core_ball);
+  CORE_SET set = core_make_block(4, 0, 8, core_ball);
   const mcor_input input = core_input(&set);
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i)
   {
@@ -254,21 +242,20 @@ static void bad_boxes(void** state)
     CORE_CHECK(strstr(mcor_last_error(*state), words[i]), "%s", mcor_last_error(*state));
     assert_int_equal(surface.point_count, 0);
   }
-  particle_set_free(&set);
 }
 
 /* Values that no measure gives are refused, whoever made them up. */
 static void impossible_globals(void** state)
 {
   const double iso = 0;
-  particle_set set = core_make_block(5, 0.2, 3, core_ball);
+  CORE_SET set = core_make_block(5, 0.2, 3, core_ball);
   mcor_input input = core_input(&set);
   const mcor_array attribute = input.scalar;
   input.attributes = &attribute;
   input.attribute_count = 1;
   mcor_options options = core_options(&iso);
   mcor_globals measured;
-  mcor_surface surface;
+  CORE_SURFACE surface;
   CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &measured));
 #define IMPOSSIBLE(change)                                                                         \
   do                                                                                               \
@@ -293,9 +280,7 @@ static void impossible_globals(void** state)
 #undef IMPOSSIBLE
   options.globals = &measured;
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
-  mcor_free_surface(&surface);
   mcor_free_globals(&measured);
-  particle_set_free(&set);
 }
 
 /* Particles of a period around the origin, some of them so light that the surface is trimmed, and its caps,
@@ -325,7 +310,7 @@ static particle_set make_period(void)
 static void check_caps(mcor_context* context, const double around[6])
 {
   const double iso[2] = { 0.2, -0.4 }, half = 0.5;
-  particle_set set = make_period();
+  CORE_SET set = make_period();
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     set.position[i] *= around[2 * (i % 3) + 1] / 4;
@@ -355,7 +340,6 @@ static void check_caps(mcor_context* context, const double around[6])
   options.iso_count = 1;
   options.wall_share = 0;
   core_check_cuts(context, "caps of the free surface", &input, &options);
-  particle_set_free(&set);
 }
 
 static void caps(void** state)

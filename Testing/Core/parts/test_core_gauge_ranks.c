@@ -117,10 +117,10 @@ static void gauge_part(core_rank* rank, void* data)
   options.ranks = &rank->ranks;
   const double reach = job->globals.measured.support_max * (job->volumes ? 3 : 1) +
     mcor_reach_margin(&options, &job->globals, 0);
-  particle_set part = take_near(job, sides[0], sides[1], reach);
+  CORE_SET part = take_near(job, sides[0], sides[1], reach);
   mcor_array arrays[2];
   const mcor_input input = gauge_input(job, &part, arrays);
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
   if (job->status[r] == MCOR_OK)
   {
@@ -133,8 +133,6 @@ static void gauge_part(core_rank* rank, void* data)
   {
     core_leave(rank);
   }
-  mcor_free_context(context);
-  particle_set_free(&part);
 }
 
 static int same_gauges(const mcor_gauges* a, const mcor_gauges* b)
@@ -175,7 +173,7 @@ static void make_lines(mcor_gauge_line* lines, int axis)
 
 static void test_same_bits(void** state)
 {
-  particle_set set = make_sparse();
+  CORE_SET set = make_sparse();
   for (int kind = 0; kind < 6; ++kind)
   {
     mcor_gauge_line lines[LINES];
@@ -188,7 +186,7 @@ static void test_same_bits(void** state)
     mcor_array arrays[2];
     const mcor_input input = gauge_input(&job, &set, arrays);
     mcor_options options = gauge_options(&job);
-    mcor_gauges alone;
+    CORE_GAUGES alone;
     CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, LINES, &alone));
     CORE_CHECK(alone.crossing_count > 80, "%lld crossings", (long long)alone.crossing_count);
     assert_true(alone.readings[2].outside && !alone.readings[0].outside);
@@ -205,9 +203,7 @@ static void test_same_bits(void** state)
       }
     }
     mcor_free_globals(&job.globals);
-    mcor_free_gauges(&alone);
   }
-  particle_set_free(&set);
 }
 
 static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
@@ -233,7 +229,7 @@ static void test_same_fluxes(void** state)
     { .shape = MCOR_SECTION_BOX, .points = points[2], .point_count = 2 },
     { .shape = MCOR_SECTION_TRIANGLES, .points = points[3], .point_count = 3 }
   };
-  particle_set set = make_sparse();
+  CORE_SET set = make_sparse();
   for (int kind = 0; kind < 4; ++kind)
   {
     gauge_job job = { .set = &set,
@@ -244,7 +240,7 @@ static void test_same_fluxes(void** state)
     mcor_array arrays[2];
     const mcor_input input = gauge_input(&job, &set, arrays);
     mcor_options options = gauge_options(&job);
-    mcor_fluxes alone;
+    CORE_FLUXES alone;
     CORE_OK(*state, mcor_flux(*state, &input, &options, sections, SECTIONS, &alone));
     assert_true(alone.readings[0].area > 20 && alone.readings[3].outside);
     CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
@@ -260,15 +256,13 @@ static void test_same_fluxes(void** state)
       }
     }
     mcor_free_globals(&job.globals);
-    mcor_free_fluxes(&alone);
   }
-  particle_set_free(&set);
 }
 
 /* Cubes so small that a box lacks the particles around it. */
 static void test_small_cubes(void** state)
 {
-  particle_set set = make_sparse();
+  CORE_SET set = make_sparse();
   mcor_gauge_line line = { .from = { 0, 0, -7 }, .to = { 0, 0, 7 } };
   gauge_job job = { .set = &set, .lines = &line };
   mcor_array arrays[2];
@@ -282,7 +276,6 @@ static void test_small_cubes(void** state)
   assert_int_equal(mcor_gauge(*state, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
   assert_non_null(strstr(mcor_last_error(*state), "Leave the cube size"));
   mcor_free_globals(&job.globals);
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -50,12 +50,11 @@ static void check_same(const char* name, const mcor_surface* s, const mcor_surfa
 /* Opposite sides are alike to the last bit, but for what is trimmed. */
 static void check_sides(const char* name, const mcor_surface* s, const mcor_options* options)
 {
-  mesh_report report = core_check_mesh(s);
+  CORE_REPORT report = core_check_mesh(s);
   const oracle_seam seam = oracle_check_seam(options, s->statistics.cube_edges, s, &report);
   CORE_CHECK(seam.joined > 20 && seam.open == 0 && seam.torn == 0 && seam.different == 0,
     "%s: %lld edges of borders are one, %lld are open, %lld torn, %lld points differ", name,
     (long long)seam.joined, (long long)seam.open, (long long)seam.torn, (long long)seam.different);
-  mesh_free_report(&report);
 }
 
 static void check_images(mcor_context* context, const char* name, const particle_set* set,
@@ -63,9 +62,9 @@ static void check_images(mcor_context* context, const char* name, const particle
 {
   mcor_input input = core_input(set);
   input.volume = computed ? (mcor_array){ 0 } : input.volume;
-  mcor_surface surface = core_extract(context, &input, options);
+  CORE_SURFACE surface = core_extract(context, &input, options);
   check_sides(name, &surface, options);
-  particle_set all = core_add_images(set, options->periodic);
+  CORE_SET all = core_add_images(set, options->periodic);
   mcor_input other = core_input(&all);
   other.volume = computed ? (mcor_array){ 0 } : other.volume;
   mcor_options plain = *options;
@@ -79,11 +78,8 @@ static void check_images(mcor_context* context, const char* name, const particle
     plain.box[2 * a] = open ? -INFINITY : options->periodic[2 * a];
     plain.box[2 * a + 1] = open ? INFINITY : options->periodic[2 * a + 1];
   }
-  mcor_surface expected = core_extract(context, &other, &plain);
+  CORE_SURFACE expected = core_extract(context, &other, &plain);
   check_same(name, &surface, &expected);
-  mcor_free_surface(&surface);
-  mcor_free_surface(&expected);
-  particle_set_free(&all);
 }
 
 static void images_count(void** state)
@@ -91,7 +87,7 @@ static void images_count(void** state)
   const double iso = 0.2, half = 0.5;
   const int cube[3] = { 8, 8, 8 }, slab[3] = { 12, 8, 10 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
-  particle_set set = core_make_period(cube, 5);
+  CORE_SET set = core_make_period(cube, 5);
   mcor_options options = core_period_options(&iso, around);
   check_images(*state, "all axes", &set, &options, 0);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE;
@@ -116,7 +112,6 @@ static void images_count(void** state)
     set.scalar[i] = sin(2 * PI * (x / 12 + set.position[3 * i + 1] / 8));
   }
   check_images(*state, "pairs", &set, &options, 0);
-  particle_set_free(&set);
 }
 
 /* Adaptive cubes: levels go around the period, too, of which the finest particles are at a side. With
@@ -128,7 +123,7 @@ static void adaptive_cubes(void** state)
   const double along[6] = { 0, 16, 0, 16, 0, 0 }, around[6] = { 0, 14, 0, 14, 0, 14 };
   for (int i = 0; i < 3; ++i)
   {
-    particle_set set = core_make_period(i < 2 ? length : cube, 5);
+    CORE_SET set = core_make_period(i < 2 ? length : cube, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
@@ -158,7 +153,6 @@ static void adaptive_cubes(void** state)
       options.capping = 0;
     }
     check_images(*state, i == 0 ? "adaptive" : i == 1 ? "free" : "fewer levels", &set, &options, 0);
-    particle_set_free(&set);
   }
 }
 
@@ -169,17 +163,17 @@ static void shifts(void** state)
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, step[3] = { 1.5, -3.5, 21 };
-  particle_set set = core_make_period(cube, 7);
+  CORE_SET set = core_make_period(cube, 7);
   mcor_options options = core_period_options(&iso, around);
   options.cube_size = 0.5;
   mcor_input input = core_input(&set);
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   assert_true(surface.statistics.cube_size == 0.5);
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     set.position[i] += step[i % 3];
   }
-  mcor_surface other = core_extract(*state, &input, &options);
+  CORE_SURFACE other = core_extract(*state, &input, &options);
   assert_int_equal(other.triangle_count, surface.triangle_count);
   for (int64_t i = 0; i < surface.point_count; ++i)
   {
@@ -200,9 +194,6 @@ static void shifts(void** state)
     }
     assert_true(find_point(&other, x) >= 0);
   }
-  mcor_free_surface(&surface);
-  mcor_free_surface(&other);
-  particle_set_free(&set);
 }
 
 /* Cubes fit periods of different lengths; what cannot be is said. */
@@ -227,13 +218,13 @@ static void lengths(void** state)
     { { 0, NAN, 0, 8, 0, 8 }, { 0 }, MCOR_INVALID_ARGUMENT, "along x" } };
   const double iso = 0.2;
   const int cube[3] = { 8, 8, 8 };
-  particle_set set = core_make_period(cube, 5);
+  CORE_SET set = core_make_period(cube, 5);
   mcor_input input = core_input(&set);
   input.smoothing_length = (mcor_array){ .constant = 1.3 };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     const mcor_options options = core_period_options(&iso, cases[i].period);
-    mcor_surface surface = { 0 };
+    CORE_SURFACE surface = { 0 };
     const mcor_status status = mcor_extract(*state, &input, &options, &surface);
     assert_int_equal(status, cases[i].status);
     if (cases[i].words)
@@ -250,9 +241,7 @@ static void lengths(void** state)
       assert_true(
         period == 0 || fabs((double)surface.statistics.lattice_cells[a] * edge[a] - period) < 1e-9);
     }
-    mcor_free_surface(&surface);
   }
-  particle_set_free(&set);
 }
 
 /* Adaptive cubes with an edge for each axis: closed but for the sides, where all points have partners, as exact
@@ -264,7 +253,7 @@ static void adaptive_unequal(void** state)
   for (int i = 0; i < 3; ++i)
   {
     double around[6] = { 0, 16, 0, 16, 0, 16 };
-    particle_set set = core_make_period(length, 5);
+    CORE_SET set = core_make_period(length, 5);
     for (int64_t p = 0; p < set.count; ++p)
     {
       const double* x = set.position + 3 * p;
@@ -281,7 +270,7 @@ static void adaptive_unequal(void** state)
     options.field = i == 1 ? MCOR_WEIGHT_SUM : MCOR_SHEPARD;
     options.precision = i == 2 ? MCOR_FLOAT64 : MCOR_FLOAT32;
     const mcor_input input = core_input(&set);
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     const double* edge = surface.statistics.cube_edges;
     assert_true(edge[0] != edge[1] && (i > 0 || edge[1] != edge[2]));
     assert_true(surface.statistics.highest_level >= 1);
@@ -293,12 +282,9 @@ static void adaptive_unequal(void** state)
       surface.statistics.residual_max < 1e-5, "residual %g", surface.statistics.residual_max);
     check_sides("adaptive, unequal", &surface, &options);
     options.level_limit = 0;
-    mcor_surface uniform = core_extract(*state, &input, &options);
+    CORE_SURFACE uniform = core_extract(*state, &input, &options);
     const double area = surface.statistics.area, expected = uniform.statistics.area;
     CORE_CHECK(fabs(area / expected - 1) < 0.02, "area %g, expected %g", area, expected);
-    mcor_free_surface(&uniform);
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -307,17 +293,15 @@ static void rounded_length(void** state)
 {
   static const double around[6] = { 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16, 0, 0.1 * 3 * 16 };
   const double iso = 0.5;
-  particle_set set = core_make_random(60, 4, 0.3, 0.3, 4);
+  CORE_SET set = core_make_random(60, 4, 0.3, 0.3, 4);
   const mcor_input input = core_input(&set);
   mcor_options options = core_period_options(&iso, around);
   assert_true(around[1] / 0.1 > 48);
   options.field = MCOR_WEIGHT_SUM;
   options.cube_size = 0.1;
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   CORE_CHECK(
     fabs(surface.statistics.cube_size - 0.1) < 1e-9, "cube size %g", surface.statistics.cube_size);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Sides of very many nodes: caps take memory and time for what particles reach of them. What would take all
@@ -325,11 +309,11 @@ static void rounded_length(void** state)
 static void large_sides(void** state)
 {
   const double iso = 0.5, half = 0.5;
-  particle_set set = core_make_random(200, 1, 0.05, 0.05, 9);
+  CORE_SET set = core_make_random(200, 1, 0.05, 0.05, 9);
   mcor_input input = core_input(&set);
   const double around[6] = { -0.5, 0.5, -0.5, 0.5, -0.5, 0.5 };
   mcor_options options = core_period_options(&half, around);
-  mcor_surface surface;
+  CORE_SURFACE surface;
   options.field = MCOR_WEIGHT_SUM;
   options.capping = 1;
   options.cube_size = 1e-4;
@@ -355,13 +339,10 @@ static void large_sides(void** state)
   surface = core_extract(*state, &input, &options);
   CORE_CHECK(surface.statistics.cap_triangles > 1000, "%lld triangles of caps",
     (long long)surface.statistics.cap_triangles);
-  mesh_report report;
+  CORE_REPORT report;
   mesh_check(
     surface.points, surface.point_count, surface.triangles, surface.triangle_count, &report);
   assert_int_equal(report.boundary_edges, 0);
-  mesh_free_report(&report);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(void)

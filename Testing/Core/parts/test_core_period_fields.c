@@ -50,9 +50,9 @@ static void check_points(
   mcor_array attribute, images_attribute, at = core_array(points[0], 3);
   mcor_input input = attribute_input(set, &attribute);
   input.particles_version = input.scalar_version = version;
-  mcor_samples samples, moved, expected;
+  CORE_SAMPLES samples, moved, expected;
   CORE_OK(context, mcor_probe(context, &input, options, &at, POINTS, &samples));
-  particle_set all = core_add_images(set, options->periodic);
+  CORE_SET all = core_add_images(set, options->periodic);
   const mcor_input other = attribute_input(&all, &images_attribute);
   mcor_options plain = *options;
   memset(plain.periodic, 0, sizeof plain.periodic);
@@ -76,10 +76,6 @@ static void check_points(
   check_equal(moved.weight_sum, samples.weight_sum, POINTS, halves ? 1e-10 : 0);
   check_equal(moved.values[0], samples.values[0], POINTS, halves ? 1e-10 : 0);
   check_equal(moved.gradients[0], samples.gradients[0], 3 * POINTS, halves ? 1e-10 : 0);
-  mcor_free_samples(&samples);
-  mcor_free_samples(&moved);
-  mcor_free_samples(&expected);
-  particle_set_free(&all);
 }
 
 static void points_see_images(void** state)
@@ -88,7 +84,7 @@ static void points_see_images(void** state)
   const double around[6] = { 0, 8, 0, 8, 0, 8 }, along[6] = { 0, 12, 0, 8, 0, 0 };
   for (int i = 0; i < 8; ++i)
   {
-    particle_set set = core_make_period(i % 2 ? slab : cube, 5);
+    CORE_SET set = core_make_period(i % 2 ? slab : cube, 5);
     mcor_options options = core_period_options(NULL, i % 2 ? along : around);
     options.iso_count = 0;
     options.precision = i % 4 < 2 ? MCOR_FLOAT32 : MCOR_FLOAT64;
@@ -98,7 +94,6 @@ static void points_see_images(void** state)
       core_stretch_period(&set, options.periodic);
     }
     check_points(*state, &set, &options, i == 1 ? 77 : 0);
-    particle_set_free(&set);
   }
 }
 
@@ -144,7 +139,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
 {
   const int cube[3] = { 8, 8, 8 };
   double around[6] = { 0, 8, 0, 8, 0, 8 };
-  particle_set set = core_make_period(cube, 8);
+  CORE_SET set = core_make_period(cube, 8);
   for (int64_t i = 0; i < 3 * set.count; ++i)
   {
     set.position[i] = i % 11 == 0 ? 0 : floor(set.position[i] * 1024) / 1024;
@@ -153,7 +148,7 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   {
     core_stretch_period(&set, around);
   }
-  particle_set all = core_add_images(&set, around);
+  CORE_SET all = core_add_images(&set, around);
   mcor_array attribute, images_attribute;
   const mcor_input input = attribute_input(&set, &attribute);
   const mcor_input other = attribute_input(&all, &images_attribute);
@@ -194,8 +189,6 @@ static void check_derivatives(void** state, int unequal, mcor_sph_kernel kernel)
   }
   mcor_free_derivatives(&found);
   mcor_free_derivatives(&expected);
-  particle_set_free(&all);
-  particle_set_free(&set);
 }
 
 static void derivatives_see_images(void** state)

@@ -117,7 +117,7 @@ static void measure_part(core_rank* rank, void* data)
   measure_job* job = data;
   mcor_array attributes[3];
   const int r = rank->number;
-  particle_set part = take_part(job->set, job->split, rank->world->count, r);
+  CORE_SET part = take_part(job->set, job->split, rank->world->count, r);
   if (r == job->failing)
   {
     part.position[7] = NAN;
@@ -125,7 +125,7 @@ static void measure_part(core_rank* rank, void* data)
   const mcor_input input = measure_input(&part, job->what, attributes);
   mcor_options options = measure_options(job->what);
   options.ranks = &rank->ranks;
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
   if (job->status[r] == MCOR_OK)
   {
@@ -136,8 +136,6 @@ static void measure_part(core_rank* rank, void* data)
   {
     core_leave(rank);
   }
-  mcor_free_context(context);
-  particle_set_free(&part);
 }
 
 static int same_globals(const mcor_globals* a, const mcor_globals* b)
@@ -199,7 +197,7 @@ static void global_values(void** state)
   const measure_case cases[] = { { "volumes", 0, 0, MCOR_SHEPARD },
     { "masses, estimate", 1, 1, MCOR_SHEPARD }, { "sum", 0, 1, MCOR_SUM },
     { "free surface", 1, 0, MCOR_WEIGHT_SUM } };
-  particle_set set = make_set();
+  CORE_SET set = make_set();
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     check_globals(*state, &set, &cases[i]);
@@ -213,13 +211,12 @@ static void global_values(void** state)
     set.position[3 * i + 2] = i % 2 ? 0 : set.position[3 * i + 2];
   }
   check_globals(*state, &set, &rough);
-  particle_set_free(&set);
 }
 
 static void not_finite_attributes(void** state)
 {
   const measure_case what = { "not finite", 0, 1, MCOR_WEIGHT_SUM };
-  particle_set set = make_set();
+  CORE_SET set = make_set();
   for (int64_t i = 0; i < set.count; ++i)
   {
     set.scalar[i] = i == 1 ? 1 : 2; /* where uneven, ranks have one value each, but not the same */
@@ -227,7 +224,6 @@ static void not_finite_attributes(void** state)
   check_globals(*state, &set, &what);
   set.scalar[1234] = INFINITY;
   check_globals(*state, &set, &what);
-  particle_set_free(&set);
 }
 
 /* One rank's fault is an error on all, and nobody waits. */
@@ -235,7 +231,7 @@ static void faults(void** state)
 {
   (void)state;
   const measure_case what = { "fault", 0, 0, MCOR_SHEPARD };
-  particle_set set = make_set();
+  CORE_SET set = make_set();
   for (int failing = 0; failing < 3; ++failing)
   {
     measure_job job = { .set = &set, .what = &what, .split = split_slabs, .failing = failing };
@@ -249,7 +245,7 @@ static void faults(void** state)
       assert_null(job.globals[r].components);
     }
   }
-  particle_set none = particle_set_make(0);
+  CORE_SET none = particle_set_make(0);
   measure_job job = { .set = &none, .what = &what, .split = split_slabs, .failing = -1 };
   core_world world;
   core_run_ranks(2, measure_part, &job, &world);
@@ -257,8 +253,6 @@ static void faults(void** state)
   {
     assert_int_equal(job.status[r], MCOR_INVALID_DATA);
   }
-  particle_set_free(&none);
-  particle_set_free(&set);
 }
 
 /* ---- Surfaces of parts ---- */
@@ -284,9 +278,9 @@ static void extract_part(core_rank* rank, void* data)
   memcpy(options.box, box, sizeof box);
   options.globals = &job->globals;
   options.ranks = &rank->ranks;
-  particle_set near = core_take_near(job->set, box, job->margin);
+  CORE_SET near = core_take_near(job->set, box, job->margin);
   const mcor_input input = core_input(&near);
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   job->status[r] = mcor_create_context(NULL, &context);
   if (job->status[r] == MCOR_OK)
   {
@@ -297,8 +291,6 @@ static void extract_part(core_rank* rank, void* data)
     print_message("rank %d: %s\n", r, mcor_last_error(context));
     core_leave(rank);
   }
-  mcor_free_context(context);
-  particle_set_free(&near);
 }
 
 /* A surface that winds. */
@@ -319,7 +311,7 @@ static void check_parts(mcor_context* context, const particle_set* set, const mc
   const mcor_input input = core_input(set);
   core_triangles whole = { 0 }, all = { 0 };
   parts_job job = { .set = set, .options = options, .sides = sides, .margin = margin };
-  mcor_surface surface = core_extract(context, &input, options);
+  CORE_SURFACE surface = core_extract(context, &input, options);
   CORE_OK(context, mcor_measure_globals(context, &input, options, &job.globals));
   core_add_surface(&whole, &input, &surface);
   core_world world;
@@ -338,7 +330,6 @@ static void check_parts(mcor_context* context, const particle_set* set, const mc
   assert_int_equal(sum.cells_used, surface.statistics.cells_used);
   free(whole.bytes);
   free(all.bytes);
-  mcor_free_surface(&surface);
   mcor_free_globals(&job.globals);
 }
 
@@ -347,7 +338,7 @@ static void parts_of_a_band(void** state)
   const double iso[2] = { 0.3, 2 };
   const double two[] = { 0.4 }, three[] = { -1.2, -1.0 },
                eight[] = { -1000, -7, -3, -0.05, 0.1, 4.4, 1000 };
-  particle_set set = make_band();
+  CORE_SET set = make_band();
   mcor_options options = core_options(iso);
   options.iso_count = 2;
   check_parts(*state, &set, &options, 1, NULL, 9, 1000);
@@ -357,14 +348,13 @@ static void parts_of_a_band(void** state)
   options.compact = 1;
   check_parts(*state, &set, &options, 3, three, 14, 1000);
   check_parts(*state, &set, &options, 8, eight, 14, 1000);
-  particle_set_free(&set);
 }
 
 /* Lines in the plane, on squares of one size and of several. */
 static void lines_of_parts(void** state)
 {
   const double iso = 0.3, two[] = { 0.4 }, three[] = { -3.1, 2.9 };
-  particle_set set = particle_set_make(30 * 30);
+  CORE_SET set = particle_set_make(30 * 30);
   uint64_t seed = 8;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -394,7 +384,6 @@ static void lines_of_parts(void** state)
     check_parts(*state, &set, &options, 2, two, 80, 100);
     check_parts(*state, &set, &options, 3, three, 80, 100);
   }
-  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

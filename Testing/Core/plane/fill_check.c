@@ -110,7 +110,7 @@ fill_report fill_check(const plane_field* field, const mcor_surface* s)
   {
     least = fmin(least, field->options->iso_values[i]);
   }
-  fill_edge* edges = fill_list(s, &count);
+  CORE_FREED fill_edge* edges = fill_list(s, &count);
   for (int64_t i = 0, next; i < count; i = next)
   {
     next = i + 1;
@@ -141,7 +141,6 @@ fill_report fill_check(const plane_field* field, const mcor_surface* s)
   report.enclosed = closed ? report.enclosed : 0;
   CORE_CHECK(fabs(s->statistics.area - report.area) < 1e-9 * report.area, "area %g, not %g",
     s->statistics.area, report.area);
-  free(edges);
   return report;
 }
 

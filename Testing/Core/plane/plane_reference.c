@@ -102,8 +102,7 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
   CORE_CHECK(
     surface->statistics.dimension == 2 && surface->triangle_count == 0 && surface->line_count > 0,
     "dimension %d", surface->statistics.dimension);
-  int* used = calloc((size_t)surface->point_count + 1, sizeof *used);
-  assert_non_null(used);
+  CORE_FREED int* used = oracle_allocate(surface->point_count + 1, sizeof *used);
   double wrong = 0, all = 0;
   int open = 0;
   for (int64_t l = 0; l < surface->line_count; ++l)
@@ -150,7 +149,6 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
       "normal %lld", (long long)p);
   }
   (void)iso;
-  free(used);
 }
 
 mcor_options plane_options(const double* iso)

@@ -373,8 +373,7 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
   plane_squares s = plane_create(field, iso, surface->statistics.cube_size);
   const double range = plane_range(field);
   int64_t crossed = 0, found = 0;
-  int64_t* of = malloc(((size_t)surface->point_count + 1) * sizeof *of);
-  assert_non_null(of);
+  int64_t* of = oracle_allocate((surface->point_count + 1), sizeof *of);
   assert_int_equal(surface->statistics.highest_level, s.top);
   for (int64_t p = 0; p < surface->point_count; ++p)
   {

@@ -42,13 +42,13 @@ static void test_free_surface(void** state)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      particle_set set = plane_make(12, 0.3, 1.4, axis, 2 * axis - 3, (uint64_t)(1 + k));
+      CORE_SET set = plane_make(12, 0.3, 1.4, axis, 2 * axis - 3, (uint64_t)(1 + k));
       mcor_options options = fill_options(&iso, 1);
       options.field = MCOR_WEIGHT_SUM;
       options.sph_kernel = kernels[k];
       options.precision = axis == 2 && k == 0 ? MCOR_FLOAT64 : MCOR_FLOAT32;
       options.preview = axis == 1 && k == 0;
-      mcor_surface surface;
+      CORE_SURFACE surface;
       const fill_report report = extract(*state, &set, &options, axis, &surface);
       const plane_field field = { &set, &options, axis, NULL };
       assert_int_equal(report.loose, 0);
@@ -56,8 +56,6 @@ static void test_free_surface(void** state)
       check_close(report.area, fill_sample(&field, iso, 100), 2e-2, "sampled");
       CORE_CHECK(report.inverted == 0, "inverted %g", report.inverted);
       options.preview ? (void)0 : fill_check_points(&field, &surface);
-      mcor_free_surface(&surface);
-      particle_set_free(&set);
     }
   }
 }
@@ -66,7 +64,7 @@ static void test_free_surface(void** state)
 static void test_bands(void** state)
 {
   const double isos[7] = { 3, -60, 5.5, -20, 3, 1e9, 0 };
-  particle_set set = plane_make(20, 0.2, 1.2, 1, 4, 3);
+  CORE_SET set = plane_make(20, 0.2, 1.2, 1, 4, 3);
   mcor_options options = fill_options(isos, 7);
   mcor_surface surface;
   const plane_field field = { &set, &options, 1, NULL };
@@ -105,7 +103,6 @@ static void test_bands(void** state)
   {
     check_close(bands[i], area[i] - area[i + 1], 1e-9, "a band");
   }
-  particle_set_free(&set);
 }
 
 /* Inside of the fluid only: by weight, by eigenvalue, at walls. */
@@ -114,7 +111,7 @@ static void test_trimming(void** state)
   const double isos[3] = { -1e3, -2.2, 3.1 };
   for (int mode = 0; mode < 6; ++mode)
   {
-    particle_set set = plane_make(16, 0.25, 1, 0, 2, (uint64_t)(4 + mode));
+    CORE_SET set = plane_make(16, 0.25, 1, 0, 2, (uint64_t)(4 + mode));
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.scalar[i] = set.position[3 * i + 1] + 0.3 * set.position[3 * i + 2];
@@ -127,7 +124,7 @@ static void test_trimming(void** state)
     options.wall_share = mode == 3 ? 0 : mode == 4 ? 0.5 : MCOR_WALL_SHARE_AUTO;
     options.outputs |= mode == 1 ? MCOR_OUT_BOUNDARY_EIGENVALUE : 0;
     options.node_threshold = 0.02;
-    mcor_surface surface;
+    CORE_SURFACE surface;
     const plane_field field = { &set, &options, 0, NULL };
     const fill_report report = extract(*state, &set, &options, 0, &surface);
     fill_check_points(&field, &surface);
@@ -147,8 +144,6 @@ static void test_trimming(void** state)
       check_close(report.area, fill_sample(&field, isos[0], 150), 2e-2, "sampled");
     }
     CORE_CHECK(mode < 4 || report.area < 16 * 12.5, "%g reaches into the wall", report.area);
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -160,8 +155,8 @@ static void test_random(void** state)
   for (int round = 0; round < 40; ++round)
   {
     const int axis = (int)(random_bits(&seed) % 3), count = 1 + (int)(random_bits(&seed) % 5);
-    particle_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45,
-      1 + 2 * random_unit(&seed), axis, 3 * random_unit(&seed), seed);
+    CORE_SET set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
+      axis, 3 * random_unit(&seed), seed);
     double isos[5];
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -183,13 +178,11 @@ static void test_random(void** state)
     options.topology = round & 2 ? MCOR_TOPOLOGY_FIELD : MCOR_TOPOLOGY_TABLE;
     options.boundary_detection =
       round % 7 == 3 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
-    mcor_surface surface;
+    CORE_SURFACE surface;
     const fill_report report = extract(*state, &set, &options, axis, &surface);
     assert_true(options.field != MCOR_WEIGHT_SUM || report.loose == 0);
     area += report.area;
     inverted += report.inverted;
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
   /* Where noise crosses two values more than once on one edge. */
   CORE_CHECK(inverted < 1e-4 * area, "%g of %g is inverted", inverted, area);
@@ -201,23 +194,22 @@ static void test_boxes(void** state)
   static const core_cut cuts[] = { { "4 boxes", { 0, 1, 1 }, { { 0 }, { 0.1 }, { -0.7 } } },
     { "thin ones", { 0, 2, 0 }, { { 0 }, { 1.1, 1.3 } } } };
   const double isos[2] = { -8, 2 };
-  particle_set set = plane_make(14, 0.3, 1.3, 0, 4, 9);
+  CORE_SET set = plane_make(14, 0.3, 1.3, 0, 4, 9);
   mcor_options options = fill_options(isos, 2);
   const mcor_input input = core_input(&set);
   core_ask_for_all(&options);
   core_check_these_cuts(*state, "filled", &input, &options, cuts, 2);
-  particle_set_free(&set);
 }
 
 /* One period is filled from side to side: with fluid everywhere, all of it. */
 static void test_period(void** state)
 {
   const double isos[2] = { -1e3, 2 };
-  particle_set set = plane_make(12, 0.2, 1.2, 1, 0.5, 2);
+  CORE_SET set = plane_make(12, 0.2, 1.2, 1, 0.5, 2);
   mcor_options options = fill_options(isos, 2);
   const double period[6] = { -6, 6, 0, 0, -6, 6 };
   memcpy(options.periodic, period, sizeof period);
-  mcor_surface surface;
+  CORE_SURFACE surface;
   const fill_report report = extract(*state, &set, &options, 1, &surface);
   check_close(report.area, 144, 1e-9, "a period");
   check_close(report.loose_length, 48, 1e-9, "its sides");
@@ -225,35 +217,29 @@ static void test_period(void** state)
   options.periodic[0] = options.periodic[1] = 0;
   const fill_report strip = extract(*state, &set, &options, 1, &surface);
   CORE_CHECK(fabs(strip.area - 144) < 8, "a strip of %g", strip.area);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Seeds, order of particles, what is kept, plane: the same bits. */
 static void test_bits(void** state)
 {
   const double isos[2] = { -3, 4 };
-  particle_set set = plane_make(12, 0.3, 1.5, 2, 2, 5);
-  int64_t* order = core_make_order(set.count, 6);
-  particle_set other = core_permute(&set, order);
+  CORE_SET set = plane_make(12, 0.3, 1.5, 2, 2, 5);
+  CORE_FREED int64_t* order = core_make_order(set.count, 6);
+  CORE_SET other = core_permute(&set, order);
   mcor_options options = fill_options(isos, 2);
   uint64_t hash[5];
   for (int i = 0; i < 5; ++i)
   {
     options.seeds = i == 1 ? MCOR_PAIRS : MCOR_COMPLETE;
     mcor_input input = i >= 3 ? core_input_to_keep(&set) : core_input(i == 2 ? &other : &set);
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     hash[i] = core_hash_bytes(
       core_hash(&surface), surface.band_value, (size_t)surface.triangle_count * sizeof(double));
-    mcor_free_surface(&surface);
   }
   for (int i = 1; i < 5; ++i)
   {
     CORE_CHECK(hash[i] == hash[0], "other bits: %d", i);
   }
-  free(order);
-  particle_set_free(&other);
-  particle_set_free(&set);
 }
 
 /* Attributes of nodes are those of a probe there. */
@@ -261,14 +247,13 @@ static void test_attributes(void** state)
 {
   mcor_context* context = *state;
   const double isos[2] = { -20, 1 };
-  particle_set set = plane_make(10, 0.3, 1.2, 0, 1, 8);
+  CORE_SET set = plane_make(10, 0.3, 1.2, 0, 1, 8);
   enum
   {
     ARRAYS = 5
   };
   mcor_array attributes[ARRAYS];
-  double* values = malloc((size_t)set.count * 3 * ARRAYS * sizeof *values);
-  assert_non_null(values);
+  CORE_FREED double* values = oracle_allocate(set.count * 3 * ARRAYS, sizeof *values);
   for (int64_t i = 0; i < set.count * 3 * ARRAYS; ++i)
   {
     values[i] = i < set.count * 3 ? 7 : sin((double)i);
@@ -282,8 +267,8 @@ static void test_attributes(void** state)
   input.attribute_count = ARRAYS;
   mcor_options options = fill_options(isos, 2);
   options.outputs |= MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_GRADIENTS;
-  mcor_surface surface = core_extract(context, &input, &options);
-  mcor_samples samples;
+  CORE_SURFACE surface = core_extract(context, &input, &options);
+  CORE_SAMPLES samples;
   const mcor_array points = core_array(surface.points, 3);
   CORE_OK(context, mcor_probe(context, &input, &options, &points, surface.point_count, &samples));
   for (int64_t p = 0; p < surface.point_count; ++p)
@@ -297,10 +282,6 @@ static void test_attributes(void** state)
         (long long)p, at, samples.values[i / 3][3 * p + i % 3]);
     }
   }
-  mcor_free_samples(&samples);
-  mcor_free_surface(&surface);
-  free(values);
-  particle_set_free(&set);
 }
 
 static void expect_error(
@@ -317,13 +298,13 @@ static void expect_error(
 static void test_what_is_not_filled(void** state)
 {
   const double iso = -1;
-  particle_set set = plane_make(8, 0.2, 1, 2, 0, 1);
+  CORE_SET set = plane_make(8, 0.2, 1, 2, 0, 1);
   mcor_options options = fill_options(&iso, 1);
   options.field = MCOR_SUM;
   options.node_threshold = 0;
   expect_error(*state, &set, &options, "has no end");
   options.node_threshold = 0.1;
-  mcor_surface surface;
+  CORE_SURFACE surface;
   extract(*state, &set, &options, 2, &surface);
   mcor_free_surface(&surface);
   options.dimension = 3;
@@ -351,8 +332,6 @@ static void test_what_is_not_filled(void** state)
   options.filled = 0;
   surface = core_extract(*state, &input, &options);
   assert_true(surface.band_value == NULL && surface.triangles == NULL && surface.iso_value == NULL);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

@@ -35,7 +35,7 @@ static void test_kernels_integrate_to_1(void** state)
 static void test_weight_is_1_inside(void** state)
 {
   mcor_context* context = *state;
-  particle_set set = plane_make(20, 0, 1, 1, 3, 1);
+  CORE_SET set = plane_make(20, 0, 1, 1, 3, 1);
   const double points[5][3] = { { 0, 3, 0 }, { 0.3, 3, -1.2 }, { 2.25, 3, 1.5 }, { -3.1, 3, 0.77 },
     { 0, 3.5, 0 } };
   const mcor_array at = core_array(points[0], 3);
@@ -45,7 +45,7 @@ static void test_weight_is_1_inside(void** state)
     {
       mcor_input input = core_input(&set);
       mcor_options options = core_options(NULL);
-      mcor_samples samples;
+      CORE_SAMPLES samples;
       options.iso_count = 0;
       options.sph_kernel = (mcor_sph_kernel)k;
       options.h_scale = computed == 2 ? 0.9 : 1;
@@ -62,10 +62,8 @@ static void test_weight_is_1_inside(void** state)
           "%s, %d: weight %g", mcor_sph_kernel_name((mcor_sph_kernel)k), computed, w);
       }
       assert_int_equal(samples.statistics.dimension, 2);
-      mcor_free_samples(&samples);
     }
   }
-  particle_set_free(&set);
 }
 
 /* -0 is 0, wherever the particles with it are in the order. */
@@ -73,11 +71,11 @@ static void test_minus_zero(void** state)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
-    particle_set set = plane_make(10, 0.1, 1, axis, 0, 7);
+    CORE_SET set = plane_make(10, 0.1, 1, axis, 0, 7);
     const double iso = 0;
     const mcor_input input = core_input(&set);
     const mcor_options options = plane_options(&iso);
-    mcor_surface zero = core_extract(*state, &input, &options);
+    CORE_SURFACE zero = core_extract(*state, &input, &options);
     assert_true(zero.line_count > 0);
     for (int which = 0; which < 2; ++which)
     {
@@ -85,12 +83,9 @@ static void test_minus_zero(void** state)
       {
         set.position[3 * i + axis] = i % 2 == which ? -0.0 : 0.0;
       }
-      mcor_surface other = core_extract(*state, &input, &options);
+      CORE_SURFACE other = core_extract(*state, &input, &options);
       assert_int_equal(core_hash(&other), core_hash(&zero));
-      mcor_free_surface(&other);
     }
-    mcor_free_surface(&zero);
-    particle_set_free(&set);
   }
 }
 
@@ -105,7 +100,7 @@ static void expect_error(
 
 static void test_what_is_no_plane(void** state)
 {
-  particle_set set = plane_make(10, 0.1, 1, 2, 1, 7);
+  CORE_SET set = plane_make(10, 0.1, 1, 2, 1, 7);
   const double iso = 0;
   mcor_options options = plane_options(&iso);
   mcor_input input = core_input(&set);
@@ -134,13 +129,12 @@ static void test_what_is_no_plane(void** state)
   mcor_free_surface(&surface);
   set.solid[1] = 0;
   expect_error(*state, &input, &options, "particle 1");
-  particle_set_free(&set);
 }
 
 /* Sides are those of the caller's axes; a flat box around the particles is one. */
 static void test_sentences_of_sides(void** state)
 {
-  particle_set set = plane_make(10, 0.1, 1, 1, 1, 7);
+  CORE_SET set = plane_make(10, 0.1, 1, 1, 1, 7);
   const double iso = 0;
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(&iso);
@@ -150,29 +144,26 @@ static void test_sentences_of_sides(void** state)
   options.periodic[5] = 1;
   expect_error(*state, &input, &options, "period along z");
   options.periodic[5] = 0;
-  mcor_surface whole = core_extract(*state, &input, &options);
+  CORE_SURFACE whole = core_extract(*state, &input, &options);
   const double box[6] = { -9, 9, 1, 1, 9, -9 };
   memcpy(options.box, box, sizeof box);
   expect_error(*state, &input, &options, "box along z");
   options.box[4] = -9;
   options.box[5] = 9;
-  mcor_surface flat = core_extract(*state, &input, &options);
+  CORE_SURFACE flat = core_extract(*state, &input, &options);
   assert_true(whole.line_count > 0);
   assert_int_equal(core_hash(&flat), core_hash(&whole));
   mcor_free_surface(&flat);
   options.box[2] = options.box[3] = 0.5; /* beside them */
   flat = core_extract(*state, &input, &options);
   assert_int_equal(flat.line_count, 0);
-  mcor_free_surface(&flat);
-  mcor_free_surface(&whole);
-  particle_set_free(&set);
 }
 
 /* Walls in another plane than the fluid, also where nobody says that there are two dimensions; but not if they
  * play no part, or are in no plane. */
 static void test_walls_in_another_plane(void** state)
 {
-  particle_set set = plane_make(10, 0.1, 1, 1, -2, 7);
+  CORE_SET set = plane_make(10, 0.1, 1, 1, -2, 7);
   const double iso = 0;
   mcor_options options = plane_options(&iso);
   for (int64_t i = 0; i < 20; ++i)
@@ -197,10 +188,8 @@ static void test_walls_in_another_plane(void** state)
   set.position[4] = 0.6;
   expect_error(*state, &input, &options, "solid particle 0");
   options.dimension = 0;
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.statistics.dimension, 3);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Exact for what is linear; the reading of a gauge is where the weight is 0.5. */
@@ -209,9 +198,8 @@ static void test_derivatives_and_gauges(void** state)
   mcor_context* context = *state;
   for (int axis = 0; axis < 3; ++axis)
   {
-    particle_set set = plane_make(14, 0.2, 1.2, axis, 5, 3);
-    double* velocity = malloc((size_t)set.count * 3 * sizeof *velocity);
-    assert_non_null(velocity);
+    CORE_SET set = plane_make(14, 0.2, 1.2, axis, 5, 3);
+    CORE_FREED double* velocity = oracle_allocate(set.count * 3, sizeof *velocity);
     for (int64_t i = 0; i < set.count; ++i)
     {
       const double u = set.position[3 * i + (axis + 1) % 3],
@@ -261,8 +249,6 @@ static void test_derivatives_and_gauges(void** state)
     assert_int_equal(
       mcor_gauge(context, &input, &options, &line, 1, &gauges), MCOR_INVALID_ARGUMENT);
     assert_non_null(strstr(mcor_last_error(context), "leaves the plane"));
-    free(velocity);
-    particle_set_free(&set);
   }
 }
 
@@ -270,7 +256,7 @@ static void test_derivatives_and_gauges(void** state)
  * value. */
 static void test_pairs_and_reuse(void** state)
 {
-  particle_set set = plane_make(20, 0.2, 1, 2, -1, 4);
+  CORE_SET set = plane_make(20, 0.2, 1, 2, -1, 4);
   const double isos[2] = { -20, 2 };
   for (int64_t p = 0; p < set.count; ++p)
   {
@@ -286,25 +272,23 @@ static void test_pairs_and_reuse(void** state)
       options.level_limit = i < 2 ? 0 : MCOR_CUBE_LEVELS - 1;
       options.seeds = k == 1 && i < 2 ? MCOR_PAIRS : MCOR_COMPLETE;
       mcor_input fresh = core_input(&set);
-      mcor_surface surface = core_extract(*state, k == 2 ? &fresh : &input, &options);
+      CORE_SURFACE surface = core_extract(*state, k == 2 ? &fresh : &input, &options);
       assert_int_equal(surface.line_count, 1);
       hash[k] = core_hash_bytes(
         CORE_HASH_OF_NOTHING, surface.points, (size_t)surface.point_count * 3 * sizeof(double));
-      mcor_free_surface(&surface);
     }
     assert_int_equal(hash[0], hash[1]);
     assert_int_equal(hash[0], hash[2]);
   }
-  particle_set_free(&set);
 }
 
 /* Bits do not depend on the order of the particles, nor, but for what is turned, on the plane. */
 static void test_bits(void** state)
 {
   const double iso = 0.4;
-  particle_set set = plane_make(12, 0.3, 3, 1, 2, 5);
-  int64_t* order = core_make_order(set.count, 6);
-  particle_set other = core_permute(&set, order);
+  CORE_SET set = plane_make(12, 0.3, 3, 1, 2, 5);
+  CORE_FREED int64_t* order = core_make_order(set.count, 6);
+  CORE_SET other = core_permute(&set, order);
   mcor_options options = plane_options(&iso);
   options.level_limit = 1;
   options.vertex_threshold = 0.5;
@@ -319,7 +303,7 @@ static void test_bits(void** state)
       set.position[3 * p + 1] = y;
       set.position[3 * p + 2] = -3;
     }
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     for (int64_t p = 0; p < surface.point_count && i == 2; ++p)
     {
       const double x = surface.points[3 * p], y = surface.points[3 * p + 1];
@@ -331,13 +315,9 @@ static void test_bits(void** state)
       CORE_HASH_OF_NOTHING, surface.points, (size_t)surface.point_count * 3 * sizeof(double));
     hash[i] = core_hash_bytes(
       hash[i], surface.line_points, (size_t)surface.line_point_count * sizeof(int32_t));
-    mcor_free_surface(&surface);
   }
   assert_int_equal(hash[0], hash[1]);
   assert_int_equal(hash[0], hash[2]);
-  free(order);
-  particle_set_free(&other);
-  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

@@ -103,10 +103,10 @@ static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
   mcor_options options = c->options;
   options.level_limit = 0;
   options.capping = 0;
-  mcor_surface open = core_extract(context, &input, &options);
+  CORE_SURFACE open = core_extract(context, &input, &options);
   options.filled = 1;
-  mcor_surface filled = core_extract(context, &input, &options);
-  mcor_surface capped = core_extract(context, &input, &c->options);
+  CORE_SURFACE filled = core_extract(context, &input, &options);
+  CORE_SURFACE capped = core_extract(context, &input, &c->options);
   double expected[4] = { 0 }, length[4] = { 0 }, all = 0;
   caps_place(c, &open);
   caps_filled(c, &filled, expected);
@@ -144,9 +144,6 @@ static double caps_check(mcor_context* context, caps_case* c, int is_trimmed)
       fabs(capped.statistics.area - filled.statistics.area) < 1e-6 * filled.statistics.area,
       "area %.9g, not %.9g", capped.statistics.area, filled.statistics.area);
   }
-  mcor_free_surface(&open);
-  mcor_free_surface(&filled);
-  mcor_free_surface(&capped);
   return all;
 }
 
@@ -168,7 +165,7 @@ static void test_sides(void** state)
     const int axis = round % 3, where = round / 3 % 4;
     const mcor_field field = (mcor_field)(round / 12);
     const double iso = field == MCOR_SUM ? 0.35 : field == MCOR_SHEPARD ? 0.1 : 0.9;
-    particle_set set = plane_make(12, 0.45, 1.4, axis, 3, (uint64_t)(round + 1));
+    CORE_SET set = plane_make(12, 0.45, 1.4, axis, 3, (uint64_t)(round + 1));
     uint64_t seed = (uint64_t)round + 77;
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -195,7 +192,6 @@ static void test_sides(void** state)
     /* In a whole period there is fluid everywhere; else the edge of the fluid ends lines of a scalar. */
     const int ends = field != MCOR_WEIGHT_SUM && (where == 1 || where == 3);
     all += caps_check(*state, &c, ends);
-    particle_set_free(&set);
   }
   CORE_CHECK(all > 36 * 5, "caps of %g", all);
 }
@@ -207,7 +203,7 @@ static void test_trimmed_sides(void** state)
   for (int mode = 0; mode < 9; ++mode)
   {
     const int axis = mode % 3;
-    particle_set set = plane_make(14, 0.25, 1.2, axis, -2, (uint64_t)(4 + mode));
+    CORE_SET set = plane_make(14, 0.25, 1.2, axis, -2, (uint64_t)(4 + mode));
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.solid[i] = set.position[3 * i + (axis + 2) % 3] < -4;
@@ -225,7 +221,6 @@ static void test_trimmed_sides(void** state)
     c.options.box[2 * axis + 1] = 3;
     const double all = caps_check(*state, &c, 1);
     CORE_CHECK(all > 18 && all < 32, "mode %d: caps of %g", mode, all);
-    particle_set_free(&set);
   }
 }
 
@@ -233,7 +228,7 @@ static void test_trimmed_sides(void** state)
 static void test_values_and_order(void** state)
 {
   const double isos[2] = { 0.9, 0.6 };
-  particle_set set = plane_make(12, 0.45, 1.3, 2, 0, 6);
+  CORE_SET set = plane_make(12, 0.45, 1.3, 2, 0, 6);
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(isos);
   options.field = MCOR_WEIGHT_SUM;
@@ -245,9 +240,8 @@ static void test_values_and_order(void** state)
   for (int i = 0; i < 2; ++i)
   {
     options.iso_values = isos + i;
-    mcor_surface one = core_extract(*state, &input, &options);
+    CORE_SURFACE one = core_extract(*state, &input, &options);
     area[i] = one.statistics.area;
-    mcor_free_surface(&one);
   }
   options.iso_values = isos;
   options.iso_count = 2;
@@ -255,26 +249,21 @@ static void test_values_and_order(void** state)
   sum = both.statistics.area;
   CORE_CHECK(fabs(sum - area[0] - area[1]) < 1e-9 * sum, "%g, not %g", sum, area[0] + area[1]);
   mcor_free_surface(&both);
-  int64_t* order = core_make_order(set.count, 6);
-  particle_set other = core_permute(&set, order);
+  CORE_FREED int64_t* order = core_make_order(set.count, 6);
+  CORE_SET other = core_permute(&set, order);
   const mcor_input permuted = core_input(&other);
-  mcor_surface a = core_extract(*state, &input, &options),
+  CORE_SURFACE a = core_extract(*state, &input, &options),
                b = core_extract(*state, &permuted, &options);
   assert_int_equal(core_hash(&a), core_hash(&b));
-  mcor_free_surface(&a);
-  mcor_free_surface(&b);
-  free(order);
-  particle_set_free(&other);
-  particle_set_free(&set);
 }
 
 static void test_what_is_not_capped(void** state)
 {
   const double iso = 0.5;
-  particle_set set = plane_make(8, 0.2, 1, 1, 0, 1);
+  CORE_SET set = plane_make(8, 0.2, 1, 1, 0, 1);
   const mcor_input input = core_input(&set);
   mcor_options options = plane_options(&iso);
-  mcor_surface surface;
+  CORE_SURFACE surface;
   options.capping = MCOR_CAP_PERIOD;
   options.filled = 1;
   assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_INVALID_ARGUMENT);
@@ -290,8 +279,6 @@ static void test_what_is_not_capped(void** state)
   options.box[3] = 1;
   surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.line_count, 0);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(int argc, char** argv)

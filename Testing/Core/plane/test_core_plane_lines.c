@@ -14,10 +14,9 @@ static int64_t compare(
   mcor_context* context, const mcor_input* input, const plane_field* field, int closed)
 {
   const double iso = field->options->iso_values[0];
-  mcor_surface surface = core_extract(context, input, field->options);
+  CORE_SURFACE surface = core_extract(context, input, field->options);
   const int64_t edges = plane_compare(field, iso, &surface);
   plane_check_lines(field, iso, &surface, closed);
-  mcor_free_surface(&surface);
   return edges;
 }
 
@@ -61,8 +60,8 @@ static void test_random_lines(void** state)
   for (int round = 0; round < 60; ++round)
   {
     const int axis = (int)(random_bits(&seed) % 3);
-    particle_set set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45,
-      1 + 2 * random_unit(&seed), axis, 3 * random_unit(&seed), seed);
+    CORE_SET set = plane_make(10 + (int)(random_bits(&seed) % 6), 0.45, 1 + 2 * random_unit(&seed),
+      axis, 3 * random_unit(&seed), seed);
     for (int64_t i = 0; i < set.count; ++i)
     {
       set.scalar[i] = 2 * random_unit(&seed) - 1;
@@ -87,7 +86,7 @@ static void test_random_lines(void** state)
       round % 5 == 3 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     options.wall_share = shares[round / 4 % 3];
     mcor_input input = core_input(&set);
-    particle_set fluid = copy_fluid(&set);
+    CORE_SET fluid = copy_fluid(&set);
     if (round % 7 == 2)
     {
       compute_volumes(&set, options.sph_kernel);
@@ -101,8 +100,6 @@ static void test_random_lines(void** state)
       set.has_solids && (input.ignore_solids || (options.field == MCOR_WEIGHT_SUM && !ends));
     const plane_field field = { fluid_alone ? &fluid : &set, &options, axis, NULL };
     compare(*state, &input, &field, options.field == MCOR_WEIGHT_SUM && !ends);
-    particle_set_free(&fluid);
-    particle_set_free(&set);
   }
 }
 
@@ -110,7 +107,7 @@ static void test_random_lines(void** state)
 static void test_estimated_length(void** state)
 {
   const double iso = 0.5;
-  particle_set set = plane_make(16, 0.1, 1, 1, 2, 8);
+  CORE_SET set = plane_make(16, 0.1, 1, 1, 2, 8);
   mcor_options options = plane_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   mcor_input input = core_input(&set);
@@ -126,7 +123,6 @@ static void test_estimated_length(void** state)
   }
   const plane_field field = { &set, &options, 1, NULL };
   CORE_CHECK(compare(*state, &input, &field, 1) > 60, "few edges");
-  particle_set_free(&set);
 }
 
 /* The set and its images around it. */
@@ -157,7 +153,7 @@ static void test_adaptive_lines(void** state)
   for (int round = 0; round < 30; ++round)
   {
     const int axis = round % 3, mixed = round % 2;
-    particle_set set = particle_set_make(220);
+    CORE_SET set = particle_set_make(220);
     for (int64_t i = 0; i < set.count; ++i)
     {
       double* x = set.position + 3 * i;
@@ -183,7 +179,7 @@ static void test_adaptive_lines(void** state)
     CORE_CHECK(compare_set(*state, &set, &options, axis, options.field == MCOR_WEIGHT_SUM) > 20,
       "round %d: few edges", round);
     mcor_input input = core_input(&set);
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     int levels = 0;
     for (int l = 0; l < MCOR_CUBE_LEVELS; ++l)
     {
@@ -191,8 +187,6 @@ static void test_adaptive_lines(void** state)
     }
     CORE_CHECK(levels > 1, "round %d: %d levels", round, levels);
     deep += levels > 2;
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
   assert_true(deep > 10);
 }
@@ -207,7 +201,7 @@ static void test_periods(void** state)
   for (int round = 0; round < 18; ++round)
   {
     const int axis = round % 3, both = round % 2, boxed = round % 4 == 3, uniform = round % 5 == 4;
-    particle_set set = particle_set_make(120);
+    CORE_SET set = particle_set_make(120);
     for (int64_t i = 0; i < set.count; ++i)
     {
       double* x = set.position + 3 * i;
@@ -246,7 +240,7 @@ static void test_periods(void** state)
       options.box[2 * axis] = -INFINITY;
       options.box[2 * axis + 1] = INFINITY;
     }
-    particle_set all = with_images(&set, axis, period);
+    CORE_SET all = with_images(&set, axis, period);
     const plane_field field = { &all, &options, axis, region };
     if (!both)
     {
@@ -258,13 +252,10 @@ static void test_periods(void** state)
     }
     const mcor_input input = core_input(&set);
     CORE_CHECK(compare(*state, &input, &field, 0) > 20, "round %d: few edges", round);
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     CORE_CHECK(surface.statistics.highest_level == (uniform ? 0 : 2), "round %d: highest level %d",
       round, surface.statistics.highest_level);
     several += surface.statistics.cells_of_level[0] > 2 && surface.statistics.cells_of_level[1] > 2;
-    mcor_free_surface(&surface);
-    particle_set_free(&all);
-    particle_set_free(&set);
   }
   assert_true(several > 10);
 }
@@ -275,7 +266,7 @@ static void test_points_and_rows(void** state)
   const double iso = 0.1;
   for (int count = 1; count < 12; count += 10)
   {
-    particle_set set = particle_set_make(count);
+    CORE_SET set = particle_set_make(count);
     for (int i = 0; i < count; ++i)
     {
       set.position[3 * i] = i;
@@ -290,7 +281,6 @@ static void test_points_and_rows(void** state)
     mcor_free_surface(&surface);
     options.dimension = 2;
     compare_set(*state, &set, &options, 2, 1);
-    particle_set_free(&set);
   }
 }
 

@@ -27,8 +27,7 @@ static const char source[] =
 static void write_reals(
   mcor_context* context, mcor_buffer* buffer, const double* values, size_t count)
 {
-  float* single = malloc(count * sizeof(float));
-  assert_non_null(single);
+  CORE_FREED float* single = oracle_allocate((int64_t)count, sizeof(float));
   for (size_t i = 0; i < count; ++i)
   {
     single[i] = (float)values[i];
@@ -36,7 +35,6 @@ static void write_reals(
   const size_t real = context->cl.real_size;
   const void* data = real == sizeof(float) ? (const void*)single : (const void*)values;
   CORE_OK(context, mcor_write(context, buffer, data, count * real));
-  free(single);
 }
 
 /* Reads [count][4] reals, releases the buffer. */
@@ -125,7 +123,7 @@ static void test_eigenvalues(void** state)
 static void check_surface(
   mcor_context* context, mcor_sph_kernel kernel, mcor_type precision, mcor_field field_kind)
 {
-  particle_set set = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   /* Each variant is a program to build. */
   set.has_solids = kernel == MCOR_CUBIC_SPLINE && field_kind == MCOR_SHEPARD;
   for (int64_t j = 0; j < set.count; ++j)
@@ -134,7 +132,7 @@ static void check_surface(
   }
   const double iso = 0.5;
   const mcor_input input = core_input(&set);
-  oracle_field field = oracle_make_field(&set, (oracle_kernel)kernel, ORACLE_WEIGHT, 1);
+  CORE_FIELD field = oracle_make_field(&set, (oracle_kernel)kernel, ORACLE_WEIGHT, 1);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE | MCOR_OUT_BOUNDARY_FLAG;
   options.sph_kernel = kernel;
@@ -145,7 +143,7 @@ static void check_surface(
   {
     options.boundary_detection =
       by_eigenvalue ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
-    mcor_surface surface = core_extract(context, &input, &options);
+    CORE_SURFACE surface = core_extract(context, &input, &options);
     points[by_eigenvalue] = surface.point_count;
     for (int64_t i = 0; i < surface.point_count; ++i)
     {
@@ -159,7 +157,6 @@ static void check_surface(
         "kernel %d: eigenvalue %g on the boundary", (int)kernel, e[0]);
       ++of_flag[flag];
     }
-    mcor_free_surface(&surface);
   }
   if (field_kind == MCOR_WEIGHT_SUM)
   {
@@ -171,8 +168,6 @@ static void check_surface(
       "kernel %d: %lld on the boundary, %lld beside it", (int)kernel, (long long)of_flag[1],
       (long long)of_flag[2]);
   }
-  oracle_free_field(&field);
-  particle_set_free(&set);
 }
 
 static void test_surfaces(void** state)

@@ -40,8 +40,7 @@ static void find_planes(const mcor_options* options, const mcor_surface* s, doub
 static void check_points(const particle_set* all, const mcor_options* options,
   const mcor_surface* open, const mcor_surface* closed, const double planes[6])
 {
-  oracle_field field =
-    oracle_make_field(all, (oracle_kernel)options->sph_kernel, ORACLE_SHEPARD, 1);
+  CORE_FIELD field = oracle_make_field(all, (oracle_kernel)options->sph_kernel, ORACLE_SHEPARD, 1);
   for (int64_t p = open->point_count; p < closed->point_count; ++p)
   {
     const double* x = closed->points + 3 * p;
@@ -60,7 +59,6 @@ static void check_points(const particle_set* all, const mcor_options* options,
         (options->field == MCOR_WEIGHT_SUM || fabs(closed->attributes[0][p] - sample.value) < 1e-5),
       "point %lld: weight %g, not %g", (long long)p, closed->weight_sum[p], sample.weight);
   }
-  oracle_free_field(&field);
 }
 
 /* Along each axis as many triangles, and as large ones, face up as down: caps of a period are alike. */
@@ -100,7 +98,7 @@ static int ends_at(const mcor_surface* s, int32_t p)
 /* Edges are open only where trimming, or a lack of weight, ends the surface. */
 static void check_open_edges(const mcor_surface* s, int is_closed)
 {
-  mesh_report report = core_check_mesh(s);
+  CORE_REPORT report = core_check_mesh(s);
   for (int64_t i = 0; i < report.side_count; ++i)
   {
     const mesh_edge* side = report.side + i;
@@ -111,7 +109,6 @@ static void check_open_edges(const mcor_surface* s, int is_closed)
   CORE_CHECK(
     !is_closed || (s->statistics.is_closed == (report.edges > 0) && report.boundary_edges == 0),
     "%lld of %lld edges are open", (long long)report.boundary_edges, (long long)report.edges);
-  mesh_free_report(&report);
 }
 
 /* is_closed: nothing is trimmed. */
@@ -126,10 +123,10 @@ static void check_caps(
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_WEIGHT_SUM;
   const int capping = options.capping;
   options.capping = MCOR_CAP_NONE;
-  mcor_surface open = core_extract(context, &input, &options);
+  CORE_SURFACE open = core_extract(context, &input, &options);
   options.capping = capping;
-  mcor_surface closed = core_extract(context, &input, &options);
-  particle_set all = core_add_images(set, options.periodic);
+  CORE_SURFACE closed = core_extract(context, &input, &options);
+  CORE_SET all = core_add_images(set, options.periodic);
   find_planes(&options, &closed, planes);
   cap_check_prefix(&open, &closed);
   check_points(&all, &options, &open, &closed, planes);
@@ -146,9 +143,6 @@ static void check_caps(
   {
     check_alike(&open, &closed);
   }
-  mcor_free_surface(&open);
-  mcor_free_surface(&closed);
-  particle_set_free(&all);
 }
 
 /* Cubes of one edge, and with an edge for each axis. */
@@ -174,7 +168,7 @@ static void test_periods(void** state)
   {
     const cap_case* at = cases + i / 2;
     double period[6] = { 0, 12, 0, 10, 0, 10 };
-    particle_set set = core_make_period(length, 3);
+    CORE_SET set = core_make_period(length, 3);
     i % 2 ? core_stretch_period(&set, period) : (void)0;
     for (int side = 0; side < 6; ++side)
     {
@@ -191,7 +185,6 @@ static void test_periods(void** state)
       at->eigenvalue > 0 ? MCOR_BOUNDARY_EIGENVALUE : MCOR_BOUNDARY_WEIGHT_SUM;
     options.capping = MCOR_CAP_PERIOD;
     check_caps(*state, &set, options, at->open == 0 || at->field == MCOR_WEIGHT_SUM);
-    particle_set_free(&set);
   }
 }
 
@@ -203,7 +196,7 @@ static void test_boxes(void** state)
   static const double boxes[][6] = { { -3.3, 4.1, -5.2, 3.7, -6.6, 2.9 },
     { -INFINITY, 1.3, -INFINITY, INFINITY, -INFINITY, INFINITY },
     { 0.4, INFINITY, -2.2, INFINITY, -INFINITY, 5.05 }, { -3, 3.2, -2, 2, -1, 4 } };
-  particle_set set = core_make_block(16, 0, 1, core_slope);
+  CORE_SET set = core_make_block(16, 0, 1, core_slope);
   int64_t n = 0;
   for (int64_t i = 0; i < set.count; ++i)
   {
@@ -228,7 +221,6 @@ static void test_boxes(void** state)
     }
     check_caps(*state, &set, options, 1);
   }
-  particle_set_free(&set);
 }
 
 int main(void)

@@ -57,13 +57,13 @@ static particle_set make_tank(double noise)
 
 static void check_tank(mcor_context* context, double share, mcor_topology topology)
 {
-  particle_set set = make_tank(0.2);
+  CORE_SET set = make_tank(0.2);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(share);
   options.topology = topology;
   options.outputs |= MCOR_OUT_NORMALS | MCOR_OUT_BOUNDARY_FLAG;
   options.level_limit = 0; /* as with caps */
-  mcor_surface open, closed;
+  CORE_SURFACE open, closed;
   CORE_OK(context, mcor_extract(context, &input, &options, &open));
   options.capping = MCOR_CAP_PERIOD;
   CORE_OK(context, mcor_extract(context, &input, &options, &closed));
@@ -81,9 +81,6 @@ static void check_tank(mcor_context* context, double share, mcor_topology topolo
     CORE_CHECK(fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-5, "a normal of %g %g %g",
       n[0], n[1], n[2]);
   }
-  mcor_free_surface(&open);
-  mcor_free_surface(&closed);
-  particle_set_free(&set);
 }
 
 static void test_tank(void** state)
@@ -95,14 +92,14 @@ static void test_tank(void** state)
 /* Points of caps alone are where solids have the share, and in fluid. */
 static void check_share(mcor_context* context, double noise)
 {
-  particle_set set = make_tank(noise);
+  CORE_SET set = make_tank(noise);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.35);
   options.capping = MCOR_CAP_PERIOD;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
-  mcor_surface surface;
+  CORE_SURFACE surface;
   CORE_OK(context, mcor_extract(context, &input, &options, &surface));
-  oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1);
+  CORE_FIELD field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_WEIGHT, 1);
   int64_t caps = 0;
   for (int64_t p = 0; p < surface.point_count; ++p)
   {
@@ -118,9 +115,6 @@ static void check_share(mcor_context* context, double noise)
   }
   CORE_CHECK(caps > 500, "%lld points", (long long)caps);
   assert_int_equal(surface.statistics.trim_vertices_linear, 0);
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 static void test_share(void** state)
@@ -132,7 +126,7 @@ static void test_share(void** state)
 /* Full to the lid: caps alone, somewhat inside of half the way to the solids. */
 static void test_full(void** state)
 {
-  particle_set set = core_make_block(14, 0.1, 5, core_ball);
+  CORE_SET set = core_make_block(14, 0.1, 5, core_ball);
   for (int64_t i = 0; i < set.count; ++i)
   {
     double far = 0;
@@ -146,19 +140,17 @@ static void test_full(void** state)
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.4);
   options.capping = MCOR_CAP_PERIOD;
-  mcor_surface surface;
+  CORE_SURFACE surface;
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
   assert_true(surface.statistics.is_closed);
   assert_int_equal(surface.triangle_count, surface.statistics.cap_triangles);
   cap_check_volume(&surface, &set, &options, tank);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Boxes make the whole, with all that its points carry; sides of boxes and of a period are closed beside walls. */
 static void test_parts(void** state)
 {
-  particle_set set = make_tank(0.2);
+  CORE_SET set = make_tank(0.2);
   const mcor_input input = core_input(&set);
   mcor_options options = wall_options(0.5);
   options.capping = MCOR_CAP_PERIOD;
@@ -166,15 +158,13 @@ static void test_parts(void** state)
   core_check_cuts(*state, "caps at walls", &input, &options);
   options.periodic[3] = 12;
   core_check_cuts(*state, "caps at walls in a period", &input, &options);
-  mcor_surface surface;
+  CORE_SURFACE surface;
   options = wall_options(0.5);
   options.capping = MCOR_CAP_BOX;
   const double box[6] = { -5.2, 4.1, -INFINITY, 3.7, -5.6, INFINITY };
   memcpy(options.box, box, sizeof box);
   CORE_OK(*state, mcor_extract(*state, &input, &options, &surface));
   assert_true(surface.statistics.is_closed && surface.statistics.cap_triangles > 500);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(void)

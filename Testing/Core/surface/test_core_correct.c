@@ -34,7 +34,7 @@ static void test_every_particle_counts(void** state)
   for (size_t run = 0; run < 2 * sizeof at / sizeof at[0]; ++run)
   {
     const size_t k = run / 2;
-    particle_set set = core_make_block(8, 0.3, 4 + k, at[k].value);
+    CORE_SET set = core_make_block(8, 0.3, 4 + k, at[k].value);
     uint64_t seed = 9;
     for (int64_t i = 0; i < set.count; ++i)
     {
@@ -52,7 +52,7 @@ static void test_every_particle_counts(void** state)
     options.vertex_threshold = 0;
     options.tolerance = 1e-11;
     options.iteration_limit = 255;
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     const double range = oracle_scalar_range(&set);
     double worst = 0;
     oracle_field field = oracle_make_field(&set, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
@@ -65,8 +65,6 @@ static void test_every_particle_counts(void** state)
     oracle_free_field(&field);
     CORE_CHECK(surface.point_count > 20 && worst < 1e-10, "run %d: residual %.3g at one of %lld",
       (int)run, worst, (long long)surface.point_count);
-    mcor_free_surface(&surface);
-    particle_set_free(&set);
   }
 }
 
@@ -74,15 +72,15 @@ static void test_every_particle_counts(void** state)
  * are not greater. */
 static void test_reported_numbers(void** state)
 {
-  particle_set set = core_make_block(8, 0.3, 4, core_ball);
+  CORE_SET set = core_make_block(8, 0.3, 4, core_ball);
   const double iso = 1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
   options.outputs |= MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL | MCOR_OUT_GRADIENTS;
   options.vertex_threshold = 0;
-  mcor_surface corrected = core_extract(*state, &input, &options);
+  CORE_SURFACE corrected = core_extract(*state, &input, &options);
   options.preview = 1;
-  mcor_surface preview = core_extract(*state, &input, &options);
+  CORE_SURFACE preview = core_extract(*state, &input, &options);
   assert_int_equal(preview.triangle_count, corrected.triangle_count);
   assert_memory_equal(preview.triangles, corrected.triangles,
     3 * (size_t)corrected.triangle_count * sizeof *corrected.triangles);
@@ -122,15 +120,12 @@ static void test_reported_numbers(void** state)
   oracle_free_field(&field);
   assert_int_equal(preview.statistics.vertices_corrected, 0);
   CORE_CHECK(preview.statistics.correction_max == 0, "a preview corrects nothing");
-  mcor_free_surface(&preview);
-  mcor_free_surface(&corrected);
-  particle_set_free(&set);
 }
 
 /* More steps never make the worst residual larger; the limit is never passed. */
 static void test_iteration_limit(void** state)
 {
-  particle_set set = core_make_block(8, 0.3, 4, steep);
+  CORE_SET set = core_make_block(8, 0.3, 4, steep);
   const double iso = 0.1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -141,7 +136,7 @@ static void test_iteration_limit(void** state)
   for (int i = 0; i < (int)(sizeof limits / sizeof limits[0]); ++i)
   {
     options.iteration_limit = limits[i];
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     const mcor_statistics* s = &surface.statistics;
     CORE_CHECK(s->iterations_max <= limits[i] && s->iterations_max < 60, "%d iterations of %d",
       s->iterations_max, limits[i]);
@@ -150,16 +145,14 @@ static void test_iteration_limit(void** state)
     CORE_CHECK(s->residual_max <= last * 1.0001, "limit %d: residual %g after %g", limits[i],
       s->residual_max, last);
     last = s->residual_max;
-    mcor_free_surface(&surface);
   }
   CORE_CHECK(last < 1e-5, "residual %g in the end", last);
-  particle_set_free(&set);
 }
 
 /* A looser tolerance is kept, too, and costs fewer evaluations. */
 static void test_tolerance(void** state)
 {
-  particle_set set = core_make_block(8, 0.3, 4, core_ball);
+  CORE_SET set = core_make_block(8, 0.3, 4, core_ball);
   const double iso = 1;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -167,17 +160,15 @@ static void test_tolerance(void** state)
   for (int i = 0; i < 2; ++i)
   {
     options.tolerance = i ? 1e-2 : 1e-6;
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     const mcor_statistics* s = &surface.statistics;
     assert_int_equal(s->vertices_above_tolerance, 0);
     CORE_CHECK(s->residual_max <= options.tolerance * (s->scalar_max - s->scalar_min),
       "tolerance %g: residual %g", options.tolerance, s->residual_max);
     evaluations[i] = s->newton_evaluations;
-    mcor_free_surface(&surface);
   }
   CORE_CHECK(evaluations[1] < evaluations[0], "%lld and %lld evaluations",
     (long long)evaluations[0], (long long)evaluations[1]);
-  particle_set_free(&set);
 }
 
 static double core_waves(const double x[3])
@@ -189,7 +180,7 @@ static double core_waves(const double x[3])
  * passes 0 where that of both is about 1: a mean then has a pole, which is no place of the surface. */
 static void check_poles(mcor_context* context, uint64_t seed, double spread, int level_limit)
 {
-  particle_set set = core_make_block(12, 0.45, seed, core_waves);
+  CORE_SET set = core_make_block(12, 0.45, seed, core_waves);
   set.has_solids = 1;
   for (int64_t j = 0; j < set.count; ++j)
   {
@@ -205,8 +196,8 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
   options.sph_kernel = MCOR_M_PRIME_4;
   options.level_limit = level_limit;
   options.outputs |= MCOR_OUT_BOUNDARY_FLAG;
-  mcor_surface surface = core_extract(context, &input, &options);
-  oracle_field field = oracle_make_field(&set, ORACLE_M_PRIME_4, ORACLE_SHEPARD, 1);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
+  CORE_FIELD field = oracle_make_field(&set, ORACLE_M_PRIME_4, ORACLE_SHEPARD, 1);
   int64_t lacking = 0;
   for (int64_t v = 0; v < surface.point_count; ++v)
   {
@@ -225,11 +216,7 @@ static void check_poles(mcor_context* context, uint64_t seed, double spread, int
   CORE_CHECK(lacking > 10, "%lld cuts where the fluid ends", (long long)lacking);
   assert_int_equal(surface.statistics.vertices_above_tolerance, 0);
   assert_true(surface.statistics.trim_vertices_linear * 20 < surface.statistics.trim_vertices);
-  mesh_report report = core_check_pinched_mesh(&surface);
-  mesh_free_report(&report);
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
+  CORE_REPORT report = core_check_pinched_mesh(&surface);
 }
 
 static void test_poles(void** state)

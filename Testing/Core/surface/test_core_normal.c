@@ -16,8 +16,7 @@ static double length_of(const double x[3])
 /* Normals by triangles: the sum of the cross products around each point, made unit length. */
 static void check_triangle_normals(const mcor_surface* surface)
 {
-  double* sums = calloc((size_t)surface->point_count, 3 * sizeof(double));
-  assert_non_null(sums);
+  CORE_FREED double* sums = oracle_allocate(surface->point_count, 3 * sizeof(double));
   for (int64_t t = 0; t < 3 * surface->triangle_count; t += 3)
   {
     const double* x[3];
@@ -46,13 +45,12 @@ static void check_triangle_normals(const mcor_surface* surface)
         (double)surface->normals[3 * i + a], a, wanted);
     }
   }
-  free(sums);
 }
 
 /* Checks normals likewise; they look outwards, too. */
 static void test_triangle_normals(void** state)
 {
-  particle_set set = core_make_block(10, 0.1, 3, core_ball);
+  CORE_SET set = core_make_block(10, 0.1, 3, core_ball);
   const double iso = 1.5;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -60,7 +58,7 @@ static void test_triangle_normals(void** state)
   {
     options.preview = kind == 0;
     options.triangle_normals = kind == 1;
-    mcor_surface surface = core_extract(*state, &input, &options);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
     CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
     check_triangle_normals(&surface);
     for (int64_t i = 0; i < surface.point_count; ++i)
@@ -74,16 +72,13 @@ static void test_triangle_normals(void** state)
       CORE_CHECK(fabs(length_of(n) - 1) < 1e-5 && outwards > 0.7, "normal %g %g %g, outwards %g",
         n[0], n[1], n[2], outwards);
     }
-    mcor_free_surface(&surface);
   }
   options.outputs &= ~(unsigned)MCOR_OUT_NORMALS;
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   CORE_CHECK(!surface.normals && !surface.gradients && !surface.weight_sum &&
       !surface.boundary_eigenvalue && !surface.correction_length && !surface.residual &&
       !surface.boundary_flag && !surface.iso_value && !surface.nearest_particle,
     "arrays that nobody asked for");
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Attributes: a constant, a linear function, a vector, more components than one batch holds, and
@@ -92,10 +87,9 @@ static void check_attributes(mcor_context* context, int solids)
 {
   particle_set set = core_make_block(10, 0.2, 3, core_ball);
   const int64_t n = set.count;
-  double* constant = malloc((size_t)n * sizeof(double));
-  double* many = malloc((size_t)n * 9 * sizeof(double));
-  float* single = malloc((size_t)n * sizeof(float));
-  assert_true(constant && many && single);
+  CORE_FREED double* constant = oracle_allocate(n, sizeof(double));
+  CORE_FREED double* many = oracle_allocate(n * 9, sizeof(double));
+  CORE_FREED float* single = oracle_allocate(n, sizeof(float));
   for (int64_t i = 0; i < n; ++i)
   {
     constant[i] = 1234.5;
@@ -114,14 +108,12 @@ static void check_attributes(mcor_context* context, int solids)
   mcor_options options = core_options(&iso);
   input.attributes = attributes;
   input.attribute_count = 4;
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   particle_set fluid = set;
-  uint8_t* none = calloc((size_t)n, 1);
-  assert_non_null(none);
+  CORE_FREED uint8_t* none = oracle_allocate(n, 1);
   fluid.solid = solids ? set.solid : none;
-  oracle_field field = oracle_make_field(&fluid, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
-  double* component = malloc((size_t)n * sizeof(double));
-  assert_non_null(component);
+  CORE_FIELD field = oracle_make_field(&fluid, ORACLE_CUBIC_SPLINE, ORACLE_SHEPARD, 1);
+  CORE_FREED double* component = oracle_allocate(n, sizeof(double));
   assert_int_equal(surface.attribute_count, 4);
   for (int c = -2; c < 9; ++c)
   {
@@ -144,14 +136,7 @@ static void check_attributes(mcor_context* context, int solids)
     }
   }
   CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
-  oracle_free_field(&field);
-  mcor_free_surface(&surface);
   particle_set_free(&set);
-  free(constant);
-  free(many);
-  free(single);
-  free(none);
-  free(component);
 }
 
 static void test_attributes(void** state)
@@ -163,7 +148,7 @@ static void test_attributes(void** state)
 /* The nearest fluid particle by brute force; h_ratio: largest over smallest smoothing length. */
 static void check_nearest(mcor_context* context, double h_ratio, int solids)
 {
-  particle_set set = core_make_random(300, 5, 1.2 / h_ratio, 1.2, 6);
+  CORE_SET set = core_make_random(300, 5, 1.2 / h_ratio, 1.2, 6);
   const double iso = 0;
   set.has_solids = solids;
   for (int64_t i = 0; i < set.count; ++i)
@@ -176,7 +161,7 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
   options.node_threshold = 0.01;
   options.vertex_threshold = 0;
   options.cube_size = 0.3;
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   int64_t wrong = 0;
   for (int64_t i = 0; i < surface.point_count; ++i)
   {
@@ -199,8 +184,6 @@ static void check_nearest(mcor_context* context, double h_ratio, int solids)
   CORE_CHECK(surface.point_count > 100, "%lld points", (long long)surface.point_count);
   CORE_CHECK(wrong == 0, "h ratio %g, solids %d: %lld of %lld are not the nearest", h_ratio, solids,
     (long long)wrong, (long long)surface.point_count);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 static void test_nearest(void** state)

@@ -13,7 +13,7 @@
  * flagged. */
 static void test_thresholds(void** state)
 {
-  particle_set set = core_make_block(8, 0.2, 3, core_slope);
+  CORE_SET set = core_make_block(8, 0.2, 3, core_slope);
   const double iso = 0;
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&iso);
@@ -23,8 +23,8 @@ static void test_thresholds(void** state)
   for (int i = 0; i < 5; ++i)
   {
     options.vertex_threshold = thresholds[i];
-    mcor_surface surface = core_extract(*state, &input, &options);
-    mesh_report report = core_check_mesh(&surface);
+    CORE_SURFACE surface = core_extract(*state, &input, &options);
+    CORE_REPORT report = core_check_mesh(&surface);
     core_check_flags(&surface);
     CORE_CHECK(
       report.area < last, "threshold %g: area %g after %g", thresholds[i], report.area, last);
@@ -32,15 +32,11 @@ static void test_thresholds(void** state)
       "a threshold of 0 trims");
     CORE_CHECK((report.area > 0) == (i < 4), "threshold %g: area %g", thresholds[i], report.area);
     last = report.area;
-    mesh_free_report(&report);
-    mcor_free_surface(&surface);
   }
   options.node_threshold = 2;
   options.vertex_threshold = 0;
-  mcor_surface surface = core_extract(*state, &input, &options);
+  CORE_SURFACE surface = core_extract(*state, &input, &options);
   assert_int_equal(surface.triangle_count, 0);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 /* Vertices of the trim boundary are counted on top of those of the surface. */
@@ -50,10 +46,10 @@ static void test_vertex_limit(void** state)
   static const int corners[3] = { 0, 1, 2 };
   static const float weights[3] = { 0.2f, 0.8f, 0.9f };
   const double iso = 0;
-  particle_set set = core_make_block(3, 0, 1, core_slope);
+  CORE_SET set = core_make_block(3, 0, 1, core_slope);
   const mcor_input input = core_input_to_keep(&set);
   mcor_options options = core_options(&iso);
-  mcor_surface surface = core_extract(context, &input, &options);
+  CORE_SURFACE surface = core_extract(context, &input, &options);
   mcor_mesh* mesh = &context->mesh;
   CORE_OK(context, mcor_write(context, &mesh->vertex_weight, weights, sizeof weights));
   CORE_OK(context, mcor_write(context, &mesh->triangles, corners, sizeof corners));
@@ -65,8 +61,6 @@ static void test_vertex_limit(void** state)
   CORE_CHECK(
     strstr(mcor_last_error(context), "2147479553 vertices"), "%s", mcor_last_error(context));
   mcor_release_memory(context);
-  mcor_free_surface(&surface);
-  particle_set_free(&set);
 }
 
 int main(void)

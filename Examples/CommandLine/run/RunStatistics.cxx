@@ -8,6 +8,7 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkStringArray.h"
+#include "vtkVariant.h"
 #include "vtkVersion.h"
 
 #include <cctype>
@@ -59,6 +60,12 @@ std::string JsonList(const std::vector<std::string>& texts)
   return Json(members, "[]");
 }
 
+Members operator+(Members members, const Members& more)
+{
+  members.insert(members.end(), more.begin(), more.end());
+  return members;
+}
+
 const char* const ArrayNames[] = { "Scalar", "SmoothingLengthArray", "VolumeArray", "MassArray",
   "DensityArray" };
 const char* const ParameterNames[] = {
@@ -82,127 +89,96 @@ const char* const StatisticNames[] = {
   "RankCopies", "RankBytesSent", "RankWork", "RankNodesEvaluated", "RankTriangles", "RankSeconds"
 };
 
-double Number(vtkFieldData* run, const char* name, vtkIdType index = 0)
+/// The numbers of an array; none where the run has no such array.
+std::vector<double> Numbers(vtkFieldData* run, const std::string& name)
 {
-  vtkDataArray* array = run->GetArray(name);
-  const int components = array ? array->GetNumberOfComponents() : 1;
-  return array && index < array->GetNumberOfValues()
-    ? array->GetComponent(index / components, static_cast<int>(index % components))
-    : 0.0;
+  std::vector<double> numbers;
+  vtkDataArray* array = run->GetArray(name.c_str());
+  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
+  {
+    numbers.push_back(array->GetVariantValue(i).ToDouble());
+  }
+  return numbers;
 }
 
-std::string Text(vtkFieldData* run, const char* name)
+double Number(vtkFieldData* run, const char* name)
 {
-  vtkStringArray* array = vtkStringArray::SafeDownCast(run->GetAbstractArray(name));
+  const std::vector<double> numbers = Numbers(run, name);
+  return numbers.empty() ? 0.0 : numbers.front();
+}
+
+std::string Text(vtkFieldData* run, const std::string& name)
+{
+  vtkStringArray* array = vtkStringArray::SafeDownCast(run->GetAbstractArray(name.c_str()));
   return array && array->GetNumberOfValues() > 0 ? std::string(array->GetValue(0)) : "";
 }
 
-/// Counts in full, everything else with six digits.
-std::string Format(double value)
+/// What Fill() puts for a name: a text, also the array of a quantity that has one, or numbers,
+/// NAME:1 the second one of them; counts in full, everything else with six digits.
+std::string Value(vtkFieldData* run, const std::string& name)
 {
+  const std::string text = Text(run, name), array = Text(run, name + "Array");
+  const std::size_t colon = name.find(':');
+  const std::vector<double> numbers = Numbers(run, name.substr(0, colon));
   std::ostringstream stream;
-  const bool whole = value == static_cast<double>(static_cast<long long>(value));
-  stream << std::setprecision(whole ? 15 : 6) << value;
-  return stream.str();
-}
-
-std::string Format(vtkFieldData* run, const char* name, vtkIdType index = 0)
-{
-  return Format(Number(run, name, index));
-}
-
-/// Describes a quantity: its array, or the value for all particles; empty if there is neither.
-std::string DescribeQuantity(vtkFieldData* run, const char* name)
-{
-  const std::string array = Text(run, (std::string(name) + "Array").c_str());
-  return !array.empty() || !run->GetArray(name) ? array : Format(run, name);
-}
-
-std::string DescribeVolume(vtkFieldData* run)
-{
-  const std::string volume = Text(run, "VolumeArray");
-  const std::string mass = DescribeQuantity(run, "Mass");
-  const std::string density = DescribeQuantity(run, "Density");
-  if (!volume.empty())
+  for (std::size_t i = 0; i < numbers.size(); ++i)
   {
-    return "array " + volume;
+    if (colon == std::string::npos || name.substr(colon + 1) == std::to_string(i))
+    {
+      const bool whole = numbers[i] == static_cast<double>(static_cast<long long>(numbers[i]));
+      stream << (stream.tellp() > 0 ? ", " : "") << std::setprecision(whole ? 15 : 6) << numbers[i];
+    }
   }
-  if (run->HasArray("ParticleVolume"))
-  {
-    return Format(run, "ParticleVolume");
-  }
-  if (!mass.empty() && !density.empty())
-  {
-    return mass + " / " + density;
-  }
-  return mass.empty() ? "computed" : "computed from " + mass;
+  return !text.empty() ? text : array.empty() ? stream.str() : array;
 }
 
-std::string DescribeParticles(vtkFieldData* run)
+/// The form with the run's values for names in braces. [A|B|C] is the first one of these whose
+/// names all have values, or nothing.
+std::string Fill(vtkFieldData* run, const std::string& form)
 {
-  const double low = Number(run, "SmoothingLengthRange", 0);
-  const double high = Number(run, "SmoothingLengthRange", 1);
-  const std::string array = Text(run, "SmoothingLengthArray");
-  return Format(run, "FluidParticles") + " fluid, " + Format(run, "SolidParticles") +
-    " solid; smoothing length " + Format(low) + (low < high ? " .. " + Format(high) : "") +
-    (array.empty() ? "" : " (array " + array + ")") + "; volume: " + DescribeVolume(run);
-}
-
-std::string DescribeField(vtkFieldData* run)
-{
-  const std::string scalar = Text(run, "Scalar");
-  std::string line = scalar.empty() ? "weight sum" : scalar;
-  vtkDataArray* values = run->GetArray("IsoValues");
-  for (vtkIdType i = 0; values && i < values->GetNumberOfValues(); ++i)
+  std::string text;
+  std::size_t begin = 0; // of an alternative
+  bool isComplete = true;
+  for (std::size_t i = 0; i < form.size(); ++i)
   {
-    line += (i ? ", " : " = ") + Format(run, "IsoValues", i);
+    const char c = form[i];
+    if (c == '{')
+    {
+      const std::size_t name = i + 1;
+      i = form.find('}', i);
+      const std::string value = Value(run, form.substr(name, i - name));
+      isComplete = isComplete && !value.empty();
+      text += value;
+    }
+    else if (c == '[' || c == '|' || c == ']')
+    {
+      text.resize(c == '[' || isComplete ? text.size() : begin);
+      i = c == '|' && isComplete ? form.find(']', i) : i;
+      begin = text.size();
+      isComplete = true;
+    }
+    else
+    {
+      text += c;
+    }
   }
-  if (!scalar.empty())
-  {
-    line += "; range " + Format(run, "ScalarRange", 0) + " .. " + Format(run, "ScalarRange", 1) +
-      "; field " + Text(run, "Field");
-  }
-  return line + "; kernel " + Text(run, "Kernel") + "; cube size " + Format(run, "CubeSize");
-}
-
-std::string DescribeMeasures(vtkFieldData* run)
-{
-  const bool hasPieces = run->HasArray("Pieces");
-  return (run->HasArray("Length") ? "; length " + Format(run, "Length") : "") +
-    (hasPieces ? "; " + Format(run, "Pieces") +
-          (Number(run, "Pieces") == 1.0 ? " piece" : " pieces") + " of"
-        : run->HasArray("Area") ? ";"
-                                : "") +
-    (run->HasArray("Area") ? " area " + Format(run, "Area") : "") +
-    (run->HasArray("Volume") ? ", volume " + Format(run, "Volume") : "");
-}
-
-std::string DescribeCorrection(vtkFieldData* run)
-{
-  if (Number(run, "Preview") != 0.0)
-  {
-    return "none (preview)";
-  }
-  return "vertices moved by: mean " + Format(run, "CorrectionMean") + ", max " +
-    Format(run, "CorrectionMax") + ", deviation " + Format(run, "CorrectionStandardDeviation") +
-    "; iterations: mean " + Format(run, "IterationsMean") + ", max " +
-    Format(run, "IterationsMax") + "; largest remaining error " + Format(run, "ResidualMax");
+  return text;
 }
 
 /// There may be more triangles than before: what a cut leaves of one is one or two.
 std::string DescribeTrimming(vtkFieldData* run)
 {
-  const double caps = run->HasArray("CapTriangles") ? Number(run, "CapTriangles") : 0.0;
+  const double caps = Number(run, "CapTriangles");
+  const bool hasLines = run->HasArray("Lines");
   std::string text;
-  if (!run->HasArray("Lines") &&
-    Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
+  if (!hasLines && Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
   {
-    text = Format(run, "TrianglesBeforeTrimming") + " before trimming, which cuts some in two";
+    text = Fill(run, "{TrianglesBeforeTrimming} before trimming, which cuts some in two");
   }
   if (caps > 0.0)
   {
-    text += (text.empty() ? "" : "; ") + Format(run, "CapTriangles") +
-      (run->HasArray("Lines") ? " parts of them in caps" : " of them in caps");
+    text += (text.empty() ? "" : "; ") + Fill(run, "{CapTriangles} ") +
+      (hasLines ? "parts of them in caps" : "of them in caps");
   }
   return text.empty() ? "" : " (" + text + ")";
 }
@@ -223,20 +199,19 @@ std::string Key(const std::string& name)
   return key;
 }
 
-std::string Json(vtkFieldData* run, const char* name)
+std::string Json(vtkFieldData* run, const std::string& name)
 {
-  vtkDataArray* numbers = run->GetArray(name);
-  if (!numbers)
+  if (!run->GetArray(name.c_str()))
   {
     return QuotedForJson(Text(run, name));
   }
+  const std::vector<double> numbers = Numbers(run, name);
   std::string values;
-  for (vtkIdType i = 0; i < numbers->GetNumberOfValues(); ++i)
+  for (const double number : numbers)
   {
-    values += (i ? ", " : "") + Json(Number(run, name, i));
+    values += (values.empty() ? "" : ", ") + Json(number);
   }
-  const bool isOne = numbers->GetNumberOfValues() == 1 && std::string(name) != "IsoValues";
-  return isOne ? values : "[" + values + "]";
+  return numbers.size() == 1 && name != "IsoValues" ? values : "[" + values + "]";
 }
 
 template <std::size_t N>
@@ -264,11 +239,25 @@ std::string JsonSeconds(vtkFieldData* run)
   return Json(members);
 }
 
-/// Device, arrays and parameters of a run.
+/// The program and its files; device, arrays and parameters of a run, if there is one.
 Members ListSetting(const Job& job, vtkFieldData* run)
 {
-  Members setting = { { "device", Json(run, "Device") }, { "platform", Json(run, "Platform") },
-    { "arrays", JsonGroup(run, ArrayNames) }, { "parameters", JsonGroup(run, ParameterNames) } };
+  Members setting = { { "program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION) },
+    { "vtk", QuotedForJson(vtkVersion::GetVTKVersion()) },
+    job.IsFilm() ? std::make_pair("inputs", JsonList(job.Inputs))
+                 : std::make_pair("input", QuotedForJson(job.Inputs.front())) };
+  if (!job.Walls.empty())
+  {
+    setting.emplace_back("walls", JsonList(job.Walls));
+  }
+  setting.emplace_back("output", QuotedForJson(job.Output));
+  if (!run)
+  {
+    return setting;
+  }
+  setting = setting +
+    Members{ { "device", Json(run, "Device") }, { "platform", Json(run, "Platform") },
+      { "arrays", JsonGroup(run, ArrayNames) }, { "parameters", JsonGroup(run, ParameterNames) } };
   vtkMarchingCorrectors* filter = job.Surface;
   if (*filter->GetFluidArrayName())
   {
@@ -280,28 +269,12 @@ Members ListSetting(const Job& job, vtkFieldData* run)
     if (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_WALL ||
       (filter->GetSolids() == vtkMarchingCorrectors::SOLIDS_AUTO && !filter->GetFreeSurface()))
     {
-      vtkDataArray* used = run->GetArray("WallShare");
-      fluid.emplace_back(
-        "wall_share", Json(used ? used->GetComponent(0, 0) : filter->GetWallShare()));
+      fluid.emplace_back("wall_share",
+        Json(run->HasArray("WallShare") ? Number(run, "WallShare") : filter->GetWallShare()));
     }
     setting.emplace_back("fluid", Json(fluid));
   }
   return setting;
-}
-
-/// The program and its files.
-Members ListFiles(const Job& job)
-{
-  Members files = { { "program", QuotedForJson("marching-correctors " MCOR_PROGRAM_VERSION) },
-    { "vtk", QuotedForJson(vtkVersion::GetVTKVersion()) },
-    job.IsFilm() ? std::make_pair("inputs", JsonList(job.Inputs))
-                 : std::make_pair("input", QuotedForJson(job.Inputs.front())) };
-  if (!job.Walls.empty())
-  {
-    files.emplace_back("walls", JsonList(job.Walls));
-  }
-  files.emplace_back("output", QuotedForJson(job.Output));
-  return files;
 }
 }
 
@@ -327,19 +300,31 @@ std::string DescribeRun(vtkFieldData* run)
   {
     return "";
   }
-  std::ostringstream text;
-  text << "particles   " << DescribeParticles(run) << "\n"
-       << "contour     " << DescribeField(run) << "\n"
-       << "device      " << Text(run, "Device") << " (" << Text(run, "Platform") << ")\n"
-       << "cells       " << Format(run, "VirtualCells") << " of the virtual grid, "
-       << Format(run, "SeedCells") << " seeds (" << Format(run, "SeedCellsNotIntersected")
-       << " without surface), " << Format(run, "CellsUsed") << " with surface\n"
-       << "correction  " << DescribeCorrection(run) << "\n"
-       << (run->GetArray("Lines") ? "lines       " : "surface     ") << Format(run, "Points")
-       << " points, " << Format(run, run->GetArray("Lines") ? "Lines" : "Triangles")
-       << (run->GetArray("Lines") ? " lines" : " triangles") << DescribeTrimming(run)
-       << DescribeMeasures(run) << "\n";
-  return text.str();
+  const std::vector<double> lengths = Numbers(run, "SmoothingLengthRange");
+  const bool areMany = lengths.size() == 2 && lengths[0] < lengths[1];
+  const bool isPreview = Number(run, "Preview") != 0.0;
+  const std::string pieces = Number(run, "Pieces") == 1.0 ? "piece" : "pieces";
+  return Fill(run,
+    std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "
+                "smoothing length {SmoothingLengthRange:0}") +
+      (areMany ? " .. {SmoothingLengthRange:1}" : "") +
+      "[ (array {SmoothingLengthArray})]; volume: [array {VolumeArray}|{ParticleVolume}|"
+      "{Mass} / {Density}|computed from {Mass}|computed]\n"
+      "contour     [{Scalar}|weight sum][ = {IsoValues}]"
+      "[; range {ScalarRange:0} .. {ScalarRange:1}; field {Field}]"
+      "; kernel {Kernel}; cube size {CubeSize}\n"
+      "device      {Device} ({Platform})\n"
+      "cells       {VirtualCells} of the virtual grid, {SeedCells} seeds "
+      "({SeedCellsNotIntersected} without surface), {CellsUsed} with surface\n"
+      "correction  " +
+      (isPreview ? "none (preview)"
+                 : "vertices moved by: mean {CorrectionMean}, max {CorrectionMax}, deviation "
+                   "{CorrectionStandardDeviation}; iterations: mean {IterationsMean}, max "
+                   "{IterationsMax}; largest remaining error {ResidualMax}") +
+      "\n[lines       {Points} points, {Lines} lines|"
+      "surface     {Points} points, {Triangles} triangles]" +
+      DescribeTrimming(run) + "[; length {Length}][; {Pieces} " + pieces +
+      " of area {Area}|; area {Area}][, volume {Volume}]\n");
 }
 
 std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<vtkFieldData>>& runs,
@@ -347,9 +332,7 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   double peakResidentBytes)
 {
   vtkFieldData* last = runs.back();
-  Members members = ListFiles(job), each;
-  const Members setting = ListSetting(job, last);
-  members.insert(members.end(), setting.begin(), setting.end());
+  Members each;
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
     each.emplace_back("",
@@ -357,44 +340,36 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
         { "statistics", JsonGroup(runs[i], StatisticNames) },
         { "wall_seconds", Json(wallSeconds[i]) } }));
   }
-  for (const auto& [key, value] :
-    Members{ { "statistics", JsonGroup(last, StatisticNames) }, { "seconds", JsonSeconds(last) },
-      { "wall_seconds", Json(wallSeconds.back()) }, { "runs", Json(each, "[]") },
-      { "warnings", JsonList(warnings) }, { "peak_resident_bytes", Json(peakResidentBytes) } })
-  {
-    members.emplace_back(key, value);
-  }
-  return Json(members) + "\n";
+  return Json(ListSetting(job, last) +
+           Members{ { "statistics", JsonGroup(last, StatisticNames) },
+             { "seconds", JsonSeconds(last) }, { "wall_seconds", Json(wallSeconds.back()) },
+             { "runs", Json(each, "[]") }, { "warnings", JsonList(warnings) },
+             { "peak_resident_bytes", Json(peakResidentBytes) } }) +
+    "\n";
 }
 
 std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds)
 {
-  Members members = { { "time", Json(step.Time) }, { "inputs", JsonList(step.Inputs) } };
-  if (!run)
-  {
-    members.emplace_back("error", QuotedForJson(step.Error));
-    return Json(members);
-  }
-  members.emplace_back("output", QuotedForJson(step.Output));
-  members.emplace_back("seconds", JsonSeconds(run));
-  members.emplace_back("statistics", JsonGroup(run, StatisticNames));
-  members.emplace_back("wall_seconds", Json(wallSeconds));
-  members.emplace_back("peak_resident_bytes", Json(PeakResidentBytes()));
-  return Json(members);
+  const Members members = { { "time", Json(step.Time) }, { "inputs", JsonList(step.Inputs) } };
+  return Json(members +
+    (run
+        ? Members{ { "output", QuotedForJson(step.Output) }, { "seconds", JsonSeconds(run) },
+            { "statistics", JsonGroup(run, StatisticNames) }, { "wall_seconds", Json(wallSeconds) },
+            { "peak_resident_bytes", Json(PeakResidentBytes()) } }
+        : Members{ { "error", QuotedForJson(step.Error) } }));
 }
 
 std::string FilmAsJson(const Job& job, const std::vector<FilmStep>& steps, vtkFieldData* run)
 {
-  Members members = ListFiles(job), each;
-  const Members setting = run ? ListSetting(job, run) : Members();
-  members.insert(members.end(), setting.begin(), setting.end());
+  Members each;
   for (const FilmStep& step : steps)
   {
     each.emplace_back("", step.Statistics);
   }
-  members.emplace_back("steps", Json(each, "[]"));
-  members.emplace_back("peak_resident_bytes", Json(PeakResidentBytes()));
-  return Json(members) + "\n";
+  return Json(ListSetting(job, run) +
+           Members{ { "steps", Json(each, "[]") },
+             { "peak_resident_bytes", Json(PeakResidentBytes()) } }) +
+    "\n";
 }
 
 double PeakResidentBytes()

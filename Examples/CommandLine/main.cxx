@@ -27,8 +27,6 @@
 #include "vtkPolyData.h"
 #include "vtkVersion.h"
 
-#include <exception>
-#include <functional>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
@@ -58,123 +56,20 @@ std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
   return outputs;
 }
 
-/// Extracts the surface, and writes it with its tables: all files, or none.
-void MakeSurface(const Job& job, MessageCapture* messages, Sharing& sharing)
-{
-  sharing.OnAll(
-    [&] { CheckOutputs(ListFiles(job.InputFiles(), messages), ListOutputs(job, sharing)); });
-  const vtkSmartPointer<vtkPointSet> particles =
-    sharing.Read(job.Inputs.front(), job.Walls, messages);
-  sharing.OnAll([&] { SetUpSurface(job, particles); });
-  std::vector<vtkSmartPointer<vtkFieldData>> runs;
-  std::vector<double> wallSeconds;
-  std::vector<std::string> warnings;
-  ComponentTable pieces(job);
-  Run run;
-  for (int i = 0; i < job.Repeat; ++i)
-  {
-    run.Surface = nullptr; // not two at once
-    sharing.OnAll([&] { run = Extract(job, messages); });
-    warnings = Warnings(run, messages);
-    pieces = ComponentTable(job);
-    sharing.OnAll([&] { pieces.Add(run, particles, messages); });
-    runs.emplace_back(run.Statistics);
-    wallSeconds.push_back(run.WallSeconds);
-    if (!job.Quiet && sharing.IsFirst())
-    {
-      std::cout << (i == 0 ? DescribeRun(runs.back()) : "") << DescribeSeconds(runs.back())
-                << std::flush;
-    }
-  }
-  const double peakResidentBytes = PeakResidentBytes();
-  const vtkSmartPointer<vtkPolyData> whole =
-    IsInPieces(job.Output) ? nullptr : sharing.Merge(run.Surface);
-  ColorScale colors(job.Picture);
-  OutputFiles files;
-  sharing.OnAll(
-    [&]
-    {
-      if (IsInPieces(job.Output))
-      {
-        const std::string piece = PieceName(job.Output, sharing.GetRank());
-        files.Write(piece, SurfaceBytes(piece, run.Surface, colors, messages));
-      }
-      if (!sharing.IsFirst())
-      {
-        return;
-      }
-      if (whole)
-      {
-        if (sharing.GetCount() == 1)
-        {
-          AddHintOfPeriod(job, particles, warnings);
-        }
-        colors.Include(whole);
-        const std::string lost =
-          LostArrays(job.Output, whole, colors, ArraysWithoutPlace(job, particles));
-        warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
-      }
-      for (const std::string& warning : warnings)
-      {
-        Say("warning: " + warning);
-      }
-      files.Write(job.Output,
-        whole ? SurfaceBytes(job.Output, whole, colors, messages)
-              : ListPieces(job.Output, sharing.GetCount(), run.Surface));
-      if (!job.ComponentFile.empty())
-      {
-        files.Write(job.ComponentFile, pieces.Text());
-      }
-    });
-  sharing.OnAll([&] { files.Commit(); }); // only where all have written all
-  if (!job.WideningFile.empty())
-  {
-    vtkSmartPointer<vtkPolyData> widened;
-    sharing.OnAll([&] { widened = Widen(job, messages); });
-    widened = sharing.Append(widened);
-    sharing.OnFirst([&] { WriteDataSet(job.WideningFile, widened, messages); });
-  }
-  sharing.OnFirst(
-    [&]
-    {
-      if (!job.StatisticsFile.empty())
-      {
-        std::cout.flush(); // the file may be /dev/stdout
-        WriteOutput(job.StatisticsFile,
-          StatisticsAsJson(job, runs, wallSeconds, warnings, peakResidentBytes));
-      }
-      if (!job.Picture.File.empty())
-      {
-        colors.Suggest(whole, job.Surface->GetIsoValueArrayName());
-        colors.Include(whole);
-        const auto picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(
-          job.Picture.File, picture->Draw(job.Picture.File, whole, particles, colors, messages));
-      }
-    });
-}
-
 /// Makes the outputs. Returns false if a step failed; its error was printed.
-bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
+bool Make(Sharing& sharing)
 {
+  const Job& job = sharing.Options;
+  const bool isProjection = job.Has("--project");
   if (job.IsFilm())
   {
-    return MakeFilm(job, messages, sharing);
+    return MakeFilm(sharing);
   }
-  if (job.Has("--project"))
+  if (job.IsTable() && !isProjection)
   {
-    ProjectParticles(job, messages, sharing);
-    return true;
+    return MakeMeterTable(sharing);
   }
-  if (job.IsGauge())
-  {
-    return MakeGaugeTable(job, messages, sharing);
-  }
-  if (job.IsFlux())
-  {
-    return MakeFluxTable(job, messages, sharing);
-  }
-  job.IsProbe() ? ProbePoints(job, messages, sharing) : MakeSurface(job, messages, sharing);
+  isProjection || job.IsProbe() ? MakeField(sharing) : MakeSurface(sharing);
   return true;
 }
 
@@ -182,28 +77,27 @@ bool Make(const Job& job, MessageCapture* messages, Sharing& sharing)
 bool MakeOnRanks(Job& job, MessageCapture* messages)
 {
   RankSession session(job, messages);
-  try
-  {
-    session.OnAll(
-      [&job]
-      {
-        if (!job.Picture.File.empty() || job.Repeat > 1)
-        {
-          throw std::runtime_error(
-            "several processes share a surface, a film, a probe, a projection, gauges or fluxes, "
-            "but no --screenshot or --repeat; run these without mpirun");
-        }
-      });
-    return Make(job, messages, session);
-  }
-  catch (const std::exception& error)
-  {
-    if (session.IsFirst())
+  bool isGood = false;
+  const std::string failure = FailureOf(
+    [&]
     {
-      Say(error.what());
-    }
-    return false;
+      session.OnAll(
+        [&job]
+        {
+          if (!job.Picture.File.empty() || job.Repeat > 1)
+          {
+            throw std::runtime_error(
+              "several processes share a surface, a film, a probe, a projection, gauges or fluxes, "
+              "but no --screenshot or --repeat; run these without mpirun");
+          }
+        });
+      isGood = Make(session);
+    });
+  if (!failure.empty() && session.IsFirst())
+  {
+    Say(failure);
   }
+  return isGood;
 }
 #endif
 
@@ -260,43 +154,41 @@ bool Execute(int argc, char* argv[])
   }
 #endif
   LoadDriversAhead(job.Surface->GetDevice());
-  Sharing alone;
-  return Make(job, messages, alone);
+  Sharing alone(job, messages);
+  return Make(alone);
 }
 
-/// Exit status and sentence of what `run` throws, or of standard output that cannot be written.
-int Status(const std::function<bool()>& run)
+/// Returns the exit status. Says what fails, also standard output that cannot be written.
+int ExecuteAndTell(int argc, char* argv[])
 {
-  bool good = false;
-  try
-  {
-    good = run();
-    std::cout.flush();
-    if (!std::cout)
+  bool isGood = false, isMisused = false;
+  const std::string failure = FailureOf(
+    [&]
     {
-      throw std::runtime_error("standard output could not be written");
-    }
-  }
-  catch (const UsageError& error)
+      try
+      {
+        isGood = Execute(argc, argv);
+      }
+      catch (const UsageError& error)
+      {
+        isMisused = true;
+        throw std::runtime_error(std::string(error.what()) + " (see --help)");
+      }
+      std::cout.flush();
+      if (!std::cout)
+      {
+        throw std::runtime_error("standard output could not be written");
+      }
+    });
+  if (isMisused && LaunchedRank() > 0)
   {
-    if (LaunchedRank() > 0)
-    {
-      return 0; // the first process says it; a failure here could end that one before it has
-    }
-    Say(std::string(error.what()) + " (see --help)");
-    return 2;
+    return 0; // the first process says it; a failure here could end that one before it has
   }
-  catch (const std::bad_alloc&)
+  if (!failure.empty())
   {
-    Say("host memory ran out");
-    return 1;
+    Say(failure);
   }
-  catch (const std::exception& error)
-  {
-    Say(error.what());
-    return 1;
-  }
-  return good ? 0 : 1;
+  return isMisused ? 2 : isGood && failure.empty() ? 0 : 1;
 }
 
 /// A file opened by this program must not become its standard output, where that was closed.
@@ -312,9 +204,104 @@ void OpenStandardStreams()
 
 }
 
+void MakeSurface(Sharing& sharing)
+{
+  const Job& job = sharing.Options;
+  MessageCapture* const messages = sharing.Messages;
+  sharing.OnAll(
+    [&] { CheckOutputs(ListFiles(job.InputFiles(), messages), ListOutputs(job, sharing)); });
+  const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
+  sharing.OnAll([&] { SetUpSurface(job, particles); });
+  std::vector<vtkSmartPointer<vtkFieldData>> runs;
+  std::vector<double> wallSeconds;
+  std::string pieces;
+  Run run;
+  for (int i = 0; i < job.Repeat; ++i)
+  {
+    run.Surface = nullptr; // not two at once
+    sharing.OnAll([&] { run = Extract(sharing); });
+    pieces.clear();
+    sharing.OnAll([&] { AddPieces(pieces, sharing, run, particles); });
+    runs.emplace_back(run.Statistics);
+    wallSeconds.push_back(run.WallSeconds);
+    if (!job.Quiet && sharing.IsFirst())
+    {
+      std::cout << (i == 0 ? DescribeRun(runs.back()) : "") << DescribeSeconds(runs.back())
+                << std::flush;
+    }
+  }
+  const double peakResidentBytes = PeakResidentBytes();
+  const bool isInPieces = IsInPieces(job.Output);
+  const vtkSmartPointer<vtkPolyData> part = run.Surface;
+  run.Surface = isInPieces ? part : sharing.Merge(part);
+  ColorScale colors(job.Picture);
+  OutputFiles files;
+  sharing.OnAll(
+    [&]
+    {
+      if (isInPieces)
+      {
+        const std::string piece = PieceName(job.Output, sharing.GetRank());
+        files.Write(piece, SurfaceBytes(piece, part, colors, messages));
+      }
+      if (!sharing.IsFirst())
+      {
+        return;
+      }
+      if (!isInPieces)
+      {
+        Inspect(job, job.Output, run, particles, colors, sharing.GetCount() == 1);
+      }
+      for (const std::string& warning : run.Warnings)
+      {
+        Say("warning: " + warning);
+      }
+      files.Write(job.Output,
+        isInPieces ? ListPieces(job.Output, sharing.GetCount(), part)
+                   : SurfaceBytes(job.Output, run.Surface, colors, messages));
+      if (!job.ComponentFile.empty())
+      {
+        files.Write(job.ComponentFile, pieces);
+      }
+    });
+  sharing.OnAll([&] { files.Commit(); }); // only where all have written all
+  if (!job.WideningFile.empty())
+  {
+    auto widened = vtkSmartPointer<vtkPolyData>::New();
+    sharing.OnAll(
+      [&]
+      {
+        messages->Clear();
+        if (!job.Surface->Widen(vtkPointSet::SafeDownCast(job.Surface->GetInput()), widened))
+        {
+          messages->Check();
+          throw std::runtime_error("the factors could not be found");
+        }
+      });
+    widened = sharing.Append(widened);
+    sharing.OnFirst([&] { WriteDataSet(job.WideningFile, widened, messages); });
+  }
+  sharing.OnFirst(
+    [&]
+    {
+      if (!job.StatisticsFile.empty())
+      {
+        std::cout.flush(); // the file may be /dev/stdout
+        WriteOutput(job.StatisticsFile,
+          StatisticsAsJson(job, runs, wallSeconds, run.Warnings, peakResidentBytes));
+      }
+      if (!job.Picture.File.empty())
+      {
+        const auto picture = LoadExtra().NewPicture(job.Picture);
+        WriteOutput(job.Picture.File,
+          DrawSurface(sharing, job.Picture.File, run.Surface, particles, *picture, colors));
+      }
+    });
+}
+
 int main(int argc, char* argv[])
 {
   OpenStandardStreams();
   PrepareForEnding();
-  Finish(Status([&] { return Execute(argc, argv); }));
+  Finish(ExecuteAndTell(argc, argv));
 }

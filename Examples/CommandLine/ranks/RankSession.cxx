@@ -17,8 +17,7 @@
 #include <stdexcept>
 
 RankSession::RankSession(Job& job, MessageCapture* messages)
-  : Options(job)
-  , Messages(messages)
+  : Sharing(job, messages)
   , Periodic(job.Periodic)
   , DetectPeriod(job.DetectPeriod)
 {
@@ -70,32 +69,30 @@ void RankSession::OnAll(const std::function<void()>& work)
   throw std::runtime_error(sentence);
 }
 
-vtkSmartPointer<vtkPointSet> RankSession::Read(
-  const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages)
+Sharing::Particles RankSession::Read()
 {
-  return walls.empty() ? this->Part(file, false)
-                       : this->Share([&] { return Sharing::Read(file, walls, messages); }, false);
+  return this->Options.Walls.empty() ? this->Part(this->Options.Inputs.front(), false)
+                                     : this->Share([this] { return Sharing::Read(); }, false);
 }
 
 // Reads a stored time as for a single surface; a time between two steps is read by the first
 // process.
-vtkSmartPointer<vtkPointSet> RankSession::Read(
+Sharing::Particles RankSession::Read(
   ParticleTimes& times, double time, std::vector<std::string>& warnings)
 {
   this->Options.Periodic = this->Periodic; // of each time anew
   this->Options.DetectPeriod = this->DetectPeriod;
-  const bool isStored = times.IsStored(time);
-  const std::vector<std::string> files = times.ListFiles(time);
-  if (isStored && files.size() == 1 && times.ListWalls(time).empty())
+  const ParticleTimes::Step* step = times.GetStored(time);
+  if (step && step->Files.size() == 1 && step->Walls.empty())
   {
-    return this->Part(files.front(), true);
+    return this->Part(step->Files.front(), true);
   }
   return this->Share(
     [&]
     {
-      return isStored ? AddWalls(ReadParticles(files, this->Messages, true),
-                          ReadWalls(times.ListWalls(time), this->Messages))
-                      : times.At(time, warnings);
+      return step ? AddWalls(ReadParticles(step->Files, this->Messages, true),
+                      ReadWalls(step->Walls, this->Messages))
+                  : times.At(time, warnings);
     },
     true);
 }
@@ -123,7 +120,7 @@ vtkSmartPointer<vtkPolyData> RankSession::Append(vtkPolyData* particles)
   return append->GetOutput();
 }
 
-vtkSmartPointer<vtkPointSet> RankSession::Part(const std::string& file, bool mayBeEmpty)
+Sharing::Particles RankSession::Part(const std::string& file, bool mayBeEmpty)
 {
   Particles particles;
   ParticleSets sets;
@@ -137,15 +134,14 @@ vtkSmartPointer<vtkPointSet> RankSession::Part(const std::string& file, bool may
   return this->Complete(particles, mayBeEmpty);
 }
 
-vtkSmartPointer<vtkPointSet> RankSession::Share(
-  const std::function<Particles()>& make, bool mayBeEmpty)
+Sharing::Particles RankSession::Share(const std::function<Particles()>& make, bool mayBeEmpty)
 {
   Particles particles = vtkSmartPointer<vtkPolyData>::New();
   this->OnFirst([&] { particles = make(); });
   return this->Complete(particles, mayBeEmpty);
 }
 
-vtkSmartPointer<vtkPointSet> RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty)
+Sharing::Particles RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty)
 {
   const vtkIdType own = particles->GetNumberOfPoints();
   vtkIdType all = own;

@@ -18,23 +18,17 @@ class RankSession : public Sharing
 public:
   RankSession(Job& job, MessageCapture* messages);
   ~RankSession() override;
-  RankSession(const RankSession&) = delete;
-  void operator=(const RankSession&) = delete;
 
   int GetRank() const override;
   int GetCount() const override;
   void OnAll(const std::function<void()>& work) override;
-  vtkSmartPointer<vtkPointSet> Read(const std::string& file, const std::vector<std::string>& walls,
-    MessageCapture* messages) override;
-  vtkSmartPointer<vtkPointSet> Read(
-    ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
+  Particles Read() override;
+  Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings) override;
   /// Puts the parts in the order of GlobalPointIds and GlobalCellIds, and drops these arrays.
   vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) override;
   vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) override;
 
 private:
-  using Particles = vtkSmartPointer<vtkPointSet>;
-
   /// The part of particles that each process reads of one file, or that the first one makes;
   /// `mayBeEmpty`: all together.
   Particles Part(const std::string& file, bool mayBeEmpty);
@@ -46,8 +40,6 @@ private:
   void ResolvePeriod(vtkPointSet* particles);
 
   vtkNew<vtkMPIController> Controller;
-  Job& Options;
-  MessageCapture* const Messages;
   const std::vector<double> Periodic; ///< as the job had it
   const bool DetectPeriod;
 };

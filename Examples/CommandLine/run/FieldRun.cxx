@@ -18,36 +18,29 @@
 #include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkThreshold.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <sstream>
 #include <stdexcept>
 
 namespace
 {
 
-vtkIdType CountValid(vtkDataSet* data)
-{
-  auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray("vtkValidPointMask"));
-  const char* begin = mask->GetPointer(0);
-  return std::count(begin, begin + mask->GetNumberOfValues(), 1);
-}
-
 vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bounds[6])
 {
-  double longest = 0.0;
+  double origin[3], size[3];
   for (int a = 0; a < 3; ++a)
   {
-    longest = std::max(longest, a == slice.Axis ? 0.0 : bounds[2 * a + 1] - bounds[2 * a]);
+    origin[a] = a == slice.Axis ? slice.Place : bounds[2 * a];
+    size[a] = a == slice.Axis ? 0.0 : bounds[2 * a + 1] - bounds[2 * a];
   }
+  const double longest = *std::max_element(size, size + 3);
   if (!(longest > 0.0))
   {
     throw std::runtime_error(std::string("--slice ") + "xyz"[slice.Axis] +
@@ -55,18 +48,11 @@ vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bo
   }
   auto image = vtkSmartPointer<vtkImageData>::New();
   const double spacing = longest / (slice.Resolution - 1);
-  double origin[3];
-  int counts[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    const bool isNormal = a == slice.Axis;
-    origin[a] = isNormal ? slice.Place : bounds[2 * a];
-    const double length = isNormal ? 0.0 : bounds[2 * a + 1] - bounds[2 * a];
-    counts[a] = 1 + static_cast<int>(std::ceil(length / spacing - 1e-9));
-  }
+  const auto count = [spacing](double length)
+  { return 1 + static_cast<int>(std::ceil(length / spacing - 1e-9)); };
   image->SetOrigin(origin);
   image->SetSpacing(spacing, spacing, spacing);
-  image->SetDimensions(counts);
+  image->SetDimensions(count(size[0]), count(size[1]), count(size[2]));
   return image;
 }
 
@@ -94,6 +80,23 @@ vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
   line->SetLines(cells);
   line->GetPointData()->AddArray(way);
   return line;
+}
+
+/// Points of a slice or a line, which needs the bounds of all particles.
+vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
+{
+  if (job.Slice.Axis < 0)
+  {
+    return MakeLine(job.Slice);
+  }
+  double bounds[6];
+  vtkNew<vtkSPHProbe> all; // walls, too
+  if (!all->FindFluidBounds(job.Probe->TakePresent(particles), bounds))
+  {
+    throw std::runtime_error(
+      "--slice has no plane to show, as --within and --only leave no particles");
+  }
+  return MakeSlice(job.Slice, bounds);
 }
 
 /// Takes the valid part: elsewhere arrays are 0, which would look like values.
@@ -130,90 +133,24 @@ std::string ArrayToShow(vtkDataSet* data)
   return found.empty() ? "WeightSum" : found;
 }
 
-/// Points of a slice or a line, which needs the bounds of all particles.
-vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
+/// A line about the points or the image.
+std::string Describe(vtkDataSet* data)
 {
-  double bounds[6];
-  vtkNew<vtkSPHProbe> all; // walls, too
-  const bool hasBounds = all->FindFluidBounds(job.Probe->TakePresent(particles), bounds);
-  if (job.Slice.Axis >= 0 && !hasBounds)
+  std::ostringstream line;
+  if (auto* mask = vtkCharArray::SafeDownCast(data->GetPointData()->GetArray("vtkValidPointMask")))
   {
-    throw std::runtime_error(
-      "--slice has no plane to show, as --within and --only leave no particles");
+    const char* begin = mask->GetPointer(0);
+    line << "points      " << data->GetNumberOfPoints() << ", "
+         << std::count(begin, begin + mask->GetNumberOfValues(), 1) << " of them valid\n";
+    return line.str();
   }
-  return job.Slice.Axis >= 0 ? MakeSlice(job.Slice, bounds) : MakeLine(job.Slice);
+  vtkDataArray* values = data->GetPointData()->GetScalars();
+  line << "image       " << DescribeSize(vtkImageData::SafeDownCast(data)) << ", "
+       << Printable(values->GetName()) << " from " << values->GetFiniteRange()[0] << " to "
+       << values->GetFiniteRange()[1] << "\n";
+  return line.str();
 }
 
-void TellWarnings(MessageCapture* messages)
-{
-  for (const std::string& warning : messages->GetWarnings())
-  {
-    Say("warning: " + warning);
-  }
-}
-
-}
-
-void ProbePoints(const Job& job, MessageCapture* messages, Sharing& sharing)
-{
-  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
-  sharing.OnFirst(
-    [&]
-    {
-      CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
-      if (!job.ProbeFile.empty())
-      {
-        points = ReadDataSet(job.ProbeFile, messages);
-        CheckDataSetFile(job.Output, points);
-      }
-    });
-  const vtkSmartPointer<vtkPointSet> particles =
-    sharing.Read(job.Inputs.front(), job.Walls, messages);
-  double seconds = 0.0;
-  sharing.OnAll(
-    [&]
-    {
-      if (job.ProbeFile.empty())
-      {
-        const vtkSmartPointer<vtkDataSet> made = MakePoints(job, particles);
-        points = sharing.IsFirst() ? made : points;
-      }
-      job.Probe->SetInputData(points);
-      job.Probe->SetSourceData(SetUpParticles(job.Probe, job, particles));
-    });
-  sharing.OnAll([&] { seconds = Update(job.Probe, job, messages); });
-  sharing.OnFirst(
-    [&]
-    {
-      TellWarnings(messages);
-      auto* result = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
-      if (!job.Quiet)
-      {
-        std::cout << "points      " << result->GetNumberOfPoints() << ", " << CountValid(result)
-                  << " of them valid\nseconds     " << seconds << "\n";
-      }
-      WriteDataSet(job.Output, result, messages);
-      if (!job.Picture.File.empty())
-      {
-        const vtkSmartPointer<vtkDataSet> shown = ValidPart(result);
-        ColorScale colors(job.Picture);
-        colors.SetName(job.Picture.ColorBy.empty() ? ArrayToShow(shown) : job.Picture.ColorBy);
-        colors.Include(shown);
-        const auto picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(job.Picture.File,
-          picture->Draw(job.Picture.File, shown, result, colors, messages, job.Slice.Axis));
-      }
-    });
-}
-
-double Project(const Job& job, vtkPointSet* particles, MessageCapture* messages, Sharing& sharing,
-  const std::string& before)
-{
-  double seconds = 0.0;
-  sharing.OnAll(
-    [&] { job.Projection->SetInputData(SetUpParticles(job.Projection, job, particles)); });
-  sharing.OnAll([&] { seconds = Update(job.Projection, job, messages, before); });
-  return seconds;
 }
 
 vtkImageData* SeenImage(const Job& job)
@@ -226,48 +163,96 @@ vtkImageData* SeenImage(const Job& job)
   return image;
 }
 
-std::string DrawProjection(const Job& job, const std::string& file, Picture& picture,
-  ColorScale& colors, MessageCapture* messages)
+std::string DescribeSize(vtkImageData* image)
 {
-  vtkImageData* image = job.Projection->GetImage();
-  colors.SetName(job.Picture.ColorBy.empty() ? image->GetPointData()->GetScalars()->GetName()
-                                             : job.Picture.ColorBy);
-  colors.Include(image);
-  const double* sight = job.Projection->GetDirection();
-  const int axis = sight[0] != 0.0 ? 0 : sight[1] != 0.0 ? 1 : 2;
-  return picture.Draw(
-    file, image, image, colors, messages, image->GetDimensions()[axis] == 1 ? axis : -1);
+  std::ostringstream text;
+  const int* size = image->GetDimensions();
+  text << size[0] << " x " << size[1] << " x " << size[2] << " pixels";
+  return text.str();
 }
 
-void ProjectParticles(const Job& job, MessageCapture* messages, Sharing& sharing)
+std::string DrawField(
+  const Sharing& sharing, const std::string& file, Picture& picture, ColorScale& colors)
 {
-  sharing.OnFirst(
-    [&] {
-      CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
-    });
-  const double seconds =
-    Project(job, sharing.Read(job.Inputs.front(), job.Walls, messages), messages, sharing, "");
+  const Job& job = sharing.Options;
+  vtkSmartPointer<vtkDataSet> frame, shown;
+  std::string name;
+  int axis = job.Slice.Axis;
+  if (job.IsProbe())
+  {
+    frame = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
+    shown = ValidPart(frame);
+    name = ArrayToShow(shown);
+  }
+  else
+  {
+    vtkImageData* image = job.Projection->GetImage();
+    const double* sight = job.Projection->GetDirection();
+    frame = shown = image;
+    name = image->GetPointData()->GetScalars()->GetName();
+    axis = sight[0] != 0.0 ? 0 : sight[1] != 0.0 ? 1 : 2;
+    axis = image->GetDimensions()[axis] == 1 ? axis : -1;
+  }
+  colors.SetName(job.Picture.ColorBy.empty() ? name : job.Picture.ColorBy);
+  colors.Include(shown);
+  return picture.Draw(file, shown, frame, colors, sharing.Messages, axis);
+}
+
+void MakeField(Sharing& sharing)
+{
+  const Job& job = sharing.Options;
+  MessageCapture* const messages = sharing.Messages;
+  const bool isProbe = job.IsProbe();
+  vtkSPHAlgorithm* const filter =
+    isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
+  vtkSmartPointer<vtkDataSet> points = vtkSmartPointer<vtkPolyData>::New(); // others have none
   sharing.OnFirst(
     [&]
     {
-      TellWarnings(messages);
-      vtkImageData* image = SeenImage(job);
-      vtkDataArray* values = image->GetPointData()->GetScalars();
-      const int* size = image->GetDimensions();
+      CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
+      if (!job.ProbeFile.empty())
+      {
+        points = ReadDataSet(job.ProbeFile, messages);
+        CheckDataSetFile(job.Output, points);
+      }
+    });
+  const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
+  double seconds = 0.0;
+  sharing.OnAll(
+    [&]
+    {
+      if (isProbe && job.ProbeFile.empty())
+      {
+        const vtkSmartPointer<vtkDataSet> made = MakePoints(job, particles);
+        points = sharing.IsFirst() ? made : points;
+      }
+      const vtkSmartPointer<vtkPointSet> source = SetUpParticles(filter, job, particles);
+      filter->SetInputDataObject(isProbe ? 1 : 0, source);
+      if (isProbe)
+      {
+        filter->SetInputDataObject(0, points);
+      }
+    });
+  sharing.OnAll([&] { seconds = Update(filter, sharing); });
+  sharing.OnFirst(
+    [&]
+    {
+      for (const std::string& warning : messages->GetWarnings())
+      {
+        Say("warning: " + warning);
+      }
+      vtkDataSet* result =
+        isProbe ? vtkDataSet::SafeDownCast(job.Probe->GetOutput()) : SeenImage(job);
       if (!job.Quiet)
       {
-        std::cout << "image       " << size[0] << " x " << size[1] << " x " << size[2]
-                  << " pixels, " << Printable(values->GetName()) << " from "
-                  << values->GetFiniteRange()[0] << " to " << values->GetFiniteRange()[1]
-                  << "\nseconds     " << seconds << "\n";
+        std::cout << Describe(result) << "seconds     " << seconds << "\n";
       }
-      WriteDataSet(job.Output, image, messages);
+      WriteDataSet(job.Output, result, messages);
       if (!job.Picture.File.empty())
       {
         ColorScale colors(job.Picture);
         const auto picture = LoadExtra().NewPicture(job.Picture);
-        WriteOutput(
-          job.Picture.File, DrawProjection(job, job.Picture.File, *picture, colors, messages));
+        WriteOutput(job.Picture.File, DrawField(sharing, job.Picture.File, *picture, colors));
       }
     });
 }

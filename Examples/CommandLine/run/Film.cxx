@@ -3,32 +3,26 @@
 #include "CollectionFile.h"
 #include "ColorScale.h"
 #include "DataFile.h"
-#include "Ending.h"
 #include "Extra.h"
 #include "FileName.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "OutputFile.h"
-#include "ParticleFile.h"
 #include "ParticleTimes.h"
 #include "Picture.h"
 #include "RunStatistics.h"
 #include "Runs.h"
 #include "SafeText.h"
-#include "Sharing.h"
 
 #include "vtkImageData.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <sstream>
-#include <stdexcept>
 
 namespace
 {
@@ -54,25 +48,13 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// No file is written over another, and, beside a .pvd file, none over one that is no step of an
-/// older film: nobody named these.
-void CheckFiles(const Job& job, const std::vector<std::string>& stored,
-  const std::vector<std::string>& surfaces, MessageCapture* messages)
+/// Nobody named the files beside a .pvd file: each is new, or a step of an older film.
+void CheckSteps(const Job& job, const std::vector<std::string>& surfaces)
 {
   if (Printable(job.Output) != job.Output)
   {
     throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
   }
-  std::vector<std::string> inputs = job.InputFiles(), outputs = surfaces;
-  inputs.insert(inputs.end(), stored.begin(), stored.end());
-  for (std::size_t i = 0; !job.Picture.File.empty() && i < surfaces.size(); ++i)
-  {
-    outputs.push_back(NameOfStep(job.Picture.File, i));
-  }
-  outputs.insert(outputs.end(),
-    { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
-      IsCollectionFile(job.Output) ? job.Output : "" });
-  CheckOutputs(ListFiles(inputs, messages), outputs);
   for (const std::string& surface : surfaces)
   {
     std::error_code error;
@@ -86,24 +68,37 @@ void CheckFiles(const Job& job, const std::vector<std::string>& stored,
   }
 }
 
-class Film
+class Film : public Series
 {
 public:
-  Film(const Job& job, MessageCapture* messages, Sharing& sharing)
-    : Options(job)
-    , Messages(messages)
-    , Shared(sharing)
-    , Times(job, messages)
-    , Surfaces(ListSurfaces(job, this->Times.Get().size()))
-    , Colors(job.Picture)
-    , FrameColors(job.Picture)
-    , Pieces(job)
-    , Numbers(job)
-    , ListFile(job.Output)
-    , PieceFile(job.ComponentFile)
-    , NumberFile(job.NumbersFile)
+  explicit Film(Sharing& sharing)
+    : Series(sharing)
+    , Surfaces(ListSurfaces(this->Options, this->Times.Get().size()))
+    , Colors(this->Options.Picture)
+    , FrameColors(this->Options.Picture)
+    , ListFile(IsCollectionFile(this->Options.Output) ? this->Options.Output : "")
+    , PieceFile(this->Options.ComponentFile)
+    , NumberFile(this->Options.NumbersFile)
   {
-    sharing.OnFirst([&] { CheckFiles(job, this->Times.ListFiles(), this->Surfaces, messages); });
+    const Job& job = this->Options;
+    if (!job.NumbersFile.empty())
+    {
+      AddGauges(job);
+    }
+    sharing.OnFirst(
+      [this, &job]
+      {
+        std::vector<std::string> outputs = this->Surfaces;
+        for (std::size_t i = 0; !job.Picture.File.empty() && i < this->Surfaces.size(); ++i)
+        {
+          outputs.push_back(NameOfStep(job.Picture.File, i));
+        }
+        outputs.insert(outputs.end(),
+          { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
+            IsCollectionFile(job.Output) ? job.Output : "" });
+        this->Times.CheckOutputs(outputs);
+        CheckSteps(job, this->Surfaces);
+      });
     if (!job.Picture.File.empty())
     {
       this->Drawn = LoadExtra().NewPicture(job.Picture);
@@ -112,112 +107,60 @@ public:
 
   bool Make()
   {
-    bool isGood = true;
-    for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
-    {
-      const Activity making(
-        this->Label(i) + ": the run failed", FaultsOfDrivers(this->Options.Surface->GetDevice()));
-      isGood = this->TryStep(i) && isGood;
-    }
+    const bool isGood = this->MakeAll();
     this->Shared.OnFirst(
       [this]
       {
         this->List(true);
-        this->Said.TellCounts();
-        this->WriteStatistics();
+        if (!this->Options.StatisticsFile.empty())
+        {
+          std::cout.flush(); // the file may be /dev/stdout
+          WriteOutput(
+            this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Last));
+        }
       });
     return isGood;
   }
 
 private:
-  std::string Label(std::size_t i) const
+  std::string Label(std::size_t i) const override
   {
     return this->Surfaces[i] + " (time " + TimeText(this->Times.Get()[i]) + ")";
   }
 
-  bool TryStep(std::size_t i)
+  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
   {
-    const std::string sentence = FailureOf([&] { this->MakeStep(i); });
-    if (sentence.empty())
-    {
-      return true;
-    }
-    if (ShowsProgress(this->Options))
-    {
-      std::fputs("\r\033[K", stderr);
-    }
-    this->Tell("", i, sentence);
-    FilmStep step = this->Describe(i);
-    step.Error = sentence;
-    this->Add(step, StepAsJson(step, nullptr, 0.0));
-    this->Times.Reset();
-    return false;
-  }
-
-  void Tell(const std::string& kind, std::size_t i, const std::string& sentence)
-  {
-    if (this->Shared.IsFirst())
-    {
-      this->Said.Tell(kind, this->Label(i), sentence);
-    }
-  }
-
-  /// Describes a step without its statistics.
-  FilmStep Describe(std::size_t i) const
-  {
-    FilmStep step;
-    step.Time = this->Times.Get()[i];
-    step.Output = this->Surfaces[i];
-    step.Inputs = this->Times.ListFiles(step.Time);
-    return step;
-  }
-
-  /// Keeps what was made of a step. The statistics of many are kept where somebody wants them only.
-  void Add(FilmStep step, const std::string& statistics)
-  {
-    if (!this->Options.StatisticsFile.empty())
-    {
-      step.Statistics = statistics;
-    }
-    this->Made.push_back(step);
-  }
-
-  void MakeStep(std::size_t i)
-  {
-    const double time = this->Times.Get()[i];
     const std::string progress = "step " + std::to_string(i + 1) + " of " +
-      std::to_string(this->Times.Get().size()) + ", time " + TimeText(time) + ": ";
-    std::vector<std::string> warnings;
-    const vtkSmartPointer<vtkPointSet> particles = this->Shared.Read(this->Times, time, warnings);
-    this->Options.Has("--project") ? this->MakeImage(i, particles, progress, warnings)
-                                   : this->MakeSurface(i, particles, progress, warnings);
-    for (const std::string& warning : warnings)
+      std::to_string(this->Surfaces.size()) + ", time " + TimeText(this->Times.Get()[i]) + ": ";
+    if (this->Options.Has("--project"))
     {
-      this->Tell("warning: ", i, warning);
+      this->MakeImage(i, particles, progress, warnings);
+    }
+    else
+    {
+      this->MakeSurface(i, particles, progress, warnings);
     }
   }
+
+  void Miss(std::size_t i, const std::string& error) override { this->Add(i, nullptr, 0.0, error); }
 
   void MakeImage(std::size_t i, vtkPointSet* particles, const std::string& progress,
     std::vector<std::string>& warnings)
   {
-    const double seconds =
-      Project(this->Options, particles, this->Messages, this->Shared, progress);
+    vtkSPHProjection* projection = this->Options.Projection;
+    double seconds = 0.0;
+    this->Shared.OnAll(
+      [&] { projection->SetInputData(SetUpParticles(projection, this->Options, particles)); });
+    this->Shared.OnAll([&] { seconds = Update(projection, this->Shared, progress); });
     this->Messages->AppendWarnings(warnings);
     this->Shared.OnFirst(
       [&]
       {
         vtkImageData* image = SeenImage(this->Options);
-        const int* size = image->GetDimensions();
         this->Write(i, DataSetBytes(this->Surfaces[i], image, this->Messages),
-          [&](const std::string& frame) {
-            return DrawProjection(
-              this->Options, frame, *this->Drawn, this->FrameColors, this->Messages);
-          });
-        this->Add(this->Describe(i), "");
-        this->List(false);
-        std::ostringstream what;
-        what << size[0] << " x " << size[1] << " x " << size[2] << " pixels, ";
-        this->TellStep(i, what.str(), seconds);
+          [&](const std::string& frame)
+          { return DrawField(this->Shared, frame, *this->Drawn, this->FrameColors); });
+        this->Keep(i, nullptr, DescribeSize(image), seconds);
       });
   }
 
@@ -230,61 +173,34 @@ private:
       [&]
       {
         SetUpSurface(this->Options, particles);
-        run = Extract(this->Options, this->Messages, progress);
+        run = Extract(this->Shared, progress);
       });
-    for (const std::string& warning : Warnings(run, this->Messages))
-    {
-      warnings.push_back(warning);
-    }
-    this->Shared.OnAll([&] { this->Pieces.Add(run, particles, this->Messages, time); });
+    this->Shared.OnAll([&] { AddPieces(this->Pieces, this->Shared, run, particles, time); });
     if (const vtkSmartPointer<vtkPolyData> whole = this->Shared.Merge(run.Surface))
     {
       run.Surface = whole;
     }
-    this->Shared.OnAll([&] { this->Numbers.Add(run, particles, this->Messages, time, warnings); });
-    this->Shared.OnFirst([&] { this->Keep(i, run, particles, warnings); });
-  }
-
-  /// Writes what was made of a step.
-  void Keep(
-    std::size_t i, const Run& run, vtkPointSet* particles, std::vector<std::string>& warnings)
-  {
-    if (i == 0)
-    {
-      AddHintOfPeriod(this->Options, particles, warnings);
-    }
-    vtkPolyData* surface = run.Surface;
-    const std::string& file = this->Surfaces[i];
-    this->Colors.Include(surface);
-    this->Write(i, SurfaceBytes(file, surface, this->Colors, this->Messages),
-      [&](const std::string& frame)
+    this->Shared.OnAll([&] { AddFilmNumbers(this->Numbers, this->Shared, run, particles, time); });
+    this->Shared.OnFirst(
+      [&]
       {
-        this->FrameColors.Suggest(surface, this->Options.Surface->GetIsoValueArrayName());
-        this->FrameColors.Include(surface);
-        return this->Drawn->Draw(frame, surface, particles, this->FrameColors, this->Messages);
+        const std::string& file = this->Surfaces[i];
+        vtkPolyData* surface = run.Surface;
+        Inspect(this->Options, file, run, particles, this->Colors, i == 0);
+        this->Write(i, SurfaceBytes(file, surface, this->Colors, this->Messages),
+          [&](const std::string& frame) {
+            return DrawSurface(
+              this->Shared, frame, surface, particles, *this->Drawn, this->FrameColors);
+          });
+        this->Last = run.Statistics;
+        const vtkIdType triangles = surface->GetNumberOfPolys(),
+                        lines = triangles > 0 ? 0 : surface->GetNumberOfLines();
+        this->Keep(i, run.Statistics,
+          std::to_string(surface->GetNumberOfPoints()) + " points, " +
+            std::to_string(lines + triangles) + (lines > 0 ? " lines" : " triangles"),
+          run.WallSeconds);
       });
-    const std::string lost =
-      LostArrays(file, surface, this->Colors, ArraysWithoutPlace(this->Options, particles));
-    warnings.insert(warnings.end(), lost.empty() ? 0 : 1, lost);
-    this->Last = run.Statistics;
-    const FilmStep step = this->Describe(i);
-    this->Add(step, StepAsJson(step, run.Statistics, run.WallSeconds));
-    this->List(false);
-    const vtkIdType triangles = surface->GetNumberOfPolys(),
-                    lines = triangles > 0 ? 0 : surface->GetNumberOfLines();
-    std::ostringstream what;
-    what << surface->GetNumberOfPoints() << " points, " << (lines > 0 ? lines : triangles)
-         << (lines > 0 ? " lines, " : " triangles, ");
-    this->TellStep(i, what.str(), run.WallSeconds);
-  }
-
-  void TellStep(std::size_t i, const std::string& what, double seconds) const
-  {
-    if (!this->Options.Quiet)
-    {
-      std::cout << Printable(this->Label(i)) << ": " << what << std::setprecision(3) << seconds
-                << " s" << std::endl;
-    }
+    warnings.insert(warnings.end(), run.Warnings.begin(), run.Warnings.end());
   }
 
   /// The step's file and picture, both or none.
@@ -302,7 +218,32 @@ private:
     files.Commit();
   }
 
-  std::string ListText() const
+  /// Lists a step that was written, and says so.
+  void Keep(std::size_t i, vtkFieldData* statistics, const std::string& what, double seconds)
+  {
+    this->Add(i, statistics, seconds, "");
+    this->List(false);
+    if (!this->Options.Quiet)
+    {
+      std::cout << Printable(this->Label(i)) << ": " << what << ", " << std::setprecision(3)
+                << seconds << " s" << std::endl;
+    }
+  }
+
+  /// The statistics of many steps are kept where somebody wants them only.
+  void Add(std::size_t i, vtkFieldData* statistics, double seconds, const std::string& error)
+  {
+    const double time = this->Times.Get()[i];
+    FilmStep step{ time, this->Times.ListFiles(time), this->Surfaces[i], error, "" };
+    if (!this->Options.StatisticsFile.empty())
+    {
+      step.Statistics = StepAsJson(step, statistics, seconds);
+    }
+    this->Made.push_back(step);
+  }
+
+  /// Writes the lists and tables of all surfaces so far.
+  void List(bool isLast)
   {
     std::vector<CollectionEntry> entries;
     for (const FilmStep& step : this->Made)
@@ -312,59 +253,27 @@ private:
         entries.push_back({ step.Time, step.Output, "" });
       }
     }
-    return CollectionText(entries);
-  }
-
-  /// The lists and tables of all surfaces so far.
-  void List(bool isLast)
-  {
-    if (std::all_of(this->Made.begin(), this->Made.end(),
-          [](const FilmStep& step) { return !step.Error.empty(); }))
+    if (!entries.empty())
     {
-      return;
-    }
-    if (IsCollectionFile(this->Options.Output))
-    {
-      this->ListFile.Write([this] { return this->ListText(); }, isLast);
-    }
-    if (!this->Options.ComponentFile.empty())
-    {
-      this->PieceFile.Write([this] { return this->Pieces.Text(); }, isLast);
-    }
-    if (!this->Options.NumbersFile.empty())
-    {
-      this->NumberFile.Write([this] { return this->Numbers.Text(); }, isLast);
+      this->ListFile.Write([&entries] { return CollectionText(entries); }, isLast);
+      this->PieceFile.Write([this] { return this->Pieces; }, isLast);
+      this->NumberFile.Write([this] { return this->Numbers; }, isLast);
     }
   }
 
-  void WriteStatistics() const
-  {
-    if (!this->Options.StatisticsFile.empty())
-    {
-      std::cout.flush(); // the file may be /dev/stdout
-      WriteOutput(this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Last));
-    }
-  }
-
-  const Job& Options;
-  MessageCapture* const Messages;
-  Sharing& Shared;
-  ParticleTimes Times;
   const std::vector<std::string> Surfaces;
   std::vector<FilmStep> Made;
   vtkSmartPointer<vtkFieldData> Last; ///< of the last one that went well
-  Sentences Said;
   ColorScale Colors, FrameColors;
-  ComponentTable Pieces;
-  FilmNumbers Numbers;
+  std::string Pieces, Numbers; ///< tables
   GrowingFile ListFile, PieceFile, NumberFile;
   std::unique_ptr<Picture> Drawn; ///< where pictures are asked for
 };
 
 }
 
-bool MakeFilm(const Job& job, MessageCapture* messages, Sharing& sharing)
+bool MakeFilm(Sharing& sharing)
 {
-  job.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one
-  return Film(job, messages, sharing).Make();
+  sharing.Options.Surface->KeepDeviceDataOn(); // the next step takes the buffers of this one
+  return Film(sharing).Make();
 }

@@ -8,7 +8,6 @@
 #include "ParticleTimes.h"
 #include "Runs.h"
 #include "SafeText.h"
-#include "Sharing.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -20,155 +19,12 @@
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
-#include <functional>
 #include <iostream>
 #include <stdexcept>
 #include <utility>
 
 namespace
 {
-
-/// A measurement at each time of the input.
-struct MeterTask
-{
-  vtkSPHMeter* Meter;
-  std::string Noun; ///< "gauge"
-  std::size_t Places;
-  /// Completes the table of a time, on all processes; may be empty.
-  std::function<void(vtkTable* table, double time)> Finish;
-  /// Writes the only table in another form; may be empty: OUTPUT is a .csv file.
-  std::function<void(vtkTable* table)> WriteImage;
-};
-
-/// The steps of a table or the one of an image, and what is said of them.
-class MeterTable
-{
-public:
-  MeterTable(const Job& job, const MeterTask& task, MessageCapture* messages, Sharing& sharing)
-    : Options(job)
-    , Task(task)
-    , Messages(messages)
-    , Shared(sharing)
-    , Times(job, messages)
-    , File(job.Output)
-  {
-    sharing.OnFirst(
-      [&]
-      {
-        std::vector<std::string> inputs = job.InputFiles();
-        const std::vector<std::string> stored = this->Times.ListFiles();
-        inputs.insert(inputs.end(), stored.begin(), stored.end());
-        CheckOutputs(ListFiles(inputs, messages), { job.Output });
-      });
-    if (this->IsImage() && this->Times.Get().size() > 1)
-    {
-      throw std::runtime_error(
-        "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
-    }
-  }
-
-  bool Make()
-  {
-    bool isGood = true;
-    for (const double time : this->Times.Get())
-    {
-      isGood = this->TryStep(time) && isGood;
-    }
-    this->Said.TellCounts();
-    if (this->Made == 0)
-    {
-      throw std::runtime_error("no step could be measured, so no table was written");
-    }
-    this->Write(true);
-    if (!this->Options.Quiet && this->Shared.IsFirst())
-    {
-      const std::size_t places = this->Task.Places, steps = this->Times.Get().size();
-      std::cout << places << " " << this->Task.Noun << (places == 1 ? "" : "s") << ", " << steps
-                << (steps == 1 ? " step" : " steps")
-                << "; volumes: " << this->Task.Meter->GetUsedVolume() << "\n";
-    }
-    return isGood;
-  }
-
-private:
-  bool IsImage() const { return static_cast<bool>(this->Task.WriteImage); }
-
-  bool TryStep(double time)
-  {
-    const std::string file = Printable(this->Times.ListFiles(time).front());
-    const std::string label =
-      this->Options.Times.empty() ? file : file + " (time " + TimeText(time) + ")";
-    const std::string error = FailureOf([&] { this->MakeStep(time, label); });
-    if (error.empty())
-    {
-      return true;
-    }
-    if (this->Times.Get().size() == 1)
-    {
-      throw std::runtime_error(error);
-    }
-    if (this->Shared.IsFirst())
-    {
-      this->Said.Tell("", label, error);
-    }
-    this->Times.Reset();
-    return false;
-  }
-
-  void MakeStep(double time, const std::string& label)
-  {
-    std::vector<std::string> warnings;
-    const vtkSmartPointer<vtkPointSet> particles = this->Shared.Read(this->Times, time, warnings);
-    vtkTable* table = nullptr;
-    this->Shared.OnAll(
-      [&]
-      {
-        table = MeasureWith(this->Task.Meter, this->Options, particles, time, this->Messages,
-          this->Times.Get().size() > 1 ? label + ": " : "");
-      });
-    if (this->Task.Finish)
-    {
-      this->Task.Finish(table, time);
-    }
-    this->Messages->AppendWarnings(warnings);
-    for (const std::string& warning : warnings)
-    {
-      if (this->Shared.IsFirst() &&
-        (!this->IsImage() || warning.find("is outside of all fluid") == std::string::npos))
-      {
-        this->Said.Tell("warning: ", label, warning);
-      }
-    }
-    this->Text += (this->Made++ == 0 ? TableHeader(table) : "") + TableRows(table);
-    this->Write(false);
-  }
-
-  void Write(bool isLast)
-  {
-    this->Shared.OnFirst(
-      [&]
-      {
-        if (!this->IsImage())
-        {
-          this->File.Write([this] { return this->Text; }, isLast);
-        }
-        else if (isLast)
-        {
-          this->Task.WriteImage(this->Task.Meter->GetOutput());
-        }
-      });
-  }
-
-  const Job& Options;
-  const MeterTask& Task;
-  MessageCapture* const Messages;
-  Sharing& Shared;
-  ParticleTimes Times;
-  GrowingFile File;
-  Sentences Said;
-  std::string Text;
-  std::size_t Made = 0; ///< steps
-};
 
 /// An elevation map: Level is the height of the surface.
 void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
@@ -267,14 +123,106 @@ private:
   std::vector<double> Before, Sums; ///< of volume and mass, for each section
 };
 
+/// The steps of a table, or the one of an image.
+class MeterTable : public Series
+{
+public:
+  explicit MeterTable(Sharing& sharing)
+    : Series(sharing)
+    , IsFlux(this->Options.IsFlux())
+    , IsImage(!IsFlux && this->Options.Grid.Counts[0] > 0)
+    , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
+    , File(IsImage ? "" : this->Options.Output)
+  {
+    sharing.OnFirst([this] { this->Times.CheckOutputs({ this->Options.Output }); });
+    if (this->IsImage && this->Times.Get().size() > 1)
+    {
+      throw std::runtime_error(
+        "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
+    }
+  }
+
+  bool Make(std::size_t places)
+  {
+    const bool isGood = this->MakeAll();
+    if (this->Text.empty())
+    {
+      throw std::runtime_error("no step could be measured, so no table was written");
+    }
+    this->Shared.OnFirst(
+      [this, places]
+      {
+        this->File.Write([this] { return this->Text; }, true);
+        if (this->IsImage)
+        {
+          WriteGrid(this->Options, this->Meter->GetOutput(), this->Messages);
+        }
+        if (!this->Options.Quiet)
+        {
+          const std::size_t steps = this->Times.Get().size();
+          std::cout << places << (this->IsFlux ? " section" : " gauge") << (places == 1 ? "" : "s")
+                    << ", " << steps << (steps == 1 ? " step" : " steps")
+                    << "; volumes: " << this->Meter->GetUsedVolume() << "\n";
+        }
+      });
+    return isGood;
+  }
+
+private:
+  std::string Label(std::size_t i) const override
+  {
+    const double time = this->Times.Get()[i];
+    return this->Times.ListFiles(time).front() +
+      (this->Options.Times.empty() ? "" : " (time " + TimeText(time) + ")");
+  }
+
+  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
+  {
+    const double time = this->Times.Get()[i];
+    const std::string progress =
+      this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
+    vtkTable* table = nullptr;
+    this->Shared.OnAll(
+      [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, progress); });
+    if (this->IsFlux)
+    {
+      this->Sums.AddTo(table, time);
+    }
+    for (const std::string& warning : this->Messages->GetWarnings())
+    {
+      if (!this->IsImage || warning.find("is outside of all fluid") == std::string::npos)
+      {
+        warnings.push_back(warning);
+      }
+    }
+    AppendTable(this->Text, table);
+    this->Shared.OnFirst([this] { this->File.Write([this] { return this->Text; }, false); });
+  }
+
+  /// The error of an only time is that of the program.
+  void Miss(std::size_t, const std::string& error) override
+  {
+    if (this->Times.Get().size() == 1)
+    {
+      throw std::runtime_error(error);
+    }
+  }
+
+  const bool IsFlux, IsImage;
+  vtkSPHMeter* const Meter;
+  GrowingFile File; ///< nameless for an image
+  Flowed Sums;
+  std::string Text;
+};
+
 }
 
-vtkTable* MeasureWith(vtkSPHMeter* meter, const Job& job, vtkPointSet* particles, double time,
-  MessageCapture* messages, const std::string& progress)
+vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
+  double time, const std::string& progress)
 {
-  meter->SetInputData(SetUpParticles(meter, job, particles));
+  meter->SetInputData(SetUpParticles(meter, sharing.Options, particles));
   meter->SetTime(time);
-  Update(meter, job, messages, progress);
+  Update(meter, sharing, progress);
   return meter->GetOutput();
 }
 
@@ -289,25 +237,14 @@ std::size_t AddGauges(const Job& job)
   return gauges.size();
 }
 
-bool MakeGaugeTable(const Job& job, MessageCapture* messages, Sharing& sharing)
+bool MakeMeterTable(Sharing& sharing)
 {
-  MeterTask task{ job.Gauge, "gauge", AddGauges(job), {}, {} };
-  if (job.Grid.Counts[0] > 0)
-  {
-    task.WriteImage = [&job, messages](vtkTable* table) { WriteGrid(job, table, messages); };
-  }
-  return MeterTable(job, task, messages, sharing).Make();
-}
-
-bool MakeFluxTable(const Job& job, MessageCapture* messages, Sharing& sharing)
-{
-  const std::vector<Place> sections = ListSections(job);
+  const Job& job = sharing.Options;
+  const std::vector<Place> sections = job.IsFlux() ? ListSections(job) : std::vector<Place>();
   for (const Place& section : sections)
   {
-    AddSection(job, section, messages);
+    AddSection(job, section, sharing.Messages);
   }
-  Flowed flowed;
-  const MeterTask task{ job.Flux, "section", sections.size(),
-    [&flowed](vtkTable* table, double time) { flowed.AddTo(table, time); }, {} };
-  return MeterTable(job, task, messages, sharing).Make();
+  const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
+  return MeterTable(sharing).Make(places);
 }

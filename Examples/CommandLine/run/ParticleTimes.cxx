@@ -3,14 +3,14 @@
 #include "ParticleTimes.h"
 
 #include "CollectionFile.h"
+#include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
+#include "OutputFile.h"
 #include "ParticleFile.h"
 #include "SafeText.h"
-#include "Sharing.h"
 
-#include "vtkPolyData.h"
 #include "vtkSPHTemporalInterpolator.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace
 {
 
 /// The stored times, or those that were asked for.
-std::vector<double> ListTimes(const Job& job, const ParticleTimes::Steps& steps)
+std::vector<double> ListTimes(const Job& job, const std::vector<ParticleTimes::Step>& steps)
 {
   std::vector<double> times = job.Times;
   for (std::size_t i = 0; job.Times.empty() && i < steps.size(); ++i)
@@ -58,25 +58,25 @@ std::string TimeText(double time)
   return stream.str();
 }
 
-ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
-  : Messages(messages)
-  , HasTimes(IsCollectionFile(job.Inputs.front()))
-  , Ids(job.IdArray)
-  , Stored(ListSteps(job, messages, this->Notes))
-  , Times(ListTimes(job, this->Stored))
+ParticleTimes::ParticleTimes(const Sharing& sharing)
+  : Shared(sharing)
 {
-  for (const std::string& note : this->Notes)
+  const Job& job = sharing.Options;
+  std::vector<std::string> notes;
+  this->Steps = ListSteps(job, sharing.Messages, notes);
+  this->Times = ListTimes(job, this->Steps);
+  for (const std::string& note : notes)
   {
     if (LaunchedRank() == 0)
     {
       Say("warning: " + note);
     }
   }
-  const bool wallsMove = std::any_of(this->Stored.begin(), this->Stored.end(),
-    [this](const ParticleSteps::Step& step) { return step.Walls != this->Stored.front().Walls; });
+  const bool wallsMove = std::any_of(this->Steps.begin(), this->Steps.end(),
+    [this](const Step& step) { return step.Walls != this->Steps.front().Walls; });
   for (double time : this->Times)
   {
-    if (wallsMove && !this->IsStored(time))
+    if (wallsMove && !this->GetStored(time))
     {
       throw UsageError("--times: " + TimeText(time) +
         " is between two steps, where walls of each step (--walls) are not known");
@@ -87,68 +87,109 @@ ParticleTimes::ParticleTimes(const Job& job, MessageCapture* messages)
 
 ParticleTimes::~ParticleTimes() = default;
 
-std::vector<std::string> ParticleTimes::ListFiles() const
+const ParticleTimes::Step* ParticleTimes::GetStored(double time) const
 {
-  std::vector<std::string> files;
-  for (const ParticleSteps::Step& step : this->Stored)
-  {
-    files.insert(files.end(), step.Files.begin(), step.Files.end());
-    files.insert(files.end(), step.Walls.begin(), step.Walls.end());
-  }
-  return files;
-}
-
-const std::vector<std::string>& ParticleTimes::ListWalls(double time) const
-{
-  return FindStep(this->Stored, time)->Walls;
-}
-
-bool ParticleTimes::IsStored(double time) const
-{
-  return FindStep(this->Stored, time)->Time == time;
+  const auto next = FindStep(this->Steps, time);
+  return next->Time == time ? &*next : nullptr;
 }
 
 std::vector<std::string> ParticleTimes::ListFiles(double time) const
 {
   std::vector<std::string> files;
-  const auto next = FindStep(this->Stored, time);
-  for (auto used = this->IsStored(time) ? next : next - 1; used <= next; ++used)
+  const auto next = FindStep(this->Steps, time);
+  for (auto used = next->Time == time ? next : next - 1; used <= next; ++used)
   {
     files.insert(files.end(), used->Files.begin(), used->Files.end());
   }
   return files;
 }
 
+void ParticleTimes::CheckOutputs(const std::vector<std::string>& outputs) const
+{
+  std::vector<std::string> inputs = this->Shared.Options.InputFiles();
+  for (const Step& step : this->Steps)
+  {
+    inputs.insert(inputs.end(), step.Files.begin(), step.Files.end());
+    inputs.insert(inputs.end(), step.Walls.begin(), step.Walls.end());
+  }
+  ::CheckOutputs(::ListFiles(inputs, this->Shared.Messages), outputs);
+}
+
 void ParticleTimes::Reset()
 {
   vtkNew<ParticleSteps> source;
   vtkNew<vtkSPHTemporalInterpolator> interpolator;
-  source->SetSteps(&this->Stored, this->Messages);
-  interpolator->SetIdArrayName(this->Ids.c_str());
+  source->SetSteps(&this->Steps, this->Shared.Messages);
+  interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
   interpolator->SetInputConnection(source->GetOutputPort());
   this->Source = source;
   this->Interpolator = interpolator;
 }
 
-vtkSmartPointer<vtkPointSet> ParticleTimes::At(double time, std::vector<std::string>& warnings)
+Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
 {
-  this->Messages->Clear();
+  MessageCapture* const messages = this->Shared.Messages;
+  messages->Clear();
   this->Source->ClearError();
   this->Interpolator->UpdateTimeStep(time);
-  std::string error = this->Source->GetError();
-  error = error.empty() ? this->Interpolator->GetErrorMessage() : error;
-  this->Messages->Check(error);
-  for (const std::string& sentence : this->Messages->GetWarnings())
+  const std::string error = this->Source->GetError();
+  messages->Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
+  const bool hasTimes = IsCollectionFile(this->Shared.Options.Inputs.front());
+  for (const std::string& sentence : messages->GetWarnings())
   {
     warnings.push_back(Reworded(sentence, "set the time scale",
-      this->HasTimes ? "change those in the .pvd file" : "use --time-step"));
+      hasTimes ? "change those in the .pvd file" : "use --time-step"));
   }
   auto particles = vtkSmartPointer<vtkPolyData>::New();
   particles->ShallowCopy(this->Interpolator->GetOutput());
-  if (this->WallFiles != this->ListWalls(time))
+  const std::vector<std::string>& walls = FindStep(this->Steps, time)->Walls;
+  if (this->WallFiles != walls)
   {
-    this->Walls = ReadWalls(this->ListWalls(time), this->Messages);
-    this->WallFiles = this->ListWalls(time);
+    this->Walls = ReadWalls(walls, messages);
+    this->WallFiles = walls;
   }
   return AddWalls(particles, this->Walls);
+}
+
+Series::Series(Sharing& sharing)
+  : Shared(sharing)
+  , Options(sharing.Options)
+  , Messages(sharing.Messages)
+  , Times(sharing)
+{
+}
+
+bool Series::MakeAll()
+{
+  bool isGood = true;
+  Sentences said;
+  for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
+  {
+    const std::string label = this->Label(i);
+    const Activity making(
+      label + ": the run failed", FaultsOfDrivers(this->Options.Surface->GetDevice()));
+    std::vector<std::string> warnings;
+    const std::string error = FailureOf(
+      [&]
+      {
+        const Sharing::Particles particles =
+          this->Shared.Read(this->Times, this->Times.Get()[i], warnings);
+        this->MakeStep(i, particles, warnings);
+      });
+    if (!error.empty())
+    {
+      this->Miss(i, error);
+      this->Times.Reset();
+    }
+    for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
+    {
+      if (this->Shared.IsFirst())
+      {
+        said.Tell(error.empty() ? "warning: " : "", label, warning);
+      }
+    }
+    isGood = isGood && error.empty();
+  }
+  said.TellCounts();
+  return isGood;
 }

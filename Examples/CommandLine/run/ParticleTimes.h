@@ -4,17 +4,12 @@
 #define ParticleTimes_h
 
 #include "ParticleSteps.h"
-
-#include "vtkNew.h"
-#include "vtkSmartPointer.h"
+#include "Sharing.h"
 
 #include <string>
 #include <vector>
 
-class MessageCapture;
-class vtkPointSet;
 class vtkSPHTemporalInterpolator;
-struct Job;
 
 /// A number of a time, with the digits that it was given with.
 std::string TimeText(double time);
@@ -24,45 +19,64 @@ std::string TimeText(double time);
 class ParticleTimes
 {
 public:
-  using Steps = std::vector<ParticleSteps::Step>;
+  using Step = ParticleSteps::Step;
 
   /// Throws UsageError or std::runtime_error with one sentence.
-  ParticleTimes(const Job& job, MessageCapture* messages);
+  explicit ParticleTimes(const Sharing& sharing);
   ~ParticleTimes();
   ParticleTimes(const ParticleTimes&) = delete;
   void operator=(const ParticleTimes&) = delete;
 
   const std::vector<double>& Get() const { return this->Times; }
 
-  /// Whether that time is one of the series, and not between two.
-  bool IsStored(double time) const;
-
-  /// Lists all files that are read.
-  std::vector<std::string> ListFiles() const;
+  /// The step of that time; null where it is between two.
+  const Step* GetStored(double time) const;
 
   /// Files that a time is made of, without walls.
   std::vector<std::string> ListFiles(double time) const;
 
-  /// The walls of a time that is stored, or of all times.
-  const std::vector<std::string>& ListWalls(double time) const;
+  /// Throws UsageError or std::runtime_error where the outputs cannot be written, or would be
+  /// written over any file that is read.
+  void CheckOutputs(const std::vector<std::string>& outputs) const;
 
   /// Returns the particles at a time. Throws std::runtime_error; call Reset() then, so that nothing
   /// is left of the failure.
-  vtkSmartPointer<vtkPointSet> At(double time, std::vector<std::string>& warnings);
+  Sharing::Particles At(double time, std::vector<std::string>& warnings);
   void Reset();
 
 private:
-  MessageCapture* const Messages;
-  const bool HasTimes; ///< of their own, in a .pvd file
-  const std::string Ids;
-  std::vector<std::string> Notes; ///< what is said of the list of steps
-  const Steps Stored;
-  const std::vector<double> Times;
-  vtkSmartPointer<vtkPointSet> Walls;
+  const Sharing& Shared;
+  std::vector<Step> Steps;
+  std::vector<double> Times;
+  Sharing::Particles Walls;
   std::vector<std::string>
     WallFiles; ///< that Walls were read from: once where all steps have the same
   vtkSmartPointer<ParticleSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
+};
+
+/// Work on each time of the input, and what is said of it.
+class Series
+{
+public:
+  explicit Series(Sharing& sharing);
+  virtual ~Series() = default;
+  Series(const Series&) = delete;
+  void operator=(const Series&) = delete;
+
+  /// Where a time fails, says so, and does the others; returns false then.
+  bool MakeAll();
+
+protected:
+  virtual std::string Label(std::size_t i) const = 0;
+  virtual void MakeStep(
+    std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) = 0;
+  virtual void Miss(std::size_t i, const std::string& error) = 0;
+
+  Sharing& Shared;
+  const Job& Options;
+  MessageCapture* const Messages;
+  ParticleTimes Times;
 };
 
 #endif

@@ -5,6 +5,7 @@
 #include "DataFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
+#include "Sharing.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -41,25 +42,14 @@ double SumOf(vtkTable* table, const char* column)
   return sum;
 }
 
-/// Adds the number of pieces. If some are left out, area and volume are those of the others.
-void AddNumbers(vtkFieldData* statistics, vtkTable* pieces, bool isWhole)
-{
-  AddNumber(statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
-  for (const char* name : { "Area", "Volume" })
-  {
-    if (!isWhole && statistics->HasArray(name))
-    {
-      AddNumber(statistics, name, SumOf(pieces, name[0] == 'A' ? "area" : "volume"));
-    }
-  }
-}
-
 }
 
 // Describes the particles to the filter of pieces as to that of the surface.
-void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messages, double time)
+void AddPieces(
+  std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {
-  if (this->Options->ComponentFile.empty())
+  const Job& job = sharing.Options;
+  if (job.ComponentFile.empty())
   {
     return;
   }
@@ -68,7 +58,7 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
     throw std::runtime_error(
       "--components is for surfaces, but particles in a plane give lines; leave it out");
   }
-  vtkMarchingCorrectors* surface = this->Options->Surface;
+  vtkMarchingCorrectors* surface = job.Surface;
   vtkNew<vtkSPHComponents> split;
   split->SetInputData(run.Surface);
   split->SetParticlesData(surface->TakePresent(particles));
@@ -80,16 +70,22 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   split->SetMass(surface->GetMass());
   split->SetFluidArrayName(surface->GetFluidArrayName());
   split->SetFluidValue(surface->GetFluidValue());
-  split->SetLeastVolume(this->Options->LeastVolume);
-  split->SetLeastParticles(this->Options->LeastParticles);
+  split->SetLeastVolume(job.LeastVolume);
+  split->SetLeastParticles(job.LeastParticles);
   split->Update();
-  messages->Check();
+  sharing.Messages->Check();
   vtkTable* pieces = split->GetTable();
-  const bool isWhole = this->Options->LeastVolume == 0.0 && this->Options->LeastParticles == 0;
   run.Surface->ShallowCopy(split->GetOutput());
-  AddNumbers(run.Statistics, pieces, isWhole);
+  AddNumber(run.Statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
+  for (const char* name : { "Area", "Volume" }) // those of the pieces that are left
+  {
+    if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))
+    {
+      AddNumber(run.Statistics, name, SumOf(pieces, name[0] == 'A' ? "area" : "volume"));
+    }
+  }
   vtkNew<vtkTable> table;
-  if (this->Options->IsFilm())
+  if (job.IsFilm())
   {
     vtkNew<vtkDoubleArray> times;
     times->SetName("time");
@@ -101,22 +97,14 @@ void ComponentTable::Add(Run& run, vtkPointSet* particles, MessageCapture* messa
   {
     table->AddColumn(pieces->GetColumn(c));
   }
-  this->Lines += (this->Lines.empty() ? TableHeader(table) : "") + TableRows(table);
+  AppendTable(text, table);
 }
 
-FilmNumbers::FilmNumbers(const Job& job)
-  : Options(job)
+void AddFilmNumbers(
+  std::string& text, const Sharing& sharing, Run& run, vtkPointSet* particles, double time)
 {
-  if (!job.NumbersFile.empty())
-  {
-    AddGauges(job);
-  }
-}
-
-void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* messages, double time,
-  std::vector<std::string>& warnings)
-{
-  if (this->Options.NumbersFile.empty())
+  const Job& job = sharing.Options;
+  if (job.NumbersFile.empty())
   {
     return;
   }
@@ -132,15 +120,14 @@ void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* me
   const bool hasRun = run.Statistics->HasArray("Triangles"); // else there is no fluid
   AddNumber(row, "area", hasRun ? numberOf("Area") : 0.0);
   AddNumber(row, "volume", hasRun ? numberOf("Volume") : 0.0);
-  if (!this->Options.ComponentFile.empty())
+  if (!job.ComponentFile.empty())
   {
     AddNumber(row, "pieces", numberOf("Pieces"));
   }
-  if (this->Options.Gauge->GetNumberOfGauges() > 0)
+  if (job.Gauge->GetNumberOfGauges() > 0)
   {
-    vtkTable* gauges =
-      MeasureWith(this->Options.Gauge, this->Options, particles, time, messages, "");
-    messages->AppendWarnings(warnings);
+    vtkTable* gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
+    sharing.Messages->AppendWarnings(run.Warnings);
     for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)
     {
       const std::string name = gauges->GetValueByName(i, "gauge").ToString();
@@ -150,5 +137,5 @@ void FilmNumbers::Add(const Run& run, vtkPointSet* particles, MessageCapture* me
       }
     }
   }
-  this->Lines += (this->Lines.empty() ? TableHeader(table) : "") + TableRows(table);
+  AppendTable(text, table);
 }

@@ -2,37 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sharing.h"
 
+#include "Job.h"
 #include "ParticleFile.h"
 #include "ParticleTimes.h"
 
 #include <cstdlib>
-#include <initializer_list>
 
 namespace
 {
 
 /// The first of these variables that is set, as a number.
-int Number(std::initializer_list<const char*> names, int otherwise)
+int Number(const char* ofOpenMpi, const char* ofOthers, int otherwise)
 {
-  for (const char* name : names)
-  {
-    if (const char* text = std::getenv(name))
-    {
-      return std::atoi(text);
-    }
-  }
-  return otherwise;
+  const char* text = std::getenv(ofOpenMpi);
+  text = text ? text : std::getenv(ofOthers);
+  return text ? std::atoi(text) : otherwise;
 }
 
 }
 
-vtkSmartPointer<vtkPointSet> Sharing::Read(
-  const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages)
+Sharing::Particles Sharing::Read()
 {
-  return AddWalls(ReadParticles({ file }, messages), ReadWalls(walls, messages));
+  return AddWalls(ReadParticles(this->Options.Inputs, this->Messages),
+    ReadWalls(this->Options.Walls, this->Messages));
 }
 
-vtkSmartPointer<vtkPointSet> Sharing::Read(
+Sharing::Particles Sharing::Read(
   ParticleTimes& times, double time, std::vector<std::string>& warnings)
 {
   return times.At(time, warnings);
@@ -41,7 +36,7 @@ vtkSmartPointer<vtkPointSet> Sharing::Read(
 int LaunchedCount()
 {
 #if MCOR_HAS_RANKS
-  return Number({ "OMPI_COMM_WORLD_SIZE", "PMI_SIZE" }, 1);
+  return Number("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", 1);
 #else
   return 1;
 #endif
@@ -49,5 +44,5 @@ int LaunchedCount()
 
 int LaunchedRank()
 {
-  return LaunchedCount() > 1 ? Number({ "OMPI_COMM_WORLD_RANK", "PMI_RANK" }, 0) : 0;
+  return LaunchedCount() > 1 ? Number("OMPI_COMM_WORLD_RANK", "PMI_RANK", 0) : 0;
 }

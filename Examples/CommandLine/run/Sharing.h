@@ -13,13 +13,23 @@
 
 class MessageCapture;
 class ParticleTimes;
+struct Job;
 
-/// Hides whether processes share the work; this class is that of one process. If one of them
-/// throws, all throw.
+/// A job and VTK's messages about it. Hides whether processes share the work; this class is that of
+/// one process. If one of them throws, all throw.
 class Sharing
 {
 public:
+  using Particles = vtkSmartPointer<vtkPointSet>;
+
+  Sharing(Job& job, MessageCapture* messages)
+    : Options(job)
+    , Messages(messages)
+  {
+  }
   virtual ~Sharing() = default;
+  Sharing(const Sharing&) = delete;
+  void operator=(const Sharing&) = delete;
 
   virtual int GetRank() const { return 0; }
   virtual int GetCount() const { return 1; }
@@ -35,27 +45,25 @@ public:
     this->OnAll(this->IsFirst() ? work : [] {});
   }
 
-  /// This process's part of the particles of a file, and of walls.
-  virtual vtkSmartPointer<vtkPointSet> Read(
-    const std::string& file, const std::vector<std::string>& walls, MessageCapture* messages);
-
-  /// Reads a time, as Read() above reads files.
-  virtual vtkSmartPointer<vtkPointSet> Read(
-    ParticleTimes& times, double time, std::vector<std::string>& warnings);
+  /// This process's part of the particles of the only input, and of its walls; or of a time.
+  virtual Particles Read();
+  virtual Particles Read(ParticleTimes& times, double time, std::vector<std::string>& warnings);
 
   /// The whole surface on the first process, null on others.
   virtual vtkSmartPointer<vtkPolyData> Merge(vtkPolyData* part) { return part; }
 
   /// The particles of all processes, in their order, on the first process.
   virtual vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) { return particles; }
+
+  Job& Options;
+  MessageCapture* const Messages;
 };
 
-/// The environment tells of mpirun before MPI is asked. Built without MPI, there is none.
-
-/// Returns the number of processes that mpirun started; 1 without mpirun.
+/// How many processes mpirun started, 1 without mpirun, and the number of this one, 0 then. Its
+/// environment tells, before MPI is asked. Built without MPI, there is one.
+///@{
 int LaunchedCount();
-
-/// The number of this process, 0 where it was started alone.
 int LaunchedRank();
+///@}
 
 #endif

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Runs.h"
 
+#include "ColorScale.h"
 #include "DataFile.h"
 #include "Ending.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
+#include "Picture.h"
 #include "SafeText.h"
 #include "Sharing.h"
 
@@ -21,15 +23,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <cstdio>
 #include <cstring>
+#include <future>
 #include <iostream>
-#include <mutex>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <unistd.h>
@@ -112,6 +112,31 @@ vtkSmartPointer<vtkPointSet> AddDerivedArrays(const Job& job, vtkPointSet* parti
   return derived;
 }
 
+/// Arrays of the particles that are not interpolated because the surface's file could not hold
+/// them.
+std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles)
+{
+  std::vector<std::string> names;
+  vtkPointData* data = particles->GetPointData();
+  const std::string& color = job.Picture.ColorBy; // all are listed where it is none of them
+  if (HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
+    (!color.empty() && !data->HasArray(color.c_str())))
+  {
+    return names;
+  }
+  const std::vector<std::string>& asked = job.AttributeNames;
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    const std::string name = data->GetArrayName(i) ? data->GetArrayName(i) : "";
+    if (!name.empty() && name != job.Scalar && name != color && name != WallArrayName &&
+      (asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end()))
+    {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
 /// Lets the filter carry all arrays, or the named ones, if the output has a place for them.
 void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particles)
 {
@@ -182,8 +207,9 @@ std::string ReasonForNoSurface(vtkFieldData* statistics)
 
 /// Prints the iso value that the filter has chosen, if none was given, and keeps it for the next
 /// steps.
-void KeepIsoValue(const Job& job, vtkFieldData* statistics)
+void KeepIsoValue(const Sharing& sharing, vtkFieldData* statistics)
 {
+  const Job& job = sharing.Options;
   vtkDataArray* values = statistics->GetArray("IsoValues");
   vtkDataArray* range = statistics->GetArray("ScalarRange");
   if (job.Scalar.empty() || job.Surface->GetNumberOfContours() > 0 || !range || !values ||
@@ -193,7 +219,7 @@ void KeepIsoValue(const Job& job, vtkFieldData* statistics)
   }
   const double value = values->GetComponent(0, 0);
   job.Surface->SetValue(0, value);
-  if (!job.Quiet && LaunchedRank() == 0)
+  if (!job.Quiet && sharing.IsFirst())
   {
     std::cout << "iso value   " << value << ", chosen for " << job.Scalar << ", whose range is "
               << range->GetComponent(0, 0) << " .. " << range->GetComponent(0, 1)
@@ -206,28 +232,24 @@ void KeepIsoValue(const Job& job, vtkFieldData* statistics)
 class BuildNotice
 {
 public:
-  ~BuildNotice()
-  {
-    {
-      const std::lock_guard<std::mutex> guard(this->Lock);
-      this->IsOver = true;
-    }
-    this->Ends.notify_all();
-    if (this->Waiting.joinable())
-    {
-      this->Waiting.join();
-    }
-  }
+  ~BuildNotice() { this->End.set_value(); } // then Waiting ends, and is awaited
 
   void Begin()
   {
-    if (this->Waiting.joinable())
+    if (std::exchange(this->HasBegun, true))
     {
       return;
     }
+    const auto wait = [](const std::future<void>& end)
+    {
+      if (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
+      {
+        Say("the OpenCL driver compiles its programs for the first time, which may take a minute");
+      }
+    };
     try
     {
-      this->Waiting = std::thread([this] { this->Wait(); });
+      this->Waiting = std::async(std::launch::async, wait, this->End.get_future());
     }
     catch (const std::system_error&) // no more threads: nothing is said
     {
@@ -235,28 +257,19 @@ public:
   }
 
 private:
-  void Wait()
-  {
-    std::unique_lock<std::mutex> guard(this->Lock);
-    if (!this->Ends.wait_for(guard, std::chrono::seconds(3), [this] { return this->IsOver; }))
-    {
-      Say("the OpenCL driver compiles its programs for the first time, which may take a minute");
-    }
-  }
-
-  std::mutex Lock;
-  std::condition_variable Ends;
-  bool IsOver = false;
-  std::thread Waiting;
+  std::promise<void> End;
+  std::future<void> Waiting;
+  bool HasBegun = false;
 };
 
-/// Settings of a run's progress line.
+/// A run's progress line.
 struct Progress
 {
-  std::string Before; ///< the words before it
-  bool IsShown;
-  bool IsQuiet;
-  BuildNotice Notice;
+  ~Progress() { std::fputs(this->IsShown ? "\r\033[K" : "", stderr); }
+
+  const std::string& Before; ///< the words before it
+  const bool IsShown, IsQuiet;
+  BuildNotice Notice = {};
 };
 
 void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
@@ -280,34 +293,6 @@ void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
 
 }
 
-std::vector<std::string> ArraysWithoutPlace(const Job& job, vtkPointSet* particles)
-{
-  std::vector<std::string> names;
-  vtkPointData* data = particles->GetPointData();
-  const std::string& color = job.Picture.ColorBy; // all are listed where it is none of them
-  if (HoldsArrays(job.Output) || !job.Surface->GetInterpolateAttributes() ||
-    (!color.empty() && !data->HasArray(color.c_str())))
-  {
-    return names;
-  }
-  const std::vector<std::string>& asked = job.AttributeNames;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-  {
-    const std::string name = data->GetArrayName(i) ? data->GetArrayName(i) : "";
-    if (!name.empty() && name != job.Scalar && name != color && name != WallArrayName &&
-      (asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end()))
-    {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
-
-bool ShowsProgress(const Job& job)
-{
-  return !job.Quiet && isatty(STDERR_FILENO);
-}
-
 vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
@@ -327,80 +312,69 @@ void SetUpSurface(const Job& job, vtkPointSet* input)
   job.Surface->SetInputData(bare);
 }
 
-double Update(
-  vtkSPHAlgorithm* filter, const Job& job, MessageCapture* messages, const std::string& before)
+double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string& before)
 {
-  Progress progress{ before, ShowsProgress(job), job.Quiet || LaunchedRank() > 0, {} };
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(TakeProgress);
-  observer->SetClientData(&progress);
-  const unsigned long observed = filter->AddObserver(vtkCommand::ProgressEvent, observer);
-  messages->Clear();
+  const bool isQuiet = sharing.Options.Quiet;
+  std::chrono::duration<double> elapsed;
+  sharing.Messages->Clear();
   filter->Modified();
-  const auto start = std::chrono::steady_clock::now();
-  filter->Update();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  filter->RemoveObserver(observed);
-  if (progress.IsShown)
   {
-    std::fputs("\r\033[K", stderr);
+    Progress progress{ before, !isQuiet && isatty(STDERR_FILENO), isQuiet || !sharing.IsFirst() };
+    vtkNew<vtkCallbackCommand> observer;
+    observer->SetCallback(TakeProgress);
+    observer->SetClientData(&progress);
+    const unsigned long observed = filter->AddObserver(vtkCommand::ProgressEvent, observer);
+    const auto start = std::chrono::steady_clock::now();
+    filter->Update();
+    elapsed = std::chrono::steady_clock::now() - start;
+    filter->RemoveObserver(observed);
   }
-  messages->Check(filter->GetErrorMessage());
+  sharing.Messages->Check(filter->GetErrorMessage());
   return elapsed.count();
 }
 
-Run Extract(const Job& job, MessageCapture* messages, const std::string& before)
+Run Extract(const Sharing& sharing, const std::string& before)
 {
-  vtkMarchingCorrectors* filter = job.Surface;
+  vtkMarchingCorrectors* filter = sharing.Options.Surface;
   Run run;
-  run.WallSeconds = Update(filter, job, messages, before);
+  run.WallSeconds = Update(filter, sharing, before);
   run.Surface = vtkSmartPointer<vtkPolyData>::New();
   run.Surface->ShallowCopy(filter->GetOutput());
   filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
   run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
-  KeepIsoValue(job, run.Statistics);
+  KeepIsoValue(sharing, run.Statistics);
+  for (const std::string& sentence : sharing.Messages->GetWarnings())
+  {
+    run.Warnings.push_back(WithOptions(sentence)); // they are in the statistics, too
+  }
+  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
+  if (run.Surface->GetNumberOfCells() == 0 && !(triangles && triangles->GetComponent(0, 0) > 0))
+  {
+    const std::string reason =
+      run.Warnings.empty() ? ReasonForNoSurface(run.Statistics) : run.Warnings.front();
+    run.Warnings.resize(std::max<std::size_t>(run.Warnings.size(), 1));
+    run.Warnings.front() = "the surface is empty" + (reason.empty() ? "" : ": " + reason);
+  }
   return run;
 }
 
-vtkSmartPointer<vtkPolyData> Widen(const Job& job, MessageCapture* messages)
+void Inspect(const Job& job, const std::string& file, Run& run, vtkPointSet* particles,
+  ColorScale& colors, bool hasHints)
 {
-  messages->Clear();
-  const auto widened = vtkSmartPointer<vtkPolyData>::New();
-  vtkMarchingCorrectors* filter = job.Surface;
-  if (!filter->Widen(vtkPointSet::SafeDownCast(filter->GetInput()), widened))
+  colors.Include(run.Surface);
+  for (const std::string& sentence :
+    { hasHints && job.Periodic.empty() && !job.DetectPeriod ? HintOfPeriod(particles) : "",
+      LostArrays(file, run.Surface, colors, ArraysWithoutPlace(job, particles)) })
   {
-    const std::vector<std::string>& errors = messages->GetErrors();
-    throw std::runtime_error(errors.empty() ? "the factors could not be found" : errors.front());
+    run.Warnings.insert(run.Warnings.end(), sentence.empty() ? 0 : 1, sentence);
   }
-  return widened;
 }
 
-std::vector<std::string> Warnings(const Run& run, MessageCapture* messages)
+std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPolyData* surface,
+  vtkPointSet* particles, Picture& picture, ColorScale& colors)
 {
-  std::vector<std::string> all;
-  for (const std::string& sentence : messages->GetWarnings())
-  {
-    all.push_back(WithOptions(sentence)); // they are in the statistics, too
-  }
-  vtkDataArray* triangles = run.Statistics->GetArray("Triangles"); // of all processes
-  if (run.Surface->GetNumberOfCells() > 0 || (triangles && triangles->GetComponent(0, 0) > 0))
-  {
-    return all;
-  }
-  if (all.empty())
-  {
-    all.push_back(ReasonForNoSurface(run.Statistics));
-  }
-  all.front() = "the surface is empty" + (all.front().empty() ? "" : ": " + all.front());
-  return all;
-}
-
-void AddHintOfPeriod(const Job& job, vtkPointSet* particles, std::vector<std::string>& warnings)
-{
-  const std::string hint = job.Periodic.empty() && !job.DetectPeriod ? HintOfPeriod(particles) : "";
-  if (!hint.empty())
-  {
-    warnings.push_back(hint);
-  }
+  colors.Suggest(surface, sharing.Options.Surface->GetIsoValueArrayName());
+  colors.Include(surface);
+  return picture.Draw(file, surface, particles, colors, sharing.Messages);
 }

@@ -66,10 +66,7 @@ std::string TableField(const std::string& text);
 /// Reads back as the same number; NaN is an empty place.
 std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component = 0);
 
-/// The names of the columns, one line.
-std::string TableHeader(vtkTable* table);
-
-/// A line for each row.
-std::string TableRows(vtkTable* table);
+/// Appends a line for each row, behind one with the names of the columns where the text is empty.
+void AppendTable(std::string& text, vtkTable* table);
 
 #endif

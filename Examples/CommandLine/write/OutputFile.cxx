@@ -348,18 +348,13 @@ void WriteOutput(const std::string& file, const std::string& bytes)
   one.Commit();
 }
 
-GrowingFile::GrowingFile(const std::string& name)
-  : Name(name)
-{
-  std::error_code error;
-  const fs::file_status status = fs::status(name, error);
-  this->IsRegular = !fs::exists(status) || fs::is_regular_file(status);
-}
-
 void GrowingFile::Write(const std::function<std::string()>& text, bool isLast)
 {
+  std::error_code error;
+  const fs::file_status status = fs::status(this->Name, error);
   const auto begin = Clock::now();
-  if (!isLast && (!this->IsRegular || begin < this->Next))
+  const bool mayGrow = !fs::exists(status) || fs::is_regular_file(status);
+  if (this->Name.empty() || (!isLast && (!mayGrow || begin < this->Next)))
   {
     return;
   }

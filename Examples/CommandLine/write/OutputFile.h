@@ -45,15 +45,18 @@ void WriteOutput(const std::string& file, const std::string& bytes);
 class GrowingFile
 {
 public:
-  explicit GrowingFile(const std::string& name);
+  explicit GrowingFile(const std::string& name)
+    : Name(name)
+  {
+  }
 
-  /// There may be more in it: `text` gives the whole. Throws std::runtime_error with one sentence.
+  /// There may be more in it: `text` gives the whole. Does nothing without a name. Throws
+  /// std::runtime_error with one sentence.
   void Write(const std::function<std::string()>& text, bool isLast);
 
 private:
   using Clock = std::chrono::steady_clock;
   const std::string Name;
-  bool IsRegular = true;
   Clock::time_point Next;
 };
 

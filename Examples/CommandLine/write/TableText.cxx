@@ -57,26 +57,17 @@ std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)
   return std::isnan(number) ? "" : Formatted(number);
 }
 
-std::string TableHeader(vtkTable* table)
+void AppendTable(std::string& text, vtkTable* table)
 {
-  std::string line;
-  for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
-  {
-    line += (c ? "," : "") + TableField(table->GetColumnName(c));
-  }
-  return line + "\n";
-}
-
-std::string TableRows(vtkTable* table)
-{
-  std::string text;
-  for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+  const vtkIdType header = -1;
+  for (vtkIdType row = text.empty() ? header : 0; row < table->GetNumberOfRows(); ++row)
   {
     for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
     {
-      text += (c ? "," : "") + TableField(table->GetColumn(c), row);
+      text += (c ? "," : "") +
+        (row == header ? TableField(table->GetColumnName(c))
+                       : TableField(table->GetColumn(c), row));
     }
     text += "\n";
   }
-  return text;
 }

@@ -14,15 +14,13 @@
 #include "vtkGenericDataObjectWriter.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkXMLImageDataWriter.h"
-#include "vtkXMLPolyDataWriter.h"
-#include "vtkXMLRectilinearGridWriter.h"
-#include "vtkXMLStructuredGridWriter.h"
-#include "vtkXMLUnstructuredGridWriter.h"
+#include "vtkSmartPointer.h"
+#include "vtkXMLDataObjectWriter.h"
 
 #include <functional>
 #include <initializer_list>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace
@@ -40,16 +38,24 @@ public:
     {
       for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
       {
-        this->Escape(arrays->GetAbstractArray(i));
+        vtkAbstractArray* array = arrays->GetAbstractArray(i);
+        array->SetName(array->GetName() ? array->GetName() : ""); // VTK would take an address
+        this->Replace(
+          array->GetName(), [array](const std::string& name) { array->SetName(name.c_str()); });
+        for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
+        {
+          this->Replace(array->GetComponentName(c),
+            [array, c](const std::string& name) { array->SetComponentName(c, name.c_str()); });
+        }
       }
     }
   }
 
   ~NamesForXml()
   {
-    for (const Name& name : this->Names)
+    for (const auto& [name, set] : this->Before)
     {
-      name.Set(name.Before);
+      set(name);
     }
   }
 
@@ -57,48 +63,29 @@ public:
   void operator=(const NamesForXml&) = delete;
 
 private:
-  struct Name
-  {
-    std::string Before;
-    std::function<void(const std::string&)> Set;
-  };
+  using Setter = std::function<void(const std::string&)>;
 
-  void Escape(vtkAbstractArray* array)
-  {
-    if (!array->GetName())
-    {
-      array->SetName(""); // where VTK would make one of an address
-    }
-    this->Replace(
-      array->GetName(), [array](const std::string& name) { array->SetName(name.c_str()); });
-    for (int c = 0; array->HasAComponentName() && c < array->GetNumberOfComponents(); ++c)
-    {
-      this->Replace(array->GetComponentName(c),
-        [array, c](const std::string& name) { array->SetComponentName(c, name.c_str()); });
-    }
-  }
-
-  void Replace(const char* name, const std::function<void(const std::string&)>& set)
+  void Replace(const char* name, const Setter& set)
   {
     const std::string before = name ? name : "", fit = EscapedForXml(before);
     if (fit != before)
     {
       set(fit);
-      this->Names.push_back({ before, set });
+      this->Before.emplace_back(before, set);
     }
   }
 
-  std::vector<Name> Names;
+  std::vector<std::pair<std::string, Setter>> Before;
 };
 
 /// Writes to memory, because the writer of VTK 9.1 crashes on a full disk. Does not append data,
 /// VTK's default, which ParaView 5.11 of Debian 12 cannot read. Returns false if VTK gave up.
-template <typename WriterT>
 bool WriteXml(vtkDataSet* data, std::string& bytes)
 {
   const NamesForXml names(data);
-  vtkNew<WriterT> writer;
-  writer->SetInputData(data);
+  const auto writer =
+    vtk::TakeSmartPointer(vtkXMLDataObjectWriter::NewWriter(data->GetDataObjectType()));
+  writer->SetInputDataObject(data);
   writer->SetDataModeToBinary();
   writer->WriteToOutputStringOn();
   writer->SetCompressorTypeToLZ4(); // which takes a third of the time of zlib, VTK's default
@@ -119,37 +106,25 @@ bool WriteLegacy(vtkDataSet* data, std::string& bytes)
   return good;
 }
 
-struct Writer
-{
-  const char* ClassName; ///< and those derived from it
-  bool (*Write)(vtkDataSet*, std::string& bytes);
-};
-
-/// Every format that is written, with all that is known of it.
-const std::vector<FileFormat<Writer>> Formats = {
-  { ".vti", { "vtkImageData", WriteXml<vtkXMLImageDataWriter> } },
-  { ".vtr", { "vtkRectilinearGrid", WriteXml<vtkXMLRectilinearGridWriter> } },
-  { ".vts", { "vtkStructuredGrid", WriteXml<vtkXMLStructuredGridWriter> } },
-  { ".vtp", { "vtkPolyData", WriteXml<vtkXMLPolyDataWriter> } },
-  { ".vtu", { "vtkUnstructuredGrid", WriteXml<vtkXMLUnstructuredGridWriter> } },
-  { ".vtk", { "vtkDataSet", WriteLegacy } },
-};
+/// Every format that is written, with the class that it holds, and those derived from it.
+const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" },
+  { ".vtr", "vtkRectilinearGrid" }, { ".vts", "vtkStructuredGrid" }, { ".vtp", "vtkPolyData" },
+  { ".vtu", "vtkUnstructuredGrid" }, { ".vtk", "vtkDataSet" } };
 
 }
 
 void CheckDataSetFile(const std::string& file, vtkDataSet* data)
 {
-  const FileFormat<Writer>* format = FindFormat(Formats, file);
-  if (format && data->IsA(format->Process.ClassName))
-  {
-    return;
-  }
   std::string endings;
-  for (const FileFormat<Writer>& other : Formats)
+  for (const auto& [ending, className] : Formats)
   {
-    if (data->IsA(other.Process.ClassName))
+    if (data->IsA(className))
     {
-      endings += (endings.empty() ? "" : " or ") + std::string(other.Ending);
+      endings += (endings.empty() ? "" : " or ") + std::string(ending);
+      if (EndsWith(file, ending))
+      {
+        return;
+      }
     }
   }
   throw std::runtime_error("the output is the data set of the points, a " +
@@ -161,7 +136,8 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCaptu
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
   std::string bytes;
-  if (!FindFormat(Formats, file)->Process.Write(data, bytes) || !messages->GetErrors().empty())
+  const bool isGood = (EndsWith(file, ".vtk") ? WriteLegacy : WriteXml)(data, bytes);
+  if (!isGood || !messages->GetErrors().empty())
   {
     FailToWrite(file, messages->GetErrors().empty() ? "" : messages->GetErrors().front());
   }

@@ -23,9 +23,13 @@ namespace
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void FailWithError(const std::string& file)
+/// Fails with the system's reason, unless it is good.
+void Require(bool isGood, const std::string& file)
 {
-  FailToWrite(file, std::strerror(errno));
+  if (!isGood)
+  {
+    FailToWrite(file, std::strerror(errno));
+  }
 }
 
 /// The target of an output.
@@ -83,8 +87,7 @@ void FollowLinks(Target& target)
     // The operator leaves an absolute path as it is.
     target.Path = (FolderOf(target.Path) / fs::read_symlink(target.Path, error)).string();
   }
-  errno = ELOOP;
-  FailWithError(target.Name);
+  FailToWrite(target.Name, std::strerror(ELOOP));
 }
 
 /// Asks the system whether the file may be replaced, by the name as given: its rules for symbolic
@@ -93,19 +96,13 @@ void CheckAccess(const Target& target)
 {
   if (!target.IsReplaced())
   {
-    if (target.Descriptor < 0 && access(target.Name.c_str(), W_OK) != 0)
-    {
-      FailWithError(target.Name);
-    }
+    Require(target.Descriptor >= 0 || access(target.Name.c_str(), W_OK) == 0, target.Name);
     return;
   }
   if (target.Exists)
   {
     const int descriptor = open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    if (descriptor < 0)
-    {
-      FailWithError(target.Name);
-    }
+    Require(descriptor >= 0, target.Name);
     close(descriptor);
   }
   const std::string folder = FolderOf(target.Path);
@@ -124,10 +121,7 @@ Target Find(const std::string& name)
   FollowLinks(target);
   target.Exists = (target.Descriptor >= 0 ? fstat(target.Descriptor, &target.Status)
                                           : stat(name.c_str(), &target.Status)) == 0;
-  if (!target.Exists && (errno != ENOENT || target.Descriptor >= 0))
-  {
-    FailWithError(name);
-  }
+  Require(target.Exists || (errno == ENOENT && target.Descriptor < 0), name);
   if (target.Exists && S_ISDIR(target.Status.st_mode))
   {
     FailToWrite(name, "it is a directory");
@@ -156,51 +150,32 @@ Identity Identify(const Target& target)
   return Identify(folder, fs::path(target.Path).filename().string());
 }
 
-void WriteAll(int descriptor, const std::string& bytes, const std::string& file)
+/// False, and errno, where that failed.
+bool WriteAll(int descriptor, const std::string& bytes)
 {
-  const char* next = bytes.data();
-  std::size_t left = bytes.size();
-  while (left > 0)
+  for (std::size_t done = 0; done < bytes.size();)
   {
-    const ssize_t written = write(descriptor, next, left);
+    const ssize_t written = write(descriptor, bytes.data() + done, bytes.size() - done);
     if (written < 0 && errno != EINTR)
     {
-      FailWithError(file);
+      return false;
     }
-    if (written > 0)
-    {
-      next += written;
-      left -= static_cast<std::size_t>(written);
-    }
+    done += written > 0 ? static_cast<std::size_t>(written) : 0;
   }
+  return true;
 }
 
 /// Writes to a device, a FIFO or an open descriptor.
 void WriteStraight(const Target& target, const std::string& bytes)
 {
-  if (target.Descriptor >= 0)
-  {
-    WriteAll(target.Descriptor, bytes, target.Name);
-    return;
-  }
-  const int descriptor = open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  if (descriptor < 0)
-  {
-    FailWithError(target.Name);
-  }
-  try
-  {
-    WriteAll(descriptor, bytes, target.Name);
-  }
-  catch (const std::runtime_error&)
-  {
-    close(descriptor);
-    throw;
-  }
-  if (close(descriptor) != 0)
-  {
-    FailWithError(target.Name);
-  }
+  const int descriptor = target.Descriptor >= 0
+    ? fcntl(target.Descriptor, F_DUPFD_CLOEXEC, 0)
+    : open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  const bool isWritten = descriptor >= 0 && WriteAll(descriptor, bytes);
+  const int problem = errno;
+  const bool isClosed = descriptor < 0 || close(descriptor) == 0;
+  errno = isWritten ? errno : problem;
+  Require(isWritten && isClosed, target.Name);
 }
 
 /// Sets mode, owner and group as those of the file that is replaced; for a new one, as the umask
@@ -218,10 +193,7 @@ void SetAttributes(int descriptor, const Target& target)
     const bool sameOwner = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0;
     mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));
   }
-  if (fchmod(descriptor, mode) != 0)
-  {
-    FailWithError(target.Name);
-  }
+  Require(fchmod(descriptor, mode) == 0, target.Name);
 }
 
 /// The beginning of a name for a file beside the target.
@@ -234,47 +206,10 @@ std::string NameBeside(const Target& target)
 
 }
 
-/// A file on its way.
-class OutputFiles::Replacement
+/// A file on its way: a new one that takes the target's place, or bytes for a target that is kept.
+struct OutputFiles::Output
 {
-public:
-  Replacement(const Target& target, const std::string& bytes)
-    : Place(target)
-  {
-    if (!target.IsReplaced())
-    {
-      this->Bytes = bytes;
-      return;
-    }
-    this->File.reset(new TemporaryFile(NameBeside(target)));
-    const int descriptor = this->File->GetDescriptor();
-    if (descriptor < 0)
-    {
-      FailWithError(target.Name);
-    }
-    WriteAll(descriptor, bytes, target.Name);
-    SetAttributes(descriptor, target);
-    // Some file systems have no fsync, and some tell only then that the disk is full.
-    if ((fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) || !this->File->Close())
-    {
-      FailWithError(target.Name);
-    }
-  }
-
-  void TakePlace()
-  {
-    if (!this->File)
-    {
-      WriteStraight(this->Place, this->Bytes);
-    }
-    else if (!this->File->TakePlaceOf(this->Place.Path))
-    {
-      FailWithError(this->Place.Name);
-    }
-  }
-
-private:
-  const Target Place;
+  Target Place;
   std::string Bytes;
   std::unique_ptr<TemporaryFile> File;
 };
@@ -329,14 +264,36 @@ OutputFiles::~OutputFiles() = default;
 
 void OutputFiles::Write(const std::string& file, const std::string& bytes)
 {
-  this->Files.emplace_back(new Replacement(Find(file), bytes));
+  Output output = { Find(file), "", nullptr };
+  if (!output.Place.IsReplaced())
+  {
+    output.Bytes = bytes;
+  }
+  else
+  {
+    output.File = std::make_unique<TemporaryFile>(NameBeside(output.Place));
+    const int descriptor = output.File->GetDescriptor();
+    Require(descriptor >= 0 && WriteAll(descriptor, bytes), file);
+    SetAttributes(descriptor, output.Place);
+    // Some file systems have no fsync, and some tell only then that the disk is full.
+    Require(fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP, file);
+    Require(output.File->Close(), file);
+  }
+  this->Files.push_back(std::move(output));
 }
 
 void OutputFiles::Commit()
 {
-  for (const std::unique_ptr<Replacement>& file : this->Files)
+  for (const Output& output : this->Files)
   {
-    file->TakePlace();
+    if (output.File)
+    {
+      Require(output.File->TakePlaceOf(output.Place.Path), output.Place.Name);
+    }
+    else
+    {
+      WriteStraight(output.Place, output.Bytes);
+    }
   }
   this->Files.clear();
 }

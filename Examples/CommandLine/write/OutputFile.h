@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,8 +31,8 @@ public:
   void Commit();
 
 private:
-  class Replacement;
-  std::vector<std::unique_ptr<Replacement>> Files;
+  struct Output;
+  std::vector<Output> Files;
 };
 
 /// Writes one file by itself.

@@ -36,41 +36,34 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Bytes of a length that is known before, the least significant byte of a value first, on every
-/// machine.
-class ByteWriter
+/// Makes room for more bytes. Returns where.
+char* Grow(std::string& bytes, std::size_t more)
 {
-public:
-  ByteWriter(std::string& bytes, std::size_t more)
-  {
-    const std::size_t begin = bytes.size();
-    bytes.resize(begin + more);
-    this->Next = &bytes[0] + begin;
-  }
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + more);
+  return &bytes[0] + begin;
+}
 
-  template <typename T>
-  void Put(T value)
+/// Puts a value, its least significant byte first, on every machine.
+template <typename T>
+void Put(char*& next, T value)
+{
+  const std::uint16_t one = 1;
+  std::memcpy(next, &value, sizeof(value));
+  if (*reinterpret_cast<const unsigned char*>(&one) != 1)
   {
-    const std::uint16_t one = 1;
-    std::memcpy(this->Next, &value, sizeof(value));
-    if (*reinterpret_cast<const unsigned char*>(&one) != 1)
-    {
-      std::reverse(this->Next, this->Next + sizeof(value));
-    }
-    this->Next += sizeof(value);
+    std::reverse(next, next + sizeof(value));
   }
+  next += sizeof(value);
+}
 
-  void PutVector(const double (&vector)[3])
+void PutVector(char*& next, const double (&vector)[3])
+{
+  for (const double value : vector)
   {
-    for (const double value : vector)
-    {
-      this->Put(static_cast<float>(value));
-    }
+    Put(next, static_cast<float>(value));
   }
-
-private:
-  char* Next;
-};
+}
 
 /// Calls use(corners) for each triangle.
 template <typename F>
@@ -93,10 +86,10 @@ void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   bytes = "binary STL by marching-correctors";
   bytes.resize(80, ' ');
   const vtkIdType count = surface->GetNumberOfPolys();
-  ByteWriter writer(bytes, 4 + 50 * static_cast<std::size_t>(count));
-  writer.Put(static_cast<std::uint32_t>(count));
+  char* next = Grow(bytes, 4 + 50 * static_cast<std::size_t>(count));
+  Put(next, static_cast<std::uint32_t>(count));
   ForTriangles(surface,
-    [&writer, surface](const vtkIdType* corners)
+    [&next, surface](const vtkIdType* corners)
     {
       double points[3][3], normal[3];
       for (int k = 0; k < 3; ++k)
@@ -104,12 +97,12 @@ void WriteStl(vtkPolyData* surface, const ColorScale&, std::string& bytes)
         surface->GetPoint(corners[k], points[k]);
       }
       vtkTriangle::ComputeNormal(points[0], points[1], points[2], normal);
-      writer.PutVector(normal);
+      PutVector(next, normal);
       for (const auto& point : points)
       {
-        writer.PutVector(point);
+        PutVector(next, point);
       }
-      writer.Put(std::uint16_t(0));
+      Put(next, std::uint16_t(0));
     });
 }
 
@@ -165,7 +158,7 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
        << "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes = head.str();
   const auto points = static_cast<std::size_t>(surface->GetNumberOfPoints());
-  ByteWriter writer(bytes,
+  char* next = Grow(bytes,
     points * (12u + (normals ? 12u : 0u) + (colored ? 3u : 0u)) +
       13 * static_cast<std::size_t>(surface->GetNumberOfPolys()));
   double vector[3];
@@ -173,24 +166,24 @@ void WritePly(vtkPolyData* surface, const ColorScale& scale, std::string& bytes)
   {
     const auto id = static_cast<vtkIdType>(i);
     surface->GetPoint(id, vector);
-    writer.PutVector(vector);
+    PutVector(next, vector);
     if (normals)
     {
       normals->GetTuple(id, vector);
-      writer.PutVector(vector);
+      PutVector(next, vector);
     }
     for (std::size_t c = 0; colored && c < 3; ++c)
     {
-      writer.Put(colors[3 * i + c]);
+      Put(next, colors[3 * i + c]);
     }
   }
   ForTriangles(surface,
-    [&writer](const vtkIdType* corners)
+    [&next](const vtkIdType* corners)
     {
-      writer.Put(static_cast<std::uint8_t>(3));
+      Put(next, static_cast<std::uint8_t>(3));
       for (int k = 0; k < 3; ++k)
       {
-        writer.Put(static_cast<std::int32_t>(corners[k]));
+        Put(next, static_cast<std::int32_t>(corners[k]));
       }
     });
 }
@@ -253,22 +246,13 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
 /// VTK's XML names of types, which tell their size.
 std::string TypeOf(vtkAbstractArray* array)
 {
-  switch (array->GetDataType())
-  {
-    case VTK_FLOAT:
-      return "Float32";
-    case VTK_DOUBLE:
-      return "Float64";
-    case VTK_STRING:
-      return "String";
-    default:
-      break;
-  }
+  const int type = array->GetDataType();
   const auto* numbers = vtkArrayDownCast<vtkDataArray>(array);
-  const bool isSigned = numbers && array->GetDataType() != VTK_UNSIGNED_CHAR &&
-    array->GetDataType() != VTK_UNSIGNED_SHORT && array->GetDataType() != VTK_UNSIGNED_INT &&
-    array->GetDataType() != VTK_UNSIGNED_LONG && array->GetDataType() != VTK_UNSIGNED_LONG_LONG;
-  return std::string(isSigned ? "Int" : "UInt") + std::to_string(8 * array->GetDataTypeSize());
+  const bool isSigned = numbers && vtkDataArray::GetDataTypeMin(type) < 0.0;
+  const std::string kind = type == VTK_FLOAT || type == VTK_DOUBLE ? "Float"
+    : isSigned                                                     ? "Int"
+                                                                   : "UInt";
+  return type == VTK_STRING ? "String" : kind + std::to_string(8 * array->GetDataTypeSize());
 }
 
 void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& name)

@@ -9,10 +9,8 @@
 
 #include "vtkAppendPolyData.h"
 #include "vtkFieldData.h"
-#include "vtkMPIController.h"
 #include "vtkPointData.h"
 #include "vtkSPHFound.h"
-#include "vtkSPHRanksWait.h"
 
 #include <stdexcept>
 
@@ -39,16 +37,6 @@ RankSession::~RankSession()
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
   this->Controller->Finalize();
-}
-
-int RankSession::GetRank() const
-{
-  return this->Controller->GetLocalProcessId();
-}
-
-int RankSession::GetCount() const
-{
-  return this->Controller->GetNumberOfProcesses();
 }
 
 void RankSession::OnAll(const std::function<void()>& work)
@@ -95,11 +83,6 @@ Sharing::Particles RankSession::Read(
                   : times.At(time, warnings);
     },
     true);
-}
-
-vtkSmartPointer<vtkPolyData> RankSession::Merge(vtkPolyData* part)
-{
-  return vtkSPHMergeSurface(this->Controller, part);
 }
 
 vtkSmartPointer<vtkPolyData> RankSession::Append(vtkPolyData* particles)
@@ -158,25 +141,18 @@ Sharing::Particles RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty
   }
   vtkSPHMatchEmpty(this->Controller, form);
   const Particles complete = own > 0 || all == 0 ? particles : form.Get();
-  this->ResolvePeriod(complete);
-  return complete;
-}
-
-// --periodic with lengths alone asks where all particles are; auto, whose field data tell of a
-// period.
-void RankSession::ResolvePeriod(vtkPointSet* particles)
-{
   Job& job = this->Options;
-  if (job.DetectPeriod)
+  if (job.DetectPeriod) // of which field data tell
   {
     std::string problem;
     const vtkSPHPeriod found =
-      vtkSPHFindPeriodDistributed(this->Controller, particles->GetFieldData(), problem);
+      vtkSPHFindPeriodDistributed(this->Controller, complete->GetFieldData(), problem);
     this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
     job.DetectPeriod = false;
   }
-  if (job.Periodic.size() == 3)
+  if (job.Periodic.size() == 3) // lengths alone, of which it is asked where all particles are
   {
-    job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, particles);
+    job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
   }
+  return complete;
 }

@@ -28,15 +28,17 @@ namespace
 /// People and batch systems send these to end a program.
 const int EndingSignals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2 };
 
-/// Ending signals that were not ignored at the start, as hangups are under nohup.
-sigset_t Awaited;
+/// Ending signals, and those that were not ignored at the start, as hangups are under nohup.
+sigset_t All, Awaited;
 
 void FindAwaited()
 {
+  sigemptyset(&All);
   sigemptyset(&Awaited);
   for (const int number : EndingSignals)
   {
     struct sigaction action = {};
+    sigaddset(&All, number);
     sigaction(number, nullptr, &action);
     if (action.sa_handler != SIG_IGN)
     {
@@ -81,21 +83,6 @@ void Set(char (&target)[N], const std::string& text)
   std::strncpy(target, text.c_str(), N - 1);
 }
 
-const char* Reason(int number)
-{
-  switch (number)
-  {
-    case SIGSEGV:
-      return "the program crashed there (Segmentation fault)";
-    case SIGABRT:
-      return "the program crashed there (Aborted)";
-    case SIGXCPU:
-      return "it took too much processor time";
-    default:
-      return "the program crashed there";
-  }
-}
-
 void SayInHandler(const char* text)
 {
   const ssize_t ignored = write(StandardError, text, std::strlen(text));
@@ -110,7 +97,11 @@ void EndByCrash(int number)
   SayInHandler(ClearsLine ? "\r\033[K" : "");
   for (const char* part : std::initializer_list<const char*>{
          "marching-correctors: ", IsLoadingDrivers ? "the run failed" : Failure, ": ",
-         Reason(number), "; ", IsLoadingDrivers ? HintOfDrivers : Hint, "\n" })
+         number == SIGXCPU ? "it took too much processor time" : "the program crashed there",
+         number == SIGSEGV     ? " (Segmentation fault)"
+           : number == SIGABRT ? " (Aborted)"
+                               : "",
+         "; ", IsLoadingDrivers ? HintOfDrivers : Hint, "\n" })
   {
     SayInHandler(part);
   }
@@ -133,9 +124,13 @@ void SetHandlersOfCrashes()
   std::set_terminate(std::abort); // without more lines
 }
 
-/// The program ends as by the signal itself, so that a shell or a batch system sees it.
-[[noreturn]] void EndBySignal(int number)
+/// Waits for a signal. The program ends as by that itself, so that a shell or a batch system sees it.
+[[noreturn]] void EndBySignal()
 {
+  int number = 0;
+  while (sigwait(&Awaited, &number) != 0)
+  {
+  }
   FilesLock.lock(); // for ever: no other file is made
   RemoveFiles();
   std::signal(number, SIG_DFL);
@@ -145,15 +140,6 @@ void SetHandlersOfCrashes()
   pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
   raise(number);
   _exit(1);
-}
-
-void WaitForSignal()
-{
-  int number = 0;
-  while (sigwait(&Awaited, &number) != 0)
-  {
-  }
-  EndBySignal(number);
 }
 
 }
@@ -168,16 +154,10 @@ void PrepareForEnding()
   // All later threads leave these signals to one thread that waits for them: it may lock and
   // allocate. Ignored ones are blocked, too, and never awaited: LLVM, which PoCL brings, takes them,
   // and its handler unblocks all others.
-  sigset_t all;
-  sigemptyset(&all);
-  for (const int number : EndingSignals)
-  {
-    sigaddset(&all, number);
-  }
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);
+  pthread_sigmask(SIG_BLOCK, &All, nullptr);
   try
   {
-    std::thread(WaitForSignal).detach();
+    std::thread(EndBySignal).detach();
   }
   catch (const std::system_error&) // no more threads: signals end the program at once
   {
@@ -198,16 +178,14 @@ void Finish(int status)
 
 std::string FaultsOfDrivers(const std::string& device)
 {
-  const auto variable = [](const char* name) -> std::string
+  std::string folder;
+  for (const auto& [variable, below] :
+    { std::make_pair("POCL_CACHE_DIR", ""), std::make_pair("XDG_CACHE_HOME", "/pocl/kcache"),
+      std::make_pair("HOME", "/.cache/pocl/kcache") })
   {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-  };
-  const std::string own = variable("POCL_CACHE_DIR"), shared = variable("XDG_CACHE_HOME"),
-                    home = variable("HOME");
-  const std::string folder = !own.empty() ? own
-    : !shared.empty()                     ? shared + "/pocl/kcache"
-                                          : home + "/.cache/pocl/kcache";
+    const char* value = std::getenv(variable);
+    folder = folder.empty() && value && *value ? std::string(value) + below : folder;
+  }
   const bool isNamed = device.rfind("built", 0) != 0 && access(folder.c_str(), F_OK) == 0;
   return "the OpenCL driver may be at fault" +
     (isNamed

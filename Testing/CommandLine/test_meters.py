@@ -1,0 +1,311 @@
+# SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gauges and fluxes by the program marching-correctors, and the volumes of particles that these tell of:
+test_meters.py PROGRAM PRELOAD GROUP."""
+import math
+import subprocess
+import time
+import xml.etree.ElementTree
+
+import particle_files as files
+from command_line_test import CommandLineTest, main, read_table
+
+UP = "mast=0,0,-1:0,0,1"
+WALL = "wall=0.1,-.2,-.2:0.1,.2,-.2:0.1,-.2,.3"
+CUBE = [(-.2, -.2, -.2), (.2, -.2, -.2), (.2, .2, -.2), (-.2, .2, -.2),
+        (-.2, -.2, .2), (.2, -.2, .2), (.2, .2, .2), (-.2, .2, .2)]
+SIDES = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6), (0, 5, 1), (0, 4, 5), (1, 6, 2), (1, 5, 6), (2, 7, 3), (2, 6, 7),
+         (3, 4, 0), (3, 7, 4)]  # normals inwards, which are turned
+
+DX = files.SPACING
+
+
+class Meter(CommandLineTest):
+    """Tests of both tables."""
+
+    def setUp(self):
+        super().setUp()
+        self.table = self.directory / "table.csv"
+
+    def measure(self, *options, source=None):
+        return self.run_program(source or self.source, self.table, *options)
+
+    def read_rows(self):
+        rows = read_table(self.table)
+        self.assertEqual(list(rows[0]), self.columns)
+        return rows
+
+    def test_outside(self):
+        result = self.measure(*self.one, self.one[0], "far=9,0,0:9,0,1:9,1,0"[:None if self.one[0] == "--flux" else 15])
+        self.one_sentence(result, 0, "warning: .*'far' is outside of all fluid")
+        self.assertEqual(len(self.read_rows()), 2)
+
+    def refuse_measuring(self, usage, failures):
+        """cases of exit status 2 and 1, and those that both tables have; the table stays as it was."""
+        option, many = self.one[0], self.one[0] + ("es" if self.one[0] == "--flux" else "s")
+        usage = [(self.one * 2, "two (gauges|sections) have the name"), *(([*self.one, *more], sentence) for more, sentence in (
+            (["--scalar", "Radius"], "leave out --scalar"), (["--iso", "0.2,0.5"], "all but one --iso value"),
+            (["--iso", "0"], "--iso value above 0"), (["--solids", "wall"], "leave out --solids wall"),
+            (["--times", "1"], "--times: 1 is outside the times of the steps, 0 to 0"))), *usage]
+        failures = [([many, "none.txt"], "none.txt cannot be read"), ([many, "."], "cannot be read"),
+                    ([many, "/dev/zero"], "/dev/zero is larger than 64 MiB"), *failures]
+        self.table.write_text("as it was")
+        for status, cases in ((2, usage), (1, failures)):
+            for options, sentence in cases:
+                with self.subTest(options=options):
+                    self.one_sentence(self.measure(*options), status, sentence)
+        self.one_sentence(self.run_program(self.source, "table.vtp", *self.one), 2, f"the output of {option} is a .csv file")
+        self.one_sentence(self.run_program(self.source, "nowhere/t.csv", *self.one), 1, "nowhere/t.csv could not be written")
+        self.assertEqual(self.table.read_text(), "as it was")
+
+
+class Gauge(Meter):
+    """A block of particles with the sides 1 around the origin, on gauges."""
+
+    one = ["--gauge", UP]
+    columns = ["time", "gauge", "state", "first", "last", "depth", "crossings", "x", "y", "z"]
+
+    def setUp(self):
+        super().setUp()
+        self.source = self.input
+
+    def good(self, *options, source=None):
+        self.run_good(source or self.input, self.table, *options)
+        return self.read_rows()
+
+    def test_what_gauges_read(self):
+        rows = self.good("--gauge", UP, "--gauge=half=0,0,0:0,0,2", "--gauge", "inside=0,0,-.1:0,0,.1",
+                         "--gauge", 'a "dry", one=0.8,0,-1:0.6,0,1')
+        self.assertEqual([row["gauge"] for row in rows], ["mast", "half", "inside", 'a "dry", one'])
+        self.assertEqual([row["state"] for row in rows], ["wet", "wet", "full", "dry"])
+        self.assertEqual([row["crossings"] for row in rows], ["2", "1", "0", "0"])
+        mast, half, inside, dry = rows
+        level = float(mast["z"])
+        self.assertAlmostEqual(level, 0.5, delta=0.05 * files.SPACING)
+        self.assertAlmostEqual(float(mast["depth"]), 2 * level, delta=1e-6)
+        self.assertAlmostEqual(float(mast["last"]), 1 + level, delta=1e-9)
+        self.assertAlmostEqual(float(half["last"]), level, delta=1e-6)
+        self.assertEqual([float(inside[name]) for name in ("first", "last", "depth", "z")], [0.2, 0.2, 0.2, 0.1])
+        self.assertEqual([dry[name] for name in self.columns[3:]], ["", "", "0", "0", "", "", ""])
+
+    def test_level(self):
+        half, = self.good("--gauge", UP)
+        row, = self.good("--gauge", UP, "--iso", "0.2")
+        self.assertGreater(float(row["z"]), float(half["z"]) + 0.1 * files.SPACING)
+
+    def test_file_of_gauges(self):
+        (self.directory / "gauges.txt").write_text("# masts\n\n  one=0,0,-1:0,0,1  \ntwo=0.1,0,-1:0.1,0,1\n")
+        rows = self.good("--gauge", UP, "--gauges", "gauges.txt")
+        self.assertEqual([row["gauge"] for row in rows], ["mast", "one", "two"])
+
+    def test_steps(self):
+        """Several files, or those of a .pvd file, at their times."""
+        self.write_rising_steps(3, 0.1)
+        rows = self.good("--gauge", UP, "--gauge", "other=0.1,0,-1:0.1,0,1", source="steps.pvd")
+        self.assertEqual([(float(row["time"]), row["gauge"]) for row in rows],
+                         [(0.25 * i, name) for i in range(3) for name in ("mast", "other")])
+        for i, row in enumerate(rows):
+            self.assertAlmostEqual(float(row["z"]), 0.5 + 0.1 * (i // 2), delta=0.05 * files.SPACING)
+        before = self.table.read_text()
+        self.run_good("step_0.vtp", "step_1.vtp", "step_2.vtp", self.table, "--gauge", UP, "--gauge",
+                      "other=0.1,0,-1:0.1,0,1", "--time-step", "0.25")
+        self.assertEqual(self.table.read_text(), before)
+
+    def test_a_table_that_grows(self):
+        """Steps that were measured are in the table before the others are."""
+        program = subprocess.Popen([self.program, *[self.input] * 1000, self.table, "--gauge", UP], cwd=self.directory,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        end = time.monotonic() + 300
+        while not self.table.exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        program.kill()
+        program.communicate()
+        text = self.table.read_text()
+        self.assertTrue(text.endswith("\n"))
+        times = [row["time"] for row in self.read_rows()]
+        self.assertEqual(times, [str(i) for i in range(len(times))])
+        self.assertLess(len(times), 1000)
+        for part in self.directory.glob(".*"):
+            part.unlink()
+
+    def test_a_step_that_fails(self):
+        """The others are in the table."""
+        result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP)
+        self.one_sentence(result, 1, "missing.vtp")
+        self.assertEqual([row["time"] for row in self.read_rows()], ["0", "2"])
+
+    def test_grid(self):
+        image = self.directory / "levels.vti"
+        self.run_good(self.input, image, "--gauge-grid", "4,2:-0.6,0.3,0,0.1,-1,1")
+        root = xml.etree.ElementTree.parse(image).getroot()
+        self.assertEqual(root.find("ImageData").get("WholeExtent"), "0 3 0 1 0 0")
+        self.assertEqual({array.get("Name") for array in root.iter("DataArray")}, {"Level", "Depth", "Crossings"})
+
+    def test_wrong_usage(self):
+        self.refuse_measuring(
+            [(["--gauge", "mast=0,0,0:0,0,0"], "'mast' has no length"),
+             (["--gauge", "mast=0,0,nan:0,0,1"], "NAME=X,Y,Z:X,Y,Z, not 'mast=0,0,nan:0,0,1'"),
+             (["--gauge", "mast=0,0:0,0,1"], "needs a name and two places"),
+             (["--gauge", "=1+1=0,0,0:0,0,1"], "'=1.1' begins with '=', so that spreadsheets"),
+             (["--gauge-grid", "3000,3000:0,1,0,1,0,1"], "more than a million gauges, which take minutes"),
+             (["--gauge-grid", "1,1:0,1,0,1,0,1"], "the output of --gauge-grid is a .vti file")],
+            [(["--gauge", "far=0,0,0:0,0,1e30"], "Gauge 'far' needs .*e.* sample points.*; the limit is 4e.15")])
+        for text in ("0,1:0,1,0,1,0,1", "1.5,1:0,1,0,1,0,1", "2,2:0,1,0,1,1,0", "2,2"):
+            self.one_sentence(self.run_program(self.input, "l.vti", "--gauge-grid", text), 2, "--gauge-grid needs")
+
+
+class Flux(Meter):
+    """A block of particles with the sides 1 around the origin, which moves by (1, -2, 3) and as one."""
+
+    one = ["--flux", WALL]
+    columns = ["time", "section", "area", "volume_flux", "mass_flux", "velocity", "volume", "mass"]
+
+    def setUp(self):
+        super().setUp()
+        self.source = self.directory / "moving.vtp"
+        self.write("moving.vtp")
+
+    def write(self, name, **more):
+        files.write_vtp(self.directory / name, self.points, {**self.arrays, "Velocity": [(1.0, -2.0, 3.0)] * 1000, **more})
+
+    def rows(self, *options, source="moving.vtp"):
+        self.run_good(source, self.table, *options)
+        return [{name: value if name == "section" else float(value or "nan") for name, value in row.items()}
+                for row in self.read_rows()]
+
+    def test_sections(self):
+        (self.directory / "cube.stl").write_text("solid cube\n" + "".join(
+            "facet normal 0 0 0\nouter loop\n" + "".join("vertex %g %g %g\n" % CUBE[i] for i in side)
+            + "endloop\nendfacet\n" for side in SIDES) + "endsolid cube\n")
+        rows = self.rows("--flux", WALL, "--flux=disc=disc:0,0,0:0,0,-2:0.3", "--flux", "box=box:-.2,.2,-.1,.3,-.2,.1",
+                         "--flux", "cube=cube.stl", "--flux", "up=-.2,-.2,.1:.2,-.2,.1:-.2,.2,.1")
+        expected = [("wall", 0.2, 0.2), ("disc", math.pi * 0.09, -3 * math.pi * 0.09), ("box", 0.8, 0), ("cube", 0.96, 0),
+                    ("up", 0.16, 0.48)]
+        for row, (name, area, flux) in zip(rows, expected):
+            self.assertEqual((row["section"], row["volume"], row["mass"]), (name, 0, 0))
+            self.assertAlmostEqual(row["area"], area, delta=1e-6 * area)
+            self.assertAlmostEqual(row["volume_flux"], flux, delta=4e-6 * area)
+            self.assertAlmostEqual(row["mass_flux"], 1000 * flux, delta=4e-3 * area)
+            self.assertAlmostEqual(row["velocity"], flux / area, delta=4e-6)
+        (self.directory / "sections.txt").write_text("# all\n\n disc=disc:0,0,0:0,0,-2:0.3 \nup=-.2,-.2,.1:.2,-.2,.1:-.2,.2,.1\n")
+        self.assertEqual(self.rows("--fluxes", "sections.txt", "--flux", WALL), [rows[0], rows[1], rows[4]])
+
+    def test_outwards(self):
+        """The velocity is the position: 3 times the volume flows out of a closed file, whatever its triangles' normals."""
+        for turned in (False, True):
+            faces = "".join(f"3 {a + 0} {b if turned else d} {d if turned else b}\n" for a, b, d in SIDES)
+            (self.directory / "cube.vtk").write_text(
+                "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET POLYDATA\nPOINTS 8 double\n"
+                + "".join("%g %g %g\n" % x for x in CUBE) + f"POLYGONS 12 48\n{faces}")
+            row, = self.rows("--flux", "cube=cube.vtk", source=self.input)
+            self.assertAlmostEqual(row["volume_flux"], 3 * 0.064, delta=0.002)
+
+    def test_velocity_and_density(self):
+        self.write("named.vtp", Drift=[(2.0, 0.0, 0.0)] * 1000)
+        row, = self.rows("--flux", WALL, "--velocity", "Drift", source="named.vtp")
+        self.assertAlmostEqual(row["velocity"], 2, delta=1e-6)
+        files.write_vtp(self.directory / "bare.vtp", self.points, {name: self.arrays[name] for name in ("SmoothingLength", "Velocity")})
+        row, = self.rows("--flux", WALL, source="bare.vtp")
+        self.assertTrue(math.isnan(row["mass_flux"]) and math.isnan(row["mass"]) and row["volume"] == 0)
+        row, = self.rows("--flux", WALL, "--density", "10", source="bare.vtp")
+        self.assertAlmostEqual(row["mass_flux"], 10 * row["volume_flux"], delta=1e-6)
+
+    def test_volume_that_has_passed(self):
+        """The volume of fluid in a box, as of the capped surface, grows by what flows in through its sides."""
+        self.write_rising_steps(3, 0.06, step=0.2, Velocity=[(0.0, 0.0, 0.3)] * 1000, Id=list(range(1000)))
+        rows = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--flux", WALL, source="steps.pvd")
+        self.assertEqual([(row["time"], row["section"]) for row in rows],
+                         [(0.2 * i, name) for i in range(3) for name in ("box", "wall")])
+        box = rows[::2]
+        self.assertEqual((box[0]["volume"], box[0]["mass"]), (0, 0))
+        self.assertAlmostEqual(box[1]["volume"], 0.1 * (box[0]["volume_flux"] + box[1]["volume_flux"]), delta=1e-12)
+        volumes = []
+        for i in range(3):
+            run = self.succeed("--free-surface", "--box=-1,1,-1,1,.3,1", "--capping", "--cube-size", "0.02", source=f"step_{i}.vtp")
+            volumes.append(run["statistics"]["volume"])
+        for i in (1, 2):
+            self.assertAlmostEqual(-box[i]["volume"] / (volumes[i] - volumes[0]), 1, delta=0.01)
+            self.assertAlmostEqual(box[i]["mass"], 1000 * box[i]["volume"], delta=1e-3)
+        times = self.rows("--flux", "box=box:-1,1,-1,1,.3,1", "--times", "0,0.1,0.4", source="steps.pvd")
+        self.assertEqual([row["time"] for row in times], [0, 0.1, 0.4])
+
+    def test_plane(self):
+        points = [(0.1 * i, 0.1 * j, 0.0) for i in range(12) for j in range(12)]
+        files.write_vtp(self.directory / "plane.vtp", points, {
+            "SmoothingLength": [0.13] * 144, "Volume": [0.01] * 144, "Velocity": [(1.0, -2.0, 0.0)] * 144})
+        rows = self.rows("--flux", "up=.5,.3,0:.5,.7,0", "--flux", "box=box:.3,.7,.4,.6,-1,1", source="plane.vtp")
+        for row, area, flux in zip(rows, (0.4, 1.2), (0.4, 0)):
+            self.assertAlmostEqual(row["area"], area, delta=1e-6)
+            self.assertAlmostEqual(row["volume_flux"], flux, delta=1e-6)
+
+    def test_wrong_usage(self):
+        form = "--flux needs a section with a name, NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:.* not "
+        self.refuse_measuring(
+            [(["--flux", "wall=0,0,0:0,0"], form + "'wall=0,0,0:0,0'"),
+             *((["--flux", text], form) for text in ("wall", "=box:1", "a=disc:0,0,0:0,0,1", "a=box:0,1,0,1", "a=0,0,nan:0,0,1:1,1,1")),
+             (["--flux", "+a=box:0,1,0,1,0,1"], "'.a' begins with '.', so that spreadsheets"),
+             ([*self.one, "--gauge", "a=0,0,0:0,0,1"], "leave out --gauge")],
+            [(["--flux", "a=none.stl"], "none.stl"), (["--flux", "a=moving.vtp"], "Section 'a' has 0 points|no triangles"),
+             (["--flux", "a=0,0,0:1e30,0,0:0,1,0"], "Section 'a' needs .* cells"),
+             ([*self.one, "--velocity", "Drift"], "There is no point array 'Drift' for the velocity")])
+        del self.arrays["Velocity"]
+        files.write_vtp(self.directory / "still.vtp", self.points, self.arrays)
+        self.one_sentence(self.measure(*self.one, source="still.vtp"), 1, "no velocity.*--velocity")
+
+
+class Volumes(CommandLineTest):
+    """A block of 10 x 10 x 10 particles around the origin, half a spacing beyond which its surface is."""
+
+    def level(self, *options, arrays=(), points=None):
+        """In spacings above the uppermost particles, and what was said of volumes."""
+        given = points or self.points
+        files.write_vtp(self.input, given, {name: self.arrays[name][:len(given)] for name in arrays})
+        table = self.directory / "levels.csv"
+        result = self.run_good(self.input, table, "--gauge", "up=0.02,0,-.1:0.02,0,1", *options, says=".*")
+        row, = read_table(table)
+        return float(row["z"]) / DX - 4.5, result.stdout
+
+    def test_still_water(self):
+        """Whatever tells volumes; gauges say what did."""
+        for options, arrays, told in (
+                (("--smoothing-length", "0.13"), (), "computed from the positions"),
+                (("--smoothing-length", "0.13"), ("Mass",), "array Mass / density summed from it"),
+                (("--smoothing-length", "0.13"), ("Mass", "Density"), "array Mass / array Density"),
+                (("--dp", "0.1"), (), "0.001"), (("--dp", "0.1"), ("Mass",), "0.001"), (("--dp", "0.1"), ("Density",), "0.001"),
+                (("--dp", "0.1"), ("Mass", "Density"), "array Mass / array Density"),
+                (("--dp", "0.1", "--mass", "1"), ("Density",), "1 / array Density")):
+            with self.subTest(options, arrays=arrays):
+                level, said = self.level(*options, arrays=arrays)
+                self.assertAlmostEqual(level, 0.5, delta=0.05)
+                self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
+
+    def test_still_water_of_a_plane(self):
+        plane = [(x, 0.0, z) for x, y, z in self.points if y > 4.4 * DX]
+        for options, told in ((("--smoothing-length", "0.13"), "computed from the positions"), (("--dp", "0.1"), "0.01")):
+            level, said = self.level(*options, points=plane)
+            self.assertAlmostEqual(level, 0.5, delta=0.05)
+            self.assertEqual(said, f"1 gauge, 1 step; volumes: {told}\n")
+
+    def test_statistics_tell_the_volume(self):
+        files.write_vtp(self.input, self.points, {})
+        self.assertAlmostEqual(self.succeed("--free-surface", "--dp", "0.1")["parameters"]["particle_volume"], 0.001)
+
+    def test_smoothing_lengths_by_neighbours(self):
+        files.write_vtp(self.input, self.points, {"Mass": [1.0] * len(self.points)})
+        ranges = {word: self.succeed("--free-surface", "--smoothing-length", word)["statistics"]["smoothing_length_range"]
+                  for word in ("neighbours", "neighbors", "neighbours=1.3", "neighbours=1.1")}
+        self.assertEqual(len(set(map(tuple, ranges.values()))), 2)
+        low, high = ranges["neighbours"]
+        self.assertAlmostEqual(low, 1.3 * DX, delta=0.03 * DX)  # inside
+        self.assertGreater(high, 1.2 * low)  # at corners
+        self.assertLess(ranges["neighbours=1.1"][0], 0.9 * low)
+        summed = self.succeed("--scalar", "Density", "--iso", "900", "--field", "sum", "--smoothing-length", "neighbours")
+        self.assertAlmostEqual(summed["statistics"]["scalar_range"][1], 1000, delta=50)  # where it is not there
+        self.output.unlink()
+        free = "--free-surface", "--smoothing-length"
+        self.refuse_all(2, [(["neighbours=0"], "--smoothing-length")], *free)
+        self.refuse_all(1, [(["neighbours=0.5"], "ETA is 0.5; it must be above 0.683")], *free)
+
+
+if __name__ == "__main__":
+    main()

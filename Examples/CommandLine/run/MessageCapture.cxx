@@ -4,6 +4,7 @@
 
 #include "vtkObjectFactory.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 vtkStandardNewMacro(MessageCapture);
@@ -16,9 +17,7 @@ namespace
 std::string Sentence(const char* text)
 {
   std::string message = text ? text : "";
-  const std::size_t address = message.find(" (0x");
-  const std::size_t colon =
-    address == std::string::npos ? std::string::npos : message.find("): ", address);
+  const std::size_t colon = message.find("): ", message.find(" (0x"));
   if (colon != std::string::npos)
   {
     message.erase(0, colon + 3);
@@ -31,10 +30,8 @@ std::string Sentence(const char* text)
   {
     message = "VTK's reader gave up"; // where it says no more than that, and a page of addresses
   }
-  for (char& c : message)
-  {
-    c = c == '\n' || c == '\r' ? ' ' : c;
-  }
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  std::replace(message.begin(), message.end(), '\r', ' ');
   message.erase(message.find_last_not_of(' ') + 1);
   return message;
 }

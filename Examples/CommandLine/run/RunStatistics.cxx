@@ -113,8 +113,7 @@ std::string Text(vtkFieldData* run, const std::string& name)
   return array && array->GetNumberOfValues() > 0 ? std::string(array->GetValue(0)) : "";
 }
 
-/// What Fill() puts for a name: a text, also the array of a quantity that has one, or numbers,
-/// NAME:1 the second one of them; counts in full, everything else with six digits.
+/// What Fill() puts for a name.
 std::string Value(vtkFieldData* run, const std::string& name)
 {
   const std::string text = Text(run, name), array = Text(run, name + "Array");
@@ -130,39 +129,6 @@ std::string Value(vtkFieldData* run, const std::string& name)
     }
   }
   return !text.empty() ? text : array.empty() ? stream.str() : array;
-}
-
-/// The form with the run's values for names in braces. [A|B|C] is the first one of these whose
-/// names all have values, or nothing.
-std::string Fill(vtkFieldData* run, const std::string& form)
-{
-  std::string text;
-  std::size_t begin = 0; // of an alternative
-  bool isComplete = true;
-  for (std::size_t i = 0; i < form.size(); ++i)
-  {
-    const char c = form[i];
-    if (c == '{')
-    {
-      const std::size_t name = i + 1;
-      i = form.find('}', i);
-      const std::string value = Value(run, form.substr(name, i - name));
-      isComplete = isComplete && !value.empty();
-      text += value;
-    }
-    else if (c == '[' || c == '|' || c == ']')
-    {
-      text.resize(c == '[' || isComplete ? text.size() : begin);
-      i = c == '|' && isComplete ? form.find(']', i) : i;
-      begin = text.size();
-      isComplete = true;
-    }
-    else
-    {
-      text += c;
-    }
-  }
-  return text;
 }
 
 /// There may be more triangles than before: what a cut leaves of one is one or two.
@@ -276,6 +242,37 @@ Members ListSetting(const Job& job, vtkFieldData* run)
   }
   return setting;
 }
+}
+
+std::string Fill(vtkFieldData* run, const std::string& form)
+{
+  std::string text;
+  std::size_t begin = 0; // of an alternative
+  bool isComplete = true;
+  for (std::size_t i = 0; i < form.size(); ++i)
+  {
+    const char c = form[i];
+    if (c == '{')
+    {
+      const std::size_t name = i + 1;
+      i = form.find('}', i);
+      const std::string value = Value(run, form.substr(name, i - name));
+      isComplete = isComplete && !value.empty();
+      text += value;
+    }
+    else if (c == '[' || c == '|' || c == ']')
+    {
+      text.resize(c == '[' || isComplete ? text.size() : begin);
+      i = c == '|' && isComplete ? form.find(']', i) : i;
+      begin = text.size();
+      isComplete = true;
+    }
+    else
+    {
+      text += c;
+    }
+  }
+  return text;
 }
 
 std::string DescribeSeconds(vtkFieldData* run)

@@ -11,6 +11,11 @@
 struct Job;
 class vtkFieldData;
 
+/// The form with the run's values for names in braces, {Area}, {ScalarRange:1}: texts, also the
+/// array of a quantity that has one, and numbers, counts in full, everything else with six digits.
+/// [A|B|C] is the first one of these whose names all have values, or nothing.
+std::string Fill(vtkFieldData* run, const std::string& form);
+
 /// Describes a run's field data in a few lines; empty if the run had no particles to use.
 std::string DescribeRun(vtkFieldData* run);
 

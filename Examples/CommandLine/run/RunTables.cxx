@@ -1,26 +1,227 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Runs.h"
 
+// Tables: what gauges and sections measure, pieces of surfaces, numbers of films.
 #include "DataFile.h"
 #include "Job.h"
 #include "MessageCapture.h"
+#include "OutputFile.h"
+#include "ParticleFile.h"
+#include "ParticleTimes.h"
+#include "Runs.h"
+#include "SafeText.h"
 #include "Sharing.h"
 
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkImageData.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkSPHComponents.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
+#include <iostream>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
+
+/// An elevation map: Level is the height of the surface.
+void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
+{
+  const GaugeGrid& grid = job.Grid;
+  vtkNew<vtkImageData> image;
+  double spacing[3] = { 1.0, 1.0, 1.0 };
+  for (std::size_t a = 0; a < 2; ++a)
+  {
+    const double length = grid.Bounds[2 * a + 1] - grid.Bounds[2 * a];
+    spacing[a] = grid.Counts[a] > 1 && length > 0.0 ? length / (grid.Counts[a] - 1) : 1.0;
+  }
+  image->SetDimensions(grid.Counts[0], grid.Counts[1], 1);
+  image->SetOrigin(grid.Bounds[0], grid.Bounds[2], grid.Bounds[4]);
+  image->SetSpacing(spacing);
+  using Names = std::pair<const char*, const char*>;
+  for (const Names& names :
+    { Names("z", "Level"), Names("depth", "Depth"), Names("crossings", "Crossings") })
+  {
+    vtkAbstractArray* column = table->GetColumnByName(names.first);
+    auto array = vtk::TakeSmartPointer(column->NewInstance());
+    array->DeepCopy(column);
+    array->SetName(names.second);
+    image->GetPointData()->AddArray(array);
+  }
+  image->GetPointData()->SetActiveScalars("Level");
+  WriteDataSet(job.Output, image, messages);
+}
+
+void AddSection(const Job& job, const Place& section, MessageCapture* messages)
+{
+  const char* name = section.Name.c_str();
+  const double* n = section.Numbers.data();
+  switch (section.Shape)
+  {
+    case Place::Line:
+      job.Flux->AddLine(name, n, n + 3);
+      break;
+    case Place::Rectangle:
+      job.Flux->AddRectangle(name, n, n + 3, n + 6);
+      break;
+    case Place::Disc:
+      job.Flux->AddDisc(name, n, n + 3, n[6]);
+      break;
+    case Place::Box:
+      job.Flux->AddBox(name, n);
+      break;
+    default:
+    {
+      const vtkSmartPointer<vtkDataSet> surface = ReadDataSet(section.File, messages);
+      if (surface->GetNumberOfCells() == 0)
+      {
+        throw std::runtime_error(section.File + " has no triangles for section '" + section.Name +
+          "'; give a file of a surface");
+      }
+      job.Flux->AddSurface(name, surface);
+    }
+  }
+}
+
+/// The integrals of fluxes in time, by trapezia between steps.
+class Flowed
+{
+public:
+  /// Adds them to the table of a step, the columns volume and mass.
+  void AddTo(vtkTable* table, double time)
+  {
+    const double passed = this->Before.empty() ? 0.0 : time - this->Time;
+    const auto rows = static_cast<std::size_t>(table->GetNumberOfRows());
+    std::vector<double> now(2 * rows);
+    this->Sums.resize(2 * rows);
+    this->Time = time;
+    for (std::size_t flux = 0; flux < 2; ++flux)
+    {
+      vtkNew<vtkDoubleArray> column;
+      column->SetName(flux == 0 ? "volume" : "mass");
+      for (std::size_t row = 0; row < rows; ++row)
+      {
+        const std::size_t i = 2 * row + flux;
+        now[i] =
+          table->GetValueByName(
+                 static_cast<vtkIdType>(row), flux == 0 ? "volume_flux" : "mass_flux")
+            .ToDouble();
+        const double before = this->Before.empty() ? now[i] : this->Before[i];
+        this->Sums[i] +=
+          passed * 0.5 * (before + now[i]) + 0.0 * now[i]; // no number where there is no flux
+        column->InsertNextValue(this->Sums[i]);
+      }
+      table->AddColumn(column);
+    }
+    this->Before = rows > 0 ? now : std::vector<double>();
+  }
+
+private:
+  double Time = 0.0;
+  std::vector<double> Before, Sums; ///< of volume and mass, for each section
+};
+
+/// The steps of a table, or the one of an image.
+class MeterTable : public Series
+{
+public:
+  explicit MeterTable(Sharing& sharing)
+    : Series(sharing)
+    , IsFlux(this->Options.IsFlux())
+    , IsImage(!IsFlux && this->Options.Grid.Counts[0] > 0)
+    , Meter(IsFlux ? static_cast<vtkSPHMeter*>(this->Options.Flux) : this->Options.Gauge.Get())
+    , File(IsImage ? "" : this->Options.Output)
+  {
+    sharing.OnFirst([this] { this->Times.CheckOutputs({ this->Options.Output }); });
+    if (this->IsImage && this->Times.Get().size() > 1)
+    {
+      throw std::runtime_error(
+        "--gauge-grid takes one INPUT of one time, as its OUTPUT is one image");
+    }
+  }
+
+  bool Make(std::size_t places)
+  {
+    const bool isGood = this->MakeAll();
+    if (this->Text.empty())
+    {
+      throw std::runtime_error("no step could be measured, so no table was written");
+    }
+    this->Shared.OnFirst(
+      [this, places]
+      {
+        this->File.Write([this] { return this->Text; }, true);
+        if (this->IsImage)
+        {
+          WriteGrid(this->Options, this->Meter->GetOutput(), this->Messages);
+        }
+        if (!this->Options.Quiet)
+        {
+          const std::size_t steps = this->Times.Get().size();
+          std::cout << places << (this->IsFlux ? " section" : " gauge") << (places == 1 ? "" : "s")
+                    << ", " << steps << (steps == 1 ? " step" : " steps")
+                    << "; volumes: " << this->Meter->GetUsedVolume() << "\n";
+        }
+      });
+    return isGood;
+  }
+
+private:
+  std::string Label(std::size_t i) const override
+  {
+    const double time = this->Times.Get()[i];
+    return this->Times.ListFiles(time).front() +
+      (this->Options.Times.empty() ? "" : " (time " + TimeText(time) + ")");
+  }
+
+  void MakeStep(std::size_t i, vtkPointSet* particles, std::vector<std::string>& warnings) override
+  {
+    const double time = this->Times.Get()[i];
+    const std::string progress =
+      this->Times.Get().size() > 1 ? Printable(this->Label(i)) + ": " : "";
+    vtkTable* table = nullptr;
+    this->Shared.OnAll(
+      [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, progress); });
+    if (this->IsFlux)
+    {
+      this->Sums.AddTo(table, time);
+    }
+    for (const std::string& warning : this->Messages->GetWarnings())
+    {
+      if (!this->IsImage || warning.find("is outside of all fluid") == std::string::npos)
+      {
+        warnings.push_back(warning);
+      }
+    }
+    AppendTable(this->Text, table);
+    this->Shared.OnFirst([this] { this->File.Write([this] { return this->Text; }, false); });
+  }
+
+  /// The error of an only time is that of the program.
+  void Miss(std::size_t, const std::string& error) override
+  {
+    if (this->Times.Get().size() == 1)
+    {
+      throw std::runtime_error(error);
+    }
+  }
+
+  const bool IsFlux, IsImage;
+  vtkSPHMeter* const Meter;
+  GrowingFile File; ///< nameless for an image
+  Flowed Sums;
+  std::string Text;
+};
 
 /// Adds an array of one number, to statistics or a table's row.
 void AddNumber(vtkFieldData* data, const std::string& name, double value)
@@ -34,14 +235,41 @@ void AddNumber(vtkFieldData* data, const std::string& name, double value)
 double SumOf(vtkTable* table, const char* column)
 {
   auto* numbers = vtkDoubleArray::SafeDownCast(table->GetColumnByName(column));
-  double sum = 0.0;
-  for (vtkIdType i = 0; i < numbers->GetNumberOfTuples(); ++i)
-  {
-    sum += numbers->GetValue(i);
-  }
-  return sum;
+  return std::accumulate(numbers->Begin(), numbers->End(), 0.0);
 }
 
+}
+
+vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
+  double time, const std::string& progress)
+{
+  meter->SetInputData(SetUpParticles(meter, sharing.Options, particles));
+  meter->SetTime(time);
+  Update(meter, sharing, progress);
+  return meter->GetOutput();
+}
+
+std::size_t AddGauges(const Job& job)
+{
+  const std::vector<Place> gauges = ListGauges(job);
+  for (const Place& gauge : gauges)
+  {
+    const std::vector<double>& e = gauge.Numbers;
+    job.Gauge->AddGauge(gauge.Name.c_str(), e[0], e[1], e[2], e[3], e[4], e[5]);
+  }
+  return gauges.size();
+}
+
+bool MakeMeterTable(Sharing& sharing)
+{
+  const Job& job = sharing.Options;
+  const std::vector<Place> sections = job.IsFlux() ? ListSections(job) : std::vector<Place>();
+  for (const Place& section : sections)
+  {
+    AddSection(job, section, sharing.Messages);
+  }
+  const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
+  return MeterTable(sharing).Make(places);
 }
 
 // Describes the particles to the filter of pieces as to that of the surface.

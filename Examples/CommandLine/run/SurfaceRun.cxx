@@ -10,6 +10,7 @@
 #include "OptionValue.h"
 #include "ParticleFile.h"
 #include "Picture.h"
+#include "RunStatistics.h"
 #include "SafeText.h"
 #include "Sharing.h"
 
@@ -27,7 +28,6 @@
 #include <cstring>
 #include <future>
 #include <iostream>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -173,36 +173,27 @@ void SetAttributes(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particl
 }
 
 /// Returns why there is no surface, as far as the ranges tell.
-std::string ReasonForNoSurface(vtkFieldData* statistics)
+std::string ReasonForNoSurface(vtkFieldData* run)
 {
-  vtkDataArray* values = statistics->GetArray("IsoValues");
+  vtkDataArray* values = run->GetArray("IsoValues");
+  vtkDataArray* before = run->GetArray("TrianglesBeforeTrimming");
+  const std::string inBox = run->HasArray("Box") ? " in the box" : "";
+  const std::string what = run->HasArray("Lines") ? "lines" : "triangles";
   if (!values)
   {
     return "";
   }
-  vtkDataArray* range = statistics->GetArray("ScalarRange");
-  vtkDataArray* before = statistics->GetArray("TrianglesBeforeTrimming");
-  std::ostringstream stream;
-  const bool inBox = statistics->HasArray("Box");
   if (before && before->GetComponent(0, 0) > 0.0)
   {
-    const bool hasLines = statistics->HasArray("Lines");
-    stream << "all " << before->GetComponent(0, 0) << (hasLines ? " lines" : " triangles")
-           << (inBox ? " in the box" : "") << " were trimmed, as they lie where the fluid ends: "
-           << "a lower --vertex-threshold keeps more of them";
-    return stream.str();
+    return Fill(run,
+      "all {TrianglesBeforeTrimming} " + what + inBox +
+        " were trimmed, as they lie where the fluid "
+        "ends: a lower --vertex-threshold keeps more of them");
   }
-  stream << "no part of the field" << (inBox ? " in the box" : "") << " reaches the iso value";
-  if (values->GetNumberOfValues() == 1)
-  {
-    stream << " " << values->GetComponent(0, 0);
-  }
-  if (range)
-  {
-    stream << "; the particles have values from " << range->GetComponent(0, 0) << " to "
-           << range->GetComponent(0, 1);
-  }
-  return stream.str();
+  return Fill(run,
+    "no part of the field" + inBox + " reaches the iso value" +
+      (values->GetNumberOfValues() == 1 ? " {IsoValues}" : "") +
+      "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
 /// Prints the iso value that the filter has chosen, if none was given, and keeps it for the next
@@ -211,19 +202,19 @@ void KeepIsoValue(const Sharing& sharing, vtkFieldData* statistics)
 {
   const Job& job = sharing.Options;
   vtkDataArray* values = statistics->GetArray("IsoValues");
-  vtkDataArray* range = statistics->GetArray("ScalarRange");
-  if (job.Scalar.empty() || job.Surface->GetNumberOfContours() > 0 || !range || !values ||
-    values->GetNumberOfValues() == 0)
+  if (job.Scalar.empty() || job.Surface->GetNumberOfContours() > 0 ||
+    !statistics->HasArray("ScalarRange") || !values || values->GetNumberOfValues() == 0)
   {
     return;
   }
-  const double value = values->GetComponent(0, 0);
-  job.Surface->SetValue(0, value);
+  job.Surface->SetValue(0, values->GetComponent(0, 0));
   if (!job.Quiet && sharing.IsFirst())
   {
-    std::cout << "iso value   " << value << ", chosen for " << job.Scalar << ", whose range is "
-              << range->GetComponent(0, 0) << " .. " << range->GetComponent(0, 1)
-              << " (--iso gives another one)" << std::endl;
+    std::cout
+      << Fill(statistics,
+           "iso value   {IsoValues}, chosen for {Scalar}, whose range is {ScalarRange:0} .. "
+           "{ScalarRange:1} (--iso gives another one)")
+      << std::endl;
   }
 }
 

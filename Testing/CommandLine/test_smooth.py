@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Smoother surfaces: --widen, --widening and --compact."""
+import pathlib
 import random
 
 import particle_files as files
@@ -27,6 +28,14 @@ class Smooth(CommandLineTest):
                           says=".*")  # which warns of so many neighbours
             self.assertEqual(wide.read_bytes(), plain.read_bytes())
             self.assertGreater(len(wide.read_bytes()), 10000)
+
+    def test_pieces(self):
+        """Threads that hang at the rims of films do not part."""
+        table = self.directory / "pieces.csv"
+        for options in ([], ["--smooth"]):
+            self.extract_good("--free-surface", "--components", table, *options, source=pathlib.Path(__file__).parents[2] / "Examples"
+                              / "Data" / "double_dam_break_small.vtp")
+            self.assertEqual(len(table.read_text().splitlines()), 1 + 9)
 
     def test_refused(self):
         self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled or --compact")], "--free-surface")

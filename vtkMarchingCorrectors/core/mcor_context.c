@@ -63,8 +63,8 @@ void mcor_release_memory(mcor_context* context)
   {
     return;
   }
-  mcor_release_stage(context);
-  mcor_release_sort(context);
+  MCOR_RELEASE_EACH(context, &context->stage);
+  MCOR_RELEASE_EACH(context, &context->sort);
   mcor_release_grid(context);
   mcor_release_bricks(context);
   mcor_release_mesh(context);
@@ -76,7 +76,7 @@ void mcor_release_memory(mcor_context* context)
   MCOR_RELEASE_EACH(context, &context->trim);
   MCOR_RELEASE_EACH(context, &context->pairs);
   mcor_release_widening(context);
-  mcor_release(context, &context->sort.sums);
+  mcor_release(context, &context->scan_sums);
   mcor_drop_kept(context, 0);
   free(context->source);
   context->source = NULL;
@@ -90,7 +90,6 @@ void mcor_release_all_data(mcor_context* context)
   mcor_release_memory(context);
   MCOR_RELEASE(context, &context->cases, &context->case_rows);
   mcor_drop_kept(context, 0);
-  context->kept.grid = context->kept.value = context->kept.nodes = false;
 }
 
 void mcor_free_context(mcor_context* context)
@@ -136,8 +135,8 @@ mcor_status mcor_prepare(
   {
     MCOR_TRY(mcor_set_scalar(context, input));
   }
-  mcor_release_stage(context);
-  mcor_release_sort(context);
+  MCOR_RELEASE_EACH(context, &context->stage);
+  MCOR_RELEASE_EACH(context, &context->sort);
   if (!context->kept.nodes)
   {
     mcor_release_brick_data(context, &context->bricks.now);

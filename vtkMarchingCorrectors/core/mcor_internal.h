@@ -249,7 +249,6 @@ mcor_status mcor_count_bits(mcor_context* context, const mcor_buffer* masks,
   const mcor_buffer* within, int count, int* total);
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit);
-void mcor_release_sort(mcor_context* context);
 mcor_status mcor_list_runs(mcor_context* context, const mcor_buffer* keys, int count,
   mcor_buffer* distinct, mcor_buffer* begins, int* distinct_count);
 uint64_t mcor_most_buckets(int keys);
@@ -264,7 +263,6 @@ mcor_status mcor_set_scalar(mcor_context* context, const mcor_input* input);
 mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
   const mcor_array* array, int component, double shift, double scale, bool fixed, mcor_buffer* to,
   int to_row);
-void mcor_release_stage(mcor_context* context);
 void mcor_release_grid(mcor_context* context);
 void mcor_release_brick_data(mcor_context* context, mcor_brick_data* data);
 void mcor_release_bricks(mcor_context* context);

@@ -199,10 +199,10 @@ typedef struct mcor_trim_data
   mcor_buffer triangles, cells; /* what trimming leaves, until the mesh and the box take it */
 } mcor_trim_data;
 
-/* mcor_scan.c. flags, order: of mcor_unique. */
+/* Of a sort, as large as the particles; flags, order: of mcor_unique. */
 typedef struct mcor_sort_data
 {
-  mcor_buffer sums, keys, values, histogram, order, flags;
+  mcor_buffer keys, values, histogram, order, flags;
 } mcor_sort_data;
 
 /* One component of an attribute. */
@@ -309,6 +309,7 @@ struct mcor_context
   /* The device, and what it holds for any particles. */
   mcor_cl cl;
   mcor_buffer cases, case_rows; /* mcor_case_table */
+  mcor_buffer scan_sums;
   mcor_sort_data sort;
   double report_interval; /* seconds between progress reports, at least */
   int probe_batch;        /* points; 0 before the first probe */

@@ -128,7 +128,7 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
     context->sort.values = grid->order;
     grid->order = merged;
   }
-  mcor_release_sort(context);
+  MCOR_RELEASE_EACH(context, &context->sort);
   return MCOR_OK;
 }
 
@@ -228,7 +228,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&grid->level_buffer), MCOR_BUFFER(&stage->level), MCOR_BUFFER(&stage->x),
     MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
-  mcor_release_sort(context);
+  MCOR_RELEASE_EACH(context, &context->sort);
   MCOR_TRY(mcor_order_large_cells(context));
   MCOR_TRY(mcor_move_particles(context));
   return mcor_index_cells(context, cells);

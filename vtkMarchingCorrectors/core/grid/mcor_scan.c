@@ -26,16 +26,16 @@ static int mcor_segments(const mcor_context* context, int count)
 static mcor_status mcor_launch_scan(
   mcor_context* context, const mcor_buffer* counts, int count, int segments)
 {
-  MCOR_TRY(mcor_reserve(context, &context->sort.sums, ((size_t)segments + 1) * sizeof(cl_long)));
+  MCOR_TRY(mcor_reserve(context, &context->scan_sums, ((size_t)segments + 1) * sizeof(cl_long)));
   if (segments > 1)
   {
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_sum", mcor_walk(count), segments, MCOR_BUFFER(counts),
-      MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums)));
+      MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->scan_sums)));
     MCOR_TRY(MCOR_LAUNCH(context, "mcor_scan_top", MCOR_LIGHT, 64, MCOR_INT(segments),
-      MCOR_BUFFER(&context->sort.sums)));
+      MCOR_BUFFER(&context->scan_sums)));
   }
   return MCOR_LAUNCH(context, "mcor_scan_fill", mcor_walk(count), segments, MCOR_BUFFER(counts),
-    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->sort.sums));
+    MCOR_INT(count), MCOR_INT(segments), MCOR_BUFFER(&context->scan_sums));
 }
 
 /* Scans likewise, and reads the total. */
@@ -45,7 +45,7 @@ mcor_status mcor_scan(mcor_context* context, mcor_buffer* counts, int count, int
   cl_long sum = 0;
   MCOR_TRY(mcor_launch_scan(context, counts, count, segments));
   MCOR_TRY(
-    mcor_read(context, &context->sort.sums, (size_t)segments * sizeof(cl_long), &sum, sizeof sum));
+    mcor_read(context, &context->scan_sums, (size_t)segments * sizeof(cl_long), &sum, sizeof sum));
   MCOR_RETURN_IF(sum > MCOR_COUNT_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The surface is too large: a table would need %lld entries; the limit is %d. Use a larger cube "
     "size.",
@@ -129,13 +129,6 @@ mcor_status mcor_sort(
     mcor_swap(values, sorted);
   }
   return MCOR_OK;
-}
-
-/* Frees the memory of a sort, which is as large as the particles. */
-void mcor_release_sort(mcor_context* context)
-{
-  mcor_sort_data* s = &context->sort;
-  MCOR_RELEASE(context, &s->keys, &s->values, &s->histogram, &s->order, &s->flags);
 }
 
 /* Flags the first of each run of equal ones among sorted keys, and numbers the runs. */

@@ -181,22 +181,6 @@ double mcor_largest(
   return mcor_largest_of(range[0], range[1]);
 }
 
-void mcor_measure_component(mcor_context* context, const mcor_input* input, int attribute,
-  int component, mcor_global_component* found)
-{
-  const mcor_array* array = &input->attributes[attribute];
-  double range[2];
-  mcor_find_range(context, array, input->solid, MCOR_SKIP_SOLIDS, input->count, component, range);
-  found->low = range[0];
-  found->high = range[1];
-  if (input->solid && !(range[0] < range[1]))
-  {
-    mcor_find_range(context, array, NULL, MCOR_SKIP_SOLIDS, input->count, component, range);
-  }
-  found->varies = range[0] < range[1];
-  found->largest = found->varies ? mcor_largest_of(found->low, found->high) : 0;
-}
-
 typedef struct mcor_legal_job
 {
   const mcor_array* array;

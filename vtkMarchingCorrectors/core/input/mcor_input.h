@@ -175,9 +175,9 @@ int64_t mcor_find_not_finite(
 /* mcor_attribute.c. Returns the number of components of all attributes together. */
 size_t mcor_count_components(const mcor_input* input);
 
-/* Measures one component; whether its attribute is finite is known before. */
-void mcor_measure_component(mcor_context* context, const mcor_input* input, int attribute,
-  int component, mcor_global_component* found);
+/* mcor_globals.c. Measures the components of all attributes. */
+mcor_status mcor_measure_components(
+  mcor_context* context, const mcor_input* input, mcor_globals* globals);
 
 /* About the median of the scalar of fluid particles, which is measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);

@@ -411,10 +411,3 @@ mcor_status mcor_stage(mcor_staging* staging)
   free(staging->images);
   return status;
 }
-
-void mcor_release_stage(mcor_context* context)
-{
-  mcor_stage_data* s = &context->stage;
-  MCOR_RELEASE(context, &s->x, &s->y, &s->z, &s->inv_h, &s->size, &s->level, &s->density,
-    &s->values, &s->flags, &s->keys, &s->found);
-}

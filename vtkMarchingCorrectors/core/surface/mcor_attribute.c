@@ -39,6 +39,7 @@ mcor_status mcor_list_components(
 {
   mcor_attributes* attributes = &context->attributes;
   const mcor_globals* globals = context->run.options->globals;
+  mcor_globals own = { 0 };
   const size_t count = mcor_count_components(input);
   free(attributes->varying);
   attributes->kept = 0;
@@ -48,27 +49,15 @@ mcor_status mcor_list_components(
   MCOR_RETURN_IF(globals && globals->component_count != (int)count, context, MCOR_INVALID_ARGUMENT,
     "options.globals was measured for %d components of attributes, but the input has %d.",
     globals->component_count, (int)count);
-  for (int a = 0, next = 0; a < input->attribute_count; ++a)
+  const mcor_status status = globals ? MCOR_OK : mcor_measure_components(context, input, &own);
+  globals = globals ? globals : &own;
+  for (int a = 0, next = 0; a < input->attribute_count && status == MCOR_OK; ++a)
   {
-    const mcor_array* array = &input->attributes[a];
-    not_finite[a] = globals ? globals->components[next].not_finite
-                            : mcor_find_not_finite(context, array, input->solid, input->count);
-    for (int c = 0; c < mcor_components(array); ++c, ++next)
+    not_finite[a] = globals->components[next].not_finite;
+    for (int c = 0; c < mcor_components(&input->attributes[a]); ++c, ++next)
     {
-      mcor_global_component found = { 0 };
-      if (not_finite[a] >= 0)
-      {
-        continue;
-      }
-      if (globals)
-      {
-        found = globals->components[next];
-      }
-      else
-      {
-        mcor_measure_component(context, input, a, c, &found);
-      }
-      if (found.varies || !of_surface)
+      const mcor_global_component found = globals->components[next];
+      if (found.not_finite < 0 && (found.varies || !of_surface))
       {
         mcor_component* scaled = &attributes->varying[attributes->varying_count++];
         *scaled = (mcor_component){ .attribute = a, .component = c };
@@ -85,7 +74,8 @@ mcor_status mcor_list_components(
       }
     }
   }
-  return MCOR_OK;
+  free(own.components);
+  return status;
 }
 
 /* Copies up to MCOR_ATTRIBUTE_LIMIT varying components to the device, from number `first` on. */

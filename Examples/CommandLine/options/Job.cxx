@@ -17,7 +17,7 @@
 namespace
 {
 
-/// What is made of the particles, for rules that hold for some of it.
+/// Names what is made of the particles, for rules that hold for some of it.
 enum Modes : unsigned
 {
   Gauges = 1,

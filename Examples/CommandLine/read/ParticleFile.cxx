@@ -124,8 +124,9 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* mes
   return data;
 }
 
-/// Checks arrays of one kind, of this many elements, and makes their names fit for sentences and for
-/// the surface's file: a legacy file can hold bytes that these cannot. Throws std::runtime_error.
+/// Checks arrays of one kind, of this many elements, and makes their names fit for sentences and
+/// for the surface's file: a legacy file can hold bytes that these cannot. Throws
+/// std::runtime_error.
 void CheckArrays(const std::string& file, vtkFieldData* arrays, vtkIdType count, const char* kind)
 {
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)

@@ -19,9 +19,9 @@ std::string ParticleFileEndings();
 
 /// Reads particles and their arrays from files that each hold a part of them. Arrays that are not
 /// in all of them are left out, and so are particles that a part marks as another one's
-/// (vtkGhostType). Throws std::runtime_error with one sentence if a file cannot be read, is damaged,
-/// or there are no points, which a step of a film may lack; where VTK's reader crashes over it, the
-/// program ends with a sentence. Names of arrays are made fit to print.
+/// (vtkGhostType). Throws std::runtime_error with one sentence if a file cannot be read, is
+/// damaged, or there are no points, which a step of a film may lack; where VTK's reader crashes
+/// over it, the program ends with a sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
   const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty = false);
 

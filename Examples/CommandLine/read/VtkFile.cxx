@@ -292,24 +292,18 @@ const char* const TimeNames[] = { "TimeValue", "TIME", "Time", "time" };
 /// VTK's readers read them alone.
 std::string FieldOfXml(const std::string& head)
 {
-  const std::size_t tag = head.find("<VTKFile"), begin = head.find("<FieldData"),
-                    close = head.find("</FieldData>");
-  const std::size_t tagEnd = tag == std::string::npos ? tag : head.find('>', tag);
-  if (tagEnd == std::string::npos || begin == std::string::npos || close == std::string::npos ||
-    begin < tagEnd || close < begin)
-  {
-    return "";
-  }
-  std::string file = head.substr(tag, tagEnd + 1 - tag);
-  const std::size_t type = file.find("type=");
+  // A search from npos on finds nothing, so that `close` tells of all before it.
+  const std::size_t tag = head.find("<VTKFile"), type = head.find("type=", tag);
+  const std::size_t tagEnd = head.find('>', tag), begin = head.find("<FieldData", tagEnd);
+  const std::size_t close = head.find("</FieldData>", begin);
   const std::size_t typeEnd =
-    type == std::string::npos ? type : file.find(file[type + 5], type + 6);
-  if (typeEnd == std::string::npos)
+    type == std::string::npos ? type : head.find(head[type + 5], type + 6);
+  if (close == std::string::npos || typeEnd >= tagEnd)
   {
     return "";
   }
-  file.replace(type, typeEnd + 1 - type, "type=\"PolyData\"");
-  return file + "<PolyData>" + head.substr(begin, close - begin) +
+  return head.substr(tag, type - tag) + "type=\"PolyData\"" +
+    head.substr(typeEnd + 1, tagEnd - typeEnd) + "<PolyData>" + head.substr(begin, close - begin) +
     "</FieldData><Piece NumberOfPoints=\"0\"><Points></Points></Piece></PolyData></VTKFile>";
 }
 
@@ -317,7 +311,7 @@ std::string FieldOfLegacy(const std::string& head)
 {
   const std::size_t set = head.find("\nDATASET "), field = head.find("\nFIELD ", set);
   const std::size_t points = head.find("\nPOINTS ", field);
-  if (set == std::string::npos || points == std::string::npos)
+  if (points == std::string::npos)
   {
     return "";
   }
@@ -345,8 +339,7 @@ std::vector<double> TimesInRanges(const std::string& head)
   for (const char* name : TimeNames)
   {
     const std::size_t at = head.find("Name=\"" + std::string(name) + "\"");
-    const std::size_t end = at == std::string::npos ? at : head.find('>', at);
-    const std::size_t low = end == std::string::npos ? end : head.find("RangeMin=\"", at);
+    const std::size_t end = head.find('>', at), low = head.find("RangeMin=\"", at);
     if (low < end && end != std::string::npos)
     {
       double time = 0.0;

@@ -51,66 +51,35 @@ static double oracle_quadratic(double q, double* slope)
   return 5.0 / (4.0 * ORACLE_PI) * (0.1875 * q * q - 0.75 * q + 0.75);
 }
 
-static double oracle_quintic(double q, double* slope)
+/* Sums of (R - q)^n, (R - 1 - q)^n and (R - 2 - q)^n, as far as these are above 0: R is the support. */
+static double oracle_spline(
+  double reach, int power, const double factor[3], double norm, double q, double* slope)
 {
-  static const double factor[3] = { 1.0, -6.0, 15.0 };
   double value = 0.0;
   *slope = 0.0;
   for (int term = 0; term < 3; ++term)
   {
-    const double u = 3.0 - term - q;
+    const double u = reach - term - q;
     if (u > 0.0)
     {
-      value += factor[term] * pow(u, 5.0);
-      *slope -= 5.0 * factor[term] * pow(u, 4.0);
+      value += factor[term] * pow(u, power);
+      *slope -= power * factor[term] * pow(u, power - 1);
     }
   }
-  *slope /= 120.0 * ORACLE_PI;
-  return value / (120.0 * ORACLE_PI);
+  *slope /= norm * ORACLE_PI;
+  return value / (norm * ORACLE_PI);
 }
 
-static double oracle_wendland(double q, double* slope)
+/* (1 - u)^n times a polynomial, as Dehnen and Aly (2012) write them, of u = r / support radius. */
+static double oracle_wendland(
+  int power, const double factor[4], double norm, double q, double* slope)
 {
-  const double u = 1.0 - 0.5 * q;
-  *slope = 21.0 / (16.0 * ORACLE_PI) * (2.0 * pow(u, 4.0) - 2.0 * pow(u, 3.0) * (2.0 * q + 1.0));
-  return 21.0 / (16.0 * ORACLE_PI) * pow(u, 4.0) * (2.0 * q + 1.0);
-}
-
-static double oracle_quartic(double q, double* slope)
-{
-  static const double factor[3] = { 1.0, -5.0, 10.0 };
-  double value = 0.0;
-  *slope = 0.0;
-  for (int term = 0; term < 3; ++term)
-  {
-    const double u = 2.5 - term - q;
-    if (u > 0.0)
-    {
-      value += factor[term] * pow(u, 4.0);
-      *slope -= 4.0 * factor[term] * pow(u, 3.0);
-    }
-  }
-  *slope /= 20.0 * ORACLE_PI;
-  return value / (20.0 * ORACLE_PI);
-}
-
-/* As Dehnen and Aly (2012) write them, of u = r / support radius; the product rule for the slopes. */
-static double oracle_wendland_c4(double q, double* slope)
-{
-  const double u = q / 2.0, norm = 495.0 / (32.0 * ORACLE_PI) / 8.0;
-  const double poly = 1.0 + 6.0 * u + 35.0 / 3.0 * u * u;
+  const double u = 0.5 * q;
+  const double poly = factor[0] + u * (factor[1] + u * (factor[2] + u * factor[3]));
+  const double rise = factor[1] + u * (2.0 * factor[2] + u * 3.0 * factor[3]);
   *slope =
-    norm / 2.0 * (pow(1.0 - u, 6.0) * (6.0 + 70.0 / 3.0 * u) - 6.0 * pow(1.0 - u, 5.0) * poly);
-  return norm * pow(1.0 - u, 6.0) * poly;
-}
-
-static double oracle_wendland_c6(double q, double* slope)
-{
-  const double u = q / 2.0, norm = 1365.0 / (64.0 * ORACLE_PI) / 8.0;
-  const double poly = 1.0 + 8.0 * u + 25.0 * u * u + 32.0 * u * u * u;
-  *slope = norm / 2.0 *
-    (pow(1.0 - u, 8.0) * (8.0 + 50.0 * u + 96.0 * u * u) - 8.0 * pow(1.0 - u, 7.0) * poly);
-  return norm * pow(1.0 - u, 8.0) * poly;
+    0.5 * norm / ORACLE_PI * (pow(1.0 - u, power) * rise - power * pow(1.0 - u, power - 1) * poly);
+  return norm / ORACLE_PI * pow(1.0 - u, power) * poly;
 }
 
 /* With the norm of an integral that was computed to 25 digits. */
@@ -179,35 +148,18 @@ double oracle_kernel_value(
   {
     return 0.0;
   }
-  double slope = 0.0;
-  double value = 0.0;
-  switch (kernel)
-  {
-    case ORACLE_QUADRATIC:
-      value = oracle_quadratic(q, &slope);
-      break;
-    case ORACLE_QUINTIC_SPLINE:
-      value = oracle_quintic(q, &slope);
-      break;
-    case ORACLE_WENDLAND_C2:
-      value = oracle_wendland(q, &slope);
-      break;
-    case ORACLE_QUARTIC_SPLINE:
-      value = oracle_quartic(q, &slope);
-      break;
-    case ORACLE_WENDLAND_C4:
-      value = oracle_wendland_c4(q, &slope);
-      break;
-    case ORACLE_WENDLAND_C6:
-      value = oracle_wendland_c6(q, &slope);
-      break;
-    case ORACLE_SINC_6:
-      value = oracle_sinc_6(q, &slope);
-      break;
-    default:
-      value = oracle_cubic(q, &slope);
-      break;
-  }
+  static const double quartic[3] = { 1.0, -5.0, 10.0 }, quintic[3] = { 1.0, -6.0, 15.0 };
+  static const double c2[4] = { 1.0, 4.0 }, c4[4] = { 1.0, 6.0, 35.0 / 3.0 },
+                      c6[4] = { 1.0, 8.0, 25.0, 32.0 };
+  double slope;
+  const double value = kernel == ORACLE_QUADRATIC ? oracle_quadratic(q, &slope)
+    : kernel == ORACLE_QUARTIC_SPLINE             ? oracle_spline(2.5, 4, quartic, 20.0, q, &slope)
+    : kernel == ORACLE_QUINTIC_SPLINE             ? oracle_spline(3.0, 5, quintic, 120.0, q, &slope)
+    : kernel == ORACLE_WENDLAND_C2                ? oracle_wendland(4, c2, 21.0 / 16.0, q, &slope)
+    : kernel == ORACLE_WENDLAND_C4                ? oracle_wendland(6, c4, 495.0 / 256.0, q, &slope)
+    : kernel == ORACLE_WENDLAND_C6 ? oracle_wendland(8, c6, 1365.0 / 512.0, q, &slope)
+    : kernel == ORACLE_SINC_6      ? oracle_sinc_6(q, &slope)
+                                   : oracle_cubic(q, &slope);
   if (gradient && r > 0.0)
   {
     for (int axis = 0; axis < 3; ++axis)

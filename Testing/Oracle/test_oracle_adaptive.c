@@ -27,7 +27,6 @@ typedef struct adaptive_entry
   particle_set (*make)(double ratio);
   double ratio, iso;
   mcor_field field;
-  mcor_sph_kernel kernel;
   mcor_type precision;
   adaptive_solids solids;
 } adaptive_entry;
@@ -42,7 +41,6 @@ static void run_entry(oracle_suite* suite, const adaptive_entry* entry)
   at.input = core_input(&set);
   at.options = oracle_case_options(&entry->iso);
   at.options.field = entry->field;
-  at.options.sph_kernel = entry->kernel;
   at.options.precision = entry->precision;
   at.options.level_limit = MCOR_CUBE_LEVELS - 1;
   at.input.ignore_solids = entry->solids == SOLIDS_IGNORE;
@@ -51,7 +49,7 @@ static void run_entry(oracle_suite* suite, const adaptive_entry* entry)
     entry->field == MCOR_WEIGHT_SUM ? "weight"
       : entry->field == MCOR_SUM    ? "sum"
                                     : "shepard",
-    mcor_sph_kernel_name(entry->kernel), entry->precision == MCOR_FLOAT64 ? "/double" : "",
+    mcor_sph_kernel_name(at.options.sph_kernel), entry->precision == MCOR_FLOAT64 ? "/double" : "",
     solids_names[entry->solids]);
   oracle_run_case(suite, &at);
   particle_set_free(&set);
@@ -60,41 +58,25 @@ static void run_entry(oracle_suite* suite, const adaptive_entry* entry)
 int main(int argc, char** argv)
 {
   static const adaptive_entry entries[] = {
-    { "drops", particle_set_drops, 10, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "drops", particle_set_drops, 100, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "drops", particle_set_drops, 1000, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT64,
-      SOLIDS_NONE },
-    { "drops", particle_set_drops, 10, 0.1, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "drops", particle_set_drops, 100, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "medium", particle_set_medium, 10, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "medium", particle_set_medium, 100, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "medium", particle_set_medium, 1000, 0.0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "medium", particle_set_medium, 1000, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_NONE },
-    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_WEIGHT },
-    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_IGNORE },
-    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_WALL },
-    { "basin", particle_set_basin, 4, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT64,
-      SOLIDS_WALL },
-    { "basin", particle_set_basin, 4, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_WEIGHT },
-    { "basin", particle_set_basin, 4, 0.5, MCOR_WEIGHT_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_WALL },
-    { "basin", particle_set_basin, 2.2, 0, MCOR_SHEPARD, MCOR_CUBIC_SPLINE, MCOR_FLOAT32,
-      SOLIDS_WALL },
-    { "basin", particle_set_basin, 4, 0.1, MCOR_SUM, MCOR_CUBIC_SPLINE, MCOR_FLOAT32, SOLIDS_WALL },
+    { "drops", particle_set_drops, 10, 0.5, .field = MCOR_WEIGHT_SUM },
+    { "drops", particle_set_drops, 100, 0.5, .field = MCOR_WEIGHT_SUM },
+    { "drops", particle_set_drops, 1000, 0.5, .field = MCOR_WEIGHT_SUM },
+    { "drops", particle_set_drops, 1000, 0.5, .field = MCOR_WEIGHT_SUM, .precision = MCOR_FLOAT64 },
+    { "drops", particle_set_drops, 10, 0.1, .field = MCOR_SHEPARD },
+    { "drops", particle_set_drops, 100, 0.1, .field = MCOR_SUM },
+    { "medium", particle_set_medium, 10, 0.0, .field = MCOR_SHEPARD },
+    { "medium", particle_set_medium, 100, 0.0, .field = MCOR_SHEPARD },
+    { "medium", particle_set_medium, 1000, 0.0, .field = MCOR_SHEPARD },
+    { "medium", particle_set_medium, 1000, 0.1, .field = MCOR_SUM },
+    { "basin", particle_set_basin, 4, 0, .field = MCOR_SHEPARD, .solids = SOLIDS_WEIGHT },
+    { "basin", particle_set_basin, 4, 0, .field = MCOR_SHEPARD, .solids = SOLIDS_IGNORE },
+    { "basin", particle_set_basin, 4, 0, .field = MCOR_SHEPARD, .solids = SOLIDS_WALL },
+    { "basin", particle_set_basin, 4, 0, .field = MCOR_SHEPARD, .precision = MCOR_FLOAT64,
+      .solids = SOLIDS_WALL },
+    { "basin", particle_set_basin, 4, 0.5, .field = MCOR_WEIGHT_SUM, .solids = SOLIDS_WEIGHT },
+    { "basin", particle_set_basin, 4, 0.5, .field = MCOR_WEIGHT_SUM, .solids = SOLIDS_WALL },
+    { "basin", particle_set_basin, 2.2, 0, .field = MCOR_SHEPARD, .solids = SOLIDS_WALL },
+    { "basin", particle_set_basin, 4, 0.1, .field = MCOR_SUM, .solids = SOLIDS_WALL },
   };
   oracle_suite suite;
   if (!oracle_begin_suite(&suite, argc, argv))

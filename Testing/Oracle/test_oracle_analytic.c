@@ -28,12 +28,18 @@ typedef struct variant
   int has_euler, euler;
   mcor_topology topology;
   double eigenvalue; /* above 0: trimmed where the boundary eigenvalue is lower */
+  int ignore_solids, no_volume;
+  double wall_share, threshold; /* of vertices */
+  double shift;                 /* of the scalar and iso */
+  double scale, offset[3];      /* of positions and lengths */
 } variant;
 
 static void fill_case(oracle_case* at, const variant* v, const particle_set* set, const double* iso)
 {
   memset(at, 0, sizeof(*at));
   at->input = core_input(set);
+  at->input.ignore_solids = v->ignore_solids;
+  at->input.volume = v->no_volume ? (mcor_array){ 0 } : at->input.volume;
   at->options = oracle_case_options(iso);
   at->options.sph_kernel = v->kernel;
   at->options.field = v->field;
@@ -42,6 +48,8 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
   at->options.h_scale = v->h_scale > 0.0 ? v->h_scale : 1.0;
   at->options.precision = v->in_double ? MCOR_FLOAT64 : MCOR_FLOAT32;
   at->options.topology = v->topology;
+  at->options.wall_share = v->wall_share;
+  at->options.vertex_threshold = v->threshold > 0.0 ? v->threshold : at->options.vertex_threshold;
   if (v->eigenvalue > 0.0)
   {
     at->options.boundary_detection = MCOR_BOUNDARY_EIGENVALUE;
@@ -61,8 +69,8 @@ static void fill_case(oracle_case* at, const variant* v, const particle_set* set
 }
 
 /* Loads the set of the variant, lets `change` (or nothing) alter the case, runs it. */
-static void run_variant(oracle_suite* suite, const variant* v,
-  void (*change)(particle_set* set, oracle_case* at, double* iso))
+static void run_variant(
+  oracle_suite* suite, const variant* v, void (*change)(particle_set* set, oracle_case* at))
 {
   const particle_set_entry* entry = particle_set_find(v->set);
   particle_set set = { 0 };
@@ -78,9 +86,21 @@ static void run_variant(oracle_suite* suite, const variant* v,
   fill_case(&at, v, &set, &iso);
   if (oracle_wants_case(suite, at.name))
   {
+    const double scale = v->scale > 0.0 ? v->scale : 1.0;
+    for (int64_t j = 0; j < set.count; ++j)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        set.position[3 * j + axis] = scale * set.position[3 * j + axis] + v->offset[axis];
+      }
+      set.smoothing_length[j] *= scale;
+      set.volume[j] *= scale * scale * scale;
+      set.scalar[j] += v->shift;
+    }
+    iso += v->shift;
     if (change)
     {
-      change(&set, &at, &iso);
+      change(&set, &at);
     }
     oracle_run_case(suite, &at);
   }
@@ -206,53 +226,21 @@ static void run_eigenvalues(oracle_suite* suite)
 
 /* ---- how data are given ---- */
 
-static void ignore_solids(particle_set* set, oracle_case* at, double* iso)
-{
-  (void)set;
-  (void)iso;
-  at->input.ignore_solids = 1;
-}
-
-static void end_at_solids(particle_set* set, oracle_case* at, double* iso)
-{
-  (void)set;
-  (void)iso;
-  at->options.wall_share = 0.5;
-}
-
-/* The surface reaches farther into the wall, and a low threshold lets the wall alone end it. */
-static void end_in_solids(particle_set* set, oracle_case* at, double* iso)
-{
-  (void)set;
-  (void)iso;
-  at->options.wall_share = 0.85;
-  at->options.vertex_threshold = 0.2;
-}
-
-static void no_volume(particle_set* set, oracle_case* at, double* iso)
-{
-  (void)set;
-  (void)iso;
-  at->input.volume = (mcor_array){ 0 };
-}
-
 /* The volume array is read as mass: each particle then has its own. */
-static void mass_alone(particle_set* set, oracle_case* at, double* iso)
+static void mass_alone(particle_set* set, oracle_case* at)
 {
-  (void)iso;
   at->input.volume = (mcor_array){ 0 };
   at->input.mass = core_array(set->volume, 1);
 }
 
-static void mass_and_density(particle_set* set, oracle_case* at, double* iso)
+static void mass_and_density(particle_set* set, oracle_case* at)
 {
-  mass_alone(set, at, iso);
+  mass_alone(set, at);
   at->input.density = (mcor_array){ .constant = 0.9 };
 }
 
-static void support_radius(particle_set* set, oracle_case* at, double* iso)
+static void support_radius(particle_set* set, oracle_case* at)
 {
-  (void)iso;
   for (int64_t j = 0; j < set->count; ++j)
   {
     set->smoothing_length[j] *= mcor_support_factor(at->options.sph_kernel);
@@ -260,36 +248,33 @@ static void support_radius(particle_set* set, oracle_case* at, double* iso)
   at->input.smoothing_length_is_support_radius = 1;
 }
 
-static void constant_length(particle_set* set, oracle_case* at, double* iso)
+static void constant_length(particle_set* set, oracle_case* at)
 {
   (void)set;
-  (void)iso;
   at->input.smoothing_length = (mcor_array){ .constant = 0.13 };
 }
 
-static void vector_magnitude(particle_set* set, oracle_case* at, double* iso)
+static void vector_magnitude(particle_set* set, oracle_case* at)
 {
-  (void)iso;
   at->input.scalar = core_array(set->position, 3);
   at->input.scalar_component = MCOR_MAGNITUDE;
 }
 
-static void vector_component(particle_set* set, oracle_case* at, double* iso)
+static void vector_component(particle_set* set, oracle_case* at)
 {
-  vector_magnitude(set, at, iso);
+  vector_magnitude(set, at);
   at->input.scalar_component = 1;
 }
 
-static void vector_dot(particle_set* set, oracle_case* at, double* iso)
+static void vector_dot(particle_set* set, oracle_case* at)
 {
-  vector_magnitude(set, at, iso);
+  vector_magnitude(set, at);
   at->input.scalar_dot = at->input.scalar;
 }
 
 /* All arrays in single precision, in place: the first half of each array then holds the floats. */
-static void single_arrays(particle_set* set, oracle_case* at, double* iso)
+static void single_arrays(particle_set* set, oracle_case* at)
 {
-  (void)iso;
   double* const arrays[4] = { set->position, set->smoothing_length, set->volume, set->scalar };
   for (int a = 0; a < 4; ++a)
   {
@@ -303,59 +288,29 @@ static void single_arrays(particle_set* set, oracle_case* at, double* iso)
   at->input.volume.type = at->input.scalar.type = MCOR_FLOAT32;
 }
 
-/* Pressure above an ambient of 101325, the variation of interest being of size 1. */
-static void large_scalar(particle_set* set, oracle_case* at, double* iso)
-{
-  (void)at;
-  for (int64_t j = 0; j < set->count; ++j)
-  {
-    set->scalar[j] += 101325.0;
-  }
-  *iso += 101325.0;
-}
-
-static void far_away(particle_set* set, oracle_case* at, double* iso)
-{
-  const double offset[3] = { 2e6, -1e6, 3e5 };
-  (void)at;
-  (void)iso;
-  particle_set_transform(set, 1.0, offset);
-}
-
-static void tiny(particle_set* set, oracle_case* at, double* iso)
-{
-  const double offset[3] = { 0.0, 0.0, 0.0 };
-  (void)at;
-  (void)iso;
-  particle_set_transform(set, 1e-9, offset);
-}
-
-static void huge(particle_set* set, oracle_case* at, double* iso)
-{
-  const double offset[3] = { 0.0, 0.0, 0.0 };
-  (void)at;
-  (void)iso;
-  particle_set_transform(set, 1e9, offset);
-}
-
 static void run_inputs(oracle_suite* suite)
 {
   static const struct
   {
     variant v;
-    void (*change)(particle_set* set, oracle_case* at, double* iso);
+    void (*change)(particle_set* set, oracle_case* at);
   } inputs[] = {
-    { { .set = "puddle", .suffix = "/ignore_solids" }, ignore_solids },
-    { { .set = "puddle", .suffix = "/wall" }, end_at_solids },
-    { { .set = "puddle", .suffix = "/wall", .in_double = 1 }, end_at_solids },
-    { { .set = "puddle", .suffix = "/wall", .field = MCOR_SUM }, end_at_solids },
-    { { .set = "puddle", .suffix = "/wall", .field = MCOR_WEIGHT_SUM }, end_at_solids },
-    { { .set = "puddle", .suffix = "/wall_eigenvalue", .eigenvalue = 0.3, .skip_pairs = 1 },
-      end_at_solids },
-    { { .set = "puddle", .suffix = "/in_wall" }, end_in_solids },
-    { { .set = "puddle", .suffix = "/no_volume" }, no_volume },
-    { { .set = "puddle", .suffix = "/no_volume", .field = MCOR_WEIGHT_SUM }, no_volume },
-    { { .set = "variable_4", .suffix = "/no_volume" }, no_volume },
+    { { .set = "puddle", .suffix = "/ignore_solids", .ignore_solids = 1 }, NULL },
+    { { .set = "puddle", .suffix = "/wall", .wall_share = 0.5 }, NULL },
+    { { .set = "puddle", .suffix = "/wall", .in_double = 1, .wall_share = 0.5 }, NULL },
+    { { .set = "puddle", .suffix = "/wall", .field = MCOR_SUM, .wall_share = 0.5 }, NULL },
+    { { .set = "puddle", .suffix = "/wall", .field = MCOR_WEIGHT_SUM, .wall_share = 0.5 }, NULL },
+    { { .set = "puddle",
+        .suffix = "/wall_eigenvalue",
+        .eigenvalue = 0.3,
+        .skip_pairs = 1,
+        .wall_share = 0.5 },
+      NULL },
+    /* The surface reaches farther into the wall, and a low threshold lets the wall alone end it. */
+    { { .set = "puddle", .suffix = "/in_wall", .wall_share = 0.85, .threshold = 0.2 }, NULL },
+    { { .set = "puddle", .suffix = "/no_volume", .no_volume = 1 }, NULL },
+    { { .set = "puddle", .suffix = "/no_volume", .field = MCOR_WEIGHT_SUM, .no_volume = 1 }, NULL },
+    { { .set = "variable_4", .suffix = "/no_volume", .no_volume = 1 }, NULL },
     { { .set = "variable_4", .suffix = "/mass_alone" }, mass_alone },
     { { .set = "variable_4", .suffix = "/mass_density" }, mass_and_density },
     { { .set = "gyroid", .suffix = "/support_radius" }, support_radius },
@@ -366,14 +321,16 @@ static void run_inputs(oracle_suite* suite)
     { { .set = "sphere", .suffix = "/component", .has_iso = 1, .iso = 0.123 }, vector_component },
     { { .set = "sphere", .suffix = "/dot", .has_iso = 1, .iso = 0.25 }, vector_dot },
     { { .set = "gyroid", .suffix = "/float32" }, single_arrays },
-    { { .set = "gyroid", .suffix = "/large_scalar" }, large_scalar },
-    { { .set = "gyroid", .suffix = "/large_scalar", .in_double = 1 }, large_scalar },
-    { { .set = "gyroid", .suffix = "/far_away" }, far_away },
-    { { .set = "gyroid", .suffix = "/far_away", .field = MCOR_SUM }, far_away },
-    { { .set = "gyroid", .suffix = "/tiny" }, tiny },
-    { { .set = "gyroid", .suffix = "/tiny", .field = MCOR_WEIGHT_SUM }, tiny },
-    { { .set = "gyroid", .suffix = "/huge" }, huge },
-    { { .set = "gyroid", .suffix = "/huge", .field = MCOR_SUM }, huge },
+    /* Pressure above an ambient of 101325, the variation of interest being of size 1. */
+    { { .set = "gyroid", .suffix = "/large_scalar", .shift = 101325.0 }, NULL },
+    { { .set = "gyroid", .suffix = "/large_scalar", .in_double = 1, .shift = 101325.0 }, NULL },
+    { { .set = "gyroid", .suffix = "/far_away", .offset = { 2e6, -1e6, 3e5 } }, NULL },
+    { { .set = "gyroid", .suffix = "/far_away", .field = MCOR_SUM, .offset = { 2e6, -1e6, 3e5 } },
+      NULL },
+    { { .set = "gyroid", .suffix = "/tiny", .scale = 1e-9 }, NULL },
+    { { .set = "gyroid", .suffix = "/tiny", .field = MCOR_WEIGHT_SUM, .scale = 1e-9 }, NULL },
+    { { .set = "gyroid", .suffix = "/huge", .scale = 1e9 }, NULL },
+    { { .set = "gyroid", .suffix = "/huge", .field = MCOR_SUM, .scale = 1e9 }, NULL },
   };
   for (size_t n = 0; n < sizeof(inputs) / sizeof(inputs[0]); ++n)
   {

@@ -357,16 +357,3 @@ mcor_input core_input(const particle_set* set)
     .scalar = core_array(set->scalar, 1),
     .solid = set->has_solids ? set->solid : NULL };
 }
-
-void particle_set_transform(particle_set* set, double scale, const double offset[3])
-{
-  for (int64_t j = 0; j < set->count; ++j)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      set->position[3 * j + axis] = scale * set->position[3 * j + axis] + offset[axis];
-    }
-    set->smoothing_length[j] *= scale;
-    set->volume[j] *= scale * scale * scale;
-  }
-}

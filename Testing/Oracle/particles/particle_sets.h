@@ -36,9 +36,6 @@ particle_set particle_set_basin(double ratio);
 mcor_array core_array(const double* data, int components);
 mcor_input core_input(const particle_set* set);
 
-/* x -> scale * x + offset, with lengths and volumes. */
-void particle_set_transform(particle_set* set, double scale, const double offset[3]);
-
 /* A small fast generator (splitmix64), the same on every machine. */
 uint64_t random_bits(uint64_t* state);
 double random_unit(uint64_t* state); /* in [0, 1) */

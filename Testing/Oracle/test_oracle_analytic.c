@@ -73,7 +73,7 @@ static void run_variant(
   oracle_suite* suite, const variant* v, void (*change)(particle_set* set, oracle_case* at))
 {
   const particle_set_entry* entry = particle_set_find(v->set);
-  particle_set set = { 0 };
+  particle_set set;
   oracle_case at;
   if (!entry)
   {
@@ -81,7 +81,7 @@ static void run_variant(
     ++suite->failures;
     return;
   }
-  entry->make(&set);
+  set = particle_set_of(entry);
   double iso = v->has_iso ? v->iso : v->field == MCOR_WEIGHT_SUM ? 0.5 : entry->iso;
   fill_case(&at, v, &set, &iso);
   if (oracle_wants_case(suite, at.name))

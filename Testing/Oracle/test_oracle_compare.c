@@ -44,7 +44,7 @@ static int create_fixture(fixture* f)
   {
     return 0;
   }
-  entry->make(&f->set);
+  f->set = particle_set_of(entry);
   const mcor_input input = core_input(&f->set);
   const int good = mcor_extract(context, &input, &f->options, &made) == MCOR_OK &&
     oracle_create_reference(&f->reference, &input, &f->options, 10000000);

@@ -230,8 +230,7 @@ static void test_no_density(void** state)
 static void test_wide_range(void** state)
 {
   const particle_set_entry* entry = particle_set_find("variable_1024");
-  CORE_SET set = { 0 };
-  entry->make(&set);
+  CORE_SET set = particle_set_of(entry);
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(&entry->iso);
   options.node_threshold = options.vertex_threshold = 0; /* closed */

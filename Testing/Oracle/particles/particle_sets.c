@@ -19,20 +19,7 @@ double random_unit(uint64_t* state)
   return (double)(random_bits(state) >> 11) * 0x1p-53;
 }
 
-/* A block of a jittered lattice: cells of the given spacing centred in [-size/2, size/2]. */
-typedef struct set_block
-{
-  double size[3];
-  double center[3];
-  double spacing;
-  double ratio;  /* smoothing length / spacing */
-  double jitter; /* in spacings, to either side */
-  uint64_t seed;
-  int (*inside)(const double x[3]);    /* NULL: everything */
-  double (*scalar)(const double x[3]); /* NULL: random, either -1 or 1 */
-} set_block;
-
-static void set_fill(particle_set* set, const set_block* block)
+static void set_fill(particle_set* set, const particle_block* block)
 {
   int64_t n[3];
   uint64_t state = block->seed;
@@ -131,62 +118,12 @@ static int in_puddle(const double x[3])
 
 /* ---- the sets ---- */
 
-static void fill_ball(particle_set* set, double (*scalar)(const double x[3]))
-{
-  const set_block block = { { 2.0, 2.0, 2.0 }, { 0.0, 0.0, 0.0 }, 0.11, 1.3, 0.2, 1, in_ball,
-    scalar };
-  set_fill(set, &block);
-}
-
-static void fill_box(
-  particle_set* set, double spacing, double jitter, double (*scalar)(const double x[3]))
-{
-  const set_block block = { { 1.2, 1.3, 1.1 }, { 0.013, -0.021, 0.007 }, spacing, 1.25, jitter, 2,
-    NULL, scalar };
-  set_fill(set, &block);
-}
-
-static void make_sphere(particle_set* set)
-{
-  fill_ball(set, radius);
-}
-
-static void make_torus(particle_set* set)
-{
-  fill_ball(set, scalar_torus);
-}
-
-static void make_gyroid(particle_set* set)
-{
-  fill_box(set, 0.1, 0.25, scalar_gyroid);
-}
-
-static void make_saddle(particle_set* set)
-{
-  fill_box(set, 0.1, 0.1, scalar_saddle);
-}
-
-static void make_noise(particle_set* set)
-{
-  fill_box(set, 0.12, 0.4, NULL);
-}
-
-/* A sheet of high values one particle thick inside fluid, and a sheet of particles on its own. */
-static void make_sheets(particle_set* set)
-{
-  const set_block alone = { { 1.0, 1.0, 0.09 }, { 0.0, 0.0, 1.1 }, 0.1, 1.3, 0.05, 3, NULL,
-    scalar_one };
-  fill_box(set, 0.1, 0.1, scalar_sheet);
-  set_fill(set, &alone);
-}
-
 /* Single particles with nothing in reach, heavy enough for a surface of their own, two pairs, and
  * single high values within fluid. */
-static void make_blobs(particle_set* set)
+static void add_blobs(particle_set* set)
 {
   const double lone[7][3] = { { 2.0, 0.1, 0.2 }, { 2.03, 1.07, -0.3 }, { 2.5, 2.5, 2.5 },
     { 2.6, 2.5, 2.5 }, { -2.0, 0.0, 0.0 }, { -2.0, 0.15, 0.0 }, { 0.01, 0.02, -3.0 } };
-  fill_box(set, 0.1, 0.2, scalar_one);
   for (int64_t j = 0; j < set->count; ++j)
   {
     set->scalar[j] = j % 97 == 5 ? 1.0 : 0.0;
@@ -197,23 +134,13 @@ static void make_blobs(particle_set* set)
   }
 }
 
-static void make_drops(particle_set* set)
-{
-  const set_block block = { { 2.2, 1.2, 1.2 }, { 0.0, 0.0, 0.0 }, 0.08, 1.3, 0.15, 4, in_drops,
-    scalar_one };
-  set_fill(set, &block);
-}
-
 /* A shallow puddle with a wavy surface on a floor and against one wall of solid particles. */
-static void make_puddle(particle_set* set)
+static void add_walls(particle_set* set)
 {
-  const set_block water = { { 1.6, 1.2, 0.4 }, { 0.0, 0.0, 0.2 }, 0.06, 1.3, 0.1, 5, in_puddle,
+  const particle_block floor_block = { { 1.8, 1.4, 0.12 }, { 0.0, 0.0, -0.06 }, 0.06, 1.3, 0.0, 6,
+    NULL, scalar_wave };
+  const particle_block wall = { { 0.12, 1.4, 0.4 }, { -0.86, 0.0, 0.2 }, 0.06, 1.3, 0.0, 7, NULL,
     scalar_wave };
-  const set_block floor_block = { { 1.8, 1.4, 0.12 }, { 0.0, 0.0, -0.06 }, 0.06, 1.3, 0.0, 6, NULL,
-    scalar_wave };
-  const set_block wall = { { 0.12, 1.4, 0.4 }, { -0.86, 0.0, 0.2 }, 0.06, 1.3, 0.0, 7, NULL,
-    scalar_wave };
-  set_fill(set, &water);
   const int64_t fluid = set->count;
   set_fill(set, &floor_block);
   set_fill(set, &wall);
@@ -226,18 +153,18 @@ static void make_puddle(particle_set* set)
 }
 
 /* Cells are halved until they are small enough for their distance from the centre. */
-static void set_refine(particle_set* set, const double center[3], double size, double finest,
-  double coarsest, uint64_t* state)
+static void set_refine(
+  particle_set* set, const double center[3], double size, double finest, uint64_t* state)
 {
   const double r = radius(center);
-  const double wanted = fmin(coarsest, fmax(finest, 0.18 * r));
+  const double wanted = fmin(0.25, fmax(finest, 0.18 * r));
   if (size > wanted)
   {
     for (int c = 0; c < 8; ++c)
     {
       const double child[3] = { center[0] + (c & 1 ? 0.25 : -0.25) * size,
         center[1] + (c & 2 ? 0.25 : -0.25) * size, center[2] + (c & 4 ? 0.25 : -0.25) * size };
-      set_refine(set, child, 0.5 * size, finest, coarsest, state);
+      set_refine(set, child, 0.5 * size, finest, state);
     }
     return;
   }
@@ -251,96 +178,98 @@ static void set_refine(particle_set* set, const double center[3], double size, d
   particle_set_add(set, x, 1.4 * size, size * size * size, scalar);
 }
 
-static void fill_graded(particle_set* set, double finest, double coarsest)
-{
-  const double center[3] = { 0.0, 0.0, 0.0 };
-  uint64_t state = 8;
-  set_refine(set, center, 2.0, finest, coarsest, &state);
-}
-
-static void make_variable_4(particle_set* set)
-{
-  fill_graded(set, 0.0625, 0.25);
-}
-
-static void make_variable_16(particle_set* set)
-{
-  fill_graded(set, 0.015625, 0.25);
-}
-
-static void make_variable_128(particle_set* set)
-{
-  fill_graded(set, 0.25 / 128.0, 0.25);
-}
-
-static void make_variable_1024(particle_set* set)
-{
-  fill_graded(set, 0.25 / 1024.0, 0.25);
-}
-
-/* Symmetric about x = 0 with A = x, spacing a power of 2: the surface A = 0 runs through nodes. */
-static void make_on_nodes(particle_set* set)
-{
-  const set_block block = { { 1.5, 1.5, 1.5 }, { 0.0, 0.0, 0.0 }, 0.125, 1.0, 0.0, 9, NULL,
-    scalar_x };
-  set_fill(set, &block);
-}
-
-/* Values that are exactly the iso value over a whole region. */
-static void make_plateau(particle_set* set)
-{
-  const set_block block = { { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, 0.1, 1.3, 0.2, 10, NULL,
-    scalar_step };
-  set_fill(set, &block);
-}
-
-static void make_single(particle_set* set)
+static void add_one(particle_set* set)
 {
   const double x[3] = { 0.3, 0.2, 0.1 };
   particle_set_add(set, x, 0.1, 4.0 * pow(0.1, 3.0), 1.0);
 }
 
-/* Every particle twice, at the same place. */
-static void make_coincident(particle_set* set)
-{
-  const set_block block = { { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, 0.1, 1.3, 0.2, 11, NULL,
-    scalar_wave };
-  set_fill(set, &block);
-  set_fill(set, &block);
-}
+#define BALL(scalar)                                                                               \
+  {                                                                                                \
+    {                                                                                              \
+      { 2.0, 2.0, 2.0 }, { 0.0 }, 0.11, 1.3, 0.2, 1, in_ball, scalar                               \
+    }                                                                                              \
+  }
+#define IN_BOX(spacing, jitter, scalar)                                                            \
+  {                                                                                                \
+    { 1.2, 1.3, 1.1 }, { 0.013, -0.021, 0.007 }, spacing, 1.25, jitter, 2, NULL, scalar            \
+  }
+#define IN_CUBE(size, spacing, ratio, jitter, seed, scalar)                                        \
+  {                                                                                                \
+    { size, size, size }, { 0.0 }, spacing, ratio, jitter, seed, NULL, scalar                      \
+  }
 
-const particle_set_entry particle_sets[] = {
-  { "sphere", "a closed surface far from the free surface", make_sphere, 0.6, MCOR_SHEPARD },
-  { "torus", "genus 1", make_torus, 0.2, MCOR_SHEPARD },
-  { "gyroid", "curved everywhere, cut by the free surface", make_gyroid, 0.1, MCOR_SHEPARD },
-  { "saddle", "many ambiguous faces", make_saddle, 0.0, MCOR_SHEPARD },
-  { "noise", "values without any smoothness", make_noise, 0.1, MCOR_SHEPARD },
-  { "sheets", "sheets one particle thick", make_sheets, 0.3, MCOR_SHEPARD },
-  { "blobs", "surfaces around single particles", make_blobs, 0.15, MCOR_SUM },
-  { "drops", "two touching drops", make_drops, 0.5, MCOR_WEIGHT_SUM },
-  { "puddle", "a free surface on solid particles", make_puddle, 0.2, MCOR_SHEPARD },
-  { "variable_4", "smoothing lengths 1:4", make_variable_4, -1.0, MCOR_SHEPARD },
-  { "variable_16", "smoothing lengths 1:16", make_variable_16, -1.5, MCOR_SHEPARD },
-  { "variable_128", "smoothing lengths 1:128", make_variable_128, -1.0, MCOR_SHEPARD },
-  { "variable_1024", "smoothing lengths 1:1024, a surface where they are small", make_variable_1024,
-    -5.3, MCOR_SHEPARD },
-  { "on_nodes", "the surface runs through nodes", make_on_nodes, 0.0, MCOR_SHEPARD },
-  { "plateau", "values equal to the iso value in a region", make_plateau, 1.0, MCOR_SHEPARD },
-  { "single", "one particle", make_single, 0.5, MCOR_WEIGHT_SUM },
-  { "coincident", "pairs of particles at one place", make_coincident, 0.1, MCOR_SHEPARD },
-  { NULL, NULL, NULL, 0.0, MCOR_SHEPARD }
+static const particle_set_entry particle_sets[] = {
+  /* a closed surface far from the free surface */
+  { "sphere", 0.6, .blocks = BALL(radius) },
+  /* genus 1 */
+  { "torus", 0.2, .blocks = BALL(scalar_torus) },
+  /* curved everywhere, cut by the free surface */
+  { "gyroid", 0.1, .blocks = { IN_BOX(0.1, 0.25, scalar_gyroid) } },
+  /* many ambiguous faces */
+  { "saddle", 0.0, .blocks = { IN_BOX(0.1, 0.1, scalar_saddle) } },
+  /* values without any smoothness */
+  { "noise", 0.1, .blocks = { IN_BOX(0.12, 0.4, NULL) } },
+  /* a sheet of high values one particle thick inside fluid, and a sheet of particles on its own */
+  { "sheets", 0.3,
+    .blocks = { IN_BOX(0.1, 0.1, scalar_sheet),
+      { { 1.0, 1.0, 0.09 }, { 0.0, 0.0, 1.1 }, 0.1, 1.3, 0.05, 3, NULL, scalar_one } } },
+  /* surfaces around single particles */
+  { "blobs", 0.15, MCOR_SUM, { IN_BOX(0.1, 0.2, scalar_one) }, .change = add_blobs },
+  /* two touching drops */
+  { "drops", 0.5, MCOR_WEIGHT_SUM,
+    { { { 2.2, 1.2, 1.2 }, { 0.0 }, 0.08, 1.3, 0.15, 4, in_drops, scalar_one } }, .finest = 0.0 },
+  /* a free surface on solid particles */
+  { "puddle", 0.2,
+    .blocks = { { { 1.6, 1.2, 0.4 }, { 0.0, 0.0, 0.2 }, 0.06, 1.3, 0.1, 5, in_puddle,
+      scalar_wave } },
+    .change = add_walls },
+  /* smoothing lengths 1:4 to 1:1024; the surface is where they are small */
+  { "variable_4", -1.0, .finest = 0.0625 },
+  { "variable_16", -1.5, .finest = 0.015625 },
+  { "variable_128", -1.0, .finest = 0.25 / 128.0 },
+  { "variable_1024", -5.3, .finest = 0.25 / 1024.0 },
+  /* symmetric about x = 0 with A = x, spacing a power of 2: the surface A = 0 runs through nodes */
+  { "on_nodes", 0.0, .blocks = { IN_CUBE(1.5, 0.125, 1.0, 0.0, 9, scalar_x) } },
+  /* values that are exactly the iso value over a whole region */
+  { "plateau", 1.0, .blocks = { IN_CUBE(1.0, 0.1, 1.3, 0.2, 10, scalar_step) } },
+  { "single", 0.5, MCOR_WEIGHT_SUM, .change = add_one },
+  /* every particle twice, at the same place */
+  { "coincident", 0.1,
+    .blocks = { IN_CUBE(1.0, 0.1, 1.3, 0.2, 11, scalar_wave),
+      IN_CUBE(1.0, 0.1, 1.3, 0.2, 11, scalar_wave) } },
 };
 
 const particle_set_entry* particle_set_find(const char* name)
 {
-  for (const particle_set_entry* entry = particle_sets; entry->name; ++entry)
+  for (size_t n = 0; n < sizeof(particle_sets) / sizeof(particle_sets[0]); ++n)
   {
-    if (strcmp(entry->name, name) == 0)
+    if (strcmp(particle_sets[n].name, name) == 0)
     {
-      return entry;
+      return &particle_sets[n];
     }
   }
   return NULL;
+}
+
+particle_set particle_set_of(const particle_set_entry* entry)
+{
+  const double center[3] = { 0.0, 0.0, 0.0 };
+  uint64_t state = 8;
+  particle_set set = { 0 };
+  for (int b = 0; b < 2 && entry->blocks[b].spacing > 0.0; ++b)
+  {
+    set_fill(&set, &entry->blocks[b]);
+  }
+  if (entry->finest > 0.0)
+  {
+    set_refine(&set, center, 2.0, entry->finest, &state);
+  }
+  if (entry->change)
+  {
+    entry->change(&set);
+  }
+  return set;
 }
 
 mcor_array core_array(const double* data, int components)

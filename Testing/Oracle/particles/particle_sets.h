@@ -8,18 +8,31 @@
 #include "mcor.h"
 #include "oracle.h"
 
+/* A block of a jittered lattice: cells of the given spacing centred in [-size/2, size/2]. */
+typedef struct particle_block
+{
+  double size[3];
+  double center[3];
+  double spacing;
+  double ratio;  /* smoothing length / spacing */
+  double jitter; /* in spacings, to either side */
+  uint64_t seed;
+  int (*inside)(const double x[3]);    /* NULL: everything */
+  double (*scalar)(const double x[3]); /* NULL: random, either -1 or 1 */
+} particle_block;
+
 typedef struct particle_set_entry
 {
   const char* name;
-  const char* purpose;
-  void (*make)(particle_set* set); /* adds to an empty one */
-  double iso;                      /* of the scalar */
-  mcor_field field;                /* the one that the set was made for */
+  double iso;       /* of the scalar */
+  mcor_field field; /* the one that the set was made for */
+  particle_block blocks[2];
+  double finest;                     /* above 0: cells from this size to 1/4 */
+  void (*change)(particle_set* set); /* NULL, or what goes on from there */
 } particle_set_entry;
 
-/* All sets; the last entry has the name NULL. */
-extern const particle_set_entry particle_sets[];
 const particle_set_entry* particle_set_find(const char* name);
+particle_set particle_set_of(const particle_set_entry* entry);
 
 /* Particles without any plan: blocks and clouds, with or without jitter, equal or very different
  * smoothing lengths, some solid, some at one place; scalars smooth, random or of few values. */

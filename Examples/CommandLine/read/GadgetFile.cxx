@@ -60,23 +60,18 @@ public:
     this->IsSwapped = this->HasLabels ? other == 8 : other == HeaderSize;
     this->IsGadget = this->HasLabels || this->IsSwapped || first == HeaderSize;
     this->Stream.clear();
-    this->Stream.seekg(0);
   }
 
   void ReadHeader()
   {
     std::array<char, HeaderSize> data;
     std::uint64_t size = 0;
-    if (this->HasLabels && this->Begin(size))
-    {
-      this->Stream.seekg(static_cast<std::streamoff>(size), std::ios::cur);
-      this->End(size);
-    }
-    if (!this->Begin(size) || size != HeaderSize || !this->Stream.read(data.data(), HeaderSize))
+    const bool isEmpty = this->HasLabels && !this->Begin(size);
+    if (isEmpty || !this->Begin(size) || size != HeaderSize ||
+      !this->Stream.read(data.data(), HeaderSize))
     {
       this->Fail("its header is damaged");
     }
-    this->End(size);
     const auto get = [this, &data](std::size_t at, void* to, std::size_t count, std::size_t width)
     {
       std::memcpy(to, data.data() + at, count * width);
@@ -111,8 +106,6 @@ public:
       {
         char label[4] = {};
         this->Stream.read(label, 4);
-        this->Stream.seekg(static_cast<std::streamoff>(size) - 4, std::ios::cur);
-        this->End(size);
         const auto found = std::find_if(std::begin(Arrays), std::end(Arrays),
           [&label](const Known& each) { return std::memcmp(each.Label, label, 4) == 0; });
         known = found == std::end(Arrays) ? nullptr : &*found;
@@ -127,13 +120,10 @@ public:
         next += next == 6 && this->HasCooling == 0 ? 2 : 0;
         known = next < 9 ? &Arrays[next++] : nullptr;
       }
-      const std::streampos begin = this->Stream.tellg();
       if (known)
       {
         this->Take(*known, size, gas);
       }
-      this->Stream.seekg(begin + static_cast<std::streamoff>(size));
-      this->End(size);
     }
     if (!gas->GetPoints())
     {
@@ -174,30 +164,29 @@ private:
     return size;
   }
 
-  /// The size of the next record, which fits into the file; false at the end.
+  /// Goes to the bytes of the next record, and returns how many there are; false at the end.
   bool Begin(std::uint64_t& size)
   {
-    const auto at = static_cast<std::uint64_t>(this->Stream.tellg());
+    const std::uint64_t at = this->Next;
     if (at == this->Size)
     {
       return false;
     }
+    this->Stream.seekg(static_cast<std::streamoff>(at));
     size = this->ReadSize();
     if (!this->Stream || size < 4 || at + 8 + size > this->Size)
     {
       this->Fail("it ends too early, or is damaged, at byte " + std::to_string(at));
     }
-    return true;
-  }
-
-  void End(std::uint64_t size)
-  {
-    const auto at = this->Stream.tellg();
+    this->Stream.seekg(static_cast<std::streamoff>(at + 4 + size));
     if (this->ReadSize() != size || !this->Stream)
     {
-      this->Fail(
-        "the record that ends at byte " + std::to_string(at) + " does not end as it begins");
+      this->Fail("the record that ends at byte " + std::to_string(at + 4 + size) +
+        " does not end as it begins");
     }
+    this->Stream.seekg(static_cast<std::streamoff>(at + 4));
+    this->Next = at + 8 + size;
+    return true;
   }
 
   void Take(const Known& known, std::uint64_t size, vtkPolyData* gas)
@@ -251,6 +240,7 @@ private:
   std::ifstream Stream;
   const std::uint64_t Size;
   bool HasLabels = false, IsSwapped = false;
+  std::uint64_t Next = 0; ///< where the next record begins
   double Masses[6] = {};
   std::int32_t HasCooling = 0;
   std::int64_t Total = 0, WithMasses = 0;

@@ -124,7 +124,8 @@ void SetHandlersOfCrashes()
   std::set_terminate(std::abort); // without more lines
 }
 
-/// Waits for a signal. The program ends as by that itself, so that a shell or a batch system sees it.
+/// Waits for a signal. The program ends as by that itself, so that a shell or a batch system sees
+/// it.
 [[noreturn]] void EndBySignal()
 {
   int number = 0;
@@ -152,8 +153,8 @@ void PrepareForEnding()
   std::signal(SIGXFSZ, SIG_IGN);
   SetHandlersOfCrashes();
   // All later threads leave these signals to one thread that waits for them: it may lock and
-  // allocate. Ignored ones are blocked, too, and never awaited: LLVM, which PoCL brings, takes them,
-  // and its handler unblocks all others.
+  // allocate. Ignored ones are blocked, too, and never awaited: LLVM, which PoCL brings, takes
+  // them, and its handler unblocks all others.
   pthread_sigmask(SIG_BLOCK, &All, nullptr);
   try
   {

@@ -113,7 +113,7 @@ std::string Text(vtkFieldData* run, const std::string& name)
   return array && array->GetNumberOfValues() > 0 ? std::string(array->GetValue(0)) : "";
 }
 
-/// What Fill() puts for a name.
+/// Gives the text that Fill() puts for a name.
 std::string Value(vtkFieldData* run, const std::string& name)
 {
   const std::string text = Text(run, name), array = Text(run, name + "Array");

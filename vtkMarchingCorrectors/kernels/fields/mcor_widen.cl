@@ -20,7 +20,7 @@
 /* Most by which the weight sum may be below the iso value at the surface of deep water. */
 #define MCOR_WIDEN_OUTSIDE ((real)0.08f)
 
-/* What a margin gains at a rim, as a share of it. */
+/* A margin gains this share of it at a rim. */
 #define MCOR_WIDEN_RIM ((real)0.5f)
 
 /* Distance of the neighbours' middle, in smoothing lengths: below the first there is water on

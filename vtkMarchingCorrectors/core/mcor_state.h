@@ -199,7 +199,7 @@ typedef struct mcor_trim_data
   mcor_buffer triangles, cells; /* what trimming leaves, until the mesh and the box take it */
 } mcor_trim_data;
 
-/* Of a sort, as large as the particles; flags, order: of mcor_unique. */
+/* A sort has these, as large as the particles; flags, order: of mcor_unique. */
 typedef struct mcor_sort_data
 {
   mcor_buffer keys, values, histogram, order, flags;

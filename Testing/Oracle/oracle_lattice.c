@@ -394,6 +394,7 @@ void oracle_free_lattice(oracle_lattice* lattice)
   oracle_map_free(&lattice->node_map);
   oracle_map_free(&lattice->edge_map);
   oracle_map_free(&lattice->doubts);
+  oracle_map_free(&lattice->either);
   free(lattice->nodes);
   free(lattice->bricks);
   free(lattice->corners);

@@ -96,8 +96,9 @@ extern "C"
     lattice_cell* cells;
     lattice_edge* edges;
     lattice_segment* segments; /* of valid cells, but of loops of two */
-    oracle_map
-      doubts; /* pairs of edges, the lower first: rounding may join or part them on a face */
+    /* Pairs of edges, the lower first, on faces: of cells of which rounding decides whether they are valid; and
+     * which rounding may join or part. Values: how many valid cells have the face. */
+    oracle_map doubts, either;
     int64_t brick_count, brick_capacity, node_count, node_capacity, cell_count, cell_capacity,
       edge_count, edge_capacity, segment_count, segment_capacity;
     int64_t component_count, triangle_count; /* triangles but for tunnels */

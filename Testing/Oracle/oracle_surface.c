@@ -217,9 +217,9 @@ static void lattice_link_joined(
   }
 }
 
-/* Pairs of a square's edges that rounding may join or part. */
-static void lattice_doubt(
-  oracle_lattice* lattice, const lattice_cell* cell, const int64_t* ring, int count)
+/* Adds the pairs of a square's edges. */
+static void lattice_doubt(oracle_lattice* lattice, oracle_map* pairs, const lattice_cell* cell,
+  const int64_t* ring, int count)
 {
   int64_t edge[8];
   int edges = 0;
@@ -235,7 +235,8 @@ static void lattice_doubt(
     const int64_t pair[3] = { edge[n % edges], edge[n / edges], 0 };
     if (pair[0] < pair[1])
     {
-      *oracle_map_find(&lattice->doubts, pair, 0, 1) = 1;
+      int64_t* cells = oracle_map_find(pairs, pair, 0, 1);
+      *cells = (*cells > 0 ? *cells : 0) + cell->valid;
     }
   }
 }
@@ -246,7 +247,7 @@ static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cel
 {
   const int ambiguous = !split && lattice_ambiguous(lattice, ring, count);
   const int joined = ambiguous ? lattice_joined(lattice, cell, face) : 0;
-  int doubtful = joined < 0 || !cell->certain;
+  int doubtful = joined < 0;
   for (int n = 0; n < count; ++n)
   {
     doubtful = doubtful || (lattice->nodes[ring[n]].flags & LATTICE_CLOSE) != 0;
@@ -259,9 +260,9 @@ static void lattice_link_square(oracle_lattice* lattice, const lattice_cell* cel
   {
     lattice_link(lattice, cell, ring, count, links);
   }
-  if (doubtful)
+  if (!cell->certain || doubtful)
   {
-    lattice_doubt(lattice, cell, ring, count);
+    lattice_doubt(lattice, cell->certain ? &lattice->either : &lattice->doubts, cell, ring, count);
   }
 }
 
@@ -470,6 +471,7 @@ void oracle_march(oracle_lattice* lattice, const oracle_field* field, const orac
   const oracle_decider decider = { field, limits, unit };
   oracle_map_free(&lattice->edge_map);
   oracle_map_free(&lattice->doubts);
+  oracle_map_free(&lattice->either);
   lattice->cell_count = lattice->edge_count = lattice->segment_count = 0;
   lattice->component_count = lattice->triangle_count = 0;
   for (int64_t n = 0; n < lattice->node_count; ++n)

@@ -319,15 +319,23 @@ static int64_t compare_edge_of(const compare_state* state, int32_t vertex)
   return edge >= 0 && edge / 3 < state->reference->lattice.edge_count ? edge / 3 : -1;
 }
 
+/* What the map of pairs says of two edges; -1: nothing. */
+static int64_t compare_pair(const oracle_map* pairs, int64_t a, int64_t b)
+{
+  const int64_t pair[3] = { a < b ? a : b, a < b ? b : a, 0 };
+  const int64_t* value = oracle_map_find((oracle_map*)pairs, pair, 0, 0);
+  return value ? *value : -1;
+}
+
 /* Not where rounding decides. With the paper's seeds a component may be missing though the crossings of a
  * face have vertices: those of another component that it touches in pinched edges. */
 static int compare_certain_pair(const compare_state* state, int64_t a, int64_t b)
 {
-  oracle_lattice* lattice = (oracle_lattice*)&state->reference->lattice;
-  const int64_t pair[3] = { a < b ? a : b, a < b ? b : a, 0 };
+  const oracle_lattice* lattice = &state->reference->lattice;
   const int may_lack = state->options->seeds == MCOR_PAIRS && compare_pinched(&lattice->edges[a]) &&
     compare_pinched(&lattice->edges[b]);
-  return !may_lack && !oracle_map_find(&lattice->doubts, pair, 0, 0);
+  return !may_lack && compare_pair(&lattice->doubts, a, b) < 0 &&
+    compare_pair(&lattice->either, a, b) < 0;
 }
 
 /* Every segment is a side of one triangle for each cell that has it, in its direction. */
@@ -385,8 +393,12 @@ static void compare_boundary(compare_state* state, oracle_map* wanted)
     int explained = a < 0 && b < 0;
     if (a >= 0 && b >= 0)
     {
-      explained = !compare_certain_pair(state, a, b) ||
-        compare_count(wanted, a, b, 0) + compare_count(wanted, b, a, 0) == 1;
+      /* Whichever way rounding joins a face, both of its cells do. */
+      const oracle_lattice* lattice = &state->reference->lattice;
+      const int64_t either = compare_pair(&lattice->either, a, b);
+      const int64_t cells =
+        either >= 0 ? either : compare_count(wanted, a, b, 0) + compare_count(wanted, b, a, 0);
+      explained = cells == 1 || compare_pair(&lattice->doubts, a, b) >= 0;
     }
     else if (a >= 0 || b >= 0)
     {
@@ -416,8 +428,9 @@ static void compare_totals(compare_state* state)
   }
   /* A tunnel of loops of a and b sides has a + b triangles; the loops alone, a - 2 and b - 2. */
   const int64_t triangles = lattice->triangle_count + 4 * state->surface->statistics.tunnels;
-  if (!state->trimmed && state->options->seeds != MCOR_PAIRS && lattice->doubts.count == 0 &&
-    result->unsettled == 0 && result->rounding == 0 && state->surface->triangle_count != triangles)
+  if (!state->trimmed && state->options->seeds != MCOR_PAIRS &&
+    lattice->doubts.count + lattice->either.count == 0 && result->unsettled == 0 &&
+    result->rounding == 0 && state->surface->triangle_count != triangles)
   {
     ++result->segments_missing;
     compare_note(state, "%lld triangles, not %lld", (long long)state->surface->triangle_count,

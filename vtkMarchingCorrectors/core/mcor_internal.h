@@ -279,6 +279,9 @@ mcor_status mcor_place_bricks(mcor_context* context);
 mcor_status mcor_find_neighbours(mcor_context* context);
 mcor_status mcor_make_groups(
   mcor_context* context, const mcor_buffer* node, int first, int count, int* group_count);
+mcor_status mcor_reserve_points(mcor_context* context, mcor_field_points* points, size_t count);
+mcor_status mcor_evaluate_points(
+  mcor_context* context, const mcor_field_points* points, int first, int count, int* group_count);
 mcor_status mcor_group_batch(
   mcor_context* context, mcor_point_batch* batch, int count, int inside, int* group_count);
 void mcor_release_batch(mcor_context* context, mcor_point_batch* batch);

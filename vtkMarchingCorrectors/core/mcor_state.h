@@ -37,11 +37,11 @@ typedef struct mcor_lattice
 /* The space of a call, all of it or a plane: what differs. Filled in where the plane is found. */
 typedef struct mcor_space
 {
-  int axes;         /* 3, or 2 */
-  int flat;         /* axes that cells lack; kernels take it as `plane` */
-  int brick_nodes;  /* in a plane, those of the lowest layer */
-  int region_depth; /* of mcor_seed_regions */
-  double ball;      /* volume of a ball of radius 1, or area of a disc */
+  int axes;             /* 3, or 2 */
+  int flat;             /* axes that cells lack; kernels take it as `plane` */
+  int brick_nodes;      /* in a plane, those of the lowest layer */
+  int region_depth;     /* of mcor_seed_regions */
+  double ball;          /* volume of a ball of radius 1, or area of a disc */
   const char* evaluate; /* the kernel for nodes */
 } mcor_space;
 
@@ -89,8 +89,8 @@ typedef struct mcor_bricks
   mcor_buffer block_states, inactive; /* uchar; see mcor_block.cl */
   mcor_buffer states;                 /* uchar [block_count][512], see mcor_seed.cl */
   mcor_buffer bits, base;             /* [block_count][16] */
-  mcor_buffer leaves, split, beside;     /* likewise; with several levels, see mcor_leaf_compare */
-  mcor_buffer seed_bits, seeds; /* bricks as in bits; ulong, cells by slot */
+  mcor_buffer leaves, split, beside;  /* likewise; with several levels, see mcor_leaf_compare */
+  mcor_buffer seed_bits, seeds;       /* bricks as in bits; ulong, cells by slot */
   mcor_brick_data now;
   int first_slot[MCOR_TREE_LEVEL_LIMIT + 2]; /* of each level */
   mcor_buffer cells;          /* ulong: those that may be used, all or none of a brick */
@@ -108,14 +108,15 @@ typedef struct mcor_mesh
 {
   mcor_buffer used, plain_used; /* ulong: cells, see mcor_march_classify */
   mcor_buffer edges, vertex_base, triangle_base;
-  int march_count;  /* vertices on lattice edges; sorted by level, as are those of the boundary */
-  int vertex_count; /* these, then those of the trim boundary, and from cap_first on those of caps */
+  int march_count; /* vertices on lattice edges; sorted by level, as are those of the boundary */
+  int
+    vertex_count; /* these, then those of the trim boundary, and from cap_first on those of caps */
   int cap_first, cap_triangle_first; /* where vertices and triangles of caps begin */
   uint64_t* cap_keys; /* on the host: two numbers for each vertex of a cap, see mcor_cap_make.c */
   int triangle_count;
   mcor_buffer node, ends, offset, linear, field_value, gradient, vertex_weight, flag, evaluations;
   mcor_buffer curvature; /* real [vertex_count][2] */
-  mcor_buffer means; /* real [vertex_count][attributes.count] */
+  mcor_buffer means;     /* real [vertex_count][attributes.count] */
   mcor_buffer
     cut_edges; /* ulong: the edge that each vertex of the trim boundary is on, see mcor_trim.cl */
   mcor_buffer triangles;
@@ -168,11 +169,18 @@ typedef struct mcor_pairs
   mcor_buffer found;  /* int: what a kernel found in any brick */
 } mcor_pairs;
 
+/* Points, as nodes and offsets, and the field there. */
+typedef struct mcor_field_points
+{
+  mcor_buffer node, offset, value, gradient, weight;
+} mcor_field_points;
+
 /* Decisions of MCOR_TOPOLOGY_FIELD. */
 typedef struct mcor_topology_data
 {
-  mcor_buffer decisions;   /* see MCOR_DECISION_MASKS */
-  mcor_buffer counts, sample_base, sample_node, sample_offset, sample_side;
+  mcor_buffer decisions; /* see MCOR_DECISION_MASKS */
+  mcor_buffer counts, sample_base;
+  mcor_field_points samples;
 } mcor_topology_data;
 
 /* Groups of points at which the field is evaluated, see mcor_make_groups. */
@@ -259,8 +267,8 @@ typedef struct mcor_iso
 typedef struct mcor_run
 {
   const mcor_options* options;
-  bool uses_solids;     /* solid particles must be on the device */
-  double widest;        /* factor of the lengths of sums at particles, see mcor_widen.c; 0: no such sums */
+  bool uses_solids; /* solid particles must be on the device */
+  double widest; /* factor of the lengths of sums at particles, see mcor_widen.c; 0: no such sums */
   bool is_too_long;     /* the lattice around all particles would be too long, see mcor_far.c */
   struct mcor_far* far; /* particles to leave out for that reason; NULL: none */
   struct mcor_filling* fill; /* lines of the iso values that are done, see mcor_fill.h; NULL */

@@ -33,7 +33,7 @@ set(mcor_program_sources
   "kernels/surface/mcor_attribute.cl   FIELD PROBE"
   "kernels/surface/mcor_evaluate.cl    FIELD"
   "kernels/surface/mcor_correct.cl     FIELD"
-  "kernels/cubes/mcor_topology.cl      LATTICE FIELD"
+  "kernels/cubes/mcor_topology.cl      LATTICE"
   "kernels/surface/mcor_boundary.cl    FIELD"
   "kernels/fields/mcor_curvature.cl    FIELD"
   "kernels/surface/mcor_trim.cl        LATTICE"

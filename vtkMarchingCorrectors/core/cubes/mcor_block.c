@@ -6,7 +6,6 @@
 #include "mcor_box.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* Most cubes that may cover the lattice at first. The first size of cubes is the smallest that
  * needs no more. */
@@ -33,51 +32,22 @@ static int mcor_make_rungs(mcor_lattice* lattice)
   return level;
 }
 
-/* Makes kept blocks void if they lie in cubes that are inactive now, as if they did not exist.
- * children: the first so many keys are those of blocks that were made by dividing. */
-static mcor_status mcor_void_kept(mcor_context* context, int children)
-{
-  const mcor_bricks* bricks = &context->bricks;
-  const size_t count = (size_t)bricks->block_count, keys = (size_t)children;
-  cl_int* index = malloc((keys + 1) * sizeof *index);
-  uint8_t* states = malloc(count + 1);
-  bool* divided = calloc(count + 1, sizeof *divided);
-  mcor_status status = mcor_allocated(context, index && states && divided);
-  MCOR_THEN(status, mcor_read(context, &bricks->child_index, 0, index, keys * sizeof *index));
-  MCOR_THEN(status, mcor_read(context, &bricks->block_states, 0, states, count));
-  for (size_t i = 0; status == MCOR_OK && i < keys; ++i)
-  {
-    divided[index[i]] = true;
-  }
-  for (size_t i = 0; status == MCOR_OK && i < count; ++i)
-  {
-    states[i] = divided[i] ? states[i] : MCOR_VOID;
-  }
-  MCOR_THEN(status, mcor_write(context, &context->bricks.block_states, states, count));
-  free(index);
-  free(states);
-  free(divided);
-  return status;
-}
-
-/* Finds the states of the cubes in block_keys, and which of them are inactive. children: see
- * mcor_void_kept; 0 if no blocks are kept. */
-static mcor_status mcor_test_cubes(mcor_context* context, int level, int children)
+/* Finds the states of the cubes in block_keys, and which of them are inactive. parts: how many of
+ * these cubes were made by dividing; their places are in `index`, or all in order if that is empty.
+ * The others are void, as if they did not exist: kept blocks in cubes that are inactive now. */
+static mcor_status mcor_test_cubes(
+  mcor_context* context, int level, const mcor_buffer* index, int parts)
 {
   mcor_bricks* bricks = &context->bricks;
   const int count = bricks->block_count;
   MCOR_TRY(mcor_index_keys(context, &bricks->block_keys, count,
     context->lattice.rungs[level + 1].base, &bricks->block_buckets, &bricks->block_shift));
-  MCOR_TRY(mcor_reserve(context, &bricks->block_states, (size_t)count));
+  MCOR_TRY(mcor_fill(context, &bricks->block_states, MCOR_VOID, (size_t)count));
   MCOR_TRY(mcor_reserve(context, &bricks->inactive, (size_t)count));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, count, MCOR_GRID_ARGS(context),
-    MCOR_INT(count), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&bricks->block_keys),
-    MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->block_states)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_states", MCOR_HEAVY, parts, MCOR_GRID_ARGS(context),
+    MCOR_INT(parts), MCOR_BUFFER(index), MCOR_BUFFER(&context->bricks.rungs),
+    MCOR_BUFFER(&bricks->block_keys), MCOR_SEED_ARGS(context), MCOR_BUFFER(&bricks->block_states)));
   MCOR_TRY(mcor_void_cubes(context));
-  if (children > 0)
-  {
-    MCOR_TRY(mcor_void_kept(context, children));
-  }
   return MCOR_LAUNCH(context, "mcor_block_find_inactive", MCOR_HEAVY, count,
     MCOR_BLOCK_ARGS(context), MCOR_BUFFER(&bricks->block_states), MCOR_BUFFER(&bricks->inactive));
 }
@@ -86,10 +56,10 @@ static mcor_status mcor_test_cubes(mcor_context* context, int level, int childre
  * be. */
 #define MCOR_BLOCK_LIMIT (1 << 20)
 
-/* Replaces the cubes by the parts of the active ones, *children in number, and adds the blocks
+/* Replaces the cubes by the parts of the active ones, *parts in number, and adds the blocks
  * `kept` when the parts are blocks. */
 static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t limit,
-  const mcor_buffer* kept, int kept_count, int* children)
+  const mcor_buffer* kept, int kept_count, int* parts)
 {
   mcor_bricks* bricks = &context->bricks;
   mcor_buffer *counts = &bricks->child_counts, *keys = &bricks->child_keys,
@@ -100,25 +70,25 @@ static mcor_status mcor_divide_cubes(mcor_context* context, int level, uint64_t 
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_count", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(&bricks->inactive),
     MCOR_BUFFER(counts)));
-  MCOR_TRY(mcor_scan(context, counts, count, children));
+  MCOR_TRY(mcor_scan(context, counts, count, parts));
   /* The least number of blocks that these cubes will become. A surface is nearly flat in cubes that
    * are small against the particles' supports: dividing them makes fewer than four times as many,
    * but more than three times. */
   const double edge = ldexp(context->lattice.cube, level - 1) * MCOR_BLOCK_CUBES;
   const bool is_flat = edge < 0.25 * context->measure.h_median;
-  const double foreseen = (double)(*children + added) * (is_flat ? pow(3, level - 1) : 1);
+  const double foreseen = (double)(*parts + added) * (is_flat ? pow(3, level - 1) : 1);
   MCOR_RETURN_IF(foreseen > MCOR_BLOCK_LIMIT, context, MCOR_OUT_OF_CAPACITY,
     "The virtual grid is too large: with cube size %g there may be surface in %s %.3g blocks of "
     "%d^3 cells; the limit is %d. Use a larger cube size.",
-    context->lattice.cube, foreseen > *children + added ? "more than" : "at least", foreseen,
+    context->lattice.cube, foreseen > *parts + added ? "more than" : "at least", foreseen,
     MCOR_BLOCK_CUBES, MCOR_BLOCK_LIMIT);
-  MCOR_TRY(mcor_reserve(context, keys, ((size_t)*children + (size_t)added) * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, keys, ((size_t)*parts + (size_t)added) * sizeof(cl_ulong)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_block_fill", MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(rungs), MCOR_BUFFER(&bricks->block_keys), MCOR_BUFFER(counts), MCOR_BUFFER(keys)));
   MCOR_TRY(mcor_copy(
-    context, kept, keys, (size_t)*children * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
+    context, kept, keys, (size_t)*parts * sizeof(cl_ulong), (size_t)added * sizeof(cl_ulong)));
   return mcor_unique(
-    context, keys, *children + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
+    context, keys, *parts + added, limit, &bricks->block_keys, index_of, &bricks->block_count);
 }
 
 /* Makes the active blocks, and the blocks of bricks whose nodes are known. */
@@ -129,15 +99,15 @@ mcor_status mcor_make_blocks(mcor_context* context)
   int level = mcor_make_rungs(&context->lattice);
   MCOR_TRY(
     mcor_write(context, &context->bricks.rungs, rungs, (size_t)(level + 2) * sizeof rungs[0]));
+  const mcor_buffer none = { 0 }, *index = &none;
   mcor_buffer kept = { 0 };
-  int children = 0;
   const int kept_count = bricks->now.count > 0 ? bricks->block_count : 0;
   if (kept_count > 0)
   {
     kept = bricks->block_keys;
     bricks->block_keys = (mcor_buffer){ 0 };
   }
-  bricks->block_count = (int)(rungs[level + 1].base - rungs[level].base);
+  int parts = bricks->block_count = (int)(rungs[level + 1].base - rungs[level].base);
   mcor_status status =
     mcor_reserve(context, &bricks->block_keys, (size_t)bricks->block_count * sizeof(cl_ulong));
   MCOR_THEN(status,
@@ -146,13 +116,14 @@ mcor_status mcor_make_blocks(mcor_context* context)
       MCOR_BUFFER(&bricks->block_keys)));
   for (; level > 0 && status == MCOR_OK; --level)
   {
-    status = mcor_test_cubes(context, level, 0);
+    status = mcor_test_cubes(context, level, index, parts);
     MCOR_THEN(
-      status, mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &children));
+      status, mcor_divide_cubes(context, level, rungs[level].base, &kept, kept_count, &parts));
+    index = &bricks->child_index;
   }
   mcor_release(context, &kept);
   MCOR_TRY(status);
-  MCOR_TRY(mcor_test_cubes(context, 0, kept_count > 0 ? children : 0));
+  MCOR_TRY(mcor_test_cubes(context, 0, index, parts));
   bricks->first_block[1] = bricks->block_count;
   return MCOR_OK;
 }

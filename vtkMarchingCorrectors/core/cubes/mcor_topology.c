@@ -6,7 +6,7 @@
 #include "mcor_adaptive.h"
 
 /* Evaluates the samples, level by level, as slots are sorted. */
-static mcor_status mcor_find_sides(mcor_context* context)
+static mcor_status mcor_evaluate_levels(mcor_context* context)
 {
   mcor_topology_data* topology = &context->topology;
   int first = 0, end, groups;
@@ -15,11 +15,7 @@ static mcor_status mcor_find_sides(mcor_context* context)
     const size_t slot = (size_t)context->bricks.first_slot[l + 1];
     MCOR_TRY(mcor_read(context, &topology->sample_base, slot * sizeof end, &end, sizeof end));
     context->grid.view = l;
-    MCOR_TRY(mcor_make_groups(context, &topology->sample_node, first, end - first, &groups));
-    MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_sample", MCOR_HEAVY, groups,
-      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
-      MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset),
-      MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&topology->sample_side)));
+    MCOR_TRY(mcor_evaluate_points(context, &topology->samples, first, end - first, &groups));
   }
   context->grid.view = 0;
   return MCOR_OK;
@@ -35,15 +31,13 @@ static mcor_status mcor_evaluate_samples(
   const int count = bricks->now.count;
   MCOR_TRY(mcor_scan(context, &topology->sample_base, count, sample_count));
   const size_t n = (size_t)*sample_count;
-  MCOR_TRY(mcor_reserve(context, &topology->sample_node, n * sizeof(cl_int4)));
-  MCOR_TRY(mcor_reserve(context, &topology->sample_offset, n * 4 * context->cl.real_size));
-  MCOR_TRY(mcor_reserve(context, &topology->sample_side, n));
+  MCOR_TRY(mcor_reserve_points(context, &topology->samples, n));
   MCOR_TRY(MCOR_LAUNCH(context, locate, MCOR_MEDIUM, count, MCOR_INT(count),
     MCOR_BUFFER(&bricks->now.bricks), MCOR_BUFFER(&bricks->neighbours),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(&bricks->now.value),
     MCOR_BUFFER(&topology->sample_base), MCOR_REAL(context->run.iso.relative),
-    MCOR_BUFFER(&topology->sample_node), MCOR_BUFFER(&topology->sample_offset)));
-  return mcor_find_sides(context);
+    MCOR_BUFFER(&topology->samples.node), MCOR_BUFFER(&topology->samples.offset)));
+  return mcor_evaluate_levels(context);
 }
 
 static mcor_status mcor_resolve_faces(mcor_context* context)
@@ -55,7 +49,7 @@ static mcor_status mcor_resolve_faces(mcor_context* context)
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_saddles", &faces));
   MCOR_TRY(mcor_reserve(context, counts, ((size_t)count + 1) * sizeof(cl_int)));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_topology_join", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
+    MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->samples.value),
     MCOR_BUFFER(&topology->decisions), MCOR_BUFFER(counts)));
   MCOR_TRY(mcor_scan(context, counts, count, &joined));
   context->run.statistics->ambiguous_faces += faces;
@@ -76,7 +70,7 @@ static mcor_status mcor_resolve_cells(mcor_context* context)
   MCOR_TRY(mcor_evaluate_samples(context, "mcor_topology_middles", &samples));
   context->run.statistics->ambiguous_cells += samples / 2;
   return MCOR_LAUNCH(context, "mcor_topology_agree", MCOR_MEDIUM, count, MCOR_INT(count),
-    MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->sample_side),
+    MCOR_BUFFER(&topology->sample_base), MCOR_BUFFER(&topology->samples.value),
     MCOR_BUFFER(&topology->decisions));
 }
 

@@ -20,6 +20,29 @@ mcor_status mcor_make_groups(
     MCOR_INT(count), MCOR_BUFFER(&points->flags), MCOR_BUFFER(&points->groups));
 }
 
+/* Makes room for points and for the field there. */
+mcor_status mcor_reserve_points(mcor_context* context, mcor_field_points* points, size_t count)
+{
+  const size_t reals = count * context->cl.real_size;
+  MCOR_TRY(mcor_reserve(context, &points->node, count * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &points->offset, 4 * reals));
+  MCOR_TRY(mcor_reserve(context, &points->value, reals));
+  MCOR_TRY(mcor_reserve(context, &points->gradient, 4 * reals));
+  return mcor_reserve(context, &points->weight, reals);
+}
+
+/* Cuts points [first, first + count) into groups, and evaluates the field there. */
+mcor_status mcor_evaluate_points(
+  mcor_context* context, const mcor_field_points* points, int first, int count, int* group_count)
+{
+  MCOR_TRY(mcor_make_groups(context, &points->node, first, count, group_count));
+  return MCOR_LAUNCH(context, "mcor_field_points", MCOR_HEAVY, *group_count,
+    MCOR_GRID_ARGS(context), MCOR_INT(*group_count), MCOR_BUFFER(&context->points.groups),
+    MCOR_BUFFER(&points->node), MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&points->offset),
+    MCOR_BUFFER(&points->value), MCOR_BUFFER(&points->gradient), MCOR_BUFFER(&points->weight),
+    MCOR_INT(0), MCOR_INT(0), MCOR_BUFFER(&points->value), MCOR_BUFFER(&points->weight));
+}
+
 /* Sorts the points of a batch by place, those in no brick last, and cuts the `inside` other ones
  * into groups. */
 mcor_status mcor_group_batch(

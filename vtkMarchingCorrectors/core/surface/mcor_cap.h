@@ -44,7 +44,8 @@ struct mcor_cap_points
   mcor_take_cap_point take; /* called with each point once it is evaluated */
   void* data;               /* for `take` */
   void *value, *gradient, *weight, *eigenvalue; /* mapped while points are taken */
-  mcor_buffer nodes, offsets, values, gradients, weights, eigenvalues;
+  mcor_field_points on_device;
+  mcor_buffer eigenvalues;
 };
 
 /* Adds a point at a node, or at an offset from it (NULL: none). Evaluates the batch once it is

@@ -15,8 +15,8 @@
 
 void mcor_free_cap_points(mcor_context* context, mcor_cap_points* p)
 {
-  MCOR_RELEASE(
-    context, &p->nodes, &p->offsets, &p->values, &p->gradients, &p->weights, &p->eigenvalues);
+  MCOR_RELEASE_EACH(context, &p->on_device);
+  mcor_release(context, &p->eigenvalues);
   free(p->node);
   free(p->offset);
   free(p->to);
@@ -29,29 +29,23 @@ mcor_status mcor_take_cap_points(mcor_context* context, mcor_cap_points* p)
     return MCOR_OK;
   }
   const size_t n = (size_t)p->count, bytes = n * context->cl.real_size;
-  const mcor_mapping mappings[] = { { &p->values, bytes, &p->value },
-    { &p->gradients, 4 * bytes, &p->gradient }, { &p->weights, bytes, &p->weight },
+  mcor_field_points* on_device = &p->on_device;
+  const mcor_mapping mappings[] = { { &on_device->value, bytes, &p->value },
+    { &on_device->gradient, 4 * bytes, &p->gradient }, { &on_device->weight, bytes, &p->weight },
     { &p->eigenvalues, bytes, &p->eigenvalue } };
   const int mapped = mcor_trims_by_eigenvalue(context) ? 4 : 3;
   int groups;
-  MCOR_TRY(mcor_write(context, &p->nodes, p->node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_write(context, &p->offsets, p->offset, 4 * bytes));
-  MCOR_TRY(mcor_reserve(context, &p->values, bytes));
-  MCOR_TRY(mcor_reserve(context, &p->gradients, 4 * bytes));
-  MCOR_TRY(mcor_reserve(context, &p->weights, bytes));
-  MCOR_TRY(mcor_make_groups(context, &p->nodes, 0, p->count, &groups));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-    MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
-    MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&p->offsets), MCOR_BUFFER(&p->values),
-    MCOR_BUFFER(&p->gradients), MCOR_BUFFER(&p->weights), MCOR_INT(0), MCOR_INT(0),
-    MCOR_BUFFER(&p->values), MCOR_BUFFER(&p->weights)));
+  MCOR_TRY(mcor_reserve_points(context, on_device, n));
+  MCOR_TRY(mcor_write(context, &on_device->node, p->node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_write(context, &on_device->offset, p->offset, 4 * bytes));
+  MCOR_TRY(mcor_evaluate_points(context, on_device, 0, p->count, &groups));
   if (mapped == 4)
   {
     MCOR_TRY(mcor_reserve(context, &p->eigenvalues, bytes));
-    MCOR_TRY(
-      MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
-        MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&p->nodes),
-        MCOR_BUFFER(&p->offsets), MCOR_INT(context->space.flat), MCOR_BUFFER(&p->eigenvalues)));
+    MCOR_TRY(MCOR_LAUNCH(context, "mcor_boundary_points", MCOR_HEAVY, groups,
+      MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
+      MCOR_BUFFER(&on_device->node), MCOR_BUFFER(&on_device->offset), MCOR_INT(context->space.flat),
+      MCOR_BUFFER(&p->eigenvalues)));
   }
   mcor_status status = mcor_map_all(context, mappings, mapped);
   for (int i = 0; i < p->count && status == MCOR_OK; ++i)
@@ -202,7 +196,7 @@ mcor_status mcor_append_cap_vertices(
   mesh->vertex_count += (int)count;
   int groups;
   MCOR_TRY(mcor_make_groups(context, &mesh->node, (int)old, (int)count, &groups));
-  return MCOR_LAUNCH(context, "mcor_cap_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
+  return MCOR_LAUNCH(context, "mcor_field_points", MCOR_HEAVY, groups, MCOR_GRID_ARGS(context),
     MCOR_INT(groups), MCOR_BUFFER(&context->points.groups), MCOR_BUFFER(&mesh->node),
     MCOR_REAL(context->run.iso.relative), MCOR_BUFFER(&mesh->offset),
     MCOR_BUFFER(&mesh->field_value), MCOR_BUFFER(&mesh->gradient),

@@ -19,12 +19,14 @@ __kernel void mcor_block_all(
 #endif
 
 #if MCOR_OF_FIELD
-/* One work-item = one cube, 32 << level nodes long. Reads the particles that reach it. Writes its
- * state. */
-__kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const mcor_rung* rungs,
-  __global const ulong* keys, MCOR_SEED_PARAMS, __global uchar* states)
+/* One work-item = one cube, 32 << level nodes long: number index[i], or i if that is NULL. Reads the
+ * particles that reach it. Writes its state. */
+__kernel void mcor_block_states(MCOR_GRID_PARAMS, const int count, __global const int* index,
+  __global const mcor_rung* rungs, __global const ulong* keys, MCOR_SEED_PARAMS,
+  __global uchar* states)
 {
-  MCOR_ITEM(i, i < count);
+  MCOR_ITEM(item, item < count);
+  const int i = index ? index[item] : item;
   const mcor_grid grid = MCOR_GRID;
   const mcor_seed_limits limits = MCOR_SEED_LIMITS;
   const int4 cube = mcor_block_of_key(rungs, keys[i]);

@@ -11,12 +11,17 @@
  * tunnels in plain cells; all other ambiguous faces follow the case table. Only the leaves
  * determine which faces these are, so cells on both sides agree. */
 
-/* The field at a sample. */
+/* The side of the iso value on which the field is at a sample. */
 #define MCOR_SAMPLE_BELOW 0
 #define MCOR_SAMPLE_ABOVE 1
 #define MCOR_SAMPLE_NONE 2 /* no particle reaches it, see mcor_evaluate */
+int mcor_sample_side(real value)
+{
+  return value == (real)1e30f ? MCOR_SAMPLE_NONE
+    : value >= 0              ? MCOR_SAMPLE_ABOVE
+                              : MCOR_SAMPLE_BELOW;
+}
 
-#if MCOR_OF_LATTICE
 /* One work-item = one brick. Reads used cells, node masks and, beside leaves of several levels,
  * which cells are plain. Writes the ambiguous faces between plain cells, next to used ones, and
  * their number. */
@@ -100,42 +105,10 @@ __kernel void mcor_topology_saddles(const int brick_count, __global const int4* 
   }
 }
 
-#endif
-
-#if MCOR_OF_FIELD
-/* One work-item = one group of samples. Writes the side of the iso value on which the field is. */
-__kernel void mcor_topology_sample(MCOR_GRID_PARAMS, const int group_count,
-  __global const int* groups, __global const int4* sample_node, __global const real4* sample_offset,
-  const real iso, __global uchar* side)
-{
-  MCOR_ITEM(group, group < group_count);
-  const mcor_grid grid = MCOR_GRID;
-  mcor_points points;
-  mcor_query query;
-  mcor_field_at at;
-  mcor_reach reach;
-  mcor_group_load(
-    &grid, groups[group], groups[group + 1], sample_node, sample_offset, 0, &points, &query);
-  mcor_tile_init(&reach.tile);
-  mcor_evaluate(&grid, &query, &reach, &points, iso, &at);
-  for (int lane = 0; lane < MCOR_LANES; ++lane)
-  {
-    const real value = MCOR_GET(at.value, lane);
-    if (points.index[lane] >= 0)
-    {
-      side[points.index[lane]] = (uchar)(value == (real)1e30f ? MCOR_SAMPLE_NONE
-          : value >= 0                                        ? MCOR_SAMPLE_ABOVE
-                                                              : MCOR_SAMPLE_BELOW);
-    }
-  }
-}
-#endif
-
-#if MCOR_OF_LATTICE
-/* One work-item = one brick. Reads the sides of its faces' saddles. Keeps the joined faces
+/* One work-item = one brick. Reads the field at its faces' saddles. Keeps the joined faces
  * only, and writes their number. */
 __kernel void mcor_topology_join(const int brick_count, __global const int* base,
-  __global const uchar* side, __global ulong* decisions, __global int* joined_count)
+  __global const real* value, __global ulong* decisions, __global int* joined_count)
 {
   MCOR_ITEM(slot, slot < brick_count);
   int from = base[slot], count = 0;
@@ -145,7 +118,7 @@ __kernel void mcor_topology_join(const int brick_count, __global const int* base
     ulong joined = 0;
     for (ulong rest = *faces; rest; rest &= rest - 1)
     {
-      joined |= side[from++] == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
+      joined |= mcor_sample_side(value[from++]) == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
     }
     *faces = joined;
     count += (int)popcount(joined);
@@ -279,10 +252,10 @@ __kernel void mcor_topology_middles(const int brick_count, __global const int4* 
   }
 }
 
-/* One work-item = one brick. Reads the sides of its cells' samples. Writes the cells whose samples
+/* One work-item = one brick. Reads the field at its cells' samples. Writes the cells whose samples
  * agree: below, above. */
 __kernel void mcor_topology_agree(const int brick_count, __global const int* base,
-  __global const uchar* side, __global ulong* decisions)
+  __global const real* value, __global ulong* decisions)
 {
   MCOR_ITEM(slot, slot < brick_count);
   __global ulong* cells = decisions + slot * (long)MCOR_DECISION_MASKS + 3;
@@ -290,11 +263,11 @@ __kernel void mcor_topology_agree(const int brick_count, __global const int* bas
   int from = base[slot];
   for (ulong rest = cells[0]; rest; rest &= rest - 1, from += 2)
   {
-    const bool agree = side[from] == side[from + 1];
-    below |= agree && side[from] == MCOR_SAMPLE_BELOW ? rest & -rest : 0;
-    above |= agree && side[from] == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
+    const int side = mcor_sample_side(value[from]);
+    const bool agree = side == mcor_sample_side(value[from + 1]);
+    below |= agree && side == MCOR_SAMPLE_BELOW ? rest & -rest : 0;
+    above |= agree && side == MCOR_SAMPLE_ABOVE ? rest & -rest : 0;
   }
   cells[0] = below;
   cells[1] = above;
 }
-#endif

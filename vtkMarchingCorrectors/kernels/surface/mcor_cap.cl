@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Caps, which close the surface at the sides of a period or a box. */
+/* The field at points that no edge has: of caps, and where it decides on the topology. */
 
 /* One work-item = one group of points. Writes value, gradient, weight and attributes there. */
-__kernel void mcor_cap_points(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
+__kernel void mcor_field_points(MCOR_GRID_PARAMS, const int group_count, __global const int* groups,
   __global const int4* node, const real iso, __global real4* offset, __global real* value,
   __global real4* gradient, __global real* weight, MCOR_ATTRIBUTE_PARAMS)
 {

@@ -119,21 +119,22 @@ static mcor_status mcor_emit_vertices(mcor_context* context)
     MCOR_BUFFER(&mesh->ends));
 }
 
-/* Writes triangles, or lines, and their cells. Cells between the sides are owned. */
-static mcor_status mcor_emit_triangles(
-  mcor_context* context, const int sides[6], mcor_buffer* cells)
+/* Writes triangles, or lines, and their cells if they carry them. */
+static mcor_status mcor_emit_triangles(mcor_context* context)
 {
+  mcor_box* box = &context->box;
   const mcor_brick_data* now = &context->bricks.now;
   const mcor_mesh* mesh = &context->mesh;
   const bool follows = mcor_follows_cells(context);
   const size_t keys = follows ? (size_t)mesh->triangle_count : 1;
-  MCOR_TRY(mcor_reserve(context, cells, keys * sizeof(cl_ulong)));
+  MCOR_TRY(mcor_reserve(context, &box->cells, keys * sizeof(cl_ulong)));
   return MCOR_LAUNCH(context, "mcor_march_triangles", MCOR_MEDIUM, now->count, MCOR_INT(now->count),
     MCOR_LEAF_ARGS(context), MCOR_BUFFER(&context->bricks.plain),
-    MCOR_BUFFER(&context->bricks.leaf_of), MCOR_CUT_ARGS(context), MCOR_SIDES_ARGS(sides),
+    MCOR_BUFFER(&context->bricks.leaf_of), MCOR_CUT_ARGS(context), MCOR_SIDES_ARGS(box->halves),
+    MCOR_SIDES_ARGS(context->run.options->ranks ? box->whole_halves : box->halves),
     MCOR_INT(follows), MCOR_BUFFER(&context->bricks.rungs), MCOR_BUFFER(&now->bricks),
     MCOR_BUFFER(&mesh->used), MCOR_BUFFER(&mesh->edges), MCOR_BUFFER(&mesh->vertex_base),
-    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(cells), MCOR_BUFFER(&mesh->triangles));
+    MCOR_BUFFER(&mesh->triangle_base), MCOR_BUFFER(&box->cells), MCOR_BUFFER(&mesh->triangles));
 }
 
 /* Counts the triangles of each level; with a box, the owned ones. */
@@ -172,7 +173,7 @@ mcor_status mcor_march(mcor_context* context)
     return MCOR_OK;
   }
   MCOR_TRY(mcor_emit_vertices(context));
-  MCOR_TRY(mcor_emit_in_box(context, mcor_emit_triangles));
+  MCOR_TRY(mcor_emit_triangles(context));
   return mcor_count_triangles(context);
 }
 

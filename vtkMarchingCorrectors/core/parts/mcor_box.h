@@ -99,18 +99,12 @@ mcor_status mcor_find_owned(
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
-/* mcor_seam.c. Set beside MCOR_RING_CELL: another rank owns the cell. */
-#define MCOR_OTHERS_CELL ((cl_ulong)1 << 62)
-mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared);
+/* mcor_seam.c */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 
 /* mcor_triangle_cell.c. Whether triangles carry their cells; counts the owned triangles of
  * [first, last). */
 bool mcor_follows_cells(const mcor_context* context);
-/* Launches `emit`, which writes triangles, and their cells if they carry them; those between the
- * sides are owned. */
-typedef mcor_status (*mcor_emit)(mcor_context* context, const int sides[6], mcor_buffer* cells);
-mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 
 /* Output: makes room for the keys and flags of so many more triangles of the surface. */

@@ -11,31 +11,6 @@
 
 #include <stdlib.h>
 
-/* Marks in box.cells the cells that other ranks own. shared: the triangles' cells as if the
- * boxes of all ranks were owned. */
-mcor_status mcor_mark_others(mcor_context* context, const mcor_buffer* shared)
-{
-  mcor_buffer* buffer = &context->box.cells;
-  const size_t triangles = (size_t)context->mesh.triangle_count;
-  const size_t bytes = triangles * sizeof(cl_ulong);
-  if (triangles == 0)
-  {
-    return MCOR_OK;
-  }
-  cl_ulong* cells = malloc(2 * bytes);
-  MCOR_TRY(mcor_allocated(context, cells));
-  mcor_status status = mcor_read(context, buffer, 0, cells, bytes);
-  MCOR_THEN(status, mcor_read(context, shared, 0, cells + triangles, bytes));
-  for (size_t i = 0; i < triangles && status == MCOR_OK; ++i)
-  {
-    const bool others = (cells[i] & MCOR_RING_CELL) && !(cells[triangles + i] & MCOR_RING_CELL);
-    cells[i] |= others ? MCOR_OTHERS_CELL : 0;
-  }
-  MCOR_THEN(status, mcor_write(context, buffer, cells, bytes));
-  free(cells);
-  return status;
-}
-
 /* *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the
  * lattice is owned. The caller frees it, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)

@@ -21,21 +21,6 @@ bool mcor_follows_cells(const mcor_context* context)
 
 /* ---- Mesh ---- */
 
-mcor_status mcor_emit_in_box(mcor_context* context, mcor_emit emit)
-{
-  mcor_box* box = &context->box;
-  MCOR_TRY(emit(context, box->halves, &box->cells));
-  if (!box->is_part || !context->run.options->ranks)
-  {
-    return MCOR_OK;
-  }
-  mcor_buffer shared = { 0 };
-  mcor_status status = emit(context, box->whole_halves, &shared);
-  MCOR_THEN(status, mcor_mark_others(context, &shared));
-  mcor_release(context, &shared);
-  return status;
-}
-
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count)
 {
   void* view = NULL;

@@ -175,10 +175,12 @@ __kernel void mcor_march_vertices(MCOR_BRICK_PARAMS, const int slot_count,
 }
 
 /* One work-item = one brick. Reads used cells, node masks, decisions and edge numbering. Writes
- * triangles, or lines, and, if wanted, the keys of their cells. */
+ * triangles, or lines, and, if wanted, the keys of their cells: this call owns those in the box
+ * x0 ..., other ranks those in the box all_x0 ... that it does not own. */
 __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
   __global const ulong* plain, __global const int* leaf_of, MCOR_CUT_PARAMS, MCOR_SIDES_PARAMS,
-  const int follows, __global const mcor_rung* rungs, __global const int4* bricks,
+  const int all_x0, const int all_y0, const int all_z0, const int all_x1, const int all_y1,
+  const int all_z1, const int follows, __global const mcor_rung* rungs, __global const int4* bricks,
   __global const ulong* used, __global const ulong* edges, __global const int* vertex_base,
   __global const int* triangle_base, __global ulong* triangle_cells, __global int* triangles)
 {
@@ -197,6 +199,8 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
     leaf = mcor_leaf_load(leaf_of[slot], plane, finer, tables, above, valid);
   }
   const ulong owned = mcor_cells_within(MCOR_SIDES_ARGS, bricks[slot]);
+  const ulong others =
+    ~owned & mcor_cells_within(all_x0, all_y0, all_z0, all_x1, all_y1, all_z1, bricks[slot]);
   const ulong key =
     mcor_brick_key(rungs, bricks[slot].w, bricks[slot].x, bricks[slot].y, bricks[slot].z) << 6;
   const ulong joined =
@@ -216,7 +220,8 @@ __kernel void mcor_march_triangles(const int brick_count, MCOR_LEAF_PARAMS,
     for (int i = 0; i < made && follows;
          ++i) /* Intel's compiler (2026.2) crashes on another form */
     {
-      triangle_cells[to + i] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL;
+      triangle_cells[to + i] = key | (ulong)cell | (~owned >> cell & 1) * MCOR_RING_CELL |
+        (others >> cell & 1) * MCOR_OTHERS_CELL;
     }
     to += made;
   }

@@ -59,11 +59,6 @@ static inline bool mcor_is_native(const mcor_cl* cl)
   return cl->platform == mcor_native_platform();
 }
 
-static inline bool mcor_is_pocl(const mcor_cl* cl)
-{
-  return strcmp(cl->platform_name, MCOR_DEFAULT_PLATFORM) == 0;
-}
-
 /* mcor_cl_program.c */
 /* Builds a program unless it is built. */
 mcor_status mcor_need_program(mcor_context* context, mcor_program number);

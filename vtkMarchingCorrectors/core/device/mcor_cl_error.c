@@ -69,7 +69,7 @@ bool mcor_is_no_memory(cl_int error)
 void mcor_blame_files(mcor_context* context)
 {
   const size_t length = strlen(context->error);
-  if (mcor_is_pocl(&context->cl))
+  if (strcmp(context->cl.platform_name, MCOR_DEFAULT_PLATFORM) == 0)
   {
     snprintf(context->error + length, sizeof context->error - length, " %s",
       MCOR_POCL_HINT " If a process was killed while PoCL compiled, remove that folder.");

@@ -99,12 +99,10 @@ mcor_status mcor_find_owned(
 mcor_status mcor_count_cells(
   mcor_context* context, const mcor_buffer* cells, const mcor_buffer* within, int* count);
 
-/* mcor_seam.c */
-mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
-
-/* mcor_triangle_cell.c. Whether triangles carry their cells; counts the owned triangles of
- * [first, last). */
+/* mcor_triangle_cell.c. Whether triangles carry their cells; which vertices this call counts, each
+ * MCOR_OWN or not; counts the owned triangles of [first, last). */
 bool mcor_follows_cells(const mcor_context* context);
+mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners);
 mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int last, int* count);
 
 /* Output: makes room for the keys and flags of so many more triangles of the surface. */

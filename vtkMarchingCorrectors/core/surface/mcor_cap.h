@@ -81,34 +81,6 @@ static inline bool mcor_is_cap(const mcor_context* context, int64_t v)
 }
 void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3]);
 
-/* A cut keeps this far off the ends of its line, as those of the surface do. */
-#define MCOR_CAP_CUT_MARGIN 1e-5
-#define MCOR_CAP_ROOT 2e-5 /* a margin below which a cut counts as exact */
-
-/* A bracket of the root of the trim margin along a line: its ends, the margins there, and the end
- * that moved last; -1: none. */
-typedef struct mcor_bracket
-{
-  double at[2], margin[2];
-  int last;
-} mcor_bracket;
-
-/* Returns where between the ends a linear margin would be 0. */
-static inline double mcor_bracket_share(const mcor_bracket* b)
-{
-  return b->margin[0] / (b->margin[0] - b->margin[1]);
-}
-/* Moves an end to where the margin was found. The margin of an end that stays twice is halved, so
- * that it does not stay for ever (the Illinois method). */
-static inline void mcor_narrow_bracket(mcor_bracket* b, double at, double margin)
-{
-  const int moved = (margin > 0) != (b->margin[0] > 0);
-  b->at[moved] = at;
-  b->margin[moved] = margin;
-  b->margin[1 - moved] *= b->last == moved ? 0.5 : 1;
-  b->last = moved;
-}
-
 /* ---- mcor_cap_square.c: the clipper ---- */
 
 /* Corner of a polygon: its vertex, its place in cubes from the lattice's origin, and its trim

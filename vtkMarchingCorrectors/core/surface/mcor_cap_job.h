@@ -7,6 +7,14 @@
 
 #include "mcor_cap.h"
 
+/* A bracket of the root of the trim margin along a line: its ends, the margins there, and the end
+ * that moved last; -1: none. */
+typedef struct mcor_bracket
+{
+  double at[2], margin[2];
+  int last;
+} mcor_bracket;
+
 /* The line on which a cut is moved, from one end (0) to the other (1). at: the cut. */
 typedef struct mcor_cap_line
 {

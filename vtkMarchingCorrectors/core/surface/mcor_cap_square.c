@@ -11,6 +11,10 @@
 
 #include <string.h>
 
+/* A cut keeps this far off the ends of its line, as those of the surface do. */
+#define MCOR_CAP_CUT_MARGIN 1e-5
+#define MCOR_CAP_ROOT 2e-5 /* a margin below which a cut counts as exact */
+
 /* ---- Vertices ---- */
 
 void mcor_put_cap_vertex(mcor_cap_vertex* vertex, const double at[3])
@@ -94,6 +98,12 @@ static mcor_status mcor_cap_edge_corner(
     corner->at[a] = node[a] + mcor_get_real(context, job->offset, 4 * (int64_t)vertex + a);
   }
   return MCOR_OK;
+}
+
+/* Returns where between the ends a linear margin would be 0. */
+static double mcor_bracket_share(const mcor_bracket* b)
+{
+  return b->margin[0] / (b->margin[0] - b->margin[1]);
 }
 
 void mcor_begin_cap_line(
@@ -292,7 +302,8 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
 /* A margin at which a cut stays: some units of rounding in single precision. */
 #define MCOR_PLACE_ROOT 1e-6
 
-/* Moves a cut within its bracket (the Illinois method), unless its margin is 0 up to rounding. */
+/* Moves a cut within its bracket, unless its margin is 0 up to rounding. The margin of an end that
+ * stays twice is halved, so that it does not stay for ever (the Illinois method). */
 static void mcor_move_cut(
   const mcor_context* context, const mcor_cap_points* points, int64_t i, void* data)
 {
@@ -308,7 +319,11 @@ static void mcor_move_cut(
     return;
   }
   mcor_bracket* bracket = &line->bracket;
-  mcor_narrow_bracket(bracket, line->at, margin);
+  const int moved = (margin > 0) != (bracket->margin[0] > 0);
+  bracket->at[moved] = line->at;
+  bracket->margin[moved] = margin;
+  bracket->margin[1 - moved] *= bracket->last == moved ? 0.5 : 1;
+  bracket->last = moved;
   const double share = ++line->moves % 4 == 0 ? 0.5 : mcor_bracket_share(bracket);
   const double s = bracket->at[0] + (bracket->at[1] - bracket->at[0]) * share;
   line->at = fmin(fmax(s, MCOR_CAP_CUT_MARGIN), 1 - MCOR_CAP_CUT_MARGIN);

@@ -42,7 +42,7 @@ typedef struct mcor_level
 
 /* Bit beside the key of a triangle's cell: the cell is in the ring around the box. */
 #define MCOR_RING_CELL ((MCOR_TYPE(ulong))1 << 63)
-/* And beside that one, of which another rank owns the cell. */
+/* Set beside that bit where another rank owns the cell. */
 #define MCOR_OTHERS_CELL ((MCOR_TYPE(ulong))1 << 62)
 /* Bit of the key of a cap's square, above all keys of cells. */
 #define MCOR_CAP_SQUARE ((MCOR_TYPE(ulong))1 << 62)

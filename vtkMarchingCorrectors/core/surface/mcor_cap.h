@@ -116,8 +116,8 @@ static inline int mcor_corner_v(int k)
   return k >> 1;
 }
 
-/* A brick of nodes that particles reach, on a side or one node further in; or near walls, where both
- * fluid and solids reach it. Bits of masks are those of a brick. */
+/* A brick of nodes that particles reach, on a side or one node further in; or near walls, where
+ * both fluid and solids reach it. Bits of masks are those of a brick. */
 typedef struct mcor_cap_brick
 {
   uint64_t key; /* the first member: by the side's second axis, then the first; of its first cell */
@@ -145,8 +145,8 @@ typedef struct mcor_cap_nodes
   double* margin;                   /* [node_count], trim margins of nodes above */
 } mcor_cap_nodes;
 
-/* Returns the bit of node number `at` of a side in its brick's masks, or of the one at another place
- * along the axis. */
+/* Returns the bit of node number `at` of a side in its brick's masks, or of the one at another
+ * place along the axis. */
 static inline int mcor_side_bit(const mcor_cap_nodes* nodes, int along, int64_t at)
 {
   return (along & 3) << 2 * nodes->axis | (int)(at & 3) << 2 * nodes->across[0] |

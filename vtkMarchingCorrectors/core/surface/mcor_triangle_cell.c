@@ -40,9 +40,9 @@ mcor_status mcor_count_owned_triangles(mcor_context* context, int first, int las
 }
 
 /* Vertices on a seam belong to several ranks, and one of them counts each. The triangles of a box
- * and its ring have one order on all ranks, and the rank whose triangle is the first to use a vertex
- * counts it. Cells in the ring beyond all ranks' boxes, where the whole surface ends, are nobody's. A
- * square of a cap in the ring is another rank's: MCOR_CAP_SQUARE is MCOR_OTHERS_CELL.
+ * and its ring have one order on all ranks, and the rank whose triangle is the first to use a
+ * vertex counts it. Cells in the ring beyond all ranks' boxes, where the whole surface ends, are
+ * nobody's. A square of a cap in the ring is another rank's: MCOR_CAP_SQUARE is MCOR_OTHERS_CELL.
  * *owners: [vertex_count], MCOR_OWN for vertices that this call counts; NULL where all of the
  * lattice is owned. The caller frees it, also after a failure. */
 mcor_status mcor_find_counted(mcor_context* context, uint8_t** owners)

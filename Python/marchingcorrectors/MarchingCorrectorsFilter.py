@@ -338,16 +338,23 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
 
     def _process_blocks(self, given, output):
         """A block that fails leaves its place empty, and the others as they are."""
-        data = given.NewInstance()  # an observer of the progress may take blocks out of the input
+        data = given.NewInstance()  # an observer of the progress may take blocks out of the input, or change them
         getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # the same blocks, before VTK 9.3, too
         output.CopyStructure(data)
-        names, iterator = name_blocks(data), data.NewTreeIterator()
+        names, blocks, iterator = name_blocks(data), [], data.NewTreeIterator()
+        iterator.InitTraversal()
+        while not iterator.IsDoneWithTraversal():
+            block = iterator.GetCurrentDataObject()
+            blocks.append(block.NewInstance() if blocks else block)  # data kept are the first one's own
+            if len(blocks) > 1:
+                blocks[-1].ShallowCopy(block)
+            iterator.GoToNextItem()
         iterator.InitTraversal()
         self._warn_once("walls", find_walls(names))
-        for i, name in enumerate(names):
+        for i, (name, block) in enumerate(zip(names, blocks)):
             self.SetProgressShiftScale(i / len(names), 1 / len(names))
             self.BlockName = name + ": "
-            block, made = iterator.GetCurrentDataObject(), vtkPolyData()
+            made = vtkPolyData()
             made.GetFieldData().PassData(block.GetFieldData())
             self._process(block, made)
             output.SetDataSetFrom(iterator, made)

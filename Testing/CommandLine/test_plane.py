@@ -66,6 +66,10 @@ class Plane(CommandLineTest):
         self.run_good(self.input, stl, "--free-surface", "--filled", "--no-attributes")
         self.assertEqual(stl.stat().st_size, 84 + 50 * run["triangles"])
 
+    def test_filled_alone(self):
+        self.refuse_all(1, [(["--capping", "--box=-1,1,0,1,-1,1"], r"leave out --filled or --capping\)"),
+                            (["--smooth"], r"leave out --filled, or --compact and --smooth\)")], "--free-surface", "--filled")
+
     def test_flat_box(self):
         """Around the particles it is one."""
         half, thick = (self.succeed("--free-surface", f"--box=-inf,inf,{y},0,inf")["statistics"] for y in ("0.25,0.25", "0.2,0.3"))

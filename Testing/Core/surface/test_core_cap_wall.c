@@ -167,9 +167,32 @@ static void test_parts(void** state)
   assert_true(surface.statistics.is_closed && surface.statistics.cap_triangles > 500);
 }
 
+/* Solids that reach too much are found before the fluid beside them, which would take minutes. */
+static void test_limit(void** state)
+{
+  CORE_SET set = particle_set_make(2);
+  for (int i = 0; i < 2; ++i)
+  {
+    set.position[3 * i] = i;
+    set.smoothing_length[i] = 1;
+    set.volume[i] = 1;
+    set.solid[i] = i == 1;
+  }
+  set.has_solids = 1;
+  const mcor_input input = core_input(&set);
+  const double out_of_reach = 9;
+  mcor_options options = wall_options(0.5);
+  options.iso_values = &out_of_reach;
+  options.cube_size = 1.0 / 450; /* a support of 1800^3 nodes */
+  options.capping = MCOR_CAP_PERIOD;
+  CORE_SURFACE surface;
+  assert_int_equal(mcor_extract(*state, &input, &options, &surface), MCOR_OUT_OF_CAPACITY);
+  assert_non_null(strstr(mcor_last_error(*state), "nodes are near solids"));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_tank), cmocka_unit_test(test_share),
-    cmocka_unit_test(test_full), cmocka_unit_test(test_parts) };
+    cmocka_unit_test(test_full), cmocka_unit_test(test_parts), cmocka_unit_test(test_limit) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

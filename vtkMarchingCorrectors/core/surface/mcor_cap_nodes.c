@@ -67,8 +67,17 @@ static void mcor_set_cap_extent(
 
 /* ---- Bricks ---- */
 
-/* Most bricks near walls. */
+/* Most bricks near walls, and most clusters near solids. */
 #define MCOR_WALL_LIMIT (1 << 20)
+
+static mcor_status mcor_limit_walls(mcor_context* context, size_t count, const char* what)
+{
+  MCOR_RETURN_IF(count > MCOR_WALL_LIMIT, context, MCOR_OUT_OF_CAPACITY,
+    "More than %d nodes are near %s, with cube size %g: too many for caps. Use a larger cube size, "
+    "or turn capping off.",
+    MCOR_WALL_LIMIT * MCOR_BRICK_NODES, what, context->lattice.cube);
+  return MCOR_OK;
+}
 
 /* Fails where particles reach more clusters of a side than that; with 16^2 nodes each, these are 4 to
  * 64 million nodes. Where few particles reach more, a smoothing length or the cube size is a
@@ -92,9 +101,10 @@ static mcor_status mcor_limit_side(
   return MCOR_OK;
 }
 
-/* Adds the bricks between two places, in nodes, to a set of clusters: masks by their first brick. */
+/* Adds the bricks between two places, in nodes, to a set of clusters: masks by their first brick.
+ * among: only clusters that are in this set are added, too; NULL: all. */
 static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nodes* nodes,
-  const double low[3], const double high[3], mcor_table* clusters)
+  const double low[3], const double high[3], const mcor_table* among, mcor_table* clusters)
 {
   int from[3], to[3], c[3];
   for (int a = 0; a < 3; ++a)
@@ -108,10 +118,15 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nod
     {
       for (c[0] = from[0] & ~3; c[0] <= to[0]; c[0] += MCOR_CLUSTER)
       {
+        if (among && !mcor_table_find(among, mcor_cap_key(c)))
+        {
+          continue;
+        }
         uint64_t* bricks = mcor_table_add(clusters, mcor_cap_key(c));
         MCOR_TRY(mcor_allocated(context, bricks));
         *bricks |= mcor_bricks_between(from, to, c);
-        MCOR_TRY(nodes->axis < 0 ? MCOR_OK : mcor_limit_side(context, nodes, clusters->count));
+        MCOR_TRY(nodes->axis < 0 ? mcor_limit_walls(context, clusters->count, "solids")
+                                 : mcor_limit_side(context, nodes, clusters->count));
       }
     }
   }
@@ -121,7 +136,8 @@ static mcor_status mcor_add_cap_bricks(mcor_context* context, const mcor_cap_nod
 /* Adds the bricks that particles may reach: near walls to one set for fluid and one for solids; all
  * to the first set else. A support lies within a cube, whose half edge is rounded up a little. It
  * is widened by one node, because a square or cell is looked up by its lowest node, and by another
- * one for rounding. Most particles are far from a side, which its axis tells first. */
+ * one for rounding. Most particles are far from a side, which its axis tells first. Solids come
+ * first: where they reach too much, fluid often does, too, and this would take minutes. */
 static mcor_status mcor_add_reached(
   mcor_context* context, const mcor_cap_nodes* nodes, mcor_table clusters[2])
 {
@@ -144,11 +160,13 @@ static mcor_status mcor_add_reached(
     per_step[a] = 1 / (double)lattice->step[a];
   }
   mcor_status status = mcor_map_all(context, mappings, count);
-  for (int64_t i = 0; i < g->count && status == MCOR_OK; ++i)
+  for (int64_t n = 0; n < (parts ? 2 : 1) * (int64_t)g->count && status == MCOR_OK; ++n)
   {
+    const int64_t i = n % g->count;
     const double h = 1 / mcor_get_real(context, views[3], i);
+    const bool is_solid = parts && mcor_get_real(context, views[4], i) == 0;
     double low[3], high[3];
-    bool is_near = true;
+    bool is_near = !parts || is_solid == (n < g->count);
     for (int k = 0; k < 3 && is_near; ++k)
     {
       const int a = (first_axis + k) % 3, *range = nodes->range[a];
@@ -158,9 +176,9 @@ static mcor_status mcor_add_reached(
       high[a] = x + h * reach_of[a] + 2;
       is_near = low[a] <= range[1] && high[a] >= range[0];
     }
-    const bool is_solid = parts && mcor_get_real(context, views[4], i) == 0;
-    status =
-      is_near ? mcor_add_cap_bricks(context, nodes, low, high, &clusters[is_solid]) : MCOR_OK;
+    const mcor_table* among = parts && !is_solid ? &clusters[1] : NULL;
+    status = is_near ? mcor_add_cap_bricks(context, nodes, low, high, among, &clusters[is_solid])
+                     : MCOR_OK;
   }
   return mcor_unmap_all(context, mappings, count, status);
 }
@@ -186,11 +204,9 @@ static mcor_status mcor_list_cap_bricks(
       {
         continue;
       }
-      MCOR_RETURN_IF(nodes->axis < 0 && nodes->bricks.count > MCOR_WALL_LIMIT, context,
-        MCOR_OUT_OF_CAPACITY,
-        "More than %d nodes are near both fluid and solids, with cube size %g: too many for caps. "
-        "Use a larger cube size, or turn capping off.",
-        MCOR_WALL_LIMIT * MCOR_BRICK_NODES, context->lattice.cube);
+      MCOR_TRY(nodes->axis < 0
+          ? mcor_limit_walls(context, (size_t)nodes->bricks.count, "both fluid and solids")
+          : MCOR_OK);
       const cl_int node[4] = { brick.at[0] * MCOR_BRICK, brick.at[1] * MCOR_BRICK,
         brick.at[2] * MCOR_BRICK, 0 };
       const bool on_side = nodes->axis >= 0 && brick.at[nodes->axis] == nodes->plane / MCOR_BRICK;
@@ -255,8 +271,9 @@ mcor_status mcor_find_cap_bricks(mcor_context* context, double iso_value, mcor_c
     high[a] = nodes->range[a][1];
   }
   mcor_table clusters[2] = { { 0 }, { 0 } };
-  mcor_status status = empty_is_above ? mcor_add_cap_bricks(context, nodes, low, high, &clusters[0])
-                                      : mcor_add_reached(context, nodes, clusters);
+  mcor_status status = empty_is_above
+    ? mcor_add_cap_bricks(context, nodes, low, high, NULL, &clusters[0])
+    : mcor_add_reached(context, nodes, clusters);
   MCOR_THEN(status, mcor_list_cap_bricks(context, clusters, nodes));
   MCOR_THEN(status, mcor_number_cap_bricks(context, nodes));
   mcor_table_free(&clusters[0]);

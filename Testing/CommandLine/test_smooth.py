@@ -38,7 +38,7 @@ class Smooth(CommandLineTest):
             self.assertEqual(len(table.read_text().splitlines()), 1 + 9)
 
     def test_refused(self):
-        self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled or --compact")], "--free-surface")
+        self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled, or --compact and --smooth")], "--free-surface")
         self.refuse_all(2, [(["--widening", "f.vtp"], "without --widen"),
                             (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")], "--free-surface")
 

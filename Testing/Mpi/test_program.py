@@ -367,6 +367,11 @@ class Program(unittest.TestCase):
                 self.check_point_data(alone, ranks)
             self.assertEqual(alone.GetPointData().HasArray("WideningVolume"), bool(how))
 
+    def test_widened(self):
+        """Particles are copied to all processes that their widened lengths reach."""
+        self.check_surfaces(PARTICLES, write_pieces(PARTICLES, self.folder.name, 3),
+                            "--scalar", "Speed", "--iso", "1.2", "--widen", "2")
+
     def test_factors_in_box(self):
         """With a box, any number of particles may be far away from it."""
         particles = read(PARTICLES)

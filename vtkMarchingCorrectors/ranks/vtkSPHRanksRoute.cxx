@@ -153,17 +153,19 @@ private:
   }
 
   /**
-   * Returns the scaled support radius, enlarged by the margin that a large particle needs more
-   * than a small one.
+   * Returns the scaled and widened support radius, enlarged by the margin that a large particle
+   * needs more than a small one.
    */
   double ReachOf(std::int64_t i) const
   {
     const double support = this->Input.estimate_smoothing_length
       ? this->Globals.measured.h_estimate * this->Factor
       : vtkSPHValueOf(this->Input.smoothing_length, i) * this->Support;
-    return !this->HasLevels ? support
-                            : support - this->LeastMargin +
-        mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor);
+    const mcor_array& factors = this->Input.widening; // levels are those of the lengths before
+    return support * (factors.data ? vtkSPHValueOf(factors, i) : 1.0) +
+      (this->HasLevels ? mcor_reach_margin(&this->Options, &this->Globals, support / this->Factor) -
+            this->LeastMargin
+                       : 0.0);
   }
 
   /** Finds the ranks that a particle at this place, or an image of it, reaches by `radius`. */

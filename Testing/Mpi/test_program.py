@@ -372,6 +372,21 @@ class Program(unittest.TestCase):
         self.check_surfaces(PARTICLES, write_pieces(PARTICLES, self.folder.name, 3),
                             "--scalar", "Speed", "--iso", "1.2", "--widen", "2")
 
+    def test_names_of_factors(self):
+        """Arrays of the particles with the names of those that widening finds are contoured and interpolated as others are."""
+        particles = read(PARTICLES)
+        for name in "Widening", "WideningVolume":
+            array = numpy_to_vtk(vtk_to_numpy(particles.GetPoints().GetData())[:, 0], deep=True)
+            array.SetName(name)
+            particles.GetPointData().AddArray(array)
+        write(particles, self.path("in.vtp"))
+        self.check_surfaces(self.path("in.vtp"), write_pieces(self.path("in.vtp"), self.folder.name, 3),
+                            "--scalar", "Widening", "--iso", str(particles.GetCenter()[0]), "--widen", "2")
+        alone, ranks = read(self.path("alone.vtp")).GetPointData(), read(self.path("ranks.vtp")).GetPointData()
+        self.assertGreater(alone.GetArray("Widening").GetRange()[1], 1.5)
+        self.assertTrue(alone.HasArray("WideningVolume") and alone.HasArray("IsoValue"))
+        self.assertEqual(*([data.GetArrayName(i) for i in range(data.GetNumberOfArrays())] for data in (alone, ranks)))
+
     def test_factors_in_box(self):
         """With a box, any number of particles may be far away from it."""
         particles = read(PARTICLES)

@@ -167,6 +167,11 @@ mcor_options vtkSPHParticles::OwnOptions() const
   return options;
 }
 
+std::string vtkSPHParticles::NameMade(const std::string& name)
+{
+  return MadeName + name;
+}
+
 bool vtkSPHParticles::IsMade(const char* name)
 {
   return name && std::strncmp(name, MadeName, std::strlen(MadeName)) == 0;
@@ -178,7 +183,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
 {
   vtkPointData* arrays = this->Points->GetPointData();
   vtkNew<vtkDoubleArray> array;
-  if (vtkDataArray* sent = arrays->GetArray((MadeName + std::string(name)).c_str()))
+  if (vtkDataArray* sent = arrays->GetArray(NameMade(name).c_str()))
   {
     array->ShallowCopy(sent);
     array->SetName(name);
@@ -257,7 +262,7 @@ vtkSmartPointer<vtkDataArray> vtkSPHParticles::Compute(const char* name,
   {
     vtkNew<vtkDoubleArray> sent;
     sent->ShallowCopy(array);
-    sent->SetName((MadeName + std::string(name)).c_str());
+    sent->SetName(NameMade(name).c_str());
     arrays->AddArray(sent);
   }
   return made.second;

@@ -51,9 +51,12 @@ public:
    */
   bool CollectParticles();
 
-  /** Whether this is the name under which what was made of neighbours goes to other processes with
-   * the particles. */
+  ///@{
+  /** The name under which what was made of neighbours goes to other processes with the particles, so
+   * that no array of theirs has it; whether this is one. */
+  static std::string NameMade(const std::string& name);
   static bool IsMade(const char* name);
+  ///@}
 
   /** The part of it that is about smoothing lengths. */
   bool CollectSmoothingLength();

@@ -41,6 +41,11 @@ void vtkMarchingCorrectors::ContourDistributed(vtkSharedRun& run,
       return;
     }
     outside = statistics.widening_outside;
+    for (int i = 0; i < found->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* array = found->GetAbstractArray(i);
+      array->SetName(vtkSPHParticles::NameMade(array->GetName()).c_str());
+    }
     vtkSPHAddArrays(found, run.Own->GetPointData());
     options.widen = 1.0;
     choice.IsWidened = true;

@@ -25,21 +25,17 @@ bool vtkMarchingCorrectorsInput::Collect()
     return false;
   }
   this->NameScalar();
+  vtkPointData* const data = this->Points->GetPointData();
+  vtkDataArray* const factors = data->GetArray(NameMade("Widening").c_str());
   if (this->Choice.IsWidened)
   {
-    vtkPointData* data = this->Points->GetPointData();
-    this->Core.widening = this->View(data->GetArray("Widening"));
-    vtkDataArray* volumes = data->GetArray("WideningVolume");
+    this->Core.widening = this->View(factors);
+    vtkDataArray* volumes = data->GetArray(NameMade("WideningVolume").c_str());
     this->Core.volume = volumes ? this->View(volumes) : this->Core.volume;
   }
   if (this->Choice.InterpolateAttributes)
   {
     std::vector<std::string> taken = this->Choice.ComputedArrays;
-    taken.push_back("WideningVolume");
-    if (this->Choice.IsWidened)
-    {
-      taken.push_back("Widening");
-    }
     if (this->Choice.ComputeScalars)
     {
       taken.push_back(this->IsoValueName);
@@ -48,7 +44,7 @@ bool vtkMarchingCorrectorsInput::Collect()
   }
   if (this->Choice.IsWidened)
   {
-    this->Interpolate(this->Points->GetPointData()->GetArray("Widening")); // the last one
+    this->Interpolate(factors); // the last one
   }
   vtkSPHSign(this->ScalarSignature, this->Scalar);
   vtkSPHSign(this->ScalarSignature, this->ScalarDot);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMarchingCorrectorsOutput.h"
 
+#include "mcor_parts.h"
 #include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -59,6 +60,10 @@ vtkMarchingCorrectorsOutput::vtkMarchingCorrectorsOutput(
 std::vector<std::string> vtkMarchingCorrectorsOutput::ComputedArrays(const mcor_options& options)
 {
   std::vector<std::string> names;
+  if (mcor_spell_out(&options).widen > 1.0)
+  {
+    names.emplace_back("Widening");
+  }
 #define NAME(bit, member, components, name, flag)                                                  \
   if (options.outputs & bit)                                                                       \
   {                                                                                                \

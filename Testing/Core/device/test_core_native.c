@@ -351,11 +351,39 @@ static void test_shares(void** state)
   }
 }
 
+/* Memory locked for mappings, as with a GPU, is no larger than a driver allows. */
+static void test_locked(void** state)
+{
+  (void)state;
+  enum
+  {
+    LARGEST = 1 << 20,
+    MAPPED = LARGEST - 512
+  };
+  CORE_CONTEXT context = NULL;
+  CORE_OK(context, mcor_create_context("built in", &context));
+  context->cl.is_apart = true;
+  context->cl.largest_buffer = LARGEST;
+  mcor_buffer buffer = { 0 };
+  void* view = NULL;
+  CORE_OK(context, mcor_reserve(context, &buffer, MAPPED));
+  CORE_OK(context, mcor_map(context, &buffer, MAPPED, true, &view));
+  assert_ptr_equal(view, context->cl.locked[0].host);
+  assert_in_range(context->cl.locked[0].size, MAPPED, LARGEST);
+  memset(view, 7, MAPPED);
+  CORE_OK(context, mcor_unmap(context, &buffer, &view));
+  uint8_t last = 0;
+  CORE_OK(context, mcor_read(context, &buffer, MAPPED - 1, &last, 1));
+  assert_int_equal(last, 7);
+  mcor_release(context, &buffer);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_functions),
     cmocka_unit_test(test_loops), cmocka_unit_test(test_fork),
     cmocka_unit_test(test_little_room_for_drivers), cmocka_unit_test(test_contexts_side_by_side),
-    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares) };
+    cmocka_unit_test(test_threads_of_environment), cmocka_unit_test(test_shares),
+    cmocka_unit_test(test_locked) };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,7 +208,7 @@ static mcor_status mcor_take_locked(mcor_context* context, size_t bytes, mcor_lo
     MCOR_LOCKED_LIMIT);
   if (best->size < bytes)
   {
-    const size_t size = bytes + bytes / 8;
+    const size_t more = bytes + bytes / 8, size = more < cl->largest_buffer ? more : bytes;
     cl_int error;
     mcor_free_locked(cl, best);
     best->mem = clCreateBuffer(cl->context, CL_MEM_ALLOC_HOST_PTR, size, NULL, &error);

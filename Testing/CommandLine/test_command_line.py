@@ -331,6 +331,13 @@ class Options(CommandLineTest):
         if float(re.search(r"program build ([\d.]+)", result.stdout)[1]) > 10:
             self.assertEqual(result.stderr, FIRST_COMPILATION)
 
+    def test_long_run(self):
+        """Seconds of computing are not said to be a driver's."""
+        if "built in" not in self.run_program("--list-devices").stdout:
+            self.skipTest("a driver's programs are compiled")
+        self.run_good(self.input, self.directory / "levels.vti", "--gauge-grid", "1000,1000:-1,1,-1,1,-1,1",
+                      "--threads", "1", "--device", "built in", told=True)
+
     def test_derive(self):
         """Arrays made of one of the particles', to contour and to carry; they go before stored ones."""
         self.arrays["Lambda2"] = [17.0] * len(self.points)

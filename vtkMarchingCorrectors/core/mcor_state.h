@@ -280,7 +280,7 @@ typedef struct mcor_run
   double fraction,
     fraction_end;     /* reported last, also by a failed attempt; at the end of what runs */
   double report_time; /* of the last report */
-  bool building_told; /* building was reported in this phase */
+  bool building_told; /* building was the last that was reported */
   double correction_count, correction_sum, correction_squares;
   int64_t evaluations_counted; /* of vertices_corrected */
   int64_t normals_lacking;     /* points without a normal so far */

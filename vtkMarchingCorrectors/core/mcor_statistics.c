@@ -16,6 +16,7 @@ mcor_status mcor_report(mcor_context* context, const char* doing, double fractio
     fmax(fraction, context->run.fraction); /* a second attempt may have reported more */
   context->run.fraction_end = end;
   context->run.report_time = mcor_seconds();
+  context->run.building_told = false;
   MCOR_RETURN_IF(options->progress &&
       options->progress(options->progress_user, context->run.fraction, doing) != 0,
     context, MCOR_CANCELLED, "The run was cancelled during: %s.", doing);
@@ -65,7 +66,6 @@ mcor_status mcor_begin_phase(mcor_context* context, mcor_phase phase, double fra
   context->run.phase = phase;
   context->run.phase_begin = now;
   context->run.phase_built = built;
-  context->run.building_told = false;
   return mcor_report(context, mcor_phase_name(phase), fraction, end);
 }
 

@@ -22,6 +22,7 @@
 #include "vtkSPHFound.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -218,24 +219,30 @@ void KeepIsoValue(const Sharing& sharing, vtkFieldData* statistics)
   }
 }
 
-/// Prints a notice, once, if an update that shows no progress has waited for a driver for a few
+/// Prints a notice, once, if an update that shows no progress waits for a driver after a few
 /// seconds.
 class BuildNotice
 {
 public:
   ~BuildNotice() { this->End.set_value(); } // then Waiting ends, and is awaited
 
-  void Begin()
+  void Tell(bool isBuilding)
   {
-    if (std::exchange(this->HasBegun, true))
+    this->IsBuilding = isBuilding;
+    if (!isBuilding || std::exchange(this->HasBegun, true))
     {
       return;
     }
-    const auto wait = [](const std::future<void>& end)
+    const auto wait = [this](const std::future<void>& end)
     {
-      if (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
+      while (end.wait_for(std::chrono::seconds(3)) == std::future_status::timeout)
       {
-        Say("the OpenCL driver compiles its programs for the first time, which may take a minute");
+        if (this->IsBuilding) // and does not compute long since
+        {
+          Say("the OpenCL driver compiles its programs for the first time, which may take a "
+              "minute");
+          return;
+        }
       }
     };
     try
@@ -248,9 +255,10 @@ public:
   }
 
 private:
-  std::promise<void> End;
-  std::future<void> Waiting;
+  std::atomic<bool> IsBuilding{ false };
   bool HasBegun = false;
+  std::promise<void> End;
+  std::future<void> Waiting; ///< the last member, as its thread uses the others
 };
 
 /// A run's progress line.
@@ -271,9 +279,9 @@ void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
   const char* phase = filter->GetProgressText();
   if (!progress->IsShown)
   {
-    if (!progress->IsQuiet && phase && std::strstr(phase, "first time"))
+    if (!progress->IsQuiet)
     {
-      progress->Notice.Begin();
+      progress->Notice.Tell(phase && std::strstr(phase, "first time"));
     }
     return;
   }

@@ -242,7 +242,10 @@ class Formats(CommandLineTest):
             self.assertIn(made_alone, found)
             self.assertEqual('NumberOfPoints="0"' in found, side == 0)
         self.output.unlink()
-        self.refuse(self.extract("--free-surface", source=f"{HERE / 'film.vtkhdf'}#3"), 1, "it has no step 3")
+        table = self.directory / "table.csv"
+        table.write_text("x,y,z\n1,2,3\n")
+        for source in (HERE / "film.vtkhdf", HERE / "lattice.vtkhdf", HERE / "lattice_poly.vtkhdf", self.input, table):
+            self.refuse(self.extract("--free-surface", source=f"{source}#3"), 1, "it has no step 3")
         damaged = self.directory / "damaged.vtkhdf"
         self.output.unlink(missing_ok=True)
         data = grid.read_bytes()

@@ -131,7 +131,7 @@ class Gauge(Meter):
     def test_a_step_that_fails(self):
         """The others are in the table."""
         result = self.run_program(self.input, "missing.vtp", self.input, self.table, "--gauge", UP)
-        self.one_sentence(result, 1, "missing.vtp")
+        self.one_sentence(result, 1, "marching-correctors: missing.vtp cannot be read: ")
         self.assertEqual([row["time"] for row in self.read_rows()], ["0", "2"])
 
     def test_grid(self):
@@ -239,13 +239,17 @@ class Flux(Meter):
             self.assertAlmostEqual(row["volume_flux"], flux, delta=1e-6)
 
     def test_wrong_usage(self):
+        (self.directory / "vertices.vtk").write_text(
+            "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n0 0 0\nVERTICES 1 2\n1 0\n")
         form = "--flux needs a section with a name, NAME=X,Y,Z:X,Y,Z:X,Y,Z, NAME=disc:.* not "
         self.refuse_measuring(
             [(["--flux", "wall=0,0,0:0,0"], form + "'wall=0,0,0:0,0'"),
              *((["--flux", text], form) for text in ("wall", "=box:1", "a=disc:0,0,0:0,0,1", "a=box:0,1,0,1", "a=0,0,nan:0,0,1:1,1,1")),
              (["--flux", "+a=box:0,1,0,1,0,1"], "'.a' begins with '.', so that spreadsheets"),
              ([*self.one, "--gauge", "a=0,0,0:0,0,1"], "leave out --gauge")],
-            [(["--flux", "a=none.stl"], "none.stl"), (["--flux", "a=moving.vtp"], "Section 'a' has 0 points|no triangles"),
+            [(["--flux", "a=none.stl"], "none.stl"),
+             (["--flux", "a=moving.vtp"], "Section 'a' has 0 points, as its file has no triangles; give one of a surface \(--flux NAME=FILE\)"),
+             (["--flux", "a=vertices.vtk"], "as its file has no triangles"),
              (["--flux", "a=0,0,0:1e30,0,0:0,1,0"], "Section 'a' needs .* cells"),
              ([*self.one, "--velocity", "Drift"], "There is no point array 'Drift' for the velocity")])
         del self.arrays["Velocity"]

@@ -107,7 +107,8 @@ class Project(CommandLineTest):
 
     def test_wrong_usage(self):
         self.output = self.image
-        self.refuse_all(2, [(["w"], "--project needs|direction|three numbers"), (["0,0,0"], "0,0,0"), (["1,2"], "1,2"),
+        self.refuse_all(2, [(["w"], "--project needs an axis, x, y or z, or a direction X,Y,Z, not 'w'"),
+                            (["0,0,0"], "0,0,0"), (["1,2"], "1,2"),
                             (["z", "--iso", "1"], "leave out --iso"), (["z", "--slice", "z=0"], "leave out --slice"),
                             (["z", "--gauge", "a=0,0,0:0,0,1"], "leave out --gauge"),
                             (["z", "--resolution", "1"], "--resolution"), (["z", "--times", "1"], "the output is not a film")], "--project")

@@ -297,6 +297,7 @@ class RealFiles(CommandLineTest):
         self.extract_good("--scalar", "Vel", "--component", "0", "--iso", "0.3", *H, "--quiet", source=file)
         self.refuse_texts("bad.csv", [
             ("a,b\n1,2\n", "no columns of positions, which are called x, y and z, .* there are a, b"),
+            ("x|y|z\n1|2|3\n", "no columns of positions, .* there are x.y.z"),
             ("x,y,z\n1,2\n", "line 2 has 2 values for 3 columns"), ("", "no row of values"), ("x,y,z\n", "holds no points"),
             ("x,y,z\nnan,0,0\n", "not a number"), ("x\0y,z\n1,2,3\n", "line 1 is no text")])
 

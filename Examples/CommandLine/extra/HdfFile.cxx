@@ -261,6 +261,10 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& name, std::size_t step
   const HdfFile file(name);
   const std::string type = file.IsGood() ? file.Type() : "";
   const bool hasSteps = file.IsGood() && file.Has("Steps");
+  if (step > 0 && !hasSteps)
+  {
+    file.Fail("it has no step " + std::to_string(step));
+  }
   if ((type != "PolyData" && type != "UnstructuredGrid") ||
     (type == "UnstructuredGrid" && !hasSteps))
   {

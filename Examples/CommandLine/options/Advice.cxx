@@ -18,6 +18,8 @@ const Advice All[] = {
   { "Name its array, give a constant, or have it estimated.",
     "Give --smoothing-length NAME, VALUE or estimate.", "--smoothing-length" },
   { "it is coefh x sqrt(3) x dp.", "it is coefh x sqrt(3) x dp: give --dp and --coefh.", "--dp" },
+  { "which its shape cannot have. See mcor_section_shape.",
+    "as its file has no triangles; give one of a surface (--flux NAME=FILE).", "--flux" },
   { "Choose Velocity Array", "Give --velocity NAME", "--velocity" },
   { "Name the array of ids", "Name the array of ids (--ids NAME)", "--ids" },
   { "arger cube size", "arger cube size (--cube-size)", "--cube-size" },

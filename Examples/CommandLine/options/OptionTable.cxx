@@ -135,6 +135,8 @@ void SetProjection(Job& job, Text option, Text text)
   static const std::map<std::string, std::string> axes = { { "x", "1,0,0" }, { "y", "0,1,0" },
     { "z", "0,0,1" } };
   const auto axis = axes.find(text);
+  Need(axis != axes.end() || text.find(',') != std::string::npos, option,
+    "an axis, x, y or z, or a direction X,Y,Z", text);
   job.Projection->SetDirection(
     ToDirection(option, axis == axes.end() ? text : axis->second).data());
 }

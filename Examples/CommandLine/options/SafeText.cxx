@@ -148,7 +148,8 @@ void Sentences::Tell(const std::string& kind, const std::string& step, const std
 {
   if (++this->Counts[kind + sentence] == 1)
   {
-    Say(kind + step + ": " + sentence);
+    const bool isNamed = sentence.compare(0, step.size() + 1, step + " ") == 0;
+    Say(kind + (isNamed ? "" : step + ": ") + sentence);
   }
 }
 

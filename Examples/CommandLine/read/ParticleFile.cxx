@@ -119,6 +119,10 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* mes
   {
     throw std::runtime_error(file + " is not a " + ListEndings(formats) + " file");
   }
+  if (step > 0 && kind->Read != ReadHdf && kind->Read != ReadText)
+  {
+    FailToRead(file, "it has no step " + std::to_string(step));
+  }
   vtkSmartPointer<vtkDataObject> data;
   ReadWithCare(file, messages, [kind, &data, &file, step] { data = kind->Read(file, step); });
   return data;

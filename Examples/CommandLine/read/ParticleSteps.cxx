@@ -115,8 +115,7 @@ Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::stri
   if (!times.empty() && !(areAll && ascend))
   {
     warnings.push_back("the times in the field data of the files " +
-      std::string(
-        areAll ? "do not ascend with the numbers in their names" : "are missing in some") +
+      std::string(areAll ? "do not ascend in the order of the steps" : "are missing in some") +
       ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
   }
   Steps steps;

@@ -520,10 +520,10 @@ vtkSmartPointer<vtkDataObject> ReadRows(const std::string& file)
     FailToRead(file, "it has no row of values");
   }
   std::vector<std::size_t> positions = FindPositions(table);
-  for (std::size_t c = 0;
-       c < std::min<std::size_t>(3, table.size()) && separator == ' ' && positions.size() == c; ++c)
+  const std::size_t first = separator == ' ' && table.size() > 1 ? 3 : 0; // else names have to tell
+  for (std::size_t c = 0; c < std::min(first, table.size()) && positions.size() == c; ++c)
   {
-    positions.push_back(c); // the first ones
+    positions.push_back(c);
   }
   return ParticlesOf(file, table, positions);
 }
@@ -823,6 +823,10 @@ vtkSmartPointer<vtkDataObject> ReadStep(
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step)
 {
   const StepFinder find = FinderOf(file);
+  if (!find && step > 0)
+  {
+    FailToRead(file, "it has no step " + std::to_string(step));
+  }
   return find ? ReadStep(file, find, step) : ReadRows(file);
 }
 

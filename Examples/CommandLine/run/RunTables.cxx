@@ -81,15 +81,7 @@ void AddSection(const Job& job, const Place& section, MessageCapture* messages)
       job.Flux->AddBox(name, n);
       break;
     default:
-    {
-      const vtkSmartPointer<vtkDataSet> surface = ReadDataSet(section.File, messages);
-      if (surface->GetNumberOfCells() == 0)
-      {
-        throw std::runtime_error(section.File + " has no triangles for section '" + section.Name +
-          "'; give a file of a surface");
-      }
-      job.Flux->AddSurface(name, surface);
-    }
+      job.Flux->AddSurface(name, ReadDataSet(section.File, messages));
   }
 }
 

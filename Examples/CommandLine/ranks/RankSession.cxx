@@ -150,7 +150,7 @@ Sharing::Particles RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty
     this->OnAll([&] { job.Periodic = CheckedPeriod(found, problem); });
     job.DetectPeriod = false;
   }
-  if (job.Periodic.size() == 3) // lengths alone, of which it is asked where all particles are
+  if (job.Periodic.size() == 3) // lengths alone: all particles tell where it begins
   {
     job.Periodic = vtkSPHBoundsOfPeriodDistributed(this->Controller, job.Periodic, complete);
   }

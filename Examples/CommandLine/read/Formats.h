@@ -15,7 +15,7 @@ class vtkDataObject;
 
 // How files are read, for ParticleFile.cxx. All throw std::runtime_error with one sentence.
 
-/// Whether this is a file at all, and one that can be opened and sought in.
+/// Refuses what is no file, or one that cannot be opened or sought in.
 void CheckRegularFile(const std::string& file);
 
 /// Lets libraries read a file: the sentence where they crash over it, ask for more memory than

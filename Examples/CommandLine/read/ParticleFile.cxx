@@ -93,10 +93,10 @@ const Formats DataFormats = {
   { ".obj", { ReadSurface } },
 };
 
-/// Particles that a file's beginning tells, whatever its ending.
+/// Files that are known by how they begin, whatever their names end in.
 const Kind Gadget = { ReadGadget, ListTimesOfGadget, ListGadget };
 
-/// Nullptr where it is none of these.
+/// Finds how a file is read; null where it is none of these.
 const Kind* KindOf(const Formats& formats, const std::string& file)
 {
   if (&formats == &ParticleFormats && IsGadget(file))

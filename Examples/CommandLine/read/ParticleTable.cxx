@@ -267,7 +267,7 @@ struct Array
   std::vector<std::size_t> Columns; ///< none: they are positions, or belong to another array
 };
 
-/// Each array at its first column: columns alone, and vectors, whose names tell their components.
+/// Lists arrays, each at its first column: columns alone, and vectors, whose names tell components.
 std::vector<Array> FindArrays(const Table& table, const std::vector<std::size_t>& positions = {})
 {
   std::vector<Array> arrays;

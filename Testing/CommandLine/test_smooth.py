@@ -39,7 +39,7 @@ class Smooth(CommandLineTest):
 
     def test_refused(self):
         self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled, or --compact and --smooth")], "--free-surface")
-        self.refuse_all(2, [(["--widening", "f.vtp"], "without --widen"),
+        self.refuse_all(2, [(["--widening", "f.vtp"], "without --widen"), (["--widen", "9"], "from 1 to 4, not '9'"),
                             (["--widen", "2", "--widening", "f.csv"], ".vtp file, not 'f.csv'")], "--free-surface")
 
 

@@ -325,7 +325,7 @@ const std::vector<Option> Table = {
     DO(j.Surface->SmoothOn()) },
   { "--widen", "S",
     "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
-    DO(j.Surface->SetWidening(ToPositive(n, v))) },
+    DO(j.Surface->SetWidening(ToWidening(n, v))) },
   { "--widening", "FILE.vtp",
     "with --widen, write the particles with the factors of their smoothing lengths, and the "
     "products",

@@ -126,6 +126,13 @@ double ToShare(Text option, Text text)
   return number;
 }
 
+double ToWidening(Text option, Text text)
+{
+  const double number = ToNumber(option, text);
+  Need(number >= 1.0 && number <= 4.0, option, "a number from 1 to 4", text);
+  return number;
+}
+
 std::vector<double> ToBox(Text option, Text text)
 {
   std::vector<double> box;

@@ -40,6 +40,7 @@ int ToChoice(const std::string& option, const std::string& text, const Choices& 
 std::string ToQuantity(const std::string& option, const std::string& text);
 std::vector<double> ToNumbers(const std::string& option, const std::string& text);
 double ToShare(const std::string& option, const std::string& text); ///< of walls; measured: -1
+double ToWidening(const std::string& option, const std::string& text);
 /// x0, x1, y0, y1, z0, z1. A side may be open: inf, or -inf.
 std::vector<double> ToBox(const std::string& option, const std::string& text);
 /// Three lengths, or six bounds.

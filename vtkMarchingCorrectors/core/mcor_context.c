@@ -78,6 +78,7 @@ void mcor_release_memory(mcor_context* context)
   mcor_release_widening(context);
   mcor_release(context, &context->scan_sums);
   mcor_drop_kept(context, 0);
+  mcor_drop_locked(context);
   free(context->source);
   context->source = NULL;
   free(context->attributes.varying);

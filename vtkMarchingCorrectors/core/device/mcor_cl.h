@@ -157,8 +157,10 @@ mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t byte
  * of memory takes longer than most of what is done in it, and successive phases and calls have
  * arrays of like sizes. */
 void mcor_release(mcor_context* context, mcor_buffer* buffer);
-/* Frees kept buffers until at most `most` bytes are held; with 0, all locked memory, too. */
+/* Frees kept buffers until at most `most` bytes are held. */
 void mcor_drop_kept(mcor_context* context, int64_t most);
+/* Frees the locked memory that is not in use. */
+void mcor_drop_locked(mcor_context* context);
 /* Called where a call begins: keeps no more than the last call needed. */
 void mcor_begin_buffers(mcor_context* context);
 mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* data, size_t bytes);

@@ -58,7 +58,12 @@ void mcor_drop_kept(mcor_context* context, int64_t most)
     const mcor_buffer last = mcor_take_out(cl, cl->kept_count - 1);
     mcor_free_buffer(cl, &last);
   }
-  for (int i = 0; i < MCOR_LOCKED_LIMIT && most == 0; ++i)
+}
+
+void mcor_drop_locked(mcor_context* context)
+{
+  mcor_cl* cl = &context->cl;
+  for (int i = 0; i < MCOR_LOCKED_LIMIT; ++i)
   {
     if (!cl->locked[i].of)
     {

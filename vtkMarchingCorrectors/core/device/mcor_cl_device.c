@@ -361,23 +361,26 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
 {
   mcor_cl* cl = &context->cl;
   const char* wanted = device && *device ? device : getenv("MCOR_DEVICE");
-  const mcor_build usual = { 0 };
   mcor_device_list list;
   bool by_number = false;
   cl->place = place;
   cl->count = count;
   cl->is_default = !wanted || !*wanted;
   mcor_find_devices(&list, false);
-  int chosen = cl->is_default ? mcor_choose_device(&list, &usual)
-                              : mcor_find_device(&list, wanted, &by_number);
+  if (cl->is_default)
+  {
+    const mcor_build usual = { 0 };
+    if (mcor_choose_device(&list, &usual) < 0)
+    {
+      mcor_find_devices(&list, true);
+    }
+    return mcor_start_default(context, &list, &usual);
+  }
+  int chosen = mcor_find_device(&list, wanted, &by_number);
   if (chosen < 0)
   {
     mcor_find_devices(&list, true);
-    chosen = cl->is_default ? -1 : mcor_find_device(&list, wanted, &by_number);
-  }
-  if (cl->is_default)
-  {
-    return mcor_start_default(context, &list, &usual);
+    chosen = mcor_find_device(&list, wanted, &by_number);
   }
   if (chosen < 0)
   {

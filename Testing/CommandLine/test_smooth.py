@@ -37,6 +37,13 @@ class Smooth(CommandLineTest):
                               / "Data" / "double_dam_break_small.vtp")
             self.assertEqual(len(table.read_text().splitlines()), 1 + 9)
 
+    def test_empty(self):
+        """Where nothing reaches the iso value, the surface is empty, as without."""
+        for field in (["--free-surface"], ["--scalar", "Density"]):
+            for options in ([], ["--compact"], ["--smooth"]):
+                self.run_good(self.input, self.directory / "empty.vtp", *field, "--iso", "5000", *options,
+                              says="the surface is empty")
+
     def test_refused(self):
         self.refuse_all(1, [(["--compact", "--filled"], "leave out --filled, or --compact and --smooth")], "--free-surface")
         self.refuse_all(2, [(["--widening", "f.vtp"], "without --widen"), (["--widen", "9"], "from 1 to 4, not '9'"),

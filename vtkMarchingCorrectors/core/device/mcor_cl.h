@@ -167,7 +167,7 @@ mcor_status mcor_write(mcor_context* context, mcor_buffer* buffer, const void* d
 mcor_status mcor_read(
   mcor_context* context, const mcor_buffer* buffer, size_t offset, void* data, size_t bytes);
 /* Maps a buffer for the host, without a copy where both share memory: to write all of it, or to
- * read. *data becomes NULL where that fails. */
+ * read. *data becomes NULL where that fails, and where there are no bytes and no buffer yet. */
 mcor_status mcor_map(
   mcor_context* context, const mcor_buffer* buffer, size_t bytes, bool write, void** data);
 mcor_status mcor_unmap(mcor_context* context, const mcor_buffer* buffer, void** data);

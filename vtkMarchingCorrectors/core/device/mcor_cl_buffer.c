@@ -233,6 +233,10 @@ mcor_status mcor_map(
   mcor_cl* cl = &context->cl;
   const size_t some = bytes > 0 ? bytes : 1;
   *data = NULL;
+  if (!buffer->mem && bytes == 0) /* an empty surface may have no such array */
+  {
+    return MCOR_OK;
+  }
   if (cl->is_apart)
   {
     mcor_locked* locked = NULL;

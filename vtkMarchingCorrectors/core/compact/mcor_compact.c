@@ -59,32 +59,6 @@ static int mcor_compare_bunches(const void* x, const void* y)
                           : (a->first > b->first) - (a->first < b->first);
 }
 
-/* Sorts the merged bunches. A node has keys for two of them; others stay apart. */
-static void mcor_sort_bunches(mcor_bunches* bunches)
-{
-  mcor_sorted_bunch* sorted = bunches->sorted;
-  int64_t count = 0;
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
-  {
-    if (mcor_is_merged(bunches, v))
-    {
-      cl_int node[4];
-      mcor_entry_node(bunches, -1 - v, node);
-      sorted[count++] = (mcor_sorted_bunch){ mcor_order_key(bunches, node), v };
-    }
-  }
-  qsort(sorted, (size_t)count, sizeof *sorted, mcor_compare_bunches);
-  for (int64_t i = 2; i < count; ++i)
-  {
-    if (sorted[i].key == sorted[i - 2].key)
-    {
-      mcor_set_state(bunches, sorted[i].first, MCOR_BUNCH_APART);
-      mcor_drop_leaning(bunches, sorted[i].first, MCOR_BUNCH_APART);
-    }
-  }
-  bunches->sorted_count = (int)count;
-}
-
 /* Lists the mesh's vertices in order, without cuts and caps. Returns their number. */
 static int mcor_order_vertices(mcor_bunches* bunches)
 {
@@ -114,27 +88,6 @@ static int mcor_order_vertices(mcor_bunches* bunches)
   return count;
 }
 
-/* Finds the mean of a bunch's vertices, from its node, in edges. */
-static void mcor_mean_of(const mcor_bunches* bunches, int32_t first, double mean[3])
-{
-  const mcor_context* context = bunches->context;
-  int count = 0;
-  for (int32_t v = first; v >= 0; v = bunches->next[v], ++count)
-  {
-    const double low = mcor_get_real(context, bunches->ends, 2 * (int64_t)v),
-                 high = mcor_get_real(context, bunches->ends, 2 * (int64_t)v + 1);
-    const int axis = mcor_marched_node(bunches, v)[3] & 3;
-    const bool is_upper = fabs(low) > fabs(high);
-    mean[axis] += bunches->late
-      ? mcor_get_real(context, bunches->offset, 4 * (int64_t)v + axis) - is_upper
-      : (is_upper ? high : low) / (low - high);
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    mean[a] /= count;
-  }
-}
-
 /* Vertices that are being appended to the mesh, and corrected on edges, or on lines from their
  * starts; those of merged vertices are the means if they are not given. */
 typedef struct mcor_adding
@@ -150,23 +103,33 @@ static void mcor_add_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_adding* to = data;
   const mcor_bunches* bunches = to->bunches;
+  const mcor_context* context = bunches->context;
   for (int64_t i = first; i < last; ++i)
   {
     const int32_t v = mcor_vertex_of(bunches->order[i]);
     double start[4] = { 0 };
+    int count = 0;
     mcor_entry_node(bunches, bunches->order[i], to->node + 4 * i);
     if (to->starts)
     {
       memcpy(start, to->starts[i], sizeof to->starts[i]);
     }
-    else if (to->lines)
+    for (int32_t w = to->lines && !to->starts ? v : -1; w >= 0; w = bunches->next[w], ++count)
     {
-      mcor_mean_of(bunches, v, start);
+      const double low = mcor_get_real(context, bunches->ends, 2 * (int64_t)w),
+                   high = mcor_get_real(context, bunches->ends, 2 * (int64_t)w + 1);
+      const int axis = mcor_marched_node(bunches, w)[3] & 3;
+      const bool is_upper = fabs(low) > fabs(high);
+      start[axis] += bunches->late
+        ? mcor_get_real(context, bunches->offset, 4 * (int64_t)w + axis) - is_upper
+        : (is_upper ? high : low) / (low - high);
     }
     for (int k = 0; k < (to->lines ? 4 : 2); ++k)
     {
-      mcor_put_real(bunches->context, to->data, (to->lines ? 4 : 2) * i + k,
-        to->lines ? start[k] : mcor_get_real(bunches->context, bunches->ends, 2 * (int64_t)v + k));
+      mcor_put_real(context, to->data, (to->lines ? 4 : 2) * i + k,
+        !to->lines    ? mcor_get_real(context, bunches->ends, 2 * (int64_t)v + k)
+          : count > 0 ? start[k] / count
+                      : start[k]);
     }
   }
   (void)slice;
@@ -235,8 +198,26 @@ mcor_status mcor_add_vertices(
 /* Makes the first vertices: those that stay, unless the mesh has them, and the merged ones. */
 static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 {
+  mcor_sorted_bunch* sorted = bunches->sorted;
   int count = 0;
-  mcor_sort_bunches(bunches);
+  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  {
+    if (mcor_is_merged(bunches, v))
+    {
+      cl_int node[4];
+      mcor_entry_node(bunches, -1 - v, node);
+      sorted[bunches->sorted_count++] = (mcor_sorted_bunch){ mcor_order_key(bunches, node), v };
+    }
+  }
+  qsort(sorted, (size_t)bunches->sorted_count, sizeof *sorted, mcor_compare_bunches);
+  for (int i = 2; i < bunches->sorted_count; ++i) /* a node has keys for two; others stay apart */
+  {
+    if (sorted[i].key == sorted[i - 2].key)
+    {
+      mcor_set_state(bunches, sorted[i].first, MCOR_BUNCH_APART);
+      mcor_drop_leaning(bunches, sorted[i].first, MCOR_BUNCH_APART);
+    }
+  }
   for (int32_t v = 0; v < bunches->vertex_count; ++v)
   {
     bunches->place[v] = v;
@@ -254,51 +235,43 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
   count = 0;
   for (int i = 0; i < bunches->sorted_count; ++i)
   {
-    if (mcor_is_merged(bunches, bunches->sorted[i].first))
+    if (mcor_is_merged(bunches, sorted[i].first))
     {
-      bunches->order[count++] = -1 - bunches->sorted[i].first;
+      bunches->order[count++] = -1 - sorted[i].first;
     }
   }
   return mcor_add_vertices(bunches, true, NULL, count);
 }
 
-/* ---- Taking apart ---- */
-
-/* Takes the bad bunches apart, and the bunches that lean on them. Lists their vertices in
- * `order`. Returns how many. */
-static int mcor_list_fresh(mcor_bunches* bunches)
-{
-  int count = 0;
-  for (int i = 0; i < bunches->sorted_count; ++i)
-  {
-    if (mcor_state_of(bunches, bunches->sorted[i].first) == MCOR_BUNCH_BAD)
-    {
-      mcor_drop_leaning(bunches, bunches->sorted[i].first, MCOR_BUNCH_BAD);
-    }
-  }
-  for (int i = 0; i < bunches->sorted_count; ++i)
-  {
-    const int32_t first = bunches->sorted[i].first;
-    const int state = mcor_state_of(bunches, first);
-    if (state == MCOR_BUNCH_BAD || state == MCOR_BUNCH_FRESH)
-    {
-      mcor_set_state(bunches, first, state == MCOR_BUNCH_BAD ? MCOR_BUNCH_FRESH : MCOR_BUNCH_APART);
-    }
-    for (int32_t v = state == MCOR_BUNCH_BAD ? first : -1; v >= 0; v = bunches->next[v])
-    {
-      bunches->order[count++] = v;
-    }
-  }
-  return count;
-}
-
+/* Takes the bad bunches apart, and the bunches that lean on them; adds their vertices. */
 static mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
   bool found = true;
   for (int round = 0; round < MCOR_COMPACT_ROUNDS && found; ++round)
   {
     MCOR_TRY(mcor_find_bad(bunches, round, &found));
-    const int count = found ? mcor_list_fresh(bunches) : 0;
+    int count = 0;
+    for (int i = 0; i < bunches->sorted_count && found; ++i)
+    {
+      if (mcor_state_of(bunches, bunches->sorted[i].first) == MCOR_BUNCH_BAD)
+      {
+        mcor_drop_leaning(bunches, bunches->sorted[i].first, MCOR_BUNCH_BAD);
+      }
+    }
+    for (int i = 0; i < bunches->sorted_count && found; ++i)
+    {
+      const int32_t first = bunches->sorted[i].first;
+      const int state = mcor_state_of(bunches, first);
+      if (state == MCOR_BUNCH_BAD || state == MCOR_BUNCH_FRESH)
+      {
+        mcor_set_state(
+          bunches, first, state == MCOR_BUNCH_BAD ? MCOR_BUNCH_FRESH : MCOR_BUNCH_APART);
+      }
+      for (int32_t v = state == MCOR_BUNCH_BAD ? first : -1; v >= 0; v = bunches->next[v])
+      {
+        bunches->order[count++] = v;
+      }
+    }
     MCOR_TRY(found && !bunches->late ? mcor_add_vertices(bunches, false, NULL, count) : MCOR_OK);
   }
   return MCOR_OK;

@@ -37,39 +37,10 @@ typedef struct mcor_frozen
   int count, axis[12], node[12];
 } mcor_frozen;
 
-static void mcor_list_sides(const mcor_context* context, mcor_frozen* frozen)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  for (int i = 0; i < 12; ++i)
-  {
-    const int axis = i % 6 / 2, upper = i % 2, period = lattice->period[axis];
-    const int node = i < 6 ? mcor_cap_plane(context, axis, upper)
-      : period > 0         ? lattice->period_first[axis] + upper * period
-                           : -1;
-    if (node >= 0)
-    {
-      frozen->axis[frozen->count] = axis;
-      frozen->node[frozen->count++] = node;
-    }
-  }
-}
-
-/* Whether a node's edge is on a side, or on the border that the node threshold leaves. */
-static bool mcor_is_frozen(const mcor_frozen* frozen, const cl_int node[4])
-{
-  const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
-  bool is = node[3] >> 2 & 1;
-  for (int i = 0; i < frozen->count; ++i)
-  {
-    const int a = frozen->axis[i];
-    is = is || (a != axis && node[a] << level == frozen->node[i]);
-  }
-  return is;
-}
-
 /* Gives vertices the keys of their nodes. A vertex belongs to the end of its edge that is nearer
  * by linear interpolation, the lower one if both are. Neighbouring levels differ by one, so the
- * last bit of the level tells them apart. */
+ * last bit of the level tells them apart. Vertices on a side, or on the border that the node
+ * threshold leaves, stay. */
 static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_frozen* frozen = data;
@@ -78,20 +49,47 @@ static void mcor_key_slice(void* data, int slice, int64_t first, int64_t last)
   for (int64_t v = first; v < last; ++v)
   {
     const cl_int* node = mcor_marched_node(bunches, (int32_t)v);
+    const int axis = node[3] & 3, level = node[3] >> MCOR_LEVEL_SHIFT;
     const bool is_upper = fabs(mcor_get_real(context, bunches->ends, 2 * v)) >
       fabs(mcor_get_real(context, bunches->ends, 2 * v + 1));
+    bool stays = node[3] >> 2 & 1;
+    for (int i = 0; i < frozen->count; ++i)
+    {
+      const int a = frozen->axis[i];
+      stays = stays || (a != axis && node[a] << level == frozen->node[i]);
+    }
     cl_int at[3] = { node[0], node[1], node[2] };
-    at[node[3] & 3] += is_upper;
-    const uint64_t odd = (uint64_t)(node[3] >> MCOR_LEVEL_SHIFT & 1) << 63;
-    bunches->key[v] = mcor_is_frozen(frozen, node) ? MCOR_FROZEN : mcor_cap_key(at) ^ odd;
+    at[axis] += is_upper;
+    bunches->key[v] = stays ? MCOR_FROZEN : mcor_cap_key(at) ^ (uint64_t)(level & 1) << 63;
   }
   (void)slice;
 }
 
-/* Freezes vertices of cuts and caps, and vertices beside caps; holds vertices beside cuts. */
-static void mcor_freeze_borders(mcor_bunches* bunches)
+static mcor_status mcor_key_vertices(mcor_bunches* bunches)
 {
-  const mcor_mesh* mesh = &bunches->context->mesh;
+  mcor_context* context = bunches->context;
+  const mcor_mesh* mesh = &context->mesh;
+  const mcor_lattice* lattice = &context->lattice;
+  mcor_frozen frozen = { .bunches = bunches };
+  for (int i = 0; i < 12; ++i)
+  {
+    const int axis = i % 6 / 2, upper = i % 2, period = lattice->period[axis];
+    const int node = i < 6 ? mcor_cap_plane(context, axis, upper)
+      : period > 0         ? lattice->period_first[axis] + upper * period
+                           : -1;
+    if (node >= 0)
+    {
+      frozen.axis[frozen.count] = axis;
+      frozen.node[frozen.count++] = node;
+    }
+  }
+  MCOR_TRY(mcor_parallel_run(
+    context, bunches->march_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &frozen, NULL));
+  if (!bunches->late)
+  {
+    return MCOR_OK;
+  }
+  /* Freezes vertices of cuts and caps, and vertices beside caps; holds vertices beside cuts. */
   for (int v = mesh->march_count; v < mesh->vertex_count; ++v)
   {
     bunches->key[v] = MCOR_FROZEN;
@@ -104,19 +102,6 @@ static void mcor_freeze_borders(mcor_bunches* bunches)
   for (int i = 0; i < bunches->cut_count; ++i)
   {
     bunches->held[bunches->cut[i] >> 32] = bunches->held[bunches->cut[i] & UINT32_MAX] = 1;
-  }
-}
-
-static mcor_status mcor_key_vertices(mcor_bunches* bunches)
-{
-  mcor_context* context = bunches->context;
-  mcor_frozen frozen = { .bunches = bunches };
-  mcor_list_sides(context, &frozen);
-  MCOR_TRY(mcor_parallel_run(
-    context, bunches->march_count, MCOR_LIGHT_GRAIN, mcor_key_slice, &frozen, NULL));
-  if (bunches->late)
-  {
-    mcor_freeze_borders(bunches);
   }
   return MCOR_OK;
 }
@@ -172,24 +157,6 @@ static void mcor_join_vertices(mcor_bunches* bunches)
     {
       bunches->next[v] = bunches->next[first[v]];
       bunches->next[first[v]] = v;
-    }
-  }
-}
-
-/* Lists the triangles of each bunch, once by their first corner in it. */
-static void mcor_list_stars(mcor_bunches* bunches)
-{
-  for (int64_t t = 0; t < bunches->triangle_count; ++t)
-  {
-    int32_t of[3];
-    mcor_bunches_of(bunches, t, of);
-    for (int c = 0; c < bunches->corners; ++c)
-    {
-      if ((c < 1 || of[c] != of[0]) && (c < 2 || of[2] != of[1]))
-      {
-        bunches->before[3 * t + c] = bunches->star[of[c]];
-        bunches->star[of[c]] = (int32_t)(3 * t + c);
-      }
     }
   }
 }
@@ -351,30 +318,23 @@ static bool mcor_is_large(const mcor_bunches* bunches, int32_t bunch, const mcor
   return triangles >= least;
 }
 
-static int mcor_test_bunch(const mcor_bunches* bunches, int32_t bunch)
-{
-  mcor_fan fan, merged;
-  if (!mcor_read_fan(bunches, bunch, &fan))
-  {
-    return MCOR_BUNCH_APART;
-  }
-  mcor_merge_fan(bunches, true, &fan, &merged);
-  return !mcor_is_large(bunches, bunch, &merged) ? MCOR_BUNCH_APART
-    : !mcor_is_ring(&merged, bunches->corners)   ? MCOR_BUNCH_CLASHES
-    : mcor_is_ring(&fan, bunches->corners)       ? MCOR_BUNCH_MERGED
-                                                 : MCOR_BUNCH_LEANING;
-}
-
 /* Finds which bunches are sure. Others may be leaning, or clash with a bunch beside them. */
 static void mcor_test_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_bunches* bunches = data;
   for (int32_t v = (int32_t)first; v < last; ++v)
   {
-    if (bunches->first[v] == v && bunches->next[v] >= 0)
+    mcor_fan fan, merged;
+    if (bunches->first[v] != v || bunches->next[v] < 0 || !mcor_read_fan(bunches, v, &fan))
     {
-      mcor_set_state(bunches, v, mcor_test_bunch(bunches, v));
+      continue; /* it stays apart */
     }
+    mcor_merge_fan(bunches, true, &fan, &merged);
+    mcor_set_state(bunches, v,
+      !mcor_is_large(bunches, v, &merged)          ? MCOR_BUNCH_APART
+        : !mcor_is_ring(&merged, bunches->corners) ? MCOR_BUNCH_CLASHES
+        : mcor_is_ring(&fan, bunches->corners)     ? MCOR_BUNCH_MERGED
+                                                   : MCOR_BUNCH_LEANING);
   }
   (void)slice;
 }
@@ -417,7 +377,20 @@ mcor_status mcor_find_bunches(mcor_bunches* bunches)
   memset(bunches->star, 0xff, n * sizeof *bunches->star);
   mcor_join_vertices(bunches);
   MCOR_TRY(mcor_report_launch(context));
-  mcor_list_stars(bunches);
+  /* Lists the triangles of each bunch, once by their first corner in it. */
+  for (int64_t t = 0; t < bunches->triangle_count; ++t)
+  {
+    int32_t of[3];
+    mcor_bunches_of(bunches, t, of);
+    for (int c = 0; c < bunches->corners; ++c)
+    {
+      if ((c < 1 || of[c] != of[0]) && (c < 2 || of[2] != of[1]))
+      {
+        bunches->before[3 * t + c] = bunches->star[of[c]];
+        bunches->star[of[c]] = (int32_t)(3 * t + c);
+      }
+    }
+  }
   MCOR_TRY(mcor_report_launch(context));
   MCOR_TRY(mcor_parallel_run(
     context, bunches->vertex_count, MCOR_HEAVY_GRAIN, mcor_test_slice, bunches, NULL));

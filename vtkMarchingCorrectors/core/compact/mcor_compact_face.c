@@ -78,8 +78,8 @@ static mcor_status mcor_update_points(mcor_bunches* bunches)
     const size_t room = n + n / 4;
     mcor_point* points = realloc(bunches->points, room * sizeof *points);
     MCOR_TRY(mcor_allocated(context, points));
-    mcor_use_large_pages(points + bunches->point_count,
-      (room - (size_t)bunches->point_count) * sizeof *points);
+    mcor_use_large_pages(
+      points + bunches->point_count, (room - (size_t)bunches->point_count) * sizeof *points);
     bunches->points = points;
     bunches->point_room = (int64_t)room;
   }
@@ -312,28 +312,39 @@ static double mcor_worst_around(const mcor_bunches* bunches, int32_t v)
   return worst;
 }
 
-/* Lists the vertices that move in `order`, and their starts. */
-static mcor_status mcor_list_moving(mcor_bunches* bunches, double (*starts)[3], int* count)
+/* A vertex with the widest angle of a sliver starts anew from the middle of the vertices around
+ * it. It is put back if it does not reach the surface, or makes no angle around it better. */
+mcor_status mcor_move_slivers(mcor_bunches* bunches)
 {
-  MCOR_TRY(mcor_update_points(bunches));
-  MCOR_TRY(mcor_find_places(bunches));
-  MCOR_TRY(mcor_parallel_run(
-    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_sliver_slice, bunches, NULL));
-  for (int32_t v = 0; v < bunches->vertex_count; ++v)
+  if (bunches->corners == 2)
   {
-    if (bunches->wide[v] && mcor_find_middle(bunches, v, starts[*count]))
+    return MCOR_OK;
+  }
+  double(*starts)[3] = malloc((size_t)bunches->vertex_count * sizeof *starts);
+  int32_t* before = bunches->order + bunches->vertex_count; /* behind those that move */
+  int count = 0;
+  mcor_status status = mcor_allocated(bunches->context, starts);
+  MCOR_THEN(status, mcor_update_points(bunches));
+  MCOR_THEN(status, mcor_find_places(bunches));
+  MCOR_THEN(status,
+    mcor_parallel_run(bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN,
+      mcor_sliver_slice, bunches, NULL));
+  for (int32_t v = 0; v < bunches->vertex_count && status == MCOR_OK; ++v)
+  {
+    if (bunches->wide[v] && mcor_find_middle(bunches, v, starts[count]))
     {
-      bunches->order[(*count)++] = mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v;
+      bunches->order[count] = mcor_is_merged(bunches, bunches->first[v]) ? -1 - v : v;
+      before[count] = *mcor_place_in(bunches, bunches->order[count]);
+      ++count;
     }
   }
-  return MCOR_OK;
-}
-
-/* Puts vertices back that did not reach the surface, or that made no angle around them better. */
-static mcor_status mcor_put_back(mcor_bunches* bunches, const int32_t* before, int count)
-{
-  MCOR_TRY(mcor_update_points(bunches));
-  for (int i = 0; i < count; ++i)
+  if (count > 0)
+  {
+    MCOR_THEN(status, mcor_add_vertices(bunches, true, starts, count));
+    MCOR_THEN(status, mcor_update_points(bunches));
+  }
+  free(starts);
+  for (int i = 0; i < count && status == MCOR_OK; ++i)
   {
     const int32_t v = mcor_vertex_of(bunches->order[i]);
     int32_t* place = mcor_place_in(bunches, bunches->order[i]);
@@ -345,31 +356,5 @@ static mcor_status mcor_put_back(mcor_bunches* bunches, const int32_t* before, i
       *place = now;
     }
   }
-  return MCOR_OK;
-}
-
-/* A vertex with the widest angle of a sliver starts anew from the middle of the vertices around
- * it. */
-mcor_status mcor_move_slivers(mcor_bunches* bunches)
-{
-  if (bunches->corners == 2)
-  {
-    return MCOR_OK;
-  }
-  double(*starts)[3] = malloc((size_t)bunches->vertex_count * sizeof *starts);
-  int32_t* before = bunches->order + bunches->vertex_count; /* behind those that move */
-  int count = 0;
-  mcor_status status = mcor_allocated(bunches->context, starts);
-  MCOR_THEN(status, mcor_list_moving(bunches, starts, &count));
-  for (int i = 0; i < count; ++i)
-  {
-    before[i] = *mcor_place_in(bunches, bunches->order[i]);
-  }
-  if (count > 0)
-  {
-    MCOR_THEN(status, mcor_add_vertices(bunches, true, starts, count));
-    MCOR_THEN(status, mcor_put_back(bunches, before, count));
-  }
-  free(starts);
   return status;
 }

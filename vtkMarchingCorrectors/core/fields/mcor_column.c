@@ -4,9 +4,7 @@
 /* Columns of an SPH kernel: a table of their integrals over rectangles, made by quadrature. It
  * uses only operations that all processors round alike. */
 
-#include "mcor_column.h"
-#include "mcor_input.h"
-#include "mcor_parallel.h"
+#include "mcor_project.h"
 
 #include <stdlib.h>
 
@@ -52,31 +50,6 @@ double mcor_column_reach(mcor_sph_kernel kernel, const double along[3])
   return mcor_kernel_of(kernel)->is_tensor
     ? support * (fabs(along[0]) + fabs(along[1]) + fabs(along[2]))
     : support;
-}
-
-/* Returns the integral of w(sqrt(r^2 + z^2)) over z > 0. Its pieces grow with z, and end where w
- * changes. */
-static double mcor_integrate_radial(const mcor_column_job* job, double r)
-{
-  const double support = job->support, least = fmax(r, support / 4096);
-  double sum = 0, z = 0;
-  for (double kink = MCOR_KINK * (floor(r / MCOR_KINK) + 1); kink <= support; kink += MCOR_KINK)
-  {
-    const double last = sqrt(kink * kink - r * r);
-    while (z < last)
-    {
-      const double end = fmin(z + fmax(z, least), last);
-      double piece = 0;
-      for (int g = 0; g < MCOR_LINE_POINTS; ++g)
-      {
-        const double at = z + mcor_line_at[g] * (end - z);
-        piece += mcor_line_weight[g] * mcor_w_of(job->kernel, sqrt(r * r + at * at));
-      }
-      sum += piece * (end - z);
-      z = end;
-    }
-  }
-  return sum;
 }
 
 /* Returns the integral of w(|x|) w(|y|) w(|z|) along a line of sight. */
@@ -135,12 +108,33 @@ static double mcor_density_at(const mcor_column_job* job, double x, double y)
       t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
+/* Integrates w(sqrt(r^2 + z^2)) over z > 0. Pieces of the integral grow with z, and end where w
+ * changes. */
 static void mcor_profile_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_column_job* job = data;
+  const double support = job->support;
   for (int64_t i = first; i < last; ++i)
   {
-    job->profile[i + 1] = mcor_integrate_radial(job, (double)i * job->support / MCOR_PROFILE);
+    const double r = (double)i * support / MCOR_PROFILE, least = fmax(r, support / 4096);
+    double sum = 0, z = 0;
+    for (double kink = MCOR_KINK * (floor(r / MCOR_KINK) + 1); kink <= support; kink += MCOR_KINK)
+    {
+      const double last_z = sqrt(kink * kink - r * r);
+      while (z < last_z)
+      {
+        const double end = fmin(z + fmax(z, least), last_z);
+        double piece = 0;
+        for (int g = 0; g < MCOR_LINE_POINTS; ++g)
+        {
+          const double at = z + mcor_line_at[g] * (end - z);
+          piece += mcor_line_weight[g] * mcor_w_of(job->kernel, sqrt(r * r + at * at));
+        }
+        sum += piece * (end - z);
+        z = end;
+      }
+    }
+    job->profile[i + 1] = sum;
   }
   (void)slice;
 }
@@ -271,12 +265,6 @@ mcor_status mcor_make_column(mcor_context* context, mcor_sph_kernel kernel, bool
   free(job.sums);
   free(job.values);
   return status;
-}
-
-void mcor_free_column(mcor_column* column)
-{
-  free(column->nodes);
-  column->nodes = NULL;
 }
 
 mcor_column_side mcor_side_of(const mcor_column* column, int axis, double at)

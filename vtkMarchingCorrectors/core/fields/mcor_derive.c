@@ -63,40 +63,6 @@ static mcor_status mcor_load_arrays(mcor_derive_run* run)
 
 /* ---- evaluation ---- */
 
-/* Sorts the particles of the batch by position, and cuts them into groups that are evaluated
- * together. */
-static mcor_status mcor_place_particles(mcor_derive_run* run, int* groups)
-{
-  mcor_context* context = run->context;
-  const mcor_grid* grid = &context->grid;
-  const size_t n = (size_t)run->count, real = context->cl.real_size;
-  int first[3], last[3];
-  const bool bounded = mcor_bound_particles(context, first, last);
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * real));
-  MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, run->count, MCOR_INT(run->first),
-    MCOR_INT(run->count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
-    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(bounded),
-    MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&run->batch.in_node),
-    MCOR_BUFFER(&run->batch.in_offset), MCOR_BUFFER(&context->points.flags)));
-  run->inside = run->count;
-  if (bounded)
-  {
-    MCOR_TRY(mcor_scan(context, &context->points.flags, run->count, &run->inside));
-  }
-  if (run->inside == 0)
-  {
-    return MCOR_OK;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    run->batch.first[a] = 0;
-    run->batch.bricks[a] = 8 * context->lattice.blocks[a];
-  }
-  return mcor_group_batch(context, &run->batch, run->count, run->inside, groups);
-}
-
 /* Inverts m. Returns false if that would magnify rounding too much. */
 static bool mcor_invert(const double m[3][3], double inverse[3][3])
 {
@@ -188,12 +154,24 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
   mcor_context* context = run->context;
   const int arrays = context->attributes.varying_count;
   const size_t real = context->cl.real_size;
-  int groups;
-  MCOR_TRY(mcor_place_particles(run, &groups));
+  int first[3], last[3], groups;
+  const bool bounded = mcor_bound_particles(context, first, last);
+  MCOR_TRY(
+    mcor_place_particles(context, &run->batch, run->first, run->count, bounded, first, last));
+  run->inside = run->count;
+  MCOR_TRY(
+    bounded ? mcor_scan(context, &context->points.flags, run->count, &run->inside) : MCOR_OK);
   if (run->inside == 0)
   {
     return MCOR_OK;
   }
+  /* Sorts the particles by position, and cuts them into groups that are evaluated together. */
+  for (int a = 0; a < 3; ++a)
+  {
+    run->batch.first[a] = 0;
+    run->batch.bricks[a] = 8 * context->lattice.blocks[a];
+  }
+  MCOR_TRY(mcor_group_batch(context, &run->batch, run->count, run->inside, &groups));
   const size_t n = (size_t)run->inside;
   MCOR_TRY(mcor_reserve(context, &run->moments, n * 9 * real));
   MCOR_TRY(mcor_reserve(context, &run->slopes, n * 3 * (size_t)arrays * real));

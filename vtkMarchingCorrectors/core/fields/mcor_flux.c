@@ -21,26 +21,6 @@
 
 /* ---- the call ---- */
 
-static mcor_status mcor_check_velocity(mcor_context* context, const mcor_input* input)
-{
-  int64_t not_finite[2] = { -1, -1 };
-  const int axes = context->space.axes, components = mcor_components(&input->attributes[0]);
-  MCOR_RETURN_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
-    "The velocity has %d components; it must have 3%s.", components,
-    axes == 2 ? ", or 2 in two dimensions" : "");
-  MCOR_RETURN_IF(input->attribute_count == 2 && mcor_components(&input->attributes[1]) != 1,
-    context, MCOR_INVALID_ARGUMENT, "The density has %d components; it must have 1.",
-    mcor_components(&input->attributes[1]));
-  MCOR_TRY(mcor_list_components(context, input, false, not_finite));
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    MCOR_RETURN_IF(not_finite[a] >= 0, context, MCOR_INVALID_DATA,
-      "The %s is NaN or infinite at particle %lld. Correct its values, or leave the particle out.",
-      a == 0 ? "velocity" : "density", (long long)not_finite[a]);
-  }
-  return MCOR_OK;
-}
-
 /* Sets from the ranges of velocity and density: the floors of speed and density, and the units
  * in which sums are whole numbers. */
 static mcor_status mcor_scale_flux(mcor_flux_job* job)
@@ -97,9 +77,22 @@ static mcor_status mcor_read_fluxes(mcor_flux_job* job, mcor_fluxes* fluxes)
 static mcor_status mcor_flux_input(
   mcor_context* context, const mcor_input* input, const mcor_options* options, mcor_flux_job* job)
 {
+  int64_t not_finite[2] = { -1, -1 };
+  const int axes = context->space.axes, components = mcor_components(&input->attributes[0]);
   MCOR_TRY(mcor_check_input(context, input, options));
-  MCOR_TRY(mcor_check_velocity(context, input));
-  context->attributes.kept = 0;
+  MCOR_RETURN_IF(components != 3 && components != axes, context, MCOR_INVALID_ARGUMENT,
+    "The velocity has %d components; it must have 3%s.", components,
+    axes == 2 ? ", or 2 in two dimensions" : "");
+  MCOR_RETURN_IF(input->attribute_count == 2 && mcor_components(&input->attributes[1]) != 1,
+    context, MCOR_INVALID_ARGUMENT, "The density has %d components; it must have 1.",
+    mcor_components(&input->attributes[1]));
+  MCOR_TRY(mcor_list_components(context, input, false, not_finite));
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    MCOR_RETURN_IF(not_finite[a] >= 0, context, MCOR_INVALID_DATA,
+      "The %s is NaN or infinite at particle %lld. Correct its values, or leave the particle out.",
+      a == 0 ? "velocity" : "density", (long long)not_finite[a]);
+  }
   for (int64_t s = 0; s < job->section_count; ++s)
   {
     MCOR_TRY(mcor_add_section(job, s));

@@ -128,10 +128,6 @@ void mcor_map_patch(const void* job, const double parameters[3], double point[3]
 double mcor_patch_measure(const mcor_patch* patch, const double uv[2]);
 /* Lists the cells that this call owns and that particles may reach. The lattice must be known. */
 mcor_status mcor_list_flux_cells(mcor_flux_job* job);
-/* mcor_flux_closed.c. Sets sign to -1 if the triangles form a closed surface with normals
- * inwards, else to 1. */
-mcor_status mcor_orient_triangles(
-  mcor_context* context, const double* points, int64_t point_count, double* sign);
 
 /* mcor_flux_piece.c */
 extern const mcor_flux_form mcor_flux_forms[2]; /* of triangles, of lines */

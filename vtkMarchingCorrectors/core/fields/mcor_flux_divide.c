@@ -108,26 +108,6 @@ static mcor_status mcor_begin_pieces(mcor_flux_job* job, int64_t first, int64_t 
   return MCOR_OK;
 }
 
-/* Divides the pieces into their parts. */
-static mcor_status mcor_divide_pieces(mcor_flux_job* job)
-{
-  job->parts.count = 0;
-  for (int64_t i = 0; i < job->form->parts * job->pieces.count; ++i)
-  {
-    const mcor_flux_piece* whole = &job->pieces.of[i / job->form->parts];
-    mcor_flux_piece part = *whole;
-    ++part.depth;
-    for (int c = 0; c < 3; ++c)
-    {
-      double at[3];
-      mcor_place_point(job, whole, job->form->part[i % job->form->parts][c], at);
-      memcpy(part.corner[c], at, sizeof part.corner[c]);
-    }
-    MCOR_APPEND(job->edges.context, &job->parts, part);
-  }
-  return MCOR_OK;
-}
-
 /* Whether the parts of a piece may replace it in the sum. Sets `sum` to the sum of the parts. */
 static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
   const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
@@ -156,13 +136,26 @@ static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* pie
   return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
 }
 
-/* Divides the pieces until they are settled, and adds them to their sections. */
+/* Divides the pieces into their parts until they are settled, and adds them to their sections. */
 static mcor_status mcor_settle_pieces(mcor_flux_job* job)
 {
   const int divided = job->form->parts;
   while (job->pieces.count > 0)
   {
-    MCOR_TRY(mcor_divide_pieces(job));
+    job->parts.count = 0;
+    for (int64_t i = 0; i < divided * job->pieces.count; ++i)
+    {
+      const mcor_flux_piece* whole = &job->pieces.of[i / divided];
+      mcor_flux_piece part = *whole;
+      ++part.depth;
+      for (int c = 0; c < 3; ++c)
+      {
+        double at[3];
+        mcor_place_point(job, whole, job->form->part[i % divided][c], at);
+        memcpy(part.corner[c], at, sizeof part.corner[c]);
+      }
+      MCOR_APPEND(job->edges.context, &job->parts, part);
+    }
     MCOR_TRY(mcor_measure_pieces(job, &job->parts));
     mcor_flux_piece* parts = job->parts.of;
     int64_t left = 0;

@@ -1,17 +1,83 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sections as patches, and patches as cells. */
+/* Sections as patches, and patches as cells. Sections made of triangles are oriented: if they form
+ * a closed surface, normals point outwards. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
 #include "mcor_vector.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Most cells near particles, of all sections together; most cells of one patch along an edge. */
 #define MCOR_FLUX_MOST (1 << 24)
 #define MCOR_FLUX_MOST_ALONG 4e15
+
+/* ---- closed sections ---- */
+
+/* An edge of a triangle, its lesser end first. turned: the triangle has it the other way round. */
+typedef struct mcor_flux_edge
+{
+  double ends[2][3];
+  bool turned;
+} mcor_flux_edge;
+
+static int mcor_compare_numbers(const double* a, const double* b, int count)
+{
+  for (int i = 0; i < count; ++i)
+  {
+    if (a[i] != b[i])
+    {
+      return a[i] < b[i] ? -1 : 1;
+    }
+  }
+  return 0;
+}
+
+static int mcor_compare_flux_edges(const void* a, const void* b)
+{
+  const mcor_flux_edge *left = a, *right = b;
+  const int order = mcor_compare_numbers(left->ends[0], right->ends[0], 6);
+  return order != 0 ? order : (int)left->turned - (int)right->turned;
+}
+
+/* Sets sign to -1 if the triangles form a closed surface with normals inwards, else to 1. */
+static mcor_status mcor_orient_triangles(
+  mcor_context* context, const double* points, int64_t point_count, double* sign)
+{
+  mcor_flux_edge* edges = malloc((size_t)point_count * sizeof *edges);
+  MCOR_TRY(mcor_allocated(context, edges));
+  double volume = 0;
+  for (int64_t i = 0; i < point_count; ++i)
+  {
+    const double *from = points + 3 * i, *to = points + 3 * (i % 3 == 2 ? i - 2 : i + 1);
+    edges[i].turned = mcor_compare_numbers(from, to, 3) > 0;
+    memcpy(edges[i].ends[edges[i].turned], from, sizeof edges[i].ends[0]);
+    memcpy(edges[i].ends[!edges[i].turned], to, sizeof edges[i].ends[0]);
+    if (i % 3 == 0)
+    {
+      double corners[3][3], product[3];
+      for (int c = 0; c < 3; ++c)
+      {
+        mcor_subtract(from + 3 * c, points, corners[c]);
+      }
+      mcor_cross(corners[1], corners[2], product);
+      volume += mcor_dot(corners[0], product);
+    }
+  }
+  qsort(edges, (size_t)point_count, sizeof *edges, mcor_compare_flux_edges);
+  bool closed = point_count % 2 == 0;
+  for (int64_t i = 0; i + 1 < point_count && closed; i += 2) /* each edge once each way */
+  {
+    closed = !edges[i].turned && edges[i + 1].turned &&
+      mcor_compare_numbers(edges[i].ends[0], edges[i + 1].ends[0], 6) == 0;
+  }
+  free(edges);
+  *sign = closed && volume < 0 ? -1 : 1;
+  return MCOR_OK;
+}
 
 /* ---- sections ---- */
 
@@ -134,30 +200,29 @@ static mcor_status mcor_add_box(mcor_flux_job* job, int64_t number, const double
   return MCOR_OK;
 }
 
-/* Appends the line along which a disc crosses the plane. */
-static mcor_status mcor_add_chord(
-  mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
-{
-  const int w = job->across;
-  const double off = job->plane->at - centre[w], half = sqrt(fmax(radius * radius - off * off, 0));
-  double corner[3], along[3], axis[3] = { 0 };
-  axis[w] = 1;
-  mcor_cross(axis, normal, along);
-  for (int a = 0; a < 3; ++a)
-  {
-    corner[a] = a == w ? job->plane->at : centre[a] - half * along[a];
-    along[a] *= 2 * half;
-  }
-  return normal[w] != 0 ? mcor_leaves_plane(job, number)
-    : half > 0          ? mcor_add_line(job, number, corner, along, normal)
-                        : MCOR_OK;
-}
-
+/* Appends the quarters of a disc; in two dimensions, the line along which it crosses the plane. */
 static mcor_status mcor_add_disc(
   mcor_flux_job* job, int64_t number, const double centre[3], const double normal[3], double radius)
 {
   double axes[2][3], axis[3] = { 0 };
   int least = 0;
+  if (job->is_plane)
+  {
+    const int w = job->across;
+    const double off = job->plane->at - centre[w],
+                 half = sqrt(fmax(radius * radius - off * off, 0));
+    double corner[3], along[3];
+    axis[w] = 1;
+    mcor_cross(axis, normal, along);
+    for (int a = 0; a < 3; ++a)
+    {
+      corner[a] = a == w ? job->plane->at : centre[a] - half * along[a];
+      along[a] *= 2 * half;
+    }
+    return normal[w] != 0 ? mcor_leaves_plane(job, number)
+      : half > 0          ? mcor_add_line(job, number, corner, along, normal)
+                          : MCOR_OK;
+  }
   for (int a = 1; a < 3; ++a)
   {
     least = fabs(normal[a]) < fabs(normal[least]) ? a : least;
@@ -211,9 +276,9 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
       return mcor_add_corners(job, number, MCOR_PATCH_RECTANGLE, x, 1);
     case MCOR_SECTION_DISC:
       memcpy(normal, x + 3, sizeof normal);
-      return !(mcor_normalise(normal) > 0 && section->radius > 0) ? MCOR_OK
-        : job->is_plane ? mcor_add_chord(job, number, x, normal, section->radius)
-                        : mcor_add_disc(job, number, x, normal, section->radius);
+      return mcor_normalise(normal) > 0 && section->radius > 0
+        ? mcor_add_disc(job, number, x, normal, section->radius)
+        : MCOR_OK;
     case MCOR_SECTION_BOX:
       return mcor_add_box(job, number, x);
     case MCOR_SECTION_TRIANGLES:
@@ -395,24 +460,6 @@ static mcor_status mcor_list_block(
   return MCOR_OK;
 }
 
-/* Sets the number of cells along the parameters of a patch. */
-static void mcor_count_cells_of(mcor_patch* patch, double step)
-{
-  double third[3];
-  mcor_subtract(patch->across, patch->along, third);
-  double lengths[2] = { sqrt(mcor_dot(patch->along, patch->along)),
-    sqrt(mcor_dot(patch->across, patch->across)) };
-  if (patch->shape == MCOR_PATCH_TRIANGLE)
-  {
-    lengths[0] = lengths[1] = fmax(fmax(lengths[0], lengths[1]), sqrt(mcor_dot(third, third)));
-  }
-  lengths[1] *= patch->shape == MCOR_PATCH_QUARTER ? 2 : 1; /* the longest that its arc can be */
-  for (int p = 0; p < 2; ++p)
-  {
-    patch->counts[p] = fmax(ceil(lengths[p] / step), 1);
-  }
-}
-
 mcor_status mcor_list_flux_cells(mcor_flux_job* job)
 {
   mcor_context* context = job->edges.context;
@@ -440,7 +487,19 @@ mcor_status mcor_list_flux_cells(mcor_flux_job* job)
   for (int64_t p = 0; p < job->patches.count; ++p)
   {
     mcor_patch* patch = &job->patches.of[p];
-    mcor_count_cells_of(patch, step);
+    double third[3];
+    mcor_subtract(patch->across, patch->along, third);
+    double lengths[2] = { sqrt(mcor_dot(patch->along, patch->along)),
+      sqrt(mcor_dot(patch->across, patch->across)) };
+    if (patch->shape == MCOR_PATCH_TRIANGLE)
+    {
+      lengths[0] = lengths[1] = fmax(fmax(lengths[0], lengths[1]), sqrt(mcor_dot(third, third)));
+    }
+    lengths[1] *= patch->shape == MCOR_PATCH_QUARTER ? 2 : 1; /* the longest that its arc can be */
+    for (int u = 0; u < 2; ++u)
+    {
+      patch->counts[u] = fmax(ceil(lengths[u] / step), 1);
+    }
     MCOR_RETURN_IF(
       !(patch->counts[0] <= MCOR_FLUX_MOST_ALONG) || !(patch->counts[1] <= MCOR_FLUX_MOST_ALONG),
       context, MCOR_INVALID_ARGUMENT,

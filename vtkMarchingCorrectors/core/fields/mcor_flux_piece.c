@@ -240,28 +240,6 @@ static mcor_status mcor_append_inside(mcor_flux_job* job, const mcor_flux_piece*
   return MCOR_OK;
 }
 
-/* Appends the part of a triangle up to the chord between its crossings, or of a line up to its
- * crossing. */
-static mcor_status mcor_append_chord(
-  mcor_flux_job* job, const mcor_flux_piece* piece, const mcor_flux_cut* cut)
-{
-  const int lone = mcor_lone_corner(cut->sides);
-  const double *p = cut->crossing[0], *q = cut->crossing[1];
-  const double *here = piece->corner[lone], *next = piece->corner[(lone + 1) % 3],
-               *last = piece->corner[(lone + 2) % 3];
-  if (job->is_plane)
-  {
-    return mcor_append_inside(
-      job, piece, cut->piece, piece->corner[cut->sides == 1 ? 0 : 1], p, p, 1);
-  }
-  if (cut->sides >> lone & 1)
-  {
-    return mcor_append_inside(job, piece, cut->piece, here, p, q, 1);
-  }
-  MCOR_TRY(mcor_append_inside(job, piece, cut->piece, p, next, last, 1));
-  return mcor_append_inside(job, piece, cut->piece, p, last, q, 1);
-}
-
 /* Finds the line from the lone corner through the middle of the chord to the opposite edge. */
 static void mcor_place_between(
   const mcor_flux_piece* piece, const mcor_flux_cut* cut, double from[3], double to[3])
@@ -279,23 +257,9 @@ static void mcor_place_between(
   }
 }
 
-/* Appends the bulge between the chord and the level. A parabola and its chord enclose 4/3 of the
- * triangle of the two crossings and the one between them. */
-static mcor_status mcor_append_bulge(
-  mcor_flux_job* job, mcor_flux_piece* piece, const mcor_flux_cut* cut)
-{
-  const double *p = cut->crossing[0], *q = cut->crossing[1];
-  double m[2];
-  const bool lone_in = cut->sides >> mcor_lone_corner(cut->sides) & 1;
-  const bool beyond =
-    mcor_crossing_at(job, cut->between, m) > 0.5 * (cut->places[0] + cut->places[1]);
-  piece->bulge = 2 / 3.0 * mcor_patch_measure(&job->patches.of[piece->patch], m) *
-    fabs((m[0] - p[0]) * (q[1] - p[1]) - (q[0] - p[0]) * (m[1] - p[1]));
-  return mcor_append_inside(job, piece, cut->piece, p, m, q, (lone_in == beyond ? 4 : -4) / 3.0);
-}
-
-/* Adds the bulges of triangles. If the level does not cross the line between the crossings, the
- * piece is unclear. */
+/* Adds the bulges of triangles, between the chord and the level. A parabola and its chord enclose
+ * 4/3 of the triangle of the two crossings and the one between them. If the level does not cross
+ * the line between the crossings, the piece is unclear. */
 static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_pieces* pieces)
 {
   job->lines.count = job->edges.changed.count = 0;
@@ -331,7 +295,20 @@ static mcor_status mcor_append_bulges(mcor_flux_job* job, mcor_flux_pieces* piec
   for (int64_t i = 0; i < job->cuts.count; ++i)
   {
     const mcor_flux_cut* cut = &job->cuts.of[i];
-    MCOR_TRY(cut->between < 0 ? MCOR_OK : mcor_append_bulge(job, &pieces->of[cut->piece], cut));
+    mcor_flux_piece* piece = &pieces->of[cut->piece];
+    const double *p = cut->crossing[0], *q = cut->crossing[1];
+    double m[2];
+    if (cut->between < 0)
+    {
+      continue;
+    }
+    const bool lone_in = cut->sides >> mcor_lone_corner(cut->sides) & 1;
+    const bool beyond =
+      mcor_crossing_at(job, cut->between, m) > 0.5 * (cut->places[0] + cut->places[1]);
+    piece->bulge = 2 / 3.0 * mcor_patch_measure(&job->patches.of[piece->patch], m) *
+      fabs((m[0] - p[0]) * (q[1] - p[1]) - (q[0] - p[0]) * (m[1] - p[1]));
+    MCOR_TRY(
+      mcor_append_inside(job, piece, cut->piece, p, m, q, (lone_in == beyond ? 4 : -4) / 3.0));
   }
   return MCOR_OK;
 }
@@ -351,10 +328,26 @@ mcor_status mcor_measure_pieces(mcor_flux_job* job, mcor_flux_pieces* pieces)
     mcor_flux_cut* cut = &job->cuts.of[i / crossings];
     cut->places[i % crossings] = mcor_crossing_at(job, i, cut->crossing[i % crossings]);
   }
+  /* Appends the part of a triangle up to the chord between its crossings, or of a line up to its
+   * crossing. */
   for (int64_t c = 0; c < job->cuts.count; ++c)
   {
     const mcor_flux_cut* cut = &job->cuts.of[c];
-    MCOR_TRY(mcor_append_chord(job, &pieces->of[cut->piece], cut));
+    const mcor_flux_piece* piece = &pieces->of[cut->piece];
+    const int64_t n = cut->piece;
+    const int lone = mcor_lone_corner(cut->sides);
+    const double *p = cut->crossing[0], *q = cut->crossing[1];
+    const double *here = piece->corner[lone], *next = piece->corner[(lone + 1) % 3],
+                 *last = piece->corner[(lone + 2) % 3];
+    if (job->is_plane)
+    {
+      MCOR_TRY(mcor_append_inside(job, piece, n, piece->corner[cut->sides == 1 ? 0 : 1], p, p, 1));
+      continue;
+    }
+    const bool lone_in = cut->sides >> lone & 1;
+    MCOR_TRY(mcor_append_inside(
+      job, piece, n, lone_in ? here : p, lone_in ? p : next, lone_in ? q : last, 1));
+    MCOR_TRY(lone_in ? MCOR_OK : mcor_append_inside(job, piece, n, p, last, q, 1));
   }
   MCOR_TRY(job->is_plane ? MCOR_OK : mcor_append_bulges(job, pieces));
   return mcor_sample_pieces(job, &job->inside, pieces);

@@ -63,22 +63,6 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
   return MCOR_OK;
 }
 
-static mcor_status mcor_bound_gauges(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, const mcor_gauge_job* job)
-{
-  mcor_findings around = mcor_no_findings();
-  for (int64_t i = 0; i < 3 * job->line_count; ++i)
-  {
-    const mcor_gauge_line* line = &job->lines[i / 3];
-    const double from = line->from[i % 3], to = line->to[i % 3];
-    mcor_add_range(&around, (int)(i % 3), fmin(from, to), fmax(from, to));
-  }
-  const double margin = job->box
-    ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
-    : 0;
-  return mcor_bound_level(context, input, options, job->box, margin, &around);
-}
-
 mcor_status mcor_run_points(
   mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*))
 {
@@ -110,7 +94,17 @@ static mcor_status mcor_gauge_particles(
   {
     return MCOR_OK;
   }
-  MCOR_TRY(mcor_bound_gauges(context, input, options, job));
+  mcor_findings around = mcor_no_findings();
+  for (int64_t i = 0; i < 3 * job->line_count; ++i)
+  {
+    const mcor_gauge_line* line = &job->lines[i / 3];
+    const double from = line->from[i % 3], to = line->to[i % 3];
+    mcor_add_range(&around, (int)(i % 3), fmin(from, to), fmax(from, to));
+  }
+  const double margin = job->box
+    ? MCOR_GAUGE_MARGIN * mcor_gauge_step(options->h_scale, options->globals->measured.h_min)
+    : 0;
+  MCOR_TRY(mcor_bound_level(context, input, options, job->box, margin, &around));
   MCOR_TRY(mcor_prepare(context, input, options));
   for (int64_t i = 0; i < job->line_count && context->grid.count > 0; ++i)
   {

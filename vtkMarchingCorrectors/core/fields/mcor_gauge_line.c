@@ -73,35 +73,6 @@ mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, 
   return MCOR_OK;
 }
 
-/* Finds the part of a line that particles may reach, as places on it. Along a period, particles
- * are everywhere. */
-static void mcor_clip_line(const mcor_context* context, const mcor_gauge_line* line, double clip[2])
-{
-  const mcor_measure* m = &context->measure;
-  clip[0] = 0;
-  clip[1] = 1;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double way = line->to[a] - line->from[a];
-    if (context->lattice.period[a] > 0)
-    {
-      continue;
-    }
-    const double margin = context->lattice.cube;
-    const double low = m->low[a] - margin - line->from[a];
-    const double high = m->high[a] + margin - line->from[a];
-    if (way == 0)
-    {
-      clip[1] = low <= 0 && high >= 0 ? clip[1] : -1;
-    }
-    else
-    {
-      clip[0] = fmax(clip[0], fmin(low / way, high / way));
-      clip[1] = fmin(clip[1], fmax(low / way, high / way));
-    }
-  }
-}
-
 /* ---- samples ---- */
 
 double mcor_gauge_step(double h_scale, double smoothing_length_min)
@@ -186,8 +157,25 @@ mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number)
   const mcor_gauge_line* line = &job->lines[number];
   const double step = mcor_gauge_step(context->run.options->h_scale, context->measure.h_min);
   const double steps = fmax(ceil(mcor_gauge_length(line) / step), MCOR_GAUGE_LEAST_STEPS);
-  double clip[2];
-  mcor_clip_line(context, line, clip);
+  const mcor_measure* m = &context->measure;
+  double clip[2] = { 0, 1 }; /* the part of the line that particles may reach */
+  for (int a = 0; a < 3; ++a)
+  {
+    const double way = line->to[a] - line->from[a], margin = context->lattice.cube;
+    const double low = m->low[a] - margin - line->from[a];
+    const double high = m->high[a] + margin - line->from[a];
+    if (context->lattice.period[a] > 0)
+    {
+      continue; /* along a period, particles are everywhere */
+    }
+    if (way == 0)
+    {
+      clip[1] = low <= 0 && high >= 0 ? clip[1] : -1;
+      continue;
+    }
+    clip[0] = fmax(clip[0], fmin(low / way, high / way));
+    clip[1] = fmin(clip[1], fmax(low / way, high / way));
+  }
   if (clip[0] > clip[1])
   {
     return MCOR_OK;

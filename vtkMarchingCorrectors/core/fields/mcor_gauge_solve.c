@@ -178,31 +178,6 @@ static mcor_status mcor_look_closer(
   return MCOR_OK;
 }
 
-/* Appends the parts and records that samples of a line show. weight: the sums there. */
-static mcor_status mcor_scan_samples(
-  mcor_gauge_job* job, const mcor_gauge_samples* s, const double* weight)
-{
-  const double begin = (double)s->begin / (double)s->steps, step = 1 / (double)s->steps;
-  const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
-    s->own_last - s->first, s->first - s->begin, begin, step,
-    begin + (double)(s->last - s->begin) * step, weight };
-  bool found, reached = false;
-  MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
-  for (int64_t i = row.own_first; i <= row.own_last; ++i)
-  {
-    reached = reached || weight[i] != 0;
-  }
-  if (reached)
-  {
-    MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
-  }
-  if (s->own_last == s->steps && weight[row.own_last] >= job->level)
-  {
-    MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
-  }
-  return MCOR_OK;
-}
-
 double mcor_crossing_of(const mcor_gauge_job* job, const mcor_gauge_part* part)
 {
   const double rise = part->high_weight - part->low_weight;
@@ -237,8 +212,25 @@ mcor_status mcor_gauge_samples_of(mcor_gauge_job* job, int64_t first, int64_t la
   for (int64_t l = first; l < last; ++l)
   {
     const mcor_gauge_samples* s = &job->samples.of[l];
-    MCOR_TRY(mcor_scan_samples(job, s, weight));
-    weight += s->last - s->first + 1;
+    const double begin = (double)s->begin / (double)s->steps, step = 1 / (double)s->steps;
+    const mcor_gauge_row row = { s->line, s->last - s->first + 1, s->own_first - s->first,
+      s->own_last - s->first, s->first - s->begin, begin, step,
+      begin + (double)(s->last - s->begin) * step, weight };
+    bool found, reached = false;
+    MCOR_TRY(mcor_scan_row(job, &row, &job->suspects, &found));
+    for (int64_t i = row.own_first; i <= row.own_last; ++i)
+    {
+      reached = reached || weight[i] != 0;
+    }
+    if (reached)
+    {
+      MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_REACHED });
+    }
+    if (s->own_last == s->steps && weight[row.own_last] >= job->level)
+    {
+      MCOR_APPEND(job->context, &job->records, (mcor_gauge_place){ s->line, MCOR_GAUGE_ENDS_IN });
+    }
+    weight += row.count;
   }
   for (int round = 0; round < MCOR_GAUGE_EXTREMUM_ROUNDS && job->suspects.count > 0; ++round)
   {

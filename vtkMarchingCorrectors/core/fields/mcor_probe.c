@@ -50,33 +50,9 @@ typedef struct mcor_probe_chunk
   bool valid[MCOR_CHUNK];
 } mcor_probe_chunk;
 
-static void mcor_put_weights(const mcor_probe_job* job, mcor_probe_chunk* chunk)
-{
-  const mcor_probe_run* run = job->run;
-  const mcor_context* context = run->context;
-  const cl_int* order = (const cl_int*)job->order + chunk->first;
-  for (int i = 0; i < chunk->count; ++i)
-  {
-    const int64_t to = run->first + order[i];
-    const double weight = mcor_get_real(context, job->weight, chunk->first + i);
-    const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
-    chunk->weight[i] = weight;
-    chunk->to[i] = to;
-    chunk->valid[i] = valid;
-    run->samples->weight_sum[to] = weight;
-    run->samples->valid[to] = valid;
-    for (int a = 0; a < 3 && run->samples->weight_gradient; ++a)
-    {
-      run->samples->weight_gradient[3 * to + a] =
-        mcor_get_real(context, job->weight_gradient, 3 * (chunk->first + i) + a) /
-        context->lattice.cube;
-    }
-  }
-}
-
-/* Writes component c of the attributes on the device to the results. Its scale is a power of 2,
- * so dividing by it is exact. */
-static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
+/* Writes component c of the attributes on the device to the results, and its gradient. Its scale is
+ * a power of 2, so dividing by it is exact. */
+static void mcor_put_component(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
 {
   const mcor_context* context = job->run->context;
   const mcor_attributes* attributes = &context->attributes;
@@ -89,7 +65,8 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
   const bool is_between = !is_sum && context->run.options->sph_kernel != MCOR_M_PRIME_4;
   const double low = is_between ? component->low : -INFINITY;
   const double high = is_between ? component->high : INFINITY;
-  double* values = job->run->samples->values[component->attribute] + component->component;
+  const mcor_samples* samples = job->run->samples;
+  double* values = samples->values[component->attribute] + component->component;
   for (int i = 0; i < chunk->count; ++i)
   {
     if (chunk->valid[i])
@@ -101,17 +78,7 @@ static void mcor_put_values(const mcor_probe_job* job, const mcor_probe_chunk* c
       values[chunk->to[i] * width] = value < low ? low : value > high ? high : value;
     }
   }
-}
-
-/* Writes the gradient of component c. */
-static void mcor_put_gradients(const mcor_probe_job* job, const mcor_probe_chunk* chunk, int c)
-{
-  const mcor_context* context = job->run->context;
-  const mcor_attributes* attributes = &context->attributes;
-  const mcor_component* component = &attributes->varying[attributes->first + c];
-  const int width = mcor_components(&job->run->input->attributes[component->attribute]);
-  double* gradients = job->run->samples->gradients[component->attribute];
-  for (int i = 0; i < 3 * chunk->count; ++i)
+  for (int i = 0; i < 3 * chunk->count && samples->gradients; ++i)
   {
     const int p = i / 3, a = i % 3;
     const int64_t point = chunk->first + p, at = point * attributes->count + c;
@@ -121,9 +88,10 @@ static void mcor_put_gradients(const mcor_probe_job* job, const mcor_probe_chunk
     const double weight_slope = mcor_get_real(context, job->weight_gradient, 3 * point + a);
     if (chunk->valid[p])
     {
-      gradients[3 * (chunk->to[p] * width + component->component) + a] =
-        (job->run->is_sum ? slope / component->scale + component->shift * weight_slope
-                          : (slope - mean * weight_slope) / weight / component->scale) /
+      samples
+        ->gradients[component->attribute][3 * (chunk->to[p] * width + component->component) + a] =
+        (is_sum ? slope / component->scale + shift * weight_slope
+                : (slope - mean * weight_slope) / weight / component->scale) /
         context->lattice.cube;
     }
   }
@@ -132,39 +100,36 @@ static void mcor_put_gradients(const mcor_probe_job* job, const mcor_probe_chunk
 static void mcor_put_samples(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_probe_job* job = data;
+  const mcor_probe_run* run = job->run;
+  const mcor_context* context = run->context;
+  const mcor_samples* samples = run->samples;
   mcor_probe_chunk chunk;
   for (chunk.first = first; chunk.first < last; chunk.first += MCOR_CHUNK)
   {
-    const int64_t rest = last - chunk.first;
-    chunk.count = rest < MCOR_CHUNK ? (int)rest : MCOR_CHUNK;
-    mcor_put_weights(job, &chunk);
-    for (int c = 0; c < job->run->context->attributes.count; ++c)
+    chunk.count = mcor_chunk_of(last - chunk.first);
+    for (int i = 0; i < chunk.count; ++i)
     {
-      mcor_put_values(job, &chunk, c);
-      if (job->run->samples->gradients)
+      const int64_t to = run->first + ((const cl_int*)job->order)[chunk.first + i];
+      const double weight = mcor_get_real(context, job->weight, chunk.first + i);
+      const bool valid = weight >= job->threshold && weight > MCOR_LEAST_WEIGHT;
+      chunk.weight[i] = weight;
+      chunk.to[i] = to;
+      chunk.valid[i] = valid;
+      samples->weight_sum[to] = weight;
+      samples->valid[to] = valid;
+      for (int a = 0; a < 3 && samples->weight_gradient; ++a)
       {
-        mcor_put_gradients(job, &chunk, c);
+        samples->weight_gradient[3 * to + a] =
+          mcor_get_real(context, job->weight_gradient, 3 * (chunk.first + i) + a) /
+          context->lattice.cube;
       }
+    }
+    for (int c = 0; c < context->attributes.count; ++c)
+    {
+      mcor_put_component(job, &chunk, c);
     }
   }
   (void)slice;
-}
-
-static mcor_status mcor_deliver_samples(mcor_probe_run* run)
-{
-  mcor_context* context = run->context;
-  const size_t n = (size_t)run->inside, real = context->cl.real_size,
-               arrays = (size_t)context->attributes.count;
-  mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
-  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
-    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums },
-    { &run->weight_gradient, n * 3 * real, &job.weight_gradient },
-    { &run->gradients, n * 3 * arrays * real, &job.gradients } };
-  const int count = run->samples->weight_gradient ? 5 : 3;
-  mcor_status status = mcor_map_all(context, views, count);
-  MCOR_THEN(status,
-    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL));
-  return mcor_unmap_all(context, views, count, status);
 }
 
 mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
@@ -200,29 +165,22 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   }
   MCOR_TRY(mcor_finish(context));
   MCOR_TRY(mcor_report_launch(context));
-  return mcor_deliver_samples(run);
+  mcor_probe_job job = { .run = run, .threshold = context->run.options->node_threshold };
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
+    { &run->weight, n * real, &job.weight }, { &run->sums, n * arrays * real, &job.sums },
+    { &run->weight_gradient, n * 3 * real, &job.weight_gradient },
+    { &run->gradients, n * 3 * arrays * real, &job.gradients } };
+  const int count = run->samples->weight_gradient ? 5 : 3;
+  mcor_status status = mcor_map_all(context, views, count);
+  MCOR_THEN(status,
+    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_samples, &job, NULL));
+  return mcor_unmap_all(context, views, count, status);
 }
 
 /* Whether the attributes on the device are those of this call. */
 static bool mcor_has_attributes(const mcor_context* context, const mcor_input* input)
 {
   return input->attributes_version != 0 && context->attributes.kept == input->attributes_version;
-}
-
-/* Keeps the attributes on the device for the next probe, if all of them fit at once. */
-static void mcor_keep_attributes(mcor_context* context, const mcor_input* input, mcor_samples* s)
-{
-  mcor_attributes* attributes = &context->attributes;
-  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !context->run.options->globals;
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    all = all && s->attribute_not_finite[a] < 0;
-  }
-  attributes->kept = all ? input->attributes_version : 0;
-  if (attributes->kept == 0)
-  {
-    mcor_release(context, &attributes->sorted);
-  }
 }
 
 /* Evaluates all arrays at all points: some arrays at a time, and for these some points at a
@@ -328,13 +286,33 @@ static mcor_status mcor_probe_points(mcor_probe_run* run, const mcor_options* op
   }
   if (!mcor_bound_by_box(context, options))
   {
-    mcor_bound_probe(context, run->points, samples->count, input->particles_version == 0);
+    /* Limits the particles used to those near the caller's finite points. */
+    mcor_array points = *run->points;
+    points.components = 3;
+    for (int a = 0; a < 3; ++a)
+    {
+      mcor_find_range(
+        context, &points, NULL, MCOR_SKIP_SOLIDS, samples->count, a, context->box.points + 2 * a);
+    }
+    context->box.has_points = true;
+    context->box.of_points = input->particles_version == 0 || context->run.far;
   }
   MCOR_TRY(mcor_prepare(context, input, options));
   MCOR_TRY(mcor_begin_phase(context, MCOR_PHASE_CORRECTION, 0.2, 0.2));
   const mcor_status status = context->grid.count > 0 ? mcor_probe_all(run) : MCOR_OK;
   mcor_release_probe(run);
-  mcor_keep_attributes(context, input, samples);
+  /* Keeps the attributes on the device for the next probe, if all of them fit at once. */
+  mcor_attributes* attributes = &context->attributes;
+  bool all = attributes->varying_count <= MCOR_ATTRIBUTE_LIMIT && !options->globals;
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    all = all && samples->attribute_not_finite[a] < 0;
+  }
+  attributes->kept = all ? input->attributes_version : 0;
+  if (attributes->kept == 0)
+  {
+    mcor_release(context, &attributes->sorted);
+  }
   MCOR_TRY(status);
   return mcor_finish_field(context);
 }

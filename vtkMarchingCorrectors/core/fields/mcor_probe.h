@@ -22,12 +22,14 @@ typedef struct mcor_probe_run
   int group_count;
 } mcor_probe_run;
 
-/* mcor_probe_points.c. Limits the particles used to those near the caller's finite points. */
-void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count, bool alone);
-/* Limits the particles used to those near options->box, which holds the caller's points. Returns
- * false if there is no box. */
+/* mcor_probe_points.c. Limits the particles used to those near options->box, which holds the
+ * caller's points. Returns false if there is no box. */
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options);
 
+/* Writes sorted particles [first, first + count) to the batch as points, and to points.flags, if the
+ * call has a box, of cells `cells` to `end`, whether they lie in it. */
+mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
+  int count, bool has_box, const int cells[3], const int end[3]);
 /* Writes the caller's points [first, last) to the device. */
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last);
 

@@ -3,24 +3,13 @@
 
 /* The points of a probe: the box around them, and their upload. */
 
+#include "mcor_box.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 #include "mcor_probe.h"
 
 #include <math.h>
 #include <string.h>
-
-void mcor_bound_probe(mcor_context* context, const mcor_array* points, int64_t count, bool alone)
-{
-  mcor_array all = *points;
-  all.components = 3;
-  for (int a = 0; a < 3; ++a)
-  {
-    mcor_find_range(context, &all, NULL, MCOR_SKIP_SOLIDS, count, a, context->box.points + 2 * a);
-  }
-  context->box.has_points = true;
-  context->box.of_points = alone || context->run.far;
-}
 
 bool mcor_bound_by_box(mcor_context* context, const mcor_options* options)
 {
@@ -40,29 +29,13 @@ typedef struct mcor_point_job
   mcor_findings slices[MCOR_SLICES]; /* nodes of points that particles may reach, and how many */
 } mcor_point_job;
 
-/* Returns a coordinate within the period, whose upper side is included. It is rounded as
- * particles are, so points a period apart have the same position. A point on one side of the
- * period is moved to the other side if the box is there. */
-static double mcor_wrap_point(const mcor_context* context, int axis, double at)
-{
-  const mcor_lattice* lattice = &context->lattice;
-  const double step = (double)lattice->step[axis];
-  const double first = lattice->period_first[axis] * step, period = lattice->period[axis] * step;
-  const double fixed = floor(at * step + 0.5);
-  const bool beyond = !(fixed >= first && fixed <= first + period);
-  const double within = beyond ? fixed - floor((fixed - first) / period) * period : fixed;
-  const bool off_lower = within == first && context->box.first[axis] > lattice->period_first[axis];
-  const bool off_upper = within == first + period &&
-    context->box.last[axis] < lattice->period_first[axis] + lattice->period[axis];
-  return (within + (off_lower ? period : off_upper ? -period : 0)) / step;
-}
-
 /* Reads positions of points [first, first + count) of the batch, from the lattice's origin, in
  * edges. */
 static void mcor_read_points(
   const mcor_probe_run* run, int64_t first, int count, double at[3][MCOR_CHUNK])
 {
   const mcor_lattice* lattice = &run->context->lattice;
+  const mcor_box* box = &run->context->box;
   mcor_array points = *run->points;
   points.components = 3;
   for (int a = 0; a < 3; ++a)
@@ -79,9 +52,18 @@ static void mcor_read_points(
     {
       at[a][i] = floor(at[a][i] * step + 0.5) / step;
     }
-    for (int i = 0; i < count && lattice->period[a] > 0; ++i)
+    /* Along a period, whose upper side is included, points are rounded likewise, so those a period
+     * apart have the same position. A point on one side is moved to the other if the box is there. */
+    const double begin = lattice->period_first[a] * step, period = lattice->period[a] * step;
+    for (int i = 0; i < count && period > 0; ++i)
     {
-      at[a][i] = mcor_wrap_point(run->context, a, at[a][i]);
+      const double fixed = floor(at[a][i] * step + 0.5);
+      const bool beyond = !(fixed >= begin && fixed <= begin + period);
+      const double within = beyond ? fixed - floor((fixed - begin) / period) * period : fixed;
+      const bool off_lower = within == begin && box->first[a] > lattice->period_first[a];
+      const bool off_upper =
+        within == begin + period && box->last[a] < lattice->period_first[a] + lattice->period[a];
+      at[a][i] = (within + (off_lower ? period : off_upper ? -period : 0)) / step;
     }
   }
 }
@@ -119,6 +101,21 @@ static void mcor_put_points(void* data, int slice, int64_t first, int64_t last)
     }
   }
   job->slices[slice] = found;
+}
+
+mcor_status mcor_place_particles(mcor_context* context, mcor_point_batch* batch, int first,
+  int count, bool has_box, const int cells[3], const int end[3])
+{
+  const mcor_grid* grid = &context->grid;
+  const size_t n = (size_t)count;
+  MCOR_TRY(mcor_reserve(context, &batch->in_node, n * 4 * sizeof(cl_int)));
+  MCOR_TRY(mcor_reserve(context, &batch->in_offset, n * 4 * context->cl.real_size));
+  MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
+  return MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, count, MCOR_INT(first),
+    MCOR_INT(count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
+    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(has_box),
+    MCOR_CELL_ARGS(cells, end, 0, 0), MCOR_BUFFER(&batch->in_node), MCOR_BUFFER(&batch->in_offset),
+    MCOR_BUFFER(&context->points.flags));
 }
 
 mcor_status mcor_upload_points(mcor_probe_run* run, int64_t first, int64_t last)

@@ -256,8 +256,17 @@ static mcor_status mcor_run_project(
   MCOR_THEN(status, mcor_place_image(job, &is_empty));
   MCOR_THEN(status, is_empty || job->places_only ? MCOR_OK : mcor_spread_particles(job));
   MCOR_THEN(status, mcor_begin_phase(context, MCOR_PHASE_OUTPUT, 1, 1));
-  mcor_release_spread(job);
+  free(job->column.nodes);
+  free(job->sums);
+  free(job->splats_before);
+  free(job->splats);
+  free(job->band_of_row);
+  free(job->listed);
   free(job->volumes);
+  for (int i = 0; i < MCOR_SLICES; ++i)
+  {
+    free(job->brushes[i].sides);
+  }
   return status;
 }
 

@@ -407,31 +407,6 @@ static mcor_status mcor_spread_all(mcor_project_job* job, int64_t blocks)
   return MCOR_OK;
 }
 
-/* Sums over all ranks, and makes the values of the sums. */
-static mcor_status mcor_finish_image(mcor_project_job* job)
-{
-  const int64_t pixels = (int64_t)job->out->size[0] * job->out->size[1];
-  const int64_t count = 2 * job->channels * pixels;
-  double* sums = job->sums;
-  for (int64_t first = 0; first < count; first += MCOR_REDUCED_TOGETHER)
-  {
-    const int64_t rest = count - first;
-    MCOR_TRY(mcor_reduce_doubles(job->context, MCOR_SUM_OF, sums + first,
-      rest < MCOR_REDUCED_TOGETHER ? (int)rest : MCOR_REDUCED_TOGETHER));
-  }
-  double* values = job->out->values;
-  for (int64_t i = 0; i < pixels; ++i)
-  {
-    values[i] = sums[i] + sums[pixels + i];
-    if (job->channels == 2)
-    {
-      const double weight = sums[2 * pixels + i] + sums[3 * pixels + i];
-      values[i] = weight != 0 ? values[i] / weight : NAN;
-    }
-  }
-  return MCOR_OK;
-}
-
 mcor_status mcor_spread_particles(mcor_project_job* job)
 {
   mcor_projection* out = job->out;
@@ -447,19 +422,23 @@ mcor_status mcor_spread_particles(mcor_project_job* job)
     mcor_is_plane(job->context), job->axes, least_pixel, &job->column));
   MCOR_TRY(mcor_count_splats(job, blocks));
   MCOR_TRY(mcor_spread_all(job, blocks));
-  return mcor_finish_image(job);
-}
-
-void mcor_release_spread(mcor_project_job* job)
-{
-  mcor_free_column(&job->column);
-  free(job->sums);
-  free(job->splats_before);
-  free(job->splats);
-  free(job->band_of_row);
-  free(job->listed);
-  for (int i = 0; i < MCOR_SLICES; ++i)
+  /* Sums over all ranks, and makes the values of the sums. */
+  const int64_t count = 2 * job->channels * (int64_t)pixels;
+  const double* sums = job->sums;
+  for (int64_t first = 0; first < count; first += MCOR_REDUCED_TOGETHER)
   {
-    free(job->brushes[i].sides);
+    const int64_t rest = count - first;
+    MCOR_TRY(mcor_reduce_doubles(job->context, MCOR_SUM_OF, job->sums + first,
+      rest < MCOR_REDUCED_TOGETHER ? (int)rest : MCOR_REDUCED_TOGETHER));
   }
+  for (size_t i = 0; i < pixels; ++i)
+  {
+    out->values[i] = sums[i] + sums[pixels + i];
+    if (job->channels == 2)
+    {
+      const double weight = sums[2 * pixels + i] + sums[3 * pixels + i];
+      out->values[i] = weight != 0 ? out->values[i] / weight : NAN;
+    }
+  }
+  return MCOR_OK;
 }

@@ -89,28 +89,6 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-static mcor_status mcor_find_originals(mcor_context* context, mcor_widen_run* run)
-{
-  const mcor_grid* grid = &context->grid;
-  const size_t n = (size_t)grid->count;
-  int first[3], last[3];
-  if (!mcor_bound_particles(context, first, last))
-  {
-    return MCOR_OK;
-  }
-  run->originals = malloc(n * sizeof(cl_int));
-  MCOR_TRY(mcor_allocated(context, run->originals));
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_node, n * 4 * sizeof(cl_int)));
-  MCOR_TRY(mcor_reserve(context, &run->batch.in_offset, n * 4 * context->cl.real_size));
-  MCOR_TRY(mcor_reserve(context, &context->points.flags, (n + 1) * sizeof(cl_int)));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_derive_place", MCOR_LIGHT, grid->count, MCOR_INT(0),
-    MCOR_INT(grid->count), MCOR_REAL(ldexp(1, context->lattice.fix_bits)), MCOR_EDGE_ARGS(context),
-    MCOR_BUFFER(&grid->px), MCOR_BUFFER(&grid->py), MCOR_BUFFER(&grid->pz), MCOR_INT(1),
-    MCOR_CELL_ARGS(first, last, 0, 0), MCOR_BUFFER(&run->batch.in_node),
-    MCOR_BUFFER(&run->batch.in_offset), MCOR_BUFFER(&context->points.flags)));
-  return mcor_read(context, &context->points.flags, 0, run->originals, n * sizeof(cl_int));
-}
-
 typedef struct mcor_widen_job
 {
   const mcor_context* context;
@@ -166,7 +144,14 @@ static mcor_status mcor_deliver_factors(
   const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &job.order },
     { &grid->trim_weight, real, &job.weight }, { &grid->inv_h, real, &job.inv_h },
     { &run->limited, real, &job.factors }, { &run->outside, n * sizeof(cl_int), &job.outside } };
-  MCOR_TRY(mcor_find_originals(context, run));
+  int first[3], last[3];
+  if (mcor_bound_particles(context, first, last))
+  {
+    run->originals = malloc(n * sizeof(cl_int));
+    MCOR_TRY(mcor_allocated(context, run->originals));
+    MCOR_TRY(mcor_place_particles(context, &run->batch, 0, grid->count, true, first, last));
+    MCOR_TRY(mcor_read(context, &context->points.flags, 0, run->originals, n * sizeof(cl_int)));
+  }
   mcor_status status = mcor_map_all(context, views, count);
   MCOR_THEN(status,
     mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL));

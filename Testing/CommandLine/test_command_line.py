@@ -143,6 +143,8 @@ class Usage(CommandLineTest):
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "2,1"], "the lower one first"),
             ([*good, *ISO, "--screenshot", "a.png", "--color-range", "1,2"], "--color-range needs --color-by NAME"),
             ([*good, *ISO, "--resolution", "9"], "--resolution is for --slice, --line and --project; leave out --resolution"),
+            ([*good, "--free-surface", "--velocity", "Velocity"], "--velocity is for --flux and --fluxes; leave out --velocity"),
+            ([*good, *ISO, "--coefh", "2"], "--coefh is for --dp; leave out --coefh"),
             ([*good, "--slice", "0.1"], "--slice needs an axis and a position, such as z=0.1"),
             ([*good, "--slice", "z=0.1"], "the output of --slice is a .vti or .vtk file, not '.*surface.vtp'"),
             ([*good, "--line", "0,0,0,0,0,0"], "--line needs two different points"),

@@ -80,6 +80,7 @@ class RealFiles(CommandLineTest):
         large, small = [int(row["particles"]) for row in read_table(components)]
         self.assertEqual((large > 900, small), (True, 2))
         self.volume(file, *H, "--only", "Kind=99", words="No particle is left by Kind=99, so there is no fluid")
+        self.volume(file, *H, "--within", "0,0,0,0,0,0", words="No particle is within 0,0,0,0,0,0, so there is no fluid")
         self.refuse_all(2, [(["Kind"], "needs NAME=VALUE or"), (["Kind=2:1"], "lower value first"), (["Kind=a"], "finite number")],
                         *FREE, *H, "--only", source=file)
         self.refuse_all(1, [(["Nothing=1"], "no point array 'Nothing' for the choice")], *FREE, *H, "--only", source=file)
@@ -350,6 +351,16 @@ class RealFiles(CommandLineTest):
         film.write_text("".join(step(100 * n, n) for n in (4, 6, 9)))
         self.assertEqual([(t, round(level, 1)) for t, _, level in self.levels([film], *H)],
                          [(400, 0.4), (600, 0.6), (900, 0.9)])
+        begun = film.read_text()
+        for cut in ("ITEM: TIMESTEP\n", "ITEM: TIMESTEP\n9", step(1200, 2).split("ITEM: BOX")[0], step(1200, 2)[:110],
+                    step(1200, 2).split("pp")[0] + "\n", "nonsense"):
+            film.write_text(begun + cut)
+            result = self.run_program(film, "levels.csv", "--quiet", "--gauge", "a=0.25,0.25,-1:0.25,0.25,2", *H)
+            self.one_sentence(result, 1, r"film.dump#3: .*film.dump cannot be read: (it ends before|line \d+ is none)")
+            self.assertEqual([float(row["time"]) for row in read_table(self.directory / "levels.csv")], [400, 600, 900])
+        result = self.run_program(film, "film.pvd", *FREE, *H, "--periodic", "0,0,0")
+        self.one_sentence(result, 1, r"film_0003.vtp \(time 1200\): .*film.dump cannot be read: line \d+ is none")
+        self.assertTrue((self.directory / "film_0002.vtp").exists())
         self.refuse_texts("bad.dump", [
             ("ITEM: TIMESTEP\nx\n", "line 2 is no time"), ("ITEM: ATOMS x y\n", "holds no points"),
             (step(1, 5)[:-200], "ends before|values for 6 columns"), ("hello\n", "none of a dump")])

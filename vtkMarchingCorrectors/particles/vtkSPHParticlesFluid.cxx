@@ -116,8 +116,12 @@ std::string vtkSPHParticles::DescribeNoFluid() const
   text << "No particle is ";
   if (std::any_of(b, b + 6, [](double side) { return side != 0.0; }))
   {
-    text << "within " << b[0] << "," << b[1] << "," << b[2] << "," << b[3] << "," << b[4] << ","
-         << b[5] << (this->Description.Only.empty() ? "" : " and ");
+    for (int i = 0; i < 6; ++i)
+    {
+      // A side just off 0 is how the point 0, 0, 0 can be chosen; all 0 would be no choice.
+      text << (i == 0 ? "within " : ",") << (std::fpclassify(b[i]) == FP_SUBNORMAL ? 0.0 : b[i]);
+    }
+    text << (this->Description.Only.empty() ? "" : " and ");
   }
   for (size_t i = 0; i < this->Description.Only.size(); ++i)
   {

@@ -657,9 +657,11 @@ bool FindDumpStep(Lines& lines, Step& step)
 {
   step = {};
   bool isTold = false; // of a time in its own unit
+  bool hasBegun = false;
   while (lines.Next())
   {
     const View line = Trimmed(lines.Get());
+    hasBegun = hasBegun || !line.empty();
     std::vector<View> words;
     Split(line, ' ', words);
     if (StartsWith(line, "ITEM: TIME"))
@@ -711,6 +713,10 @@ bool FindDumpStep(Lines& lines, Step& step)
     {
       FailToRead(lines.File, lines.Where() + " is none of a dump of LAMMPS");
     }
+  }
+  if (hasBegun)
+  {
+    FailToRead(lines.File, "it ends before the particles of a step");
   }
   return false;
 }
@@ -838,13 +844,31 @@ std::vector<double> ListTimesInText(const std::string& file, MessageCapture*)
   Step step;
   std::error_code error; // which is told where the file is read
   Steps known = { std::filesystem::file_size(file, error), {} };
-  for (Lines::Place place = lines.Here(); find && find(lines, step); place = lines.Here())
+  try
   {
-    known.Places.push_back(place);
-    times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);
-    for (vtkTypeInt64 i = 0; i < step.Count && lines.Next(); ++i)
+    while (find)
     {
+      known.Places.push_back(lines.Here());
+      if (!find(lines, step))
+      {
+        known.Places.pop_back();
+        break;
+      }
+      times.push_back(std::isnan(step.Time) ? static_cast<double>(times.size()) : step.Time);
+      for (vtkTypeInt64 i = 0; i < step.Count && lines.Next(); ++i)
+      {
+      }
     }
+  }
+  catch (const std::runtime_error&)
+  {
+    const std::size_t good = times.size();
+    if (good == 0)
+    {
+      throw;
+    }
+    // The steps before are good; what is wrong with this one is told where it is read.
+    times.push_back(times.back() + (good > 1 ? times.back() - times[good - 2] : 1.0));
   }
   KnownSteps[file] = known;
   return times;

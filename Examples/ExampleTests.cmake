@@ -25,11 +25,11 @@ if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")
 endif ()
 
-# The cases with tiny sets. VTK's own Python; splashsurf is compared, and table d made, only where that has the packages.
+# The cases with tiny sets. VTK's own Python; splashsurf is compared only where that has the package.
 if (MCOR_WRAP_PYTHON AND MCOR_VTK_PYTHON)
   mcor_add_example_test(benchmark vtk "${MCOR_VTK_PYTHON}"
     "${CMAKE_CURRENT_SOURCE_DIR}/Benchmark/benchmark.py" $<TARGET_FILE:marching-correctors> --quick
-    --tables a,b,c,d,e,adaptive,cancel,distance,gauges,plane,probe,smooth,walls
+    --tables a,b,c,adaptive,cancel,distance,plane,probe,smooth,walls
     --markdown "${out}/benchmark.md" --json "${out}/benchmark.json")
   set_tests_properties(example.benchmark PROPERTIES COST 130
     ENVIRONMENT "PYTHONPATH=${CMAKE_BINARY_DIR}/${MCOR_PYTHON_DESTINATION}")

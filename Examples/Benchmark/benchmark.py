@@ -32,22 +32,16 @@ CASES = {
     "a": Case(tables.isosurface, "isosurface of a scalar, against vtkSPHInterpolator + vtkFlyingEdges3D", LARGE, "4k,8k", 5),
     "b": Case(tables.free_surface, "free surface with one attribute and normals, against splashsurf", LARGE, "4k,8k", 5),
     "c": Case(paper_tables.paper_tables, "Tables I to V of the paper, each figure beside the paper's", LARGE, "4k,8k", 5),
-    "d": Case(tables.limits, "phases against the device's measured bandwidth and peak", LARGE, "4k,8k", 5),
-    "e": Case(tables.reuse, "reuse for other iso values and scalars, growth with the particles", LARGE, "4k,8k", 5),
     "adaptive": Case(cases.adaptive, "adaptive cubes against uniform ones; smoothing lengths 1:10 to 1:1000", "100k"),
     "cancel": Case(cases.cancel, "how long a run goes on after it is cancelled"),
     "distance": Case(cases.distance, "how far surfaces on adaptive and on uniform cubes are apart", "100k"),
-    "first": Case(cases.first, "the first surface, with empty caches, of PROGRAM or of a wheel"),
-    "gauges": Case(cases.gauges, "1,000 gauges against the free surface of the same particles"),
-    "plane": Case(cases.plane, "two dimensions, against vtkSPHInterpolator + vtkFlyingEdges2D; a cold start", "1M"),
+    "plane": Case(cases.plane, "two dimensions, against vtkSPHInterpolator + vtkFlyingEdges2D", "1M"),
     "probe": Case(cases.probe, "a slice against vtkSPHInterpolator, and a volume", runs=5),
     "project": Case(cases.project, "column densities against sarracen; needs the wheel, and sarracen", "10k,100k", "1k,2k"),
     "ranks": Case(cases.ranks, "what processes under mpirun exchange, and a model of it", "50k,200k"),
     "smooth": Case(smooth.smooth, "how smooth free surfaces are, against splashsurf; with --particles processor times", runs=5),
     "walls": Case(cases.walls, "where surfaces end at walls"),
-    "wheel": Case(cases.wheel, "what calling from Python costs; needs the wheel", runs=9),
 }
-MIDDLE = 670000
 QUICK_PAPER = {"rings": 20000, "tsunami": 6000, "dam": 6000}
 
 
@@ -67,8 +61,6 @@ class Benchmark:
         case, given = CASES[name], self.arguments
         self.runs = self.program.runs = given.runs or (1 if self.quick else case.runs)
         self.sizes = sorted(given.sizes or map(count_of, (case.quick if self.quick else case.sizes).split(",")))
-        # Tables d and e look at one size more closely.
-        self.middle = MIDDLE if MIDDLE in self.sizes else self.sizes[-1]
         return case
 
     def describe(self):
@@ -122,13 +114,13 @@ def parse(argv):
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n".join(f"  {name:9} {case.title}; {case.sizes} particles" for name, case in CASES.items()))
-    parser.add_argument("program", help="the program marching-correctors; for --tables first also a .whl")
-    parser.add_argument("--tables", type=names, default=list("abcde"), help="see below; default: a,b,c,d,e")
+    parser.add_argument("program", help="the program marching-correctors")
+    parser.add_argument("--tables", type=names, default=list("abc"), help="see below; default: a,b,c")
     parser.add_argument("--sizes", type=counts, help="particles")
     parser.add_argument("--paper-sizes", type=paper_counts, default={}, metavar="SET=COUNT,...",
                         help="table c: rings=10M,tsunami=1.2M,dam=670k; 0 leaves a set out")
     parser.add_argument("--particles", type=pathlib.Path, nargs="+", default=[], metavar="FILE",
-                        help="for adaptive, cancel, distance, first, probe, smooth, walls")
+                        help="for adaptive, cancel, distance, probe, smooth, walls")
     parser.add_argument("--runs", type=int, help="timed runs of each (default 5, or 3)")
     parser.add_argument("--seed", type=int, default=45, help="of the scenes of smooth (default 45)")
     parser.add_argument("--limit", type=float, default=900, metavar="SECONDS",
@@ -148,7 +140,7 @@ def main():
     arguments, results = parse(sys.argv[1:]), {}
     with tempfile.TemporaryDirectory(prefix="mcor-benchmark-") as folder:
         benchmark = Benchmark(arguments, pathlib.Path(folder))
-        if set(arguments.tables) & set("abcde"):
+        if set(arguments.tables) & set("abc"):
             results["facts"] = benchmark.describe()
         for name in arguments.tables:
             results[name] = benchmark.choose(name).make(benchmark)

@@ -1,14 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """The cases of the benchmark beside the tables, each by itself; see README.md."""
-import os
 import pathlib
 import statistics
-import subprocess
-import sys
-import tempfile
 import time
-import venv
 
 import numpy as np
 import vtk
@@ -118,79 +113,13 @@ def distance(benchmark):
              f"within {np.quantile(off, 0.99):.3g}, 99.9 % within {np.quantile(off, 0.999):.3g}")
 
 
-IN_PYTHON = """
-import time
-begin = time.perf_counter()
-import numpy as np, marchingcorrectors
-spacing = 1 / 60
-places = np.stack(np.meshgrid(*map(np.arange, (60, 30, 25)), indexing="ij"), -1).reshape(-1, 3)
-surface = marchingcorrectors.free_surface(places * spacing, smoothing_length=1.3 * spacing, volume=spacing ** 3)
-assert len(surface.triangles) > 1000
-print(time.perf_counter() - begin)
-"""
-
-
-def first(benchmark):
-    """How long the first surface takes: whole processes, with empty caches. first: the free surface. next: the same with
-    another kernel. warm: the first once more. Each with what of it builds the kernels, or loads them. Of a wheel
-    (PROGRAM.whl), from import to the free surface of 45,000 generated particles, in a new environment that has the wheel
-    and NumPy alone; installing them is not timed."""
-    out, program, taken, built = benchmark.report, benchmark.program, {}, {}
-    with tempfile.TemporaryDirectory() as folder:
-        if program.path.suffix == ".whl":
-            venv.create(folder, with_pip=True)
-            python = os.path.join(folder, "bin", "python")
-            subprocess.run([python, "-m", "pip", "install", "-q", program.path], check=True, stdout=sys.stderr)
-            taken["import to first surface"] = [
-                float(subprocess.run([python, "-c", IN_PYTHON], check=True, capture_output=True, text=True).stdout)
-                for _ in range(benchmark.runs)]
-    device = [] if program.device else ["--device", "built in"]
-    for _ in range(0 if taken else benchmark.runs):
-        with tempfile.TemporaryDirectory() as folder:
-            os.mkdir(os.path.join(folder, "pocl"))
-            environment = {"POCL_CACHE_DIR": os.path.join(folder, "pocl"), "XDG_CACHE_HOME": os.path.join(folder, "cache")}
-            for name, options in (("first", []), ("next", ["--kernel", "wendland"]), ("warm", [])):
-                path = (benchmark.files or [DATA / "dam_break_45k.vtp"])[0]
-                report, seconds, _ = program.start(
-                    path, ["--free-surface", "--fluid", "ParticleType=0", *device, *options], 1, environment)
-                taken.setdefault(name, []).append(seconds)
-                built.setdefault(name, []).append(report["runs"][0]["seconds"]["program_build"])
-    for name, seconds in taken.items():
-        kernels = f", kernels {statistics.median(built[name]):.2f} s" if name in built else ""
-        out.text(f"{name:6} {statistics.median(seconds):.2f} s  ({', '.join(f'{t:.2f}' for t in seconds)}){kernels}")
-
-
-def gauges(benchmark):
-    """1,000 gauges, and the free surface of the same particles, whole processes that read them both. Ends with an error
-    where the gauges take longer."""
-    program, count = benchmark.program, 1000
-    path = benchmark.sets.get("tank", benchmark.sizes[-1])
-    lines, levels = benchmark.folder / "gauges.txt", benchmark.folder / "levels.csv"
-    bounds, columns = read(path).GetBounds(), round(count ** 0.5)
-    rows = -(-count // columns)
-    with lines.open("w", encoding="utf-8") as file:  # upright ones, evenly over the particles; z is up
-        for i in range(count):
-            x, y = (bounds[2 * a] + (n + 0.5) / of * (bounds[2 * a + 1] - bounds[2 * a])
-                    for a, n, of in ((0, i % columns, columns), (1, i // columns, rows)))
-            low, high = bounds[4], bounds[5] + 0.1 * (bounds[5] - bounds[4])
-            file.write(f"g{i}={x!r},{y!r},{low!r}:{x!r},{y!r},{high!r}\n")
-    taken = best_of(benchmark, lambda: program.start(path, ["--gauges", lines], 0, output=levels))[0]
-    surface = best_of(benchmark, lambda: program.start(path, ["--free-surface"], 0))[0]
-    wet = levels.read_text().count(",wet,")
-    benchmark.report.text(f"{count} gauges ({wet} wet) on {text_of(benchmark.sizes[-1])} particles: {taken:.2f} s; the free "
-                          f"surface: {surface:.2f} s")
-    if wet <= count / 2 or (taken >= surface and not benchmark.quick):
-        raise SystemExit("benchmark.py: gauges take longer than the surface, or are dry")
-
-
 PLANE_LENGTH, PLANE_ISO = 1.3, 0.2  # the spacing is 1
 
 
 def plane(benchmark):
     """Two dimensions: an isoline of particles in a plane, against vtkSPHInterpolator with a kernel of two dimensions on the
-    same lattice, and vtkFlyingEdges2D. And the first line ever, of 100,000 particles, everything: process, file in and
-    out, kernels, from an empty cache. Seconds of processors, of all threads, and in brackets of the clock; reading is
-    not among them, but for the cold start: of six surfaces in a process less one."""
+    same lattice, and vtkFlyingEdges2D. Seconds of processors, of all threads, and in brackets of the clock, without
+    reading: of six surfaces in a process less one."""
     program, more, own = benchmark.program, 5, []
     path = benchmark.sets.get("plane", benchmark.sizes[-1])
     options = ["--scalar", "Swirl", "--iso", PLANE_ISO, "--smoothing-length", PLANE_LENGTH, "--no-attributes"]
@@ -206,10 +135,6 @@ def plane(benchmark):
         f"{'marching-correctors':38} {processors:8.2f} s ({clock:.2f} s), {lines} lines",
         f"{'vtkSPHInterpolator + vtkFlyingEdges2D':38} {theirs['processors']:8.2f} s ({theirs['seconds']:.2f} s), "
         f"{theirs['triangles']} lines", f"ratio {theirs['processors'] / processors:.1f}")
-    empty = str(benchmark.folder / "empty")
-    _, clock, processors = program.start(benchmark.sets.get("plane", 100000), options, 1,
-                                         {"XDG_CACHE_HOME": empty, "POCL_CACHE_DIR": empty})
-    benchmark.report.text(f"first line of 100,000 particles {processors:.2f} s ({clock:.2f} s)")
 
 
 def make_image(bounds, *dimensions):
@@ -340,51 +265,6 @@ def cancel(benchmark):
         out.text(f"{name:28} {min(run[0] for run in timed):6.2f} s, {reports:4} reports; longest without one "
                  f"{clock[0]:.3f} s ({clock[1]}), {processors[0]:.3f} processor s ({processors[1]}); from cancel to return "
                  f"{after:.3f} s")
-
-
-def run_python(data, scalar, iso, context):
-    import marchingcorrectors
-    arrays = {name: array_of(data, name).astype("float32") for name in names_of(data.GetPointData())}
-    words = {"smoothing_length": arrays["SmoothingLength"], "mass": arrays["Mass"], "density": arrays["Density"],
-             "attributes": arrays, "context": context, "iso": iso}
-    positions = points_of(data).astype("float32")
-    begin = time.perf_counter()
-    surface = marchingcorrectors.isosurface(positions, arrays[scalar], **words) if scalar else \
-        marchingcorrectors.free_surface(positions, **words)
-    return time.perf_counter() - begin, surface
-
-
-def wheel(benchmark):
-    """The cost of calling from Python: isosurface() on NumPy arrays beside marching-correctors itself, on the same particles
-    and device, by turns; and pysplashsurf's free surface beside free_surface(). Runs in an environment with
-    marching-correctors[vtk] and, if it is to be compared, pysplashsurf. Reading the particles is not timed. The surfaces
-    must be the same to the last bit."""
-    import marchingcorrectors
-    out, context, rows, same = benchmark.report, marchingcorrectors.Context(), [], True
-    path = benchmark.sets.get("tank", benchmark.sizes[-1])
-    data = read(path)
-    for title, options, scalar, iso in (("Swirl = 1.2", ["--scalar", "Swirl", "--iso", "1.2"], "Swirl", 1.2),
-                                        ("free surface", ["--free-surface"], None, 0.5)):
-        pairs = []
-        run_python(data, scalar, iso, context)  # compiles
-        for _ in range(benchmark.runs):
-            report = benchmark.program.start(path, options, 2)[0]
-            run_python(data, scalar, iso, context)  # as the program's first
-            elapsed, surface = run_python(data, scalar, iso, context)
-            pairs.append((report["runs"][1]["wall_seconds"], elapsed, elapsed / report["runs"][1]["wall_seconds"]))
-            context.release_memory()
-        equal = points_of(read(benchmark.program.surface)).tobytes() == surface.points.astype(float).tobytes()
-        same = same and equal
-        rows.append([title, f"{len(surface.triangles):,}", *(f"{median:.3f}" for median in medians(pairs)),
-                     "the same" if equal else "DIFFERENT"])
-    out.heading(f"{data.GetNumberOfPoints():,} particles, {marchingcorrectors.devices()[0]}, medians of {benchmark.runs} pairs")
-    out.table(["", "triangles", "program, s", "Python, s", "Python / program", "points"], rows)
-    other = compete("splashsurf", path, data.GetNumberOfPoints(), max(1, benchmark.runs // 3), benchmark.limit)
-    out.text(f"splashsurf: {other['left_out']}" if "left_out" in other else
-             f"{other['name']}, free surface, one attribute, normals, same cube size: {other['triangles']:,} triangles, "
-             f"{other['seconds']:.3f} s")
-    if not same:
-        raise SystemExit("benchmark.py: the surfaces differ")
 
 
 def project(benchmark):

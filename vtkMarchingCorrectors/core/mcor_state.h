@@ -45,6 +45,21 @@ typedef struct mcor_space
   const char* evaluate; /* the kernel for nodes */
 } mcor_space;
 
+/* One of a few particles that stand for all: those whose positions have the least hashes. h,
+ * volume: of fluid particles alone; volume is 0 where volumes are computed. */
+typedef struct mcor_sample
+{
+  uint64_t hash;
+  double x[3], h, volume;
+} mcor_sample;
+
+#define MCOR_SAMPLES 256
+typedef struct mcor_sample_list
+{
+  int count, most;              /* of these; at most MCOR_SAMPLES */
+  mcor_sample of[MCOR_SAMPLES]; /* in the order of hashes */
+} mcor_sample_list;
+
 /* Particles on their way to the search grid. */
 typedef struct mcor_stage_data
 {
@@ -325,6 +340,7 @@ struct mcor_context
   /* The particles. */
   mcor_kept kept;
   mcor_kept_widening kept_widening;
+  mcor_sample_list samples[2]; /* of the measured fluid, and of solids */
   mcor_measure measure;
   mcor_lattice lattice;
   mcor_plane plane; /* of the call under way, and its space */

@@ -9,7 +9,6 @@
 
 #include "mcor_box.h"
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_ranks.h"
 
 #include <float.h>
@@ -47,25 +46,11 @@ typedef struct mcor_far_job
   mcor_findings slices[MCOR_SLICES], all; /* all: of all ranks, but for `first` */
 } mcor_far_job;
 
-static bool mcor_is_far(const mcor_far_job* job, const double x[3], double h)
-{
-  const mcor_far* far = job->far;
-  const double own = h * (job->reach + job->slack);
-  bool is_far = false;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double low = far->region[2 * a] - x[a], high = x[a] - far->region[2 * a + 1];
-    const double beyond = far->is_cut ? fmax(low, high) - fmax(own, job->radius)
-                                      : fabs(x[a] - job->centre[a]) - job->half;
-    is_far = is_far || (job->open[a] && !(beyond <= 0));
-  }
-  return is_far;
-}
-
 static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_far_job* job = data;
   const mcor_input* input = job->input;
+  const mcor_far* far = job->far;
   mcor_places p;
   mcor_findings found = mcor_no_findings();
   for (; mcor_read_places(job->context, input, first, last, &p) > 0; first += p.count)
@@ -74,10 +59,17 @@ static void mcor_far_slice(void* data, int slice, int64_t first, int64_t last)
     {
       const int64_t particle = first + i;
       const uint8_t was = input->solid ? input->solid[particle] : 0;
-      const double at[3] = { p.x[0][i], p.x[1][i], p.x[2][i] };
       const bool is_used = mcor_is_used(job->context, input, particle);
-      const bool is_far = is_used && mcor_is_far(job, at, p.length[i]);
-      job->far->solid[particle] = is_far ? MCOR_ABSENT : was;
+      const double near = fmax(p.length[i] * (job->reach + job->slack), job->radius);
+      bool is_far = false;
+      for (int a = 0; a < 3 && is_used; ++a)
+      {
+        const double x = p.x[a][i], low = far->region[2 * a], high = far->region[2 * a + 1];
+        const double beyond =
+          far->is_cut ? fmax(low - x, x - high) - near : fabs(x - job->centre[a]) - job->half;
+        is_far = is_far || (job->open[a] && !(beyond <= 0));
+      }
+      far->solid[particle] = is_far ? MCOR_ABSENT : was;
       found.sums[MCOR_USED] += is_used;
       found.sums[MCOR_LEFT_OUT] += is_far;
       found.sums[MCOR_STAYING] += !is_far && !was;
@@ -118,14 +110,12 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
     return mcor_mark_far(context, job);
   }
   /* There is no fluid. A run needs some, wherever that is. */
-  mcor_samples_found one = { .most = 1 };
-  MCOR_TRY(mcor_choose_samples(context, job->input, MCOR_FLUID_PARTICLES, &one));
   for (int64_t i = 0; i < job->input->count; ++i)
   {
     bool same = !(job->input->solid && job->input->solid[i]);
     for (int a = 0; a < 3; ++a)
     {
-      same = same && mcor_array_at(&job->input->positions, i, a) == one.sample[0].x[a];
+      same = same && mcor_array_at(&job->input->positions, i, a) == context->samples[0].of[0].x[a];
     }
     job->far->solid[i] = same ? 0 : job->far->solid[i];
   }
@@ -135,17 +125,17 @@ static mcor_status mcor_mark_out_of_reach(mcor_context* context, mcor_far_job* j
 /* Around the middle of a sample of the fluid. */
 static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, bool* good)
 {
-  mcor_samples_found samples = { .most = MCOR_SAMPLES };
+  const mcor_sample_list* samples = &context->samples[0];
   mcor_far* far = job->far;
   double x[MCOR_SAMPLES];
-  MCOR_TRY(mcor_choose_samples(context, job->input, MCOR_FLUID_PARTICLES, &samples));
+  MCOR_TRY(mcor_choose_samples(context, job->input, MCOR_SAMPLES));
   for (int a = 0; a < 3; ++a)
   {
-    for (int s = 0; s < samples.count; ++s)
+    for (int s = 0; s < samples->count; ++s)
     {
-      x[s] = samples.sample[s].x[a];
+      x[s] = samples->of[s].x[a];
     }
-    job->centre[a] = mcor_median_of(x, samples.count);
+    job->centre[a] = mcor_median_of(x, samples->count);
   }
   MCOR_TRY(mcor_mark_far(context, job));
   const int64_t own = far->first, share = job->all.sums[MCOR_USED] / MCOR_FAR_SHARE;
@@ -181,27 +171,19 @@ mcor_status mcor_leave_out_far(mcor_context* context, const mcor_input* input, m
   {
     far->region[side] = has_box ? options->box[side] : context->box.points[side];
   }
-  mcor_far_job* job = calloc(1, sizeof *job);
   far->solid = malloc((size_t)input->count + 1);
-  mcor_status status = mcor_allocated(context, job && far->solid);
-  bool good = true;
-  if (status == MCOR_OK)
+  MCOR_TRY(mcor_allocated(context, far->solid));
+  mcor_far_job job = { .context = context, .input = input, .far = far };
+  job.reach = mcor_support_factor(options->sph_kernel) * options->h_scale;
+  job.slack = (has_box ? mcor_box_slack(options) : MCOR_POINTS_SLACK) * edge / m->h_min;
+  job.half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job.reach * m->h_median;
+  for (int a = 0; a < 3; ++a)
   {
-    job->context = context;
-    job->input = input;
-    job->far = far;
-    job->reach = mcor_support_factor(options->sph_kernel) * options->h_scale;
-    job->slack = (has_box ? mcor_box_slack(options) : MCOR_POINTS_SLACK) * edge / m->h_min;
-    job->half = (0.5 * MCOR_LATTICE_LIMIT - 2) * edge - job->reach * m->h_median;
-    for (int a = 0; a < 3; ++a)
-    {
-      job->open[a] = context->lattice.period[a] == 0;
-    }
-    status =
-      far->is_cut ? mcor_mark_out_of_reach(context, job) : mcor_mark_farthest(context, job, &good);
+    job.open[a] = context->lattice.period[a] == 0;
   }
-  free(job);
-  MCOR_TRY(status);
+  bool good = true;
+  MCOR_TRY(
+    far->is_cut ? mcor_mark_out_of_reach(context, &job) : mcor_mark_farthest(context, &job, &good));
   if (!good)
   {
     return MCOR_OUT_OF_CAPACITY; /* its sentence is there */

@@ -7,6 +7,7 @@
  * vectorise. */
 
 #include "mcor_internal.h"
+#include "mcor_parallel.h"
 
 static inline int mcor_components(const mcor_array* array)
 {
@@ -181,37 +182,14 @@ mcor_status mcor_measure_components(
 
 /* About the median of the scalar of fluid particles, which is measured before. */
 mcor_status mcor_find_median(mcor_context* context, const mcor_input* input, double* median);
-/* One of a few particles that stand for all. h, volume: of fluid particles alone; volume is 0
- * where volumes are computed. */
-typedef struct mcor_sample
-{
-  uint64_t hash;
-  double x[3], h, volume;
-} mcor_sample;
-
 /* mcor_neighbour_sums.c. Returns w(q), without the norm; of a tensor kernel, for one axis. */
 double mcor_w_of(mcor_sph_kernel kernel, double q);
 
-#define MCOR_SAMPLES 256
+/* mcor_measure_sample.c. Samples the particles of all ranks, into context->samples. Fewer samples
+ * take less time. */
+mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
 
-typedef struct mcor_samples_found
-{
-  int count, most; /* of these; at most MCOR_SAMPLES */
-  mcor_sample sample[MCOR_SAMPLES];
-} mcor_samples_found;
-
-typedef enum mcor_sampled
-{
-  MCOR_ALL_PARTICLES,
-  MCOR_FLUID_PARTICLES,
-  MCOR_SOLID_PARTICLES
-} mcor_sampled;
-
-/* mcor_measure_sample.c. Samples the particles of all ranks; chosen->most is given. */
-mcor_status mcor_choose_samples(
-  mcor_context* context, const mcor_input* input, mcor_sampled which, mcor_samples_found* chosen);
-
-/* Estimates one smoothing length for all particles from their spacing. */
+/* Estimates one smoothing length for all particles from the spacing of samples, which take it. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);
 /* Computes the cube root of a number above 0, with the same bits on every machine, unlike cbrt
@@ -221,11 +199,27 @@ double mcor_cube_root(double value);
 double mcor_median_of(double* values, int count);
 
 /* mcor_measure_neighbours.c. A watch is shown all positions, and at its end fills in the
- * measure's neighbours, spacing, filled and h_median. An estimated smoothing length must be
- * known before. Free it with free(). */
-typedef struct mcor_watch mcor_watch;
-mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun);
-void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK]);
+ * measure's neighbours, spacing, filled and h_median. It watches some sampled fluid particles. */
+#define MCOR_WATCHED 32 /* bits of a mask */
+#define MCOR_WATCH_CELLS 64
+typedef struct mcor_watch
+{
+  /* Intervals along each axis, and the watched particles that may reach each: bit s for particle s.
+   * None reaches the outermost intervals. */
+  double low[3], per_length[3];
+  uint32_t reached[3][MCOR_WATCH_CELLS];
+  int count;
+  const mcor_sample* sample;
+  double support;
+  int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
+  double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
+  double normal[3];                          /* 0: they do not lie in a plane */
+  /* Distances along the normal from the first one: the greatest, and the greatest of their
+   * negatives. */
+  double beyond[MCOR_SLICES][2];
+} mcor_watch;
+void mcor_begin_watch(const mcor_context* context, mcor_watch* watch);
+void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK]);
 mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices);
 /* Reads smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(

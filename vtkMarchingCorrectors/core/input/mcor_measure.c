@@ -5,7 +5,6 @@
 
 #include "mcor_box.h"
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_ranks.h"
 #include "mcor_tree.h"
@@ -13,7 +12,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The least support radius, in cubes. Below it, hardly any node would see a particle. */
@@ -34,7 +32,7 @@ enum
   MCOR_SPOTS = 9,    /* positions of all particles in use: x, y, z */
   MCOR_FACTORS = 12, /* of smoothing lengths of fluid particles */
 
-  MCOR_FLUID = 0, /* particles */
+  MCOR_FLUID = 0, /* particles: sum k is that of part k of a chunk */
   MCOR_SOLIDS = 1,
   MCOR_FACTOR_SUM = 2
 };
@@ -103,7 +101,7 @@ typedef struct mcor_measuring
   const mcor_context* context;
   const mcor_input* input;
   double reach; /* support radius / smoothing length */
-  mcor_watch* watch;
+  mcor_watch watch;
   mcor_findings slices[MCOR_SLICES];
 } mcor_measuring;
 
@@ -112,75 +110,65 @@ static void mcor_measure_slice(void* data, int slice, int64_t first, int64_t las
   mcor_measuring* job = data;
   const mcor_context* context = job->context;
   const mcor_input* input = job->input;
-  const uint8_t* solid = input->solid;
   const bool has_scalar = context->run.options->field != MCOR_WEIGHT_SUM,
              is_widened = mcor_is_given(&input->widening);
   mcor_findings r = mcor_no_findings();
-  mcor_places chunk, solids;
-  for (int64_t begin = first, count; begin < last; begin += count)
+  mcor_places part[2]; /* fluid, solids */
+  double value[MCOR_CHUNK];
+  for (int count; (count = mcor_read_places(context, input, first, last, part)) > 0; first += count)
   {
-    double value[MCOR_CHUNK];
-    count = mcor_read_places(context, input, begin, last, &chunk);
-    if (has_scalar)
+    const uint8_t* solid = input->solid ? input->solid + first : NULL;
+    mcor_read_scalar(input, first, has_scalar ? count : 0, value);
+    for (int i = 0; i < count && has_scalar; ++i)
     {
-      mcor_read_scalar(input, begin, chunk.count, value);
-    }
-    for (int i = 0; i < chunk.count && has_scalar; ++i)
-    {
-      if (!solid || !solid[begin + i])
+      if (!solid || !solid[i])
       {
         mcor_add_range(&r, MCOR_SCALARS, value[i], value[i]);
-        r.first = !isfinite(value[i]) && begin + i < r.first ? begin + i : r.first;
+        r.first = !isfinite(value[i]) && first + i < r.first ? first + i : r.first;
       }
     }
-    for (int i = 0; i < chunk.count && is_widened; ++i)
+    for (int i = 0; i < count && is_widened; ++i)
     {
-      if (!solid || !solid[begin + i])
+      if (!solid || !solid[i])
       {
-        const double factor = mcor_array_at(&input->widening, begin + i, 0);
+        const double factor = mcor_array_at(&input->widening, first + i, 0);
         mcor_add_range(&r, MCOR_FACTORS, factor, factor);
         r.sums[MCOR_FACTOR_SUM] += (int64_t)ldexp(fmin(factor, MCOR_MOST_FACTOR), 23);
       }
     }
-    mcor_part_chunk(solid ? solid + begin : NULL, &chunk, &solids);
-    mcor_watch_positions(job->watch, slice, chunk.count, (const double(*)[MCOR_CHUNK])chunk.x);
-    if (!input->ignore_solids)
+    mcor_part_chunk(solid, &part[0], &part[1]);
+    for (int k = 0; k < 2; ++k)
     {
-      mcor_watch_positions(job->watch, slice, solids.count, (const double(*)[MCOR_CHUNK])solids.x);
-    }
-    r.sums[MCOR_FLUID] += chunk.count;
-    r.sums[MCOR_SOLIDS] += solids.count;
-    mcor_measure_chunk(&chunk, false, job->reach, &r);
-    if (context->kept.uses_solids)
-    {
-      mcor_measure_chunk(&solids, true, job->reach, &r);
+      r.sums[k] += part[k].count;
+      if (k == 0 || !input->ignore_solids)
+      {
+        mcor_watch_positions(&job->watch, slice, part[k].count, part[k].x);
+      }
+      if (k == 0 || context->kept.uses_solids)
+      {
+        mcor_measure_chunk(&part[k], k == 1, job->reach, &r);
+      }
     }
   }
   job->slices[slice] = r;
 }
 
-static mcor_status mcor_measure_particles(
-  mcor_context* context, const mcor_input* input, double reach, mcor_findings* found)
-{
-  mcor_measuring job = { .context = context, .input = input, .reach = reach };
-  mcor_status status = mcor_begin_watch(context, input, &job.watch);
-  int slices;
-  MCOR_THEN(status,
-    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
-  if (status == MCOR_OK)
-  {
-    *found = mcor_merge_findings(job.slices, slices);
-    status = mcor_end_watch(context, job.watch, slices);
-  }
-  free(job.watch);
-  return status;
-}
-
-/* Merges the findings of all ranks. A particle that is not finite is reported by its own rank
+/* Measures the particles of all ranks. A particle that is not finite is reported by its own rank
  * alone. */
-static mcor_status mcor_keep_findings(mcor_context* context, mcor_findings* r)
+static mcor_status mcor_measure_particles(
+  mcor_context* context, const mcor_input* input, mcor_findings* r)
 {
   mcor_measure* m = &context->measure;
+  const mcor_options* options = context->run.options;
+  mcor_measuring job = { .context = context,
+    .input = input,
+    .reach = mcor_support_factor(options->sph_kernel) * options->h_scale };
+  int slices;
+  mcor_begin_watch(context, &job.watch);
+  MCOR_TRY(
+    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_measure_slice, &job, &slices));
+  *r = mcor_merge_findings(job.slices, slices);
+  MCOR_TRY(mcor_end_watch(context, &job.watch, slices));
   MCOR_TRY(mcor_reduce_findings(context, r));
   m->fluid_count = r->sums[MCOR_FLUID];
   m->solid_count = r->sums[MCOR_SOLIDS];
@@ -305,13 +293,13 @@ mcor_status mcor_measure_input(
     *m = options->globals->measured;
     return mcor_measure_lattice(context, options);
   }
+  MCOR_TRY(mcor_choose_samples(
+    context, input, input->estimate_smoothing_length ? MCOR_SAMPLES : MCOR_WATCHED));
   if (input->estimate_smoothing_length)
   {
     MCOR_TRY(mcor_estimate_smoothing_length(context, input, &m->h_estimate));
   }
-  MCOR_TRY(mcor_measure_particles(
-    context, input, mcor_support_factor(options->sph_kernel) * options->h_scale, &found));
-  MCOR_TRY(mcor_keep_findings(context, &found));
+  MCOR_TRY(mcor_measure_particles(context, input, &found));
   if (context->run.far)
   {
     mcor_cut_bounds(context, found.least + MCOR_SPOTS, found.most + MCOR_SPOTS);

@@ -7,70 +7,19 @@
  * is also seen whether all others do. */
 
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_ranks.h"
 #include "mcor_vector.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-#define MCOR_WATCHED 32 /* fluid particles, bits of a mask */
-#define MCOR_WATCH_CELLS                                                                           \
-  64 /* at most, along each axis of a coarse grid, which has a bit of a row for each */
-
-/* The watched fluid particles, and a coarse grid that tells which of them each cell may reach. */
-struct mcor_watch
-{
-  int cells; /* along each axis; the outermost cells reach none */
-  double low[3], cells_per_length[3];
-  /* reached: of each cell, bit s for watched particle s. any: of each row of cells, bit x for a
-   * cell that reaches any; small, for a fast first look. */
-  uint32_t reached[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
-  uint64_t any[MCOR_WATCH_CELLS * MCOR_WATCH_CELLS];
-  int count;
-  mcor_sample sample[MCOR_WATCHED];
-  double support;
-  int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
-  double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
-  double normal[3];                          /* 0: they do not lie in a plane */
-  /* Distances along the normal from the first one: the greatest, and the greatest of their
-   * negatives. */
-  double beyond[MCOR_SLICES][2];
-};
 
 /* Written to be vectorised. */
 static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
 {
-  const double cell = (x - watch->low[axis]) * watch->cells_per_length[axis];
+  const double cell = (x - watch->low[axis]) * watch->per_length[axis];
   const double above = cell > 0 ? cell : 0;
-  return (int)(above < watch->cells - 1 ? above : watch->cells - 1);
-}
-
-/* Lays the grid over what the watched particles reach, with no more cells than there are
- * particles to look them up. */
-static void mcor_place_watch(mcor_watch* watch, int64_t particles)
-{
-  watch->cells = 4;
-  while (watch->cells < MCOR_WATCH_CELLS &&
-    (int64_t)watch->cells * watch->cells * watch->cells < particles)
-  {
-    ++watch->cells;
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    double low = DBL_MAX, high = -DBL_MAX;
-    for (int s = 0; s < watch->count; ++s)
-    {
-      const double reach = watch->support * watch->sample[s].h;
-      low = fmin(low, watch->sample[s].x[a] - reach);
-      high = fmax(high, watch->sample[s].x[a] + reach);
-    }
-    const double cell = (high - low) / (watch->cells - 3);
-    watch->low[a] = low - cell;
-    watch->cells_per_length[a] = cell > 0 ? 1 / cell : 0;
-  }
+  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
 }
 
 /* ---- A plane that is tilted in space ---- */
@@ -123,7 +72,7 @@ static bool mcor_has_normal(const mcor_watch* watch)
   return mcor_dot(watch->normal, watch->normal) > 0;
 }
 
-void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double x[3][MCOR_CHUNK])
+void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK])
 {
   const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
   double* beyond = watch->beyond[slice];
@@ -133,21 +82,18 @@ void mcor_watch_positions(mcor_watch* watch, int slice, int count, const double 
     beyond[0] = d > beyond[0] ? d : beyond[0];
     beyond[1] = -d > beyond[1] ? -d : beyond[1];
   }
-  int cell[MCOR_CHUNK] = { 0 };
-  for (int a = 2; a >= 0; --a)
+  int cell[3][MCOR_CHUNK];
+  for (int a = 0; a < 3; ++a)
   {
     for (int i = 0; i < count; ++i)
     {
-      cell[i] = cell[i] * MCOR_WATCH_CELLS + mcor_watch_cell(watch, a, x[a][i]);
+      cell[a][i] = mcor_watch_cell(watch, a, x[a][i]);
     }
   }
   for (int i = 0; i < count; ++i)
   {
-    if (!(watch->any[cell[i] / MCOR_WATCH_CELLS] >> cell[i] % MCOR_WATCH_CELLS & 1))
-    {
-      continue;
-    }
-    uint32_t reached = watch->reached[cell[i]];
+    uint32_t reached =
+      watch->reached[0][cell[0][i]] & watch->reached[1][cell[1][i]] & watch->reached[2][cell[2][i]];
     for (int s = 0; reached; ++s, reached >>= 1)
     {
       const double reach = watch->support * watch->sample[s].h;
@@ -212,44 +158,40 @@ mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
   return MCOR_OK;
 }
 
-mcor_status mcor_begin_watch(mcor_context* context, const mcor_input* input, mcor_watch** begun)
+void mcor_begin_watch(const mcor_context* context, mcor_watch* watch)
 {
-  mcor_samples_found chosen = { .most = MCOR_WATCHED };
-  mcor_watch* watch = *begun = calloc(1, sizeof *watch);
-  MCOR_TRY(mcor_allocated(context, watch));
-  watch->support = mcor_support_factor(context->run.options->sph_kernel);
-  MCOR_TRY(mcor_choose_samples(context, input, MCOR_FLUID_PARTICLES, &chosen));
-  memcpy(watch->sample, chosen.sample, sizeof watch->sample);
-  watch->count = chosen.count;
-  mcor_place_watch(watch, input->count);
+  const mcor_sample_list* fluid = &context->samples[0];
+  *watch = (mcor_watch){ .sample = fluid->of,
+    .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
+    .support = mcor_support_factor(context->run.options->sph_kernel) };
+  for (int a = 0; a < 3; ++a)
+  {
+    double low = DBL_MAX, high = -DBL_MAX;
+    for (int s = 0; s < watch->count; ++s)
+    {
+      const double reach = watch->support * watch->sample[s].h;
+      low = fmin(low, watch->sample[s].x[a] - reach);
+      high = fmax(high, watch->sample[s].x[a] + reach);
+    }
+    const double cell = (high - low) / (MCOR_WATCH_CELLS - 3);
+    watch->low[a] = low - cell;
+    watch->per_length[a] = cell > 0 ? 1 / cell : 0;
+    for (int s = 0; s < watch->count; ++s)
+    {
+      const double x = watch->sample[s].x[a], reach = watch->support * watch->sample[s].h;
+      const int last = mcor_watch_cell(watch, a, x + reach);
+      for (int c = mcor_watch_cell(watch, a, x - reach); c <= last; ++c)
+      {
+        watch->reached[a][c] |= UINT32_C(1) << s;
+      }
+    }
+  }
+  for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
+  {
+    watch->nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;
+  }
   if (context->space.axes == 3)
   {
     mcor_find_normal(watch);
   }
-  for (int s = 0; s < watch->count; ++s)
-  {
-    const double reach = watch->support * watch->sample[s].h;
-    int low[3], high[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      low[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] - reach);
-      high[a] = mcor_watch_cell(watch, a, watch->sample[s].x[a] + reach);
-    }
-    for (int z = low[2]; z <= high[2]; ++z)
-    {
-      for (int y = low[1]; y <= high[1]; ++y)
-      {
-        for (int x = low[0]; x <= high[0]; ++x)
-        {
-          watch->reached[(z * MCOR_WATCH_CELLS + y) * MCOR_WATCH_CELLS + x] |= UINT32_C(1) << s;
-          watch->any[z * MCOR_WATCH_CELLS + y] |= UINT64_C(1) << x;
-        }
-      }
-    }
-    for (int slice = 0; slice < MCOR_SLICES; ++slice)
-    {
-      watch->nearest[slice][s] = DBL_MAX;
-    }
-  }
-  return MCOR_OK;
 }

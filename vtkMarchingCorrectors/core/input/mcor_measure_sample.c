@@ -6,7 +6,6 @@
  * smoothing length is estimated for particles that have none. */
 
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_ranks.h"
 
 #include <limits.h>
@@ -35,59 +34,53 @@ static bool mcor_comes_before(const mcor_sample* a, const mcor_sample* b)
                             : a->volume < b->volume;
 }
 
-static void mcor_add_sample(mcor_samples_found* found, const mcor_sample* sample)
+static void mcor_add_sample(mcor_sample_list* found, const mcor_sample* sample)
 {
-  if (found->count == found->most)
+  int to = found->count;
+  while (to > 0 && mcor_comes_before(sample, &found->of[to - 1]))
   {
-    if (!mcor_comes_before(sample, &found->sample[found->most - 1]))
-    {
-      return;
-    }
-    --found->count;
+    --to;
   }
-  int to = found->count++;
-  for (; to > 0 && mcor_comes_before(sample, &found->sample[to - 1]); --to)
+  const int last = found->count < found->most ? found->count++ : found->most - 1;
+  if (to <= last)
   {
-    found->sample[to] = found->sample[to - 1];
+    memmove(found->of + to + 1, found->of + to, (size_t)(last - to) * sizeof *sample);
+    found->of[to] = *sample;
   }
-  found->sample[to] = *sample;
 }
 
 typedef struct mcor_sampling
 {
   const mcor_context* context;
   const mcor_input* input;
-  mcor_sampled which;
-  mcor_samples_found* found; /* [MCOR_SLICES] */
+  mcor_sample_list found[MCOR_SLICES][2]; /* as in the context */
 } mcor_sampling;
 
 static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_sampling* job = data;
+  mcor_sampling* job = data;
   const mcor_input* input = job->input;
-  mcor_samples_found* found = &job->found[slice];
-  const bool any = job->which == MCOR_ALL_PARTICLES, solids = job->which == MCOR_SOLID_PARTICLES;
   double x[3][MCOR_CHUNK];
-  for (int64_t begin = first; begin < last; begin += MCOR_CHUNK)
+  for (int count; (count = mcor_chunk_of(last - first)) > 0; first += count)
   {
-    const int count = mcor_chunk_of(last - begin);
-    mcor_read_positions(input, begin, count, x);
+    mcor_read_positions(input, first, count, x);
     for (int i = 0; i < count; ++i)
     {
-      const int64_t particle = begin + i;
+      const int64_t particle = first + i;
       const bool is_solid = input->solid && input->solid[particle];
+      mcor_sample_list* found = &job->found[slice][is_solid];
       mcor_sample sample = { .x = { x[0][i], x[1][i], x[2][i] } };
-      if ((is_solid && !mcor_is_present(input, particle)) || (!any && is_solid != solids) ||
-        !isfinite(x[0][i]) || !isfinite(x[1][i]) || !isfinite(x[2][i]))
+      if (!mcor_is_present(input, particle) || !isfinite(x[0][i]) || !isfinite(x[1][i]) ||
+        !isfinite(x[2][i]))
       {
         continue;
       }
       sample.hash = mcor_hash_position(sample.x);
-      if (found->count == found->most && sample.hash > found->sample[found->most - 1].hash)
+      if (found->count == found->most && sample.hash > found->of[found->most - 1].hash)
       {
         continue;
       }
-      if (!any && !solids)
+      if (!is_solid)
       {
         mcor_read_smoothing_length(job->context, input, particle, 1, &sample.h);
         mcor_read_size(input, particle, mcor_needs_density(input) ? 0 : 1, &sample.volume);
@@ -97,41 +90,40 @@ static void mcor_sample_slice(void* data, int slice, int64_t first, int64_t last
   }
 }
 
-mcor_status mcor_choose_samples(
-  mcor_context* context, const mcor_input* input, mcor_sampled which, mcor_samples_found* chosen)
+mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid)
 {
-  mcor_sampling job = { .context = context, .input = input, .which = which };
-  job.found = malloc(MCOR_SLICES * sizeof *job.found);
-  MCOR_TRY(mcor_allocated(context, job.found));
-  for (int s = 0; s < MCOR_SLICES; ++s)
+  mcor_sampling* job = calloc(1, sizeof *job);
+  MCOR_TRY(mcor_allocated(context, job));
+  job->context = context;
+  job->input = input;
+  for (int n = 0; n < 2 * MCOR_SLICES; ++n)
   {
-    job.found[s].count = 0;
-    job.found[s].most = chosen->most;
+    job->found[n / 2][n % 2].most = n % 2 == 0 ? most_fluid : MCOR_SAMPLES;
   }
   int slices;
   mcor_status status =
-    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, &job, &slices);
-  for (int s = 1; s < slices && status == MCOR_OK; ++s)
+    mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_sample_slice, job, &slices);
+  for (int k = 0; k < 2; ++k)
   {
-    for (int i = 0; i < job.found[s].count; ++i)
+    mcor_sample_list *own = &job->found[0][k], *chosen = &context->samples[k];
+    const void* all = NULL;
+    int64_t count = 0;
+    for (int s = 1; s < slices; ++s)
     {
-      mcor_add_sample(&job.found[0], &job.found[s].sample[i]);
+      for (int i = 0; i < job->found[s][k].count; ++i)
+      {
+        mcor_add_sample(own, &job->found[s][k].of[i]);
+      }
     }
-  }
-  const mcor_sample* own = job.found[0].sample;
-  const void* all = own;
-  int64_t count = job.found[0].count;
-  MCOR_THEN(status, mcor_gather(context, own, count, sizeof *own, &all, &count));
-  if (all != own && status == MCOR_OK)
-  {
-    job.found[0].count = 0;
+    MCOR_THEN(status, mcor_gather(context, own->of, own->count, sizeof *own->of, &all, &count));
+    chosen->count = 0;
+    chosen->most = own->most;
     for (int64_t i = 0; i < count; ++i)
     {
-      mcor_add_sample(&job.found[0], (const mcor_sample*)all + i);
+      mcor_add_sample(chosen, (const mcor_sample*)all + i);
     }
   }
-  *chosen = job.found[0];
-  free(job.found);
+  free(job);
   return status;
 }
 
@@ -167,8 +159,8 @@ static void mcor_add_neighbours(mcor_neighbours* nearest, const double* d2, int 
 typedef struct mcor_spacing
 {
   const mcor_input* input;
-  double scale; /* a power of 2 that brings all coordinates below 1 */
-  mcor_samples_found samples;
+  double scale;             /* a power of 2 that brings all coordinates below 1 */
+  mcor_sample_list samples; /* of fluid and solids */
   mcor_neighbours nearest[MCOR_SAMPLES];
 } mcor_spacing;
 
@@ -195,7 +187,7 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
     }
     for (int64_t s = first; s < last; ++s)
     {
-      const double* at = job->samples.sample[s].x;
+      const double* at = job->samples.of[s].x;
       for (int i = 0; i < count; ++i)
       {
         const double dx = x[0][i] * scale - at[0] * scale, dy = x[1][i] * scale - at[1] * scale,
@@ -206,32 +198,6 @@ static void mcor_near_slice(void* data, int slice, int64_t first, int64_t last)
     }
   }
   (void)slice;
-}
-
-/* Merges the nearest neighbours that all ranks have found. */
-static mcor_status mcor_merge_neighbours(mcor_context* context, mcor_spacing* job)
-{
-  const void* found;
-  int64_t count = job->samples.count;
-  for (int s = 0; s < job->samples.count; ++s)
-  {
-    job->nearest[s].sample = s;
-  }
-  MCOR_TRY(mcor_gather(context, job->nearest, count, sizeof *job->nearest, &found, &count));
-  if (found == job->nearest)
-  {
-    return MCOR_OK;
-  }
-  for (int s = 0; s < job->samples.count; ++s)
-  {
-    job->nearest[s].count = 0;
-  }
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const mcor_neighbours* of = (const mcor_neighbours*)found + i;
-    mcor_add_neighbours(&job->nearest[of->sample], of->d2, of->count);
-  }
-  return MCOR_OK;
 }
 
 double mcor_cube_root(double value)
@@ -249,15 +215,18 @@ double mcor_cube_root(double value)
   return ldexp(root, exponent / 3);
 }
 
-/* Returns 1.3 times the median spacing: that of a lattice with as many particles within the
- * distance of the 32nd neighbour. */
-static mcor_status mcor_find_spacing(
-  mcor_context* context, const mcor_input* input, mcor_spacing* job, double* estimate)
+/* Takes 1.3 times the median spacing: that of a lattice with as many particles within the distance
+ * of the 32nd neighbour. */
+mcor_status mcor_estimate_smoothing_length(
+  mcor_context* context, const mcor_input* input, double* estimate)
 {
+  mcor_spacing job = { .input = input, .samples = context->samples[0] };
   double spacing[MCOR_SAMPLES], largest[3];
   int exponent = 0, most = INT_MIN;
-  job->samples.most = MCOR_SAMPLES;
-  job->input = input;
+  for (int i = 0; i < context->samples[1].count; ++i)
+  {
+    mcor_add_sample(&job.samples, &context->samples[1].of[i]);
+  }
   for (int a = 0; a < 3; ++a)
   {
     largest[a] = mcor_largest(context, input, &input->positions, a);
@@ -268,31 +237,35 @@ static mcor_status mcor_find_spacing(
     frexp(largest[a], &exponent);
     most = exponent > most ? exponent : most;
   }
-  job->scale = ldexp(1, most > -1000 ? -most : 1000);
-  MCOR_TRY(mcor_choose_samples(context, input, MCOR_ALL_PARTICLES, &job->samples));
-  const int count = job->samples.count;
-  MCOR_TRY(mcor_parallel_run(context, count, 1, mcor_near_slice, job, NULL));
-  MCOR_TRY(mcor_merge_neighbours(context, job));
-  for (int s = 0; s < count; ++s)
+  job.scale = ldexp(1, most > -1000 ? -most : 1000);
+  const int samples = job.samples.count;
+  MCOR_TRY(mcor_parallel_run(context, samples, 1, mcor_near_slice, &job, NULL));
+  /* Merges the nearest neighbours that all ranks have found. */
+  mcor_neighbours merged[MCOR_SAMPLES] = { { 0 } };
+  const void* found;
+  int64_t count;
+  for (int s = 0; s < samples; ++s)
   {
-    const mcor_neighbours* nearest = &job->nearest[s];
-    const double share = context->space.ball / (double)nearest->count;
-    spacing[s] = sqrt(nearest->d2[nearest->count - 1]) *
+    job.nearest[s].sample = s;
+  }
+  MCOR_TRY(mcor_gather(context, job.nearest, samples, sizeof job.nearest[0], &found, &count));
+  for (int64_t i = 0; i < count; ++i)
+  {
+    const mcor_neighbours* of = (const mcor_neighbours*)found + i;
+    mcor_add_neighbours(&merged[of->sample], of->d2, of->count);
+  }
+  for (int s = 0; s < samples; ++s)
+  {
+    const double share = context->space.ball / (double)merged[s].count;
+    spacing[s] = sqrt(merged[s].d2[merged[s].count - 1]) *
       (context->space.axes == 2 ? sqrt(share) : mcor_cube_root(share));
   }
-  *estimate = 1.3 * mcor_median_of(spacing, count) / job->scale;
-  return MCOR_OK;
-}
-
-mcor_status mcor_estimate_smoothing_length(
-  mcor_context* context, const mcor_input* input, double* estimate)
-{
-  mcor_spacing* job = calloc(1, sizeof *job);
-  MCOR_TRY(mcor_allocated(context, job));
-  const mcor_status status = mcor_find_spacing(context, input, job, estimate);
-  free(job);
-  MCOR_TRY(status);
+  *estimate = 1.3 * mcor_median_of(spacing, samples) / job.scale;
   MCOR_RETURN_IF(!(*estimate > 0), context, MCOR_INVALID_DATA,
     "The smoothing length cannot be estimated: most particles lie at one point.");
+  for (int s = 0; s < context->samples[0].count; ++s)
+  {
+    context->samples[0].of[s].h = *estimate;
+  }
   return MCOR_OK;
 }

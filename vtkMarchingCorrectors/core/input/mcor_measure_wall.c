@@ -8,7 +8,6 @@
  * on the order of the particles nor on how ranks share them. */
 
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_ranks.h"
 #include "mcor_vector.h"
 
@@ -152,13 +151,12 @@ static double mcor_median_share(mcor_wall_measure* wall)
   return MCOR_FREE_WALL_SHARE; /* no fluid is near */
 }
 
-/* Chooses the samples, sorts them along an axis without a period, if there is one, and weighs fluid
+/* Sorts the samples along an axis without a period, if there is one, and weighs fluid
  * and solids there. */
 static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall_measure* wall)
 {
   const mcor_input* input = wall->input;
-  mcor_samples_found found = { .most = MCOR_SAMPLES };
-  MCOR_TRY(mcor_choose_samples(context, input, MCOR_SOLID_PARTICLES, &found));
+  const mcor_sample_list* solids = &context->samples[1];
   wall->axis = -1;
   for (int a = 2; a >= 0; --a)
   {
@@ -166,9 +164,9 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall_measure* 
     wall->period[a] = period[1] - period[0];
     wall->axis = wall->period[a] > 0 ? wall->axis : a;
   }
-  for (int i = 0; i < found.count; ++i)
+  for (int i = 0; i < solids->count; ++i)
   {
-    const double* x = found.sample[i].x;
+    const double* x = solids->of[i].x;
     int to = wall->count++;
     for (; to > 0 && wall->axis >= 0 && wall->sample[to - 1].x[wall->axis] > x[wall->axis]; --to)
     {

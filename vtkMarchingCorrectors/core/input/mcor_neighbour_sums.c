@@ -9,7 +9,6 @@
 
 #define MCOR_W_ON_HOST
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 #include "mcor_plane.h"
 #include "mcor_sph_kernel.h"
 #include "mcor_vector.h"

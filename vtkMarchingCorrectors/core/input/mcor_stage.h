@@ -5,7 +5,6 @@
 
 #include "mcor_box.h"
 #include "mcor_input.h"
-#include "mcor_parallel.h"
 
 /* One slice of the input, as it is staged. */
 typedef struct mcor_stage_slice

@@ -339,7 +339,6 @@ mcor_status mcor_grow_surface(
   mcor_context* context, const mcor_input* input, mcor_surface* surface, int64_t points);
 /* Moves a triangle and its keys to another place. */
 void mcor_move_triangle(mcor_surface* surface, int64_t from, int64_t to);
-/* mcor_point_key.c */
 /* Returns the key of a brick, whose level's blocks the rung numbers; and of a node, whose level is
  * node[3]. Keys are in the order of slots and vertices: by level, block, brick and node, each by
  * z, y, x. The key of a cell is that of its lowest node. */
@@ -353,9 +352,14 @@ static inline uint64_t mcor_brick_key(const mcor_rung* rung, const int brick[3])
   }
   return (rung->base + block) * MCOR_BLOCK_BRICKS + number;
 }
-uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4]);
-void mcor_store_point_key(const mcor_context* context, const cl_int* nodes, const uint64_t* cuts,
-  int64_t v, uint64_t key[MCOR_POINT_KEY]);
+static inline uint64_t mcor_node_key(const mcor_lattice* lattice, const cl_int node[4])
+{
+  const int brick[3] = { node[0] / MCOR_BRICK, node[1] / MCOR_BRICK, node[2] / MCOR_BRICK };
+  const int inner = node[0] % MCOR_BRICK + MCOR_BRICK * (node[1] % MCOR_BRICK) +
+    MCOR_BRICK * MCOR_BRICK * (node[2] % MCOR_BRICK);
+  const mcor_rung* rung = &lattice->rungs[node[3] >> MCOR_LEVEL_SHIFT];
+  return mcor_brick_key(rung, brick) << 6 | (uint64_t)inner;
+}
 /* mcor_normal.c. Whether the gradient gives no normal; the other function gives such points one. */
 static inline bool mcor_lacks_normal(const float normal[3])
 {

@@ -94,22 +94,6 @@ static mcor_status mcor_add_border_side(mcor_fill_job* job, int s)
   return MCOR_OK;
 }
 
-/* Finds the corner at the other end of the line from corner i. A level has two corners on the
- * border, or four, which lines then join around what is below, or above. */
-static int mcor_fill_mate(const mcor_fill_job* job, int i)
-{
-  const mcor_fill_corner* corners = job->border;
-  const mcor_fill_line* line = &job->fill->lines[corners[i].level];
-  const bool joined = mcor_find_number(&line->joined, (uint64_t)job->lowest) >= 0;
-  const int step = corners[i].falls == joined ? 1 : job->count - 1;
-  int mate = (i + step) % job->count;
-  while (corners[mate].level != corners[i].level)
-  {
-    mate = (mate + step) % job->count;
-  }
-  return mate;
-}
-
 /* ---- Polygons ---- */
 
 static mcor_status mcor_add_fill_fan(
@@ -186,7 +170,16 @@ static mcor_status mcor_add_polygon(mcor_fill_job* job, int i)
     {
       next->begins_line = true;
       corners[count++] = &next->corner;
-      at = mcor_fill_mate(job, at);
+      /* Goes to the other end of the line. A level has two corners on the border, or four, which
+       * lines then join around what is below, or above. */
+      const int level = next->level;
+      const bool joined =
+        mcor_find_number(&job->fill->lines[level].joined, (uint64_t)job->lowest) >= 0;
+      const int step = next->falls == joined ? 1 : job->count - 1;
+      do
+      {
+        at = (at + step) % job->count;
+      } while (job->border[at].level != level);
     }
   }
   return mcor_clip_polygon(corners, count, 1, mcor_cut_fill_side, mcor_add_fill_fan, job);
@@ -306,11 +299,26 @@ static mcor_status mcor_make_fill_points(
   return status;
 }
 
-/* ---- Triangles ---- */
+/* ---- All of it ---- */
 
-static mcor_status mcor_append_fill_triangles(
-  mcor_context* context, const mcor_filling* fill, mcor_surface* surface)
+mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
 {
+  mcor_filling* fill = context->run.fill;
+  if (!fill)
+  {
+    return MCOR_OK;
+  }
+  free(fill->value); /* the bands are known */
+  fill->value = NULL;
+  mcor_fill_job job = { .context = context, .fill = fill };
+  job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
+  MCOR_TRY(mcor_allocated(context, job.border));
+  const mcor_status status =
+    mcor_visit_cap_squares(context, &fill->nodes, mcor_visit_fill_square, &job);
+  free(job.border);
+  MCOR_TRY(status);
+  MCOR_TRY(context->run.options->preview ? MCOR_OK : mcor_place_cap_cuts(&fill->cap));
+  MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
   const int64_t first = surface->triangle_count, count = fill->triangles.count;
   MCOR_TRY(mcor_grow(context, (void**)&surface->triangles, first, count, 3 * sizeof(int32_t)));
   MCOR_TRY(mcor_grow(context, (void**)&surface->band_value, 0, count, sizeof(double)));
@@ -337,25 +345,4 @@ static mcor_status mcor_append_fill_triangles(
   }
   surface->triangle_count += count;
   return MCOR_OK;
-}
-
-mcor_status mcor_fill_lines(mcor_context* context, const mcor_input* input, mcor_surface* surface)
-{
-  mcor_filling* fill = context->run.fill;
-  if (!fill)
-  {
-    return MCOR_OK;
-  }
-  free(fill->value); /* the bands are known */
-  fill->value = NULL;
-  mcor_fill_job job = { .context = context, .fill = fill };
-  job.border = malloc((4 + 4 * (size_t)fill->line_count) * sizeof *job.border);
-  MCOR_TRY(mcor_allocated(context, job.border));
-  const mcor_status status =
-    mcor_visit_cap_squares(context, &fill->nodes, mcor_visit_fill_square, &job);
-  free(job.border);
-  MCOR_TRY(status);
-  MCOR_TRY(context->run.options->preview ? MCOR_OK : mcor_place_cap_cuts(&fill->cap));
-  MCOR_TRY(mcor_make_fill_points(context, fill, input, surface));
-  return mcor_append_fill_triangles(context, fill, surface);
 }

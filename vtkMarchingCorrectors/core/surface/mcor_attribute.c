@@ -146,35 +146,6 @@ static mcor_status mcor_store_attributes(
   return status;
 }
 
-/* Writes the constant components: those missing from the list, which is in the order of the
- * arrays. */
-static void mcor_store_constants(
-  const mcor_context* context, const mcor_input* input, int64_t points, mcor_surface* surface)
-{
-  const mcor_attributes* attributes = &context->attributes;
-  int next = 0;
-  for (int a = 0; a < input->attribute_count; ++a)
-  {
-    const mcor_array* array = &input->attributes[a];
-    const int width = mcor_components(array);
-    for (int c = 0; c < width && surface->attributes[a]; ++c)
-    {
-      if (next < attributes->varying_count && attributes->varying[next].attribute == a &&
-        attributes->varying[next].component == c)
-      {
-        ++next;
-        continue;
-      }
-      const double value = mcor_array_at(array, 0, c);
-      double* to = surface->attributes[a] + surface->point_count * width + c;
-      for (int64_t i = 0; i < points; ++i)
-      {
-        to[i * width] = value;
-      }
-    }
-  }
-}
-
 mcor_status mcor_find_curvature(mcor_context* context)
 {
   mcor_mesh* mesh = &context->mesh;
@@ -202,7 +173,29 @@ mcor_status mcor_add_attributes(
 {
   const mcor_mesh* mesh = &context->mesh;
   const int varying = context->attributes.varying_count;
-  mcor_store_constants(context, input, scanned[mesh->vertex_count], surface);
+  const mcor_component* component = context->attributes.varying;
+  /* Writes the constant components: those missing from the list, which is in the order of the
+   * arrays. */
+  for (int a = 0; a < input->attribute_count; ++a)
+  {
+    const mcor_array* array = &input->attributes[a];
+    const int width = mcor_components(array);
+    for (int c = 0; c < width && surface->attributes[a]; ++c)
+    {
+      if (component < context->attributes.varying + varying && component->attribute == a &&
+        component->component == c)
+      {
+        ++component;
+        continue;
+      }
+      const double value = mcor_array_at(array, 0, c);
+      double* to = surface->attributes[a] + surface->point_count * width + c;
+      for (cl_int i = 0; i < scanned[mesh->vertex_count]; ++i)
+      {
+        to[i * (int64_t)width] = value;
+      }
+    }
+  }
   MCOR_TRY(varying > 0 ? mcor_store_attributes(context, input, scanned, surface) : MCOR_OK);
   for (int first = MCOR_ATTRIBUTE_LIMIT; first < varying; first += MCOR_ATTRIBUTE_LIMIT)
   {

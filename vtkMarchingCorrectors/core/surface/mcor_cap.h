@@ -73,13 +73,11 @@ typedef struct mcor_cap_vertex
 mcor_status mcor_append_cap_vertices(
   mcor_context* context, const mcor_cap_vertex* vertices, int64_t count);
 void mcor_end_caps(mcor_context* context);
-/* Whether vertex v of the mesh belongs to caps alone. Its normal is that of the sides that it
- * lies on. */
+/* Whether vertex v of the mesh belongs to caps alone. */
 static inline bool mcor_is_cap(const mcor_context* context, int64_t v)
 {
   return v >= context->mesh.cap_first;
 }
-void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3]);
 
 /* ---- mcor_cap_square.c: the clipper ---- */
 

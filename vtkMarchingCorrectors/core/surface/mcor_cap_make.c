@@ -80,30 +80,6 @@ static mcor_status mcor_visit_cap_square(
   return mcor_add_cap_square(job, &square);
 }
 
-/* Caps the lower and the upper side of an axis, as far as this call's box has them. */
-static mcor_status mcor_cap_sides(mcor_cap_job* job, int axis)
-{
-  const mcor_context* context = job->context;
-  const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
-  const bool are_one =
-    mcor_has_cap_side(context, axis, 0) && apart == context->lattice.period[axis];
-  mcor_cap_nodes sides[2] = { { 0 }, { 0 } };
-  mcor_status status = MCOR_OK;
-  for (int upper = 0; upper < 2 && status == MCOR_OK; ++upper)
-  {
-    if (mcor_has_cap_side(context, axis, upper))
-    {
-      mcor_cap_nodes* nodes = &sides[upper];
-      status = mcor_load_cap_side(
-        job->context, axis, upper, upper && are_one ? &sides[0] : NULL, &job->points, nodes);
-      MCOR_THEN(status, mcor_visit_cap_squares(job->context, nodes, mcor_visit_cap_square, job));
-    }
-  }
-  mcor_free_cap_nodes(&sides[0]);
-  mcor_free_cap_nodes(&sides[1]);
-  return status;
-}
-
 /* Appends the caps' vertices and triangles to the mesh. */
 static mcor_status mcor_append_caps(mcor_cap_job* job)
 {
@@ -163,9 +139,26 @@ mcor_status mcor_cap(mcor_context* context)
   const int mapped = n == 0 ? 0 : all > n ? 4 : mcor_is_trimmed(context) ? 3 : 2;
   mcor_status status = mcor_map_all(context, views, mapped);
   MCOR_THEN(status, mcor_index_cap_edges(&job));
-  for (int axis = 0; axis < 3 && status == MCOR_OK; ++axis)
+  /* Caps the lower and the upper side of each axis, as far as this call's box has them. */
+  for (int axis = 0; axis < 3; ++axis)
   {
-    status = mcor_cap_sides(&job, axis);
+    const int apart = mcor_cap_plane(context, axis, 1) - mcor_cap_plane(context, axis, 0);
+    const bool has[2] = { mcor_has_cap_side(context, axis, 0),
+      mcor_has_cap_side(context, axis, 1) };
+    const bool are_one = has[0] && apart == context->lattice.period[axis];
+    mcor_cap_nodes sides[2] = { { 0 }, { 0 } };
+    for (int upper = 0; upper < 2; ++upper)
+    {
+      if (status == MCOR_OK && has[upper])
+      {
+        mcor_cap_nodes* nodes = &sides[upper];
+        status = mcor_load_cap_side(
+          context, axis, upper, upper && are_one ? &sides[0] : NULL, &job.points, nodes);
+        MCOR_THEN(status, mcor_visit_cap_squares(context, nodes, mcor_visit_cap_square, &job));
+      }
+    }
+    mcor_free_cap_nodes(&sides[0]);
+    mcor_free_cap_nodes(&sides[1]);
   }
   const bool places = context->space.axes == 2 && !context->run.options->preview;
   status = status == MCOR_OK && places ? mcor_place_cap_cuts(&job) : status;

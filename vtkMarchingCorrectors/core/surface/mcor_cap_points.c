@@ -5,7 +5,6 @@
  * mesh, behind all others. */
 
 #include "mcor_cap.h"
-#include "mcor_vector.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -129,22 +128,6 @@ int mcor_cap_plane(const mcor_context* context, int axis, int upper)
 }
 
 /* ---- Vertices ---- */
-
-void mcor_cap_normal(const mcor_context* context, const cl_int node[4], float normal[3])
-{
-  double n[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    n[a] = node[a] == mcor_cap_plane(context, a, 0) ? -1
-      : node[a] == mcor_cap_plane(context, a, 1)    ? 1
-                                                    : 0;
-  }
-  mcor_normalise(n); /* 0 of caps at walls: they get normals from their triangles */
-  for (int a = 0; a < 3; ++a)
-  {
-    normal[a] = (float)n[a];
-  }
-}
 
 void mcor_end_caps(mcor_context* context)
 {

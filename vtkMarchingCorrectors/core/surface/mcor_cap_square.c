@@ -58,20 +58,6 @@ static void mcor_square_node(
   node[2] = job->context->space.flat ? 0 : node[2];
 }
 
-static mcor_status mcor_cap_node_corner(
-  mcor_cap_job* job, const mcor_cap_square* square, int k, mcor_cap_corner* corner)
-{
-  cl_int node[3];
-  mcor_square_node(job, square, mcor_corner_u(k), mcor_corner_v(k), node);
-  for (int a = 0; a < 3; ++a)
-  {
-    corner->at[a] = node[a];
-  }
-  corner->margin = square->margin[k];
-  return mcor_find_cap_vertex(
-    job, &job->nodes, mcor_cap_key(node), corner->at, MCOR_CAP_FLAG, &corner->vertex);
-}
-
 /* Takes the surface's vertex on side k. Of the two of a pinched edge (see mcor_cell_emit) it is
  * the one on this cell's side. */
 static mcor_status mcor_cap_edge_corner(
@@ -279,7 +265,16 @@ mcor_status mcor_add_cap_square(mcor_cap_job* job, const mcor_cap_square* square
     }
     if (above[k])
     {
-      MCOR_TRY(mcor_cap_node_corner(job, square, k, &corners[count++]));
+      mcor_cap_corner* corner = &corners[count++];
+      cl_int node[3];
+      mcor_square_node(job, square, mcor_corner_u(k), mcor_corner_v(k), node);
+      for (int a = 0; a < 3; ++a)
+      {
+        corner->at[a] = node[a];
+      }
+      corner->margin = square->margin[k];
+      MCOR_TRY(mcor_find_cap_vertex(
+        job, &job->nodes, mcor_cap_key(node), corner->at, MCOR_CAP_FLAG, &corner->vertex));
     }
     if (apart ? above[k] : above[k] != above[(k + 1) % 4])
     {

@@ -89,11 +89,15 @@ static mcor_status mcor_load_wall_edges(mcor_wall_job* job)
 
 /* ---- Cells ---- */
 
-/* Loads a cell. Returns false where a corner is not near both fluid and solids. */
-static bool mcor_load_wall_cell(
-  const mcor_cap_nodes* nodes, const mcor_cap_brick* brick, int inner, mcor_wall_cell* cell)
+/* Loads a cell. Returns whether the surface ends there: all corners are near both fluid and solids,
+ * and corners above, or vertices on the cell's edges, lie on both sides of that end. */
+static bool mcor_load_wall_cell(const mcor_wall_job* job, int64_t number, mcor_wall_cell* cell)
 {
-  bool near = true;
+  const mcor_cap_job* cap = job->cap;
+  const mcor_cap_nodes* nodes = &job->nodes;
+  const mcor_cap_brick* brick = &nodes->bricks.of[number / MCOR_BRICK_NODES];
+  const int inner = (int)(number % MCOR_BRICK_NODES);
+  bool near = true, inside = false, outside = false, is_crossed = false;
   *cell =
     (mcor_wall_cell){ .key = brick->key | (cl_ulong)inner, .is_used = brick->used >> inner & 1 };
   for (int a = 0; a < 3; ++a)
@@ -110,11 +114,14 @@ static bool mcor_load_wall_cell(
       up |= at >> 2 << a;
       bit |= (at & 3) << 2 * a;
     }
-    const int32_t number = brick->up[up];
-    const mcor_cap_brick* of = &nodes->bricks.of[number];
-    near = near && number > 0;
+    const int32_t corner = brick->up[up];
+    const mcor_cap_brick* of = &nodes->bricks.of[corner];
+    near = near && corner > 0;
     cell->above[c] = of->above >> bit & 1;
-    cell->margin[c] = nodes->margin[(int64_t)number * MCOR_BRICK_NODES + bit];
+    cell->margin[c] = nodes->margin[(int64_t)corner * MCOR_BRICK_NODES + bit];
+    is_crossed = is_crossed || cell->above[c] != cell->above[0];
+    inside = inside || (cell->above[c] && cell->margin[c] > 0);
+    outside = outside || (cell->above[c] && !(cell->margin[c] > 0));
     for (int a = 0; a < 3; ++a)
     {
       if (c == 0 || c == 1 << a)
@@ -123,58 +130,19 @@ static bool mcor_load_wall_cell(
       }
     }
   }
-  return near;
-}
-
-/* Whether the surface ends in a cell: corners above, or vertices on its edges, lie on both sides
- * of that end. */
-static bool mcor_is_wall_cell(const mcor_wall_job* job, const mcor_wall_cell* cell)
-{
-  const mcor_cap_job* cap = job->cap;
-  bool inside = false, outside = false, is_crossed = false;
-  for (int c = 0; c < 8; ++c)
+  for (int e = 0; e < 24 && near && is_crossed && cell->is_used; ++e)
   {
-    is_crossed = is_crossed || cell->above[c] != cell->above[0];
-    inside = inside || (cell->above[c] && cell->margin[c] > 0);
-    outside = outside || (cell->above[c] && !(cell->margin[c] > 0));
-    for (int a = 0; a < 3; ++a)
-    {
-      if ((c >> a & 1) || cell->above[c] == cell->above[c | 1 << a] || !cell->is_used)
-      {
-        continue;
-      }
-      const cl_int node[3] = { cell->node[0] + (c & 1), cell->node[1] + (c >> 1 & 1),
-        cell->node[2] + (c >> 2) };
-      const int32_t v = mcor_find_number(&cap->edges[a], mcor_cap_key(node));
-      const bool is_inside =
-        v >= 0 && mcor_get_real(cap->context, cap->quantity, v) > cap->threshold;
-      inside = inside || (v >= 0 && is_inside);
-      outside = outside || (v >= 0 && !is_inside);
-    }
+    const int c = e / 3, a = e % 3;
+    const cl_int node[3] = { cell->node[0] + (c & 1), cell->node[1] + (c >> 1 & 1),
+      cell->node[2] + (c >> 2) };
+    const int32_t v = (c >> a & 1) || cell->above[c] == cell->above[c | 1 << a]
+      ? -1
+      : mcor_find_number(&cap->edges[a], mcor_cap_key(node));
+    const bool is_inside = v >= 0 && mcor_get_real(cap->context, cap->quantity, v) > cap->threshold;
+    inside = inside || is_inside;
+    outside = outside || (v >= 0 && !is_inside);
   }
-  return inside && outside && (!is_crossed || cell->is_used);
-}
-
-/* Cuts one face of a cell and keeps the edges that this leaves. */
-static mcor_status mcor_cut_wall_face(
-  mcor_cap_job* cap, const mcor_wall_cell* cell, int axis, int upper)
-{
-  mcor_cap_square square = { .axis = axis,
-    .upper = upper,
-    .node = { cell->node[0], cell->node[1], cell->node[2] },
-    .is_joined = cell->joined[axis][upper] };
-  square.node[axis] += upper;
-  int total = 0;
-  for (int k = 0; k < 4; ++k)
-  {
-    const int c =
-      upper << axis | mcor_corner_u(k) << (axis + 1) % 3 | mcor_corner_v(k) << (axis + 2) % 3;
-    square.above[k] = cell->above[c];
-    square.margin[k] = cell->margin[c];
-    total += cell->above[c];
-  }
-  const bool is_cut = total == 4 || (total > 0 && cell->is_used);
-  return is_cut ? mcor_add_cap_square(cap, &square) : MCOR_OK;
+  return near && inside && outside && (!is_crossed || cell->is_used);
 }
 
 /* ---- Loops ---- */
@@ -215,7 +183,7 @@ static mcor_status mcor_fill_wall_loop(mcor_cap_job* job, const int32_t* loop, i
   return MCOR_OK;
 }
 
-/* Joins the edges of a cell to loops, and fills them. */
+/* Cuts the faces of a cell, joins the edges that this leaves to loops, and fills them. */
 static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* cell)
 {
   mcor_cap_job* cap = job->cap;
@@ -224,7 +192,23 @@ static mcor_status mcor_cap_wall_cell(mcor_wall_job* job, const mcor_wall_cell* 
   border->count = 0;
   for (int side = 0; side < 6; ++side)
   {
-    MCOR_TRY(mcor_cut_wall_face(cap, cell, side / 2, side % 2));
+    const int axis = side / 2, upper = side % 2;
+    mcor_cap_square square = { .axis = axis,
+      .upper = upper,
+      .node = { cell->node[0], cell->node[1], cell->node[2] },
+      .is_joined = cell->joined[axis][upper] };
+    square.node[axis] += upper;
+    int total = 0;
+    for (int k = 0; k < 4; ++k)
+    {
+      const int c =
+        upper << axis | mcor_corner_u(k) << (axis + 1) % 3 | mcor_corner_v(k) << (axis + 2) % 3;
+      square.above[k] = cell->above[c];
+      square.margin[k] = cell->margin[c];
+      total += cell->above[c];
+    }
+    MCOR_TRY(
+      total == 4 || (total > 0 && cell->is_used) ? mcor_add_cap_square(cap, &square) : MCOR_OK);
   }
   for (; job->edge < job->edge_count && job->edges[job->edge].cell <= cell->key; ++job->edge)
   {
@@ -262,13 +246,8 @@ mcor_status mcor_cap_walls(mcor_cap_job* cap)
   cap->border = &border;
   for (int64_t i = MCOR_BRICK_NODES; i < job.nodes.node_count && status == MCOR_OK; ++i)
   {
-    const mcor_cap_brick* brick = &job.nodes.bricks.of[i / MCOR_BRICK_NODES];
-    const int inner = (int)(i % MCOR_BRICK_NODES);
     mcor_wall_cell cell;
-    if (mcor_load_wall_cell(&job.nodes, brick, inner, &cell) && mcor_is_wall_cell(&job, &cell))
-    {
-      status = mcor_cap_wall_cell(&job, &cell);
-    }
+    status = mcor_load_wall_cell(&job, i, &cell) ? mcor_cap_wall_cell(&job, &cell) : MCOR_OK;
     status = status == MCOR_OK && i % (1024 * MCOR_BRICK_NODES) == MCOR_BRICK_NODES - 1
       ? mcor_report_launch(cap->context)
       : status;

@@ -67,39 +67,42 @@ static mcor_status mcor_number_vertices(mcor_context* context, bool all, int* co
   return status;
 }
 
-static void mcor_list_mappings(mcor_download* d)
+/* Maps the buffers of the vertices. */
+static mcor_status mcor_map_vertices(mcor_download* d)
 {
-  const mcor_context* context = d->context;
+  mcor_context* context = d->context;
   const mcor_mesh* mesh = &context->mesh;
-  const mcor_options* options = context->run.options;
-  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size;
-  const mcor_mapping all[] = { { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned },
-    { &mesh->node, n * 4 * sizeof(cl_int), &d->node }, { &mesh->offset, n * 4 * real, &d->offset },
-    { &mesh->linear, (size_t)mesh->march_count * real, &d->linear },
-    { &mesh->field_value, n * real, &d->value }, { &mesh->gradient, n * 4 * real, &d->gradient },
-    { &mesh->vertex_weight, n * real, &d->weight }, { &mesh->flag, n, &d->flag } };
-  int count = 8;
-  mcor_mapping* mappings = d->mappings;
-  memcpy(mappings, all, sizeof all);
-  if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE)
+  const unsigned wanted = context->run.options->outputs;
+  const size_t n = (size_t)mesh->vertex_count, real = context->cl.real_size,
+               cuts = (size_t)(mesh->cap_first - mesh->march_count);
+  const struct
   {
-    mappings[count++] = (mcor_mapping){ &context->trim.eigenvalue, n * real, &d->eigenvalue };
-  }
-  if (options->outputs & MCOR_OUT_NEAREST_PARTICLE)
+    bool wanted;
+    mcor_mapping mapping;
+  } all[MCOR_DOWNLOADS] = { { true, { &mesh->scanned, (n + 1) * sizeof(cl_int), &d->scanned } },
+    { true, { &mesh->node, n * 4 * sizeof(cl_int), &d->node } },
+    { true, { &mesh->offset, n * 4 * real, &d->offset } },
+    { true, { &mesh->linear, (size_t)mesh->march_count * real, &d->linear } },
+    { true, { &mesh->field_value, n * real, &d->value } },
+    { true, { &mesh->gradient, n * 4 * real, &d->gradient } },
+    { true, { &mesh->vertex_weight, n * real, &d->weight } },
+    { true, { &mesh->flag, n, &d->flag } },
+    { wanted & MCOR_OUT_BOUNDARY_EIGENVALUE,
+      { &context->trim.eigenvalue, n * real, &d->eigenvalue } },
+    { wanted & MCOR_OUT_NEAREST_PARTICLE,
+      { &context->attributes.nearest, n * sizeof(cl_int), &d->nearest } },
+    { wanted & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE),
+      { &mesh->curvature, 2 * n * real, &d->curvature } },
+    { (wanted & MCOR_OUT_POINT_KEYS) && cuts > 0,
+      { &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts } } };
+  for (int i = 0; i < MCOR_DOWNLOADS; ++i)
   {
-    mappings[count++] =
-      (mcor_mapping){ &context->attributes.nearest, n * sizeof(cl_int), &d->nearest };
+    if (all[i].wanted)
+    {
+      d->mappings[d->mapped++] = all[i].mapping;
+    }
   }
-  if (options->outputs & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE))
-  {
-    mappings[count++] = (mcor_mapping){ &mesh->curvature, 2 * n * real, &d->curvature };
-  }
-  const size_t cuts = (size_t)(mesh->cap_first - mesh->march_count);
-  if ((options->outputs & MCOR_OUT_POINT_KEYS) && cuts > 0)
-  {
-    mappings[count++] = (mcor_mapping){ &mesh->cut_edges, cuts * sizeof(cl_ulong), &d->cuts };
-  }
-  d->mapped = count;
+  return mcor_map_all(context, d->mappings, d->mapped);
 }
 
 static const cl_int* mcor_node_of(const mcor_download* d, int64_t v)
@@ -180,23 +183,58 @@ static void mcor_count_correction(const mcor_download* d, int64_t v, mcor_tally*
   tally->correction_max = length > tally->correction_max ? length : tally->correction_max;
 }
 
-/* Computes the normal, opposite to the gradient; zero where that vanishes. Scales first: the
- * square of a small gradient may vanish, that of a large one overflow. */
-static void mcor_store_normal(const double gradient[3], float normal[3])
+/* Computes the normal, opposite to the gradient; of a vertex that only caps have, that of the sides
+ * it lies on. It is zero where that vanishes, and at walls. Scales first: the square of a small
+ * gradient may vanish, that of a large one overflow. */
+static void mcor_store_normal(
+  const mcor_download* d, int64_t v, const double gradient[3], float normal[3])
 {
-  double most = 0, square = 0;
+  const cl_int* node = mcor_node_of(d, v);
+  const bool is_cap = mcor_is_cap(d->context, v);
+  double n[3], most = 0, square = 0;
   for (int a = 0; a < 3; ++a)
   {
-    most = fabs(gradient[a]) > most ? fabs(gradient[a]) : most;
+    n[a] = !is_cap                                  ? -gradient[a]
+      : node[a] == mcor_cap_plane(d->context, a, 0) ? -1
+                                                    : node[a] == mcor_cap_plane(d->context, a, 1);
+    most = fabs(n[a]) > most ? fabs(n[a]) : most;
   }
   for (int a = 0; a < 3 && most > 0; ++a)
   {
-    square += gradient[a] / most * (gradient[a] / most);
+    square += n[a] / most * (n[a] / most);
   }
   for (int a = 0; a < 3; ++a)
   {
-    normal[a] = most > 0 ? (float)(-gradient[a] / most / sqrt(square)) : 0;
+    normal[a] = most > 0 ? (float)(n[a] / most / sqrt(square)) : 0;
   }
+}
+
+/* Returns a vertex's key: by node, then axis. The two vertices of a pinched edge follow each
+ * other. */
+static uint64_t mcor_march_key(const mcor_download* d, int64_t v)
+{
+  const cl_int* node = mcor_node_of(d, v);
+  const bool copy = v > 0 && memcmp(node, node - 4, 4 * sizeof *node) == 0;
+  return mcor_node_key(&d->context->lattice, node) << 3 | (uint64_t)(node[3] & 3) << 1 |
+    (uint64_t)copy;
+}
+
+/* Stores the key of vertex v. It depends on the vertex alone, not on the part of the surface that a
+ * call makes, and keys ascend in the order of the whole surface's points. */
+static void mcor_store_point_key(const mcor_download* d, int64_t v, uint64_t key[MCOR_POINT_KEY])
+{
+  const mcor_context* context = d->context;
+  const cl_ulong* cuts = d->cuts;
+  const int64_t cut = v - context->mesh.march_count;
+  const bool of_cap = mcor_is_cap(context, v);
+  key[0] = 3 * (uint64_t)context->run.iso.number + (of_cap ? 2 : cut >= 0);
+  if (of_cap)
+  {
+    memcpy(key + 1, context->mesh.cap_keys + 2 * (v - context->mesh.cap_first), 2 * sizeof *key);
+    return;
+  }
+  key[1] = mcor_march_key(d, cut < 0 ? v : (int64_t)(cuts[cut] >> 32));
+  key[2] = cut < 0 ? 0 : mcor_march_key(d, (int64_t)(cuts[cut] & UINT32_MAX));
 }
 
 /* Writes to an array that the caller wants. */
@@ -228,13 +266,9 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
       s->gradients[3 * to + a] = gradient[a] / cube;
     }
   }
-  if (s->normals && mcor_is_cap(context, v))
+  if (s->normals)
   {
-    mcor_cap_normal(context, at, s->normals + 3 * to);
-  }
-  else if (s->normals)
-  {
-    mcor_store_normal(gradient, s->normals + 3 * to);
+    mcor_store_normal(d, v, gradient, s->normals + 3 * to);
   }
   MCOR_STORE(s->weight_sum, (float)mcor_get_real(context, d->weight, v))
   MCOR_STORE(s->boundary_eigenvalue, (float)mcor_get_real(context, d->eigenvalue, v))
@@ -247,7 +281,7 @@ static void mcor_store_point(const mcor_download* d, int64_t v, int64_t to)
   MCOR_STORE(s->iso_value, d->iso)
   if (s->point_keys)
   {
-    mcor_store_point_key(context, d->node, d->cuts, v, s->point_keys + MCOR_POINT_KEY * to);
+    mcor_store_point_key(d, v, s->point_keys + MCOR_POINT_KEY * to);
   }
 }
 
@@ -364,8 +398,7 @@ static mcor_status mcor_append_mesh(
         ? mcor_find_curvature(context)
         : MCOR_OK);
     MCOR_TRY(options->outputs & MCOR_OUT_NEAREST_PARTICLE ? mcor_find_nearest(context) : MCOR_OK);
-    mcor_list_mappings(download);
-    MCOR_TRY(mcor_map_all(context, download->mappings, download->mapped));
+    MCOR_TRY(mcor_map_vertices(download));
     mcor_number_lines(context, download->scanned, base);
   }
   MCOR_TRY(mcor_keep_cells(context, surface));

@@ -246,19 +246,22 @@ static mcor_status mcor_place_vertices(mcor_bunches* bunches)
 /* Takes the bad bunches apart, and the bunches that lean on them; adds their vertices. */
 static mcor_status mcor_take_apart(mcor_bunches* bunches)
 {
-  bool found = true;
-  for (int round = 0; round < MCOR_COMPACT_ROUNDS && found; ++round)
+  for (bunches->round = 0; bunches->round < MCOR_COMPACT_ROUNDS; ++bunches->round)
   {
-    MCOR_TRY(mcor_find_bad(bunches, round, &found));
+    MCOR_TRY(mcor_find_bad(bunches));
+    if (!atomic_load(&bunches->bad))
+    {
+      return MCOR_OK;
+    }
     int count = 0;
-    for (int i = 0; i < bunches->sorted_count && found; ++i)
+    for (int i = 0; i < bunches->sorted_count; ++i)
     {
       if (mcor_state_of(bunches, bunches->sorted[i].first) == MCOR_BUNCH_BAD)
       {
         mcor_drop_leaning(bunches, bunches->sorted[i].first, MCOR_BUNCH_BAD);
       }
     }
-    for (int i = 0; i < bunches->sorted_count && found; ++i)
+    for (int i = 0; i < bunches->sorted_count; ++i)
     {
       const int32_t first = bunches->sorted[i].first;
       const int state = mcor_state_of(bunches, first);
@@ -272,7 +275,7 @@ static mcor_status mcor_take_apart(mcor_bunches* bunches)
         bunches->order[count++] = v;
       }
     }
-    MCOR_TRY(found && !bunches->late ? mcor_add_vertices(bunches, false, NULL, count) : MCOR_OK);
+    MCOR_TRY(!bunches->late ? mcor_add_vertices(bunches, false, NULL, count) : MCOR_OK);
   }
   return MCOR_OK;
 }

@@ -74,6 +74,8 @@ typedef struct mcor_bunches
   mcor_point* points; /* [point_room]: vertices of the mesh, point_count so far */
   int point_count;
   int64_t point_room;
+  int round;          /* of taking apart */
+  atomic_int bad;     /* whether it has found a bunch to take apart */
   int32_t* now;       /* [vertex_count]: place of a vertex in the mesh, see mcor_place_of */
   atomic_uchar* wide; /* [vertex_count]: whether it has the widest angle of a sliver */
   uint8_t* held;      /* [vertex_count]: keys of cuts need the vertex, even if it is merged */
@@ -160,7 +162,7 @@ mcor_status mcor_add_vertices(
 /* mcor_compact_face.c. Finds the present places of vertices (`now`); finds the merged bunches that
  * are to be taken apart; moves vertices of slivers. */
 mcor_status mcor_find_places(mcor_bunches* bunches);
-mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found);
+mcor_status mcor_find_bad(mcor_bunches* bunches);
 mcor_status mcor_move_slivers(mcor_bunches* bunches);
 
 /* mcor_compact_bunch.c. Finds the bunches, and merges the ones that can be, whatever becomes of

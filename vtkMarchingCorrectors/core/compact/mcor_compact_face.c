@@ -97,19 +97,12 @@ static mcor_status mcor_update_points(mcor_bunches* bunches)
 
 /* ---- Bunches to be taken apart ---- */
 
-typedef struct mcor_facing
+static void mcor_make_bad(mcor_bunches* bunches, int32_t first)
 {
-  mcor_bunches* bunches;
-  int round;
-  atomic_int bad; /* whether any bunch is bad */
-} mcor_facing;
-
-static void mcor_make_bad(mcor_facing* facing, int32_t first)
-{
-  if (mcor_is_merged(facing->bunches, first))
+  if (mcor_is_merged(bunches, first))
   {
-    mcor_set_state(facing->bunches, first, MCOR_BUNCH_BAD);
-    atomic_store_explicit(&facing->bad, 1, memory_order_relaxed);
+    mcor_set_state(bunches, first, MCOR_BUNCH_BAD);
+    atomic_store_explicit(&bunches->bad, 1, memory_order_relaxed);
   }
 }
 
@@ -137,13 +130,12 @@ static bool mcor_is_turned(const mcor_bunches* bunches, const int32_t place[3])
 
 static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_facing* facing = data;
-  const mcor_bunches* bunches = facing->bunches;
+  mcor_bunches* bunches = data;
   const int corners = bunches->corners;
   for (int64_t t = first; t < last; ++t)
   {
     int32_t place[3], of[3];
-    bool merged = false, fresh = facing->round == 0, missed = false;
+    bool merged = false, fresh = bunches->round == 0, missed = false;
     if (!mcor_places_of(bunches, t, place))
     {
       continue;
@@ -163,7 +155,7 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
     {
       if (bunches->points[place[c]].linear > 0 && mcor_is_merged(bunches, of[c]))
       {
-        mcor_make_bad(facing, of[c]);
+        mcor_make_bad(bunches, of[c]);
         missed = true;
       }
     }
@@ -171,23 +163,20 @@ static void mcor_face_slice(void* data, int slice, int64_t first, int64_t last)
     {
       for (int c = 0; c < corners; ++c)
       {
-        mcor_make_bad(facing, of[c]);
+        mcor_make_bad(bunches, of[c]);
       }
     }
   }
   (void)slice;
 }
 
-mcor_status mcor_find_bad(mcor_bunches* bunches, int round, bool* found)
+mcor_status mcor_find_bad(mcor_bunches* bunches)
 {
-  mcor_facing facing = { .bunches = bunches, .round = round };
-  atomic_init(&facing.bad, 0);
+  atomic_store(&bunches->bad, 0);
   MCOR_TRY(mcor_update_points(bunches));
   MCOR_TRY(mcor_find_places(bunches));
-  MCOR_TRY(mcor_parallel_run(
-    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_face_slice, &facing, NULL));
-  *found = atomic_load(&facing.bad);
-  return MCOR_OK;
+  return mcor_parallel_run(
+    bunches->context, bunches->triangle_count, MCOR_LIGHT_GRAIN, mcor_face_slice, bunches, NULL);
 }
 
 /* ---- Slivers ---- */

@@ -56,58 +56,55 @@ static double mcor_middle_eigenvalue(double m[3][3])
   return fmax(low, fmin(high, m[2][2]));
 }
 
-static void mcor_decompose(const double j[3][3], const mcor_flow* flow, int64_t i)
-{
-  double s[3][3], squares[3][3], trace = j[0][0] + j[1][1] + j[2][2], jj = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    for (int b = 0; b < 3; ++b)
-    {
-      s[a][b] = 0.5 * (j[a][b] + j[b][a]);
-      jj += j[a][b] * j[b][a];
-    }
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    for (int b = 0; b < 3; ++b)
-    {
-      squares[a][b] = 0;
-      for (int k = 0; k < 3; ++k)
-      {
-        const double left = j[a][k] - s[a][k], right = j[k][b] - s[k][b];
-        squares[a][b] += s[a][k] * s[k][b] + left * right;
-      }
-    }
-  }
-  if (flow->divergence)
-  {
-    flow->divergence[i] = trace;
-  }
-  if (flow->q_criterion)
-  {
-    flow->q_criterion[i] = 0.5 * (trace * trace - jj);
-  }
-  if (flow->lambda2)
-  {
-    flow->lambda2[i] = mcor_middle_eigenvalue(squares);
-  }
-  for (int a = 0; a < 3 && flow->vorticity; ++a)
-  {
-    const int b = (a + 1) % 3, c = (a + 2) % 3;
-    flow->vorticity[3 * i + a] = j[c][b] - j[b][c];
-  }
-  for (int k = 0; k < 9 && flow->strain_rate; ++k)
-  {
-    flow->strain_rate[9 * i + k] = s[k / 3][k % 3];
-  }
-}
-
 static void mcor_decompose_slice(void* data, int slice, int64_t first, int64_t last)
 {
   const mcor_decompose_job* job = data;
+  const mcor_flow* flow = job->flow;
   for (int64_t i = first; i < last; ++i)
   {
-    mcor_decompose((const double(*)[3])(job->gradients + 9 * i), job->flow, i);
+    const double(*j)[3] = (const double(*)[3])(job->gradients + 9 * i);
+    double s[3][3], squares[3][3], trace = j[0][0] + j[1][1] + j[2][2], jj = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      for (int b = 0; b < 3; ++b)
+      {
+        s[a][b] = 0.5 * (j[a][b] + j[b][a]);
+        jj += j[a][b] * j[b][a];
+      }
+    }
+    for (int a = 0; a < 3; ++a)
+    {
+      for (int b = 0; b < 3; ++b)
+      {
+        squares[a][b] = 0;
+        for (int k = 0; k < 3; ++k)
+        {
+          const double left = j[a][k] - s[a][k], right = j[k][b] - s[k][b];
+          squares[a][b] += s[a][k] * s[k][b] + left * right;
+        }
+      }
+    }
+    if (flow->divergence)
+    {
+      flow->divergence[i] = trace;
+    }
+    if (flow->q_criterion)
+    {
+      flow->q_criterion[i] = 0.5 * (trace * trace - jj);
+    }
+    if (flow->lambda2)
+    {
+      flow->lambda2[i] = mcor_middle_eigenvalue(squares);
+    }
+    for (int a = 0; a < 3 && flow->vorticity; ++a)
+    {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      flow->vorticity[3 * i + a] = j[c][b] - j[b][c];
+    }
+    for (int k = 0; k < 9 && flow->strain_rate; ++k)
+    {
+      flow->strain_rate[9 * i + k] = s[k / 3][k % 3];
+    }
   }
   (void)slice;
 }

@@ -38,29 +38,6 @@ typedef struct mcor_derive_run
   cl_int* particles; /* [grid.count] index on the device, in input order, of each sorted particle */
 } mcor_derive_run;
 
-/* ---- arrays ---- */
-
-/* Loads the varying components as fixed-point numbers, and sets their scales to match. */
-static mcor_status mcor_load_arrays(mcor_derive_run* run)
-{
-  mcor_context* context = run->context;
-  const mcor_attributes* attributes = &context->attributes;
-  const size_t count = (size_t)context->grid.count, fix = context->cl.fix_size;
-  MCOR_TRY(mcor_reserve(context, &run->arrays, (size_t)attributes->varying_count * count * fix));
-  for (int i = 0; i < attributes->varying_count; ++i)
-  {
-    mcor_component* c = &attributes->varying[i];
-    /* One bit is for the sign, one for differences. */
-    c->scale = ldexp(c->scale, fix == sizeof(int32_t) ? 29 : 61);
-    MCOR_TRY(mcor_sort_values(context, run->input, &run->input->attributes[c->attribute],
-      c->component, c->shift, c->scale, true, &run->arrays, i));
-  }
-  mcor_release(context, &context->stage.values);
-  run->particles = malloc(count * sizeof(cl_int) + 1);
-  MCOR_TRY(mcor_allocated(context, run->particles));
-  return mcor_read(context, &context->grid.order, 0, run->particles, count * sizeof(cl_int));
-}
-
 /* ---- evaluation ---- */
 
 /* Inverts m. Returns false if that would magnify rounding too much. */
@@ -199,8 +176,23 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
 static mcor_status mcor_derive_all(mcor_derive_run* run)
 {
   mcor_context* context = run->context;
+  const mcor_attributes* attributes = &context->attributes;
   const int particles = context->grid.count;
-  MCOR_TRY(mcor_load_arrays(run));
+  const size_t count = (size_t)particles, fix = context->cl.fix_size;
+  /* Loads the varying components as fixed-point numbers, and sets their scales to match. */
+  MCOR_TRY(mcor_reserve(context, &run->arrays, (size_t)attributes->varying_count * count * fix));
+  for (int i = 0; i < attributes->varying_count; ++i)
+  {
+    mcor_component* c = &attributes->varying[i];
+    /* One bit is for the sign, one for differences. */
+    c->scale = ldexp(c->scale, fix == sizeof(int32_t) ? 29 : 61);
+    MCOR_TRY(mcor_sort_values(context, run->input, &run->input->attributes[c->attribute],
+      c->component, c->shift, c->scale, true, &run->arrays, i));
+  }
+  mcor_release(context, &context->stage.values);
+  run->particles = malloc(count * sizeof(cl_int) + 1);
+  MCOR_TRY(mcor_allocated(context, run->particles));
+  MCOR_TRY(mcor_read(context, &context->grid.order, 0, run->particles, count * sizeof(cl_int)));
   for (run->first = 0; run->first < particles; run->first += run->count)
   {
     const int rest = particles - run->first;

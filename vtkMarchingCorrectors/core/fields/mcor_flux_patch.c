@@ -294,26 +294,6 @@ static mcor_status mcor_add_shape(mcor_flux_job* job, int64_t number)
   }
 }
 
-/* Whether the section has an area, or would have one beside the plane of the particles. */
-static bool mcor_has_size(const mcor_flux_job* job, int64_t number)
-{
-  const mcor_section* section = &job->sections[number];
-  const double* x = section->points;
-  if (section->shape == MCOR_SECTION_DISC)
-  {
-    return section->radius > 0 && mcor_dot(x + 3, x + 3) > 0;
-  }
-  for (int a = 0; a < 3 && section->shape == MCOR_SECTION_BOX; ++a)
-  {
-    const bool flat = job->is_plane && a == job->across;
-    if (flat ? x[a] > x[3 + a] : x[a] >= x[3 + a])
-    {
-      return false;
-    }
-  }
-  return section->shape == MCOR_SECTION_BOX || job->found[number].area > 0 || job->is_plane;
-}
-
 mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
 {
   static const int points[MCOR_SECTION_SHAPE_COUNT] = { 3, 2, 2, 3, 2 };
@@ -331,14 +311,24 @@ mcor_status mcor_add_section(mcor_flux_job* job, int64_t number)
     (long long)n);
   for (int64_t i = 0; i < n; ++i)
   {
-    const double* x = section->points + 3 * i;
-    MCOR_RETURN_IF(!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]), context,
+    const double* p = section->points + 3 * i;
+    MCOR_RETURN_IF(!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]), context,
       MCOR_INVALID_ARGUMENT,
-      "Section %s has a point that is not finite, (%g, %g, %g). Give it numbers.", label.text, x[0],
-      x[1], x[2]);
+      "Section %s has a point that is not finite, (%g, %g, %g). Give it numbers.", label.text, p[0],
+      p[1], p[2]);
   }
   MCOR_TRY(mcor_add_shape(job, number));
-  MCOR_RETURN_IF(!mcor_has_size(job, number), context, MCOR_INVALID_ARGUMENT,
+  /* Whether the section has an area, or would have one beside the plane of the particles. */
+  const double* x = section->points;
+  bool has_size = section->shape == MCOR_SECTION_DISC
+    ? section->radius > 0 && mcor_dot(x + 3, x + 3) > 0
+    : section->shape == MCOR_SECTION_BOX || job->found[number].area > 0 || job->is_plane;
+  for (int a = 0; a < 3 && section->shape == MCOR_SECTION_BOX; ++a)
+  {
+    const bool flat = job->is_plane && a == job->across;
+    has_size = has_size && (x[a] < x[3 + a] || (flat && x[a] == x[3 + a]));
+  }
+  MCOR_RETURN_IF(!has_size, context, MCOR_INVALID_ARGUMENT,
     "Section %s has no area. Give it edges of some length that are not parallel, a radius above 0, "
     "or a box whose first sides are the lower ones.",
     label.text);

@@ -143,41 +143,38 @@ static mcor_status mcor_flatten_lines(mcor_gauge_job* job, mcor_gauge_line* line
   return MCOR_OK;
 }
 
-static mcor_status mcor_gauge_lines(mcor_context* context, const mcor_input* input,
-  const mcor_options* options, mcor_gauge_job* job, mcor_gauge_line* flat)
-{
-  double box[6];
-  const void* all = NULL;
-  int64_t count = 0;
-  MCOR_TRY(mcor_is_plane(context) ? mcor_flatten_lines(job, flat, box) : MCOR_OK);
-  MCOR_TRY(mcor_check_input(context, input, options));
-  for (int64_t i = 0; i < job->line_count; ++i)
-  {
-    MCOR_TRY(mcor_check_line(context, &job->lines[i], i));
-  }
-  MCOR_TRY(mcor_gauge_particles(context, input, options, job));
-  MCOR_TRY(mcor_gather(
-    context, job->records.of, job->records.count, sizeof *job->records.of, &all, &count));
-  MCOR_TRY(mcor_read_lines(job, all, count));
-  for (int64_t i = 0; i < job->gauges->count; ++i)
-  {
-    double* place = job->gauges->readings[i].place; /* NaN where dry */
-    mcor_unflatten_doubles(&context->plane, place, 1, place[2] + context->plane.at);
-  }
-  return input->count == 0 || job->line_count == 0 ? MCOR_OK : mcor_finish_field(context);
-}
-
 static mcor_status mcor_run_gauge(
   mcor_context* context, const mcor_input* input, const mcor_options* options, void* data)
 {
   mcor_gauge_job job = *(const mcor_gauge_job*)data;
   mcor_gauge_line* flat = malloc((size_t)job.line_count * sizeof *flat + 1);
+  double box[6];
+  const void* all = NULL;
+  int64_t count = 0;
   mcor_free_gauges(job.gauges); /* results of an earlier attempt */
   mcor_status status = mcor_allocated(context, flat);
-  MCOR_THEN(status, mcor_gauge_lines(context, input, options, &job, flat));
+  if (mcor_is_plane(context))
+  {
+    MCOR_THEN(status, mcor_flatten_lines(&job, flat, box));
+  }
+  MCOR_THEN(status, mcor_check_input(context, input, options));
+  for (int64_t i = 0; i < job.line_count; ++i)
+  {
+    MCOR_THEN(status, mcor_check_line(context, &job.lines[i], i));
+  }
+  MCOR_THEN(status, mcor_gauge_particles(context, input, options, &job));
+  MCOR_THEN(status,
+    mcor_gather(context, job.records.of, job.records.count, sizeof *job.records.of, &all, &count));
+  MCOR_THEN(status, mcor_read_lines(&job, all, count));
+  for (int64_t i = 0; i < job.gauges->count; ++i)
+  {
+    double* place = job.gauges->readings[i].place; /* NaN where dry */
+    mcor_unflatten_doubles(&context->plane, place, 1, place[2] + context->plane.at);
+  }
   mcor_free_gauge_parts(&job);
   free(flat);
-  return status;
+  return status != MCOR_OK || input->count == 0 || job.line_count == 0 ? status
+                                                                       : mcor_finish_field(context);
 }
 
 mcor_status mcor_begin_level(mcor_context* context, const mcor_options* options, const char* who,

@@ -142,23 +142,23 @@ mcor_status mcor_probe_batch(mcor_probe_run* run, int64_t first, int64_t last)
   }
   const size_t n = (size_t)run->inside, real = context->cl.real_size,
                arrays = (size_t)context->attributes.count;
-  MCOR_TRY(mcor_group_batch(context, &run->batch, run->count, run->inside, &run->group_count));
+  int groups;
+  MCOR_TRY(mcor_group_batch(context, &run->batch, run->count, run->inside, &groups));
   MCOR_TRY(mcor_reserve(context, &run->weight, n * real));
   MCOR_TRY(mcor_reserve(context, &run->sums, n * arrays * real));
   const int cluster = MCOR_CLUSTER_OF(context->cl.lanes);
-  MCOR_TRY(
-    MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, (run->group_count + cluster - 1) / cluster,
-      MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
-      MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
-      MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_sums", MCOR_HEAVY, (groups + cluster - 1) / cluster,
+    MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
+    MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_BUFFER(&run->weight),
+    MCOR_ATTRIBUTE_ARGS(context, &run->sums)));
   if (run->samples->weight_gradient)
   {
     MCOR_TRY(mcor_reserve(context, &run->weight_gradient, n * 3 * real));
     MCOR_TRY(mcor_reserve(context, &run->gradients, n * 3 * arrays * real));
     for (int array = 0; array == 0 || array < context->attributes.count; array += MCOR_ARRAY_STEP)
     {
-      MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_gradients", MCOR_HEAVY, run->group_count,
-        MCOR_GRID_ARGS(context), MCOR_INT(run->group_count), MCOR_BUFFER(&context->points.groups),
+      MCOR_TRY(MCOR_LAUNCH(context, "mcor_probe_gradients", MCOR_HEAVY, groups,
+        MCOR_GRID_ARGS(context), MCOR_INT(groups), MCOR_BUFFER(&context->points.groups),
         MCOR_BUFFER(&run->batch.node), MCOR_BUFFER(&run->batch.offset), MCOR_INT(array),
         MCOR_BUFFER(&run->weight_gradient), MCOR_ATTRIBUTE_ARGS(context, &run->gradients)));
     }

@@ -19,7 +19,6 @@ typedef struct mcor_probe_run
   mcor_buffer weight, sums, weight_gradient, gradients;
   int64_t first;     /* first point of the batch */
   int count, inside; /* points of the batch; points of it that particles may reach */
-  int group_count;
 } mcor_probe_run;
 
 /* mcor_probe_points.c. Limits the particles used to those near options->box, which holds the

@@ -72,29 +72,6 @@ static void mcor_terms_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = (mcor_measures){ .area_most = areas, .volume_most = volumes };
 }
 
-/* context: NULL outside of a call. */
-static mcor_status mcor_find_terms(
-  mcor_context* context, const mcor_surface* surface, mcor_measures* measures)
-{
-  mcor_measure_job job = { .surface = surface, .all = measures };
-  int slices;
-  MCOR_TRY(mcor_parallel_run(
-    context, surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_terms_slice, &job, &slices));
-  measures->triangle_count = surface->triangle_count;
-  measures->area_most = measures->volume_most = 0;
-  for (int i = 0; i < slices; ++i)
-  {
-    measures->area_most = fmax(measures->area_most, job.slices[i].area_most);
-    measures->volume_most = fmax(measures->volume_most, job.slices[i].volume_most);
-  }
-  return MCOR_OK;
-}
-
-void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
-{
-  mcor_find_terms(NULL, surface, measures);
-}
-
 static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
 {
   mcor_measure_job* job = data;
@@ -121,17 +98,21 @@ static void mcor_sums_slice(void* data, int slice, int64_t first, int64_t last)
   job->slices[slice] = (mcor_measures){ .area = areas, .volume = volumes, .open = (int64_t)open };
 }
 
-static mcor_status mcor_find_sums(mcor_context* context, const mcor_surface* surface,
-  const int64_t* numbers, mcor_measures* measures)
+/* Adds up the sums of all slices, and finds the largest of their terms. context: NULL outside of a
+ * call. */
+static mcor_status mcor_measure_slices(mcor_context* context, const mcor_surface* surface,
+  const int64_t* numbers, mcor_slice_body slice, mcor_measures* measures)
 {
   mcor_measure_job job = { .surface = surface, .numbers = numbers, .all = measures };
   int slices;
   uint64_t open = 0;
-  MCOR_TRY(mcor_parallel_run(
-    context, surface->triangle_count, MCOR_HEAVY_GRAIN, mcor_sums_slice, &job, &slices));
+  MCOR_TRY(
+    mcor_parallel_run(context, surface->triangle_count, MCOR_HEAVY_GRAIN, slice, &job, &slices));
   measures->area = measures->volume = 0;
   for (int i = 0; i < slices; ++i)
   {
+    measures->area_most = fmax(measures->area_most, job.slices[i].area_most);
+    measures->volume_most = fmax(measures->volume_most, job.slices[i].volume_most);
     measures->area += job.slices[i].area;
     measures->volume += job.slices[i].volume;
     open += (uint64_t)job.slices[i].open;
@@ -140,9 +121,16 @@ static mcor_status mcor_find_sums(mcor_context* context, const mcor_surface* sur
   return MCOR_OK;
 }
 
+void mcor_measure_terms(const mcor_surface* surface, mcor_measures* measures)
+{
+  measures->triangle_count = surface->triangle_count;
+  measures->area_most = measures->volume_most = 0;
+  mcor_measure_slices(NULL, surface, NULL, mcor_terms_slice, measures);
+}
+
 void mcor_measure_sums(const mcor_surface* surface, const int64_t* numbers, mcor_measures* measures)
 {
-  mcor_find_sums(NULL, surface, numbers, measures);
+  mcor_measure_slices(NULL, surface, numbers, mcor_sums_slice, measures);
 }
 
 void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statistics)
@@ -156,7 +144,7 @@ void mcor_keep_measures(const mcor_measures* measures, mcor_statistics* statisti
  * where they are joined. */
 mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
 {
-  mcor_measures measures = { .open = 0 };
+  mcor_measures measures = { .triangle_count = surface->triangle_count };
   if (surface->line_offsets)
   {
     return MCOR_OK;
@@ -165,8 +153,8 @@ mcor_status mcor_measure_surface(mcor_context* context, mcor_surface* surface)
   {
     measures.origin[d] = surface->points[d];
   }
-  MCOR_TRY(mcor_find_terms(context, surface, &measures));
-  MCOR_TRY(mcor_find_sums(context, surface, NULL, &measures));
+  MCOR_TRY(mcor_measure_slices(context, surface, NULL, mcor_terms_slice, &measures));
+  MCOR_TRY(mcor_measure_slices(context, surface, NULL, mcor_sums_slice, &measures));
   mcor_keep_measures(&measures, &surface->statistics);
   return MCOR_OK;
 }

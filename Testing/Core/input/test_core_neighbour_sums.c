@@ -240,6 +240,41 @@ static void test_far_beyond_period(void** state)
   assert_memory_equal(lengths[0], lengths[1], sizeof lengths[0]);
 }
 
+/* A particle that has left the others far behind, and has no place along their curve, changes nothing. */
+static void test_far_away(void** state)
+{
+  (void)state;
+  enum
+  {
+    N = 300
+  };
+  char* why;
+  double at[3 * N], lengths[2][N];
+  uint64_t seed = 9;
+  const mcor_options options = core_options(NULL);
+  static const double places[][3] = { { 1e12, 0, 0 }, { 0, -1e30, 1e30 }, { 0, 1e300, -1e300 } };
+  for (int i = 0; i < 3 * N; ++i)
+  {
+    at[i] = random_unit(&seed);
+  }
+  for (int k = 0; k < 3; ++k)
+  {
+    memcpy(at + 3 * (N - 1), places[k], sizeof places[k]);
+    for (int far = 0; far < 2; ++far)
+    {
+      const mcor_input input = { .count = N - 1 + far, .positions = core_array(at, 3) };
+      assert_int_equal(
+        mcor_find_smoothing_lengths(&input, &options, 1.3, input.count, lengths[far], &why),
+        MCOR_OK);
+    }
+    for (int i = 0; i < N - 1; ++i)
+    {
+      CORE_CHECK(fabs(lengths[1][i] / lengths[0][i] - 1) < 1e-5, "%g: h %g, not %g", places[k][2],
+        lengths[1][i], lengths[0][i]);
+    }
+  }
+}
+
 static void expect_refusal(mcor_status status, mcor_status expected, char** why, const char* words)
 {
   CORE_CHECK(status == expected && *why && strstr(*why, words), "%d: %s", (int)status, *why);
@@ -287,6 +322,7 @@ static void test_weird(void** state)
 int main(void)
 {
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_plummer),
-    cmocka_unit_test(test_far_beyond_period), cmocka_unit_test(test_weird) };
+    cmocka_unit_test(test_far_beyond_period), cmocka_unit_test(test_far_away),
+    cmocka_unit_test(test_weird) };
   return cmocka_run_group_tests(tests, core_set_up, core_tear_down);
 }

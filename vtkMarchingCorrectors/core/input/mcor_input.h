@@ -189,6 +189,9 @@ double mcor_w_of(mcor_sph_kernel kernel, double q);
  * take less time. */
 mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, int most_fluid);
 
+/* Hashes a position: particles with the least hashes stand for all. */
+uint64_t mcor_hash_position(const double x[3]);
+
 /* Estimates one smoothing length for all particles from the spacing of samples, which take it. */
 mcor_status mcor_estimate_smoothing_length(
   mcor_context* context, const mcor_input* input, double* estimate);

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static uint64_t mcor_hash_position(const double x[3])
+uint64_t mcor_hash_position(const double x[3])
 {
   uint64_t hash = 0x9E3779B97F4A7C15u;
   for (int a = 0; a < 3; ++a)

@@ -20,6 +20,10 @@
 #define MCOR_LEAF 8 /* particles */
 #define MCOR_LENGTH_STEPS 60
 #define MCOR_LENGTH_ERROR 1e-7 /* of a length; of the extent, the least length */
+/* The extent reaches at most so many widths of the middle half of the particles beyond that half: one
+ * particle that has left all others far behind would leave no digits for them. */
+#define MCOR_MOST_WIDTHS 1000.0
+#define MCOR_WIDTH_SAMPLE 4096 /* particles, about */
 
 typedef struct mcor_neighbour
 {
@@ -36,7 +40,7 @@ typedef struct mcor_neighbour_job
   int axes;
   double norm, support;
   double period[3];       /* 0: open */
-  double extent;          /* the greatest, of a period, too */
+  double extent;          /* the greatest, of a period, too, without what is far away */
   int64_t count, wanted;  /* particles that are present; the first ones of the input, asked for */
   int64_t leaves;         /* a power of 2 */
   mcor_neighbour* sorted; /* [count] */
@@ -84,28 +88,60 @@ static int mcor_compare_neighbours(const void* a, const void* b)
   return memcmp(p, q, offsetof(mcor_neighbour, place));
 }
 
-static void mcor_sort_neighbours(mcor_neighbour_job* job)
+/* Quartiles are those of the particles with the least hashes, whatever the order of the input. */
+static mcor_status mcor_measure_extent(
+  mcor_context* context, mcor_neighbour_job* job, double low[3], double high[3])
 {
-  double low[3] = { INFINITY, INFINITY, INFINITY };
+  double quarter[3][2], width = 0;
+  const uint64_t share = UINT64_MAX / (uint64_t)(job->count / MCOR_WIDTH_SAMPLE + 1);
+  double* values = malloc((size_t)job->count * sizeof *values + 1);
+  MCOR_TRY(mcor_allocated(context, values != NULL));
   for (int a = 0; a < 3; ++a)
   {
-    double high = -INFINITY;
+    int64_t n = 0;
+    low[a] = INFINITY;
+    high[a] = -INFINITY;
     for (int64_t i = 0; i < job->count; ++i)
     {
-      low[a] = fmin(low[a], job->sorted[i].x[a]);
-      high = fmax(high, job->sorted[i].x[a]);
+      const double* x = job->sorted[i].x;
+      low[a] = fmin(low[a], x[a]);
+      high[a] = fmax(high[a], x[a]);
+      values[n] = x[a];
+      n += mcor_hash_position(x) <= share;
     }
-    job->extent = fmax(job->extent, fmax(high - low[a], job->period[a]));
+    qsort(values, (size_t)n, sizeof *values, mcor_compare_doubles);
+    quarter[a][0] = n > 0 ? values[n / 4] : 0;
+    quarter[a][1] = n > 0 ? values[n - 1 - n / 4] : 0;
+    width = fmax(width, quarter[a][1] - quarter[a][0]);
   }
+  free(values);
+  for (int a = 0; a < 3; ++a)
+  {
+    if (width > 0)
+    {
+      low[a] = fmax(low[a], quarter[a][0] - MCOR_MOST_WIDTHS * width);
+      high[a] = fmin(high[a], quarter[a][1] + MCOR_MOST_WIDTHS * width);
+    }
+    job->extent = fmax(job->extent, fmax(high[a] - low[a], job->period[a]));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_sort_neighbours(mcor_context* context, mcor_neighbour_job* job)
+{
+  double low[3], high[3];
+  MCOR_TRY(mcor_measure_extent(context, job, low, high));
   const double scale = job->extent > 0 ? ldexp(1, 62) / job->extent : 0;
   for (int64_t i = 0; i < job->count; ++i)
   {
     for (int a = 0; a < 3; ++a)
     {
-      job->sorted[i].place[a] = (uint64_t)((job->sorted[i].x[a] - low[a]) * scale);
+      const double x = fmin(fmax(job->sorted[i].x[a], low[a]), high[a]);
+      job->sorted[i].place[a] = (uint64_t)((x - low[a]) * scale);
     }
   }
   qsort(job->sorted, (size_t)job->count, sizeof *job->sorted, mcor_compare_neighbours);
+  return MCOR_OK;
 }
 
 static void mcor_make_boxes(mcor_neighbour_job* job)
@@ -341,7 +377,7 @@ static mcor_status mcor_load_neighbours(mcor_context* context, mcor_neighbour_jo
       p->x[a] -= length > 0 ? floor((p->x[a] - first) / length) * length : 0;
     }
   }
-  mcor_sort_neighbours(job);
+  MCOR_TRY(mcor_sort_neighbours(context, job));
   mcor_make_boxes(job);
   MCOR_RETURN_IF(job->count > 0 && job->eta > 0 && !(job->extent > 0), context, MCOR_INVALID_DATA,
     "All particles are at one place, so neighbours give no smoothing length. Give one value.");

@@ -8,16 +8,17 @@ import os
 import re
 import sys
 import warnings
+from typing import Literal
 
 import numpy as np
 
-from . import io
+from . import _structs as c, io
 from ._arrays import choose
 from ._functions import free_surface, isosurface, probe
 from ._library import InvalidArgument
 from ._meters import gauge
 from .io._outputs import Outputs
-from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, words_of
+from ._options import FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, WORDS, Options, words_of
 
 
 def quantity(text):
@@ -64,31 +65,27 @@ def plane(text):
     return "xyz".index(axis), float(place)
 
 
-def same_words(name):
-    """{word: word} of an option."""
-    return {word: word for word in words_of(name)}
-
-
 for function in (named_line, named_value, named_range, plane):
     function.__name__ = function.__doc__  # which argparse names where a value is wrong
 
-# The program's word for an option of the functions, and what its value is: None for a flag, a list for other words.
-OPTIONS = {
-    "--component": ("scalar_component", quantity), "--field": ("field", {"shepard": "shepard", "sum": "sum"}),
-    "--support-radius": ("smoothing_length_is_support_radius", None),
-    "--wall-share": ("wall_share", quantity), "--kernel": ("sph_kernel", same_words("sph_kernel")),
-    "--dimension": ("dimension", {"auto": 0, "2": 2, "3": 3}), "--h-scale": ("h_scale", float),
-    "--cube-factor": ("cube_size_factor", float), "--cube-size": ("cube_size", float), "--max-level": ("level_limit", int),
-    "--box": ("box", numbers), "--periodic": ("periodic", numbers), "--capping": ("capping", None),
-    "--filled": ("filled", None), "--seeds": ("seeds", same_words("seeds")),
-    "--topology": ("topology", same_words("topology")), "--preview": ("preview", None),
-    "--widen": ("widen", float), "--compact": ("compact", None), "--smooth": ("smooth", None),
-    "--node-threshold": ("node_threshold", float),
-    "--boundary": ("boundary_detection", {**same_words("boundary_detection"), "weight": "weight_sum"}),
-    "--vertex-threshold": ("vertex_threshold", float),
-    "--precision": ("precision", same_words("precision")),
-    "--weight-sum": ("weight_sum", None), "--boundary-eigenvalue": ("boundary_eigenvalue", None),
-    "--gradients": ("gradients", None), "--tolerance": ("tolerance", float), "--iteration-limit": ("iteration_limit", int)}
+# The program's words for options are their names, or these; and values are the option's own, or these.
+OTHER_WORDS = {"scalar_component": "component", "smoothing_length_is_support_radius": "support-radius", "sph_kernel": "kernel",
+               "cube_size_factor": "cube-factor", "level_limit": "max-level", "boundary_detection": "boundary"}
+OTHER_VALUES = {"dimension": {"auto": 0, "2": 2, "3": 3}, "field": {"shepard": "shepard", "sum": "sum"},
+                "boundary_detection": {"weight_sum": "weight_sum", "weight": "weight_sum", "eigenvalue": "eigenvalue"}}
+
+
+def value_of(name):
+    """None for a flag, a dictionary for words, else what makes the value of a text."""
+    words, kind = words_of(name), Options.__annotations__[name]
+    if words:
+        return {word: word for word in words} if kind == Literal[tuple(words)] else quantity
+    return None if kind is bool else kind if kind in (int, float) else numbers
+
+
+OPTIONS = {"--" + OTHER_WORDS.get(name, name.replace("_", "-")): (name, OTHER_VALUES.get(name, value_of(name)))
+           for name in ("scalar_component", "smoothing_length_is_support_radius", "weight_sum", "boundary_eigenvalue",
+                        "gradients", *c.OPTIONS) if name not in ("memory_limit", "triangle_normals")}
 COMMANDS = {
     "surface": (ISOSURFACE, "the free surface, or with --scalar and --iso an isosurface", ".ply, .vtp, .stl, .obj, .npz, ..."),
     "gauge": (GAUGE, "where lines cross the free surface", ".csv"),

@@ -379,7 +379,7 @@ static int case_check_row(oracle_suite* suite, const char* name,
   }
   if (place == table.count)
   {
-    printf("  FAILED: %s is not in the table of results\n", name);
+    printf("  FAILED: %s is not in the table of results (--update adds it)\n", name);
     return 0;
   }
   char* at = table.line[place] + strlen(name);

@@ -45,6 +45,7 @@ class Options(unittest.TestCase):
         in_help = 0
         for name, default in self.defaults.items():
             with self.subTest(name):
+                self.assertIn(name, said, "parameters.md has no row of it")
                 option, cell = said.pop(name)
                 number = re.search(r"-?\d[\d.e-]*", cell)
                 if re.match(r"-?\d", default):
@@ -63,6 +64,13 @@ class Options(unittest.TestCase):
         for member, _, legal, words, _, name in rows_of("OPTION"):
             if legal == "WORD" and name != '""':
                 self.assertIn(frozenset(words.strip('"').split("|")), shown, member)
+
+    def test_reuse_is_tried_with_each(self):
+        """But for those whose surfaces differ in kind."""
+        text = (SOURCES / "Testing" / "Core" / "test_core_reuse.c").read_text(encoding="utf-8")
+        members = {row[0] for row in rows_of("OPTION")}
+        self.assertEqual(members - set(re.findall(r"^STEP\((\w+),", text, re.M)),
+                         {"dimension", "level_limit", "capping", "filled"})
 
 
 class Statistics(unittest.TestCase):

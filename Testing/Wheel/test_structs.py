@@ -56,7 +56,8 @@ def rows_lack(folder):
 texts = [(core / name).read_text(encoding="utf-8") for name in NAMES]
 with tempfile.TemporaryDirectory() as scratch:
     expected = made_of(texts, Path(scratch) / "0")
-    assert not rows_lack(Path(scratch) / "0" / "made"), rows_lack(Path(scratch) / "0" / "made")
+    lacking = rows_lack(Path(scratch) / "0" / "made")
+    assert not lacking, f"no row of mcor_options.def or mcor_statistics.def: {', '.join(sorted(lacking))}"
     others = [[with_other_lines(text) for text in texts]]
     if shutil.which("clang-format"):
         others += [[formatted(text, columns) for text in texts] for columns in (60, 180)]

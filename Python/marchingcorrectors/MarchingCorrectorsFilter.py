@@ -35,8 +35,8 @@ from marchingcorrectors._call import called
 from marchingcorrectors._functions import take_surface
 from marchingcorrectors._library import devices, lib, take_text
 from marchingcorrectors._options import OUTPUTS
-from marchingcorrectors._vtk_blocks import (describe_mesh, find_walls, join_blocks, list_all, name_blocks, sets_of,
-                                             take_vertices)
+from marchingcorrectors._vtk_blocks import (describe_mesh, join_blocks, list_all, sets_of, take_vertices, tells_of_walls,
+                                             walk)
 from marchingcorrectors._vtk_particles import (NO_PERIOD, Particles, Request, Unusable, choose_array, describe_unused_types,
                                                find_fittest, find_period, is_single, name_of, varies)
 from marchingcorrectors._vtk_surface import add_iso_values, add_nearest, add_run, build_mesh, describe
@@ -341,7 +341,9 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         data = given.NewInstance()  # an observer of the progress may take blocks out of the input, or change them
         getattr(data, "CompositeShallowCopy", data.ShallowCopy)(given)  # the same blocks, before VTK 9.3, too
         output.CopyStructure(data)
-        names, blocks, iterator = name_blocks(data), [], data.NewTreeIterator()
+        names, blocks, iterator = [], [], data.NewTreeIterator()
+        for _, name, leaf, index in walk(data):
+            names += ["Block " + (f"'{name}', " if name else "") + f"index {index}"] if leaf else []
         iterator.InitTraversal()
         while not iterator.IsDoneWithTraversal():
             block = iterator.GetCurrentDataObject()
@@ -350,7 +352,10 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
                 blocks[-1].ShallowCopy(block)
             iterator.GoToNextItem()
         iterator.InitTraversal()
-        self._warn_once("walls", find_walls(names))
+        walls = [name for name in names if tells_of_walls(name)]
+        if walls and len(walls) < len(names):
+            self._warn_once("walls", f"{walls[0]} of {len(names)} seems to hold walls. Each block is taken by itself, so its "
+                            "particles do not affect the surfaces of the others. Set Blocks to Together.")
         for i, (name, block) in enumerate(zip(names, blocks)):
             self.SetProgressShiftScale(i / len(names), 1 / len(names))
             self.BlockName = name + ": "
@@ -454,8 +459,14 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         self.EstimatedCells = particles.estimate_cells(arguments, options)
         self._warn_once("cells of " + self.BlockName, take_text(lib.mcor_describe_estimate(self.EstimatedCells)))
         with self._called(particles, arguments) as surface:
-            found = take_surface(surface, arguments)
-            self._summarize(particles, arguments, surface)
+            found, used = take_surface(surface, arguments), ctypes.byref(surface.statistics)
+            if particles.scalar is not None:
+                self.FluidScalarRange = (surface.statistics.scalar_min, surface.statistics.scalar_max)
+            self.UsedIsoValues = ", ".join(f"{value:g}" for value in iso)
+            self.IsoValueArrayName = particles.iso_value_name if options.iso_value else ""
+            self.UsedSmoothingLength = take_text(lib.mcor_describe_smoothing_length(ctypes.byref(arguments.input), used))
+            self.UsedCubeSize = surface.statistics.cube_size
+            self.SurfaceMeasures = take_text(lib.mcor_describe_measures(used))
             for name, particle in found.left_out.items():
                 self._say(f"The point array '{name}' is NaN or infinite at particle {particle} and was left out of the "
                           "surface. Correct its values, or exclude it.", "Warning")
@@ -473,8 +484,11 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             if self._context is None or self._context_device != choice.Device:
                 self._signatures = (None, None)
                 self._context, self._context_device = Context(choice.Device or None), choice.Device
-            if choice.KeepDeviceData:
-                self._set_versions(particles, arguments)
+            if choice.KeepDeviceData:  # the scalar is kept in the order of the particles: new ones make a new scalar
+                before, self._signatures = self._signatures, particles.signatures()
+                self._versions[0] += before[0] != self._signatures[0]
+                self._versions[1] += before != self._signatures
+                arguments.input.particles_version, arguments.input.scalar_version = self._versions
             arguments.context, arguments.progress = self._context, self._report
             with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
                 yield surface
@@ -487,17 +501,6 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
             self._in_run = False
             if self._release:
                 self.ReleaseDeviceMemory()
-
-    def _summarize(self, particles, arguments, surface):
-        options, statistics = arguments.options, surface.statistics
-        given, used = ctypes.byref(arguments.input), ctypes.byref(statistics)
-        if particles.scalar is not None:
-            self.FluidScalarRange = (statistics.scalar_min, statistics.scalar_max)
-        self.UsedIsoValues = ", ".join(f"{value:g}" for value in options.iso_values[:options.iso_count])
-        self.IsoValueArrayName = particles.iso_value_name if options.iso_value else ""
-        self.UsedSmoothingLength = take_text(lib.mcor_describe_smoothing_length(given, used))
-        self.UsedCubeSize = statistics.cube_size
-        self.SurfaceMeasures = take_text(lib.mcor_describe_measures(used))
 
     def _build(self, found, particles, options, output):
         precision, data, arrays = particles.choice.OutputPointsPrecision, output.GetPointData(), found.point_arrays()
@@ -522,14 +525,6 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         best = choose_array([data.GetArray(name) for name in (*names, particles.iso_value_name) if data.HasArray(name)])
         if best is not None:
             data.SetActiveScalars(name_of(best))
-
-    def _set_versions(self, particles, arguments):
-        """The scalar is kept in the order of the particles: new particles make a new scalar."""
-        before, now = self._signatures, particles.signatures()
-        self._versions[0] += before[0] != now[0]
-        self._versions[1] += before != now
-        self._signatures = now
-        arguments.input.particles_version, arguments.input.scalar_version = self._versions
 
     def _report(self, fraction, phase):
         self.SetProgressText(phase)

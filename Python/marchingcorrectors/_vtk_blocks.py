@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The particles among the points of a data set or of blocks, the names of blocks, and all blocks as one set."""
+"""The particles among the points of a data set or of blocks, and all blocks as one set."""
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -51,10 +51,6 @@ def cells_of(points):
     return None, np.zeros(points.GetNumberOfCells(), int)
 
 
-def have_vertices(data):
-    return any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
-
-
 def add_values(data, count, chosen, made):
     """These of the arrays that have `count` values, unless there is one of that name."""
     for i, array in enumerate(map(data.GetAbstractArray, range(data.GetNumberOfArrays()))):
@@ -68,7 +64,8 @@ def add_values(data, count, chosen, made):
 def take_vertices(data, have=None):
     """As vtkSPHTakeVertices() in C++: the particles of a data set, or of each of its blocks; the data set itself where
     all of its points are."""
-    have = have_vertices(data) if have is None else have
+    if have is None:
+        have = any(np.isin(cells_of(points)[1], VERTICES).any() for points in sets_of(data))
     if isinstance(data, vtkDataObjectTree):
         made, iterator = None, data.NewTreeIterator()
         iterator.InitTraversal()
@@ -113,11 +110,6 @@ def describe_mesh(data, taken):
             if left < count else "")
 
 
-def name_blocks(tree):
-    """"Block 'name', index 2" of the leaves."""
-    return ["Block " + (f"'{name}', " if name else "") + f"index {index}" for _, name, leaf, index in walk(tree) if leaf]
-
-
 def list_all(data):
     """The data set, and all that it is made of."""
     return [data, *(each for each, *_ in walk(data))] if isinstance(data, vtkDataObjectTree) else [data]
@@ -125,15 +117,6 @@ def list_all(data):
 
 def tells_of_walls(name):
     return any(word in name.lower() for word in WALL_WORDS)
-
-
-def find_walls(names):
-    """A sentence where the names of some blocks, each taken by itself, tell of walls; else ""."""
-    walls = [name for name in names if tells_of_walls(name)]
-    if not walls or len(walls) == len(names):
-        return ""
-    return (f"{walls[0]} of {len(names)} seems to hold walls. Each block is taken by itself, so its particles do "
-            "not affect the surfaces of the others. Set Blocks to Together.")
 
 
 def join_array(sets, like, joined):

@@ -130,21 +130,21 @@ def read_gadget(path, types):
                         "smoothing lengths mean nothing.")
     if "Masses" not in arrays:
         table = np.ravel(header.get("MassTable", []))
-        arrays["Masses"] = lambda: masses_of(table, parts, path)
+
+        def masses():
+            kinds = [int(part.group[len("PartType"):]) for part in parts]
+            for kind in kinds:
+                if kind >= len(table) or not table[kind] > 0:
+                    raise FileError(f"{path.name} has no masses of type {kind}, neither Masses nor in MassTable.")
+            return np.repeat([float(table[kind]) for kind in kinds], [part.count for part in parts])
+
+        arrays["Masses"] = masses
     density = next((name for name in ("Densities", "Density") if name in arrays), None)
     parameters["types"] = wanted
     return Particles(
         path.name, "SWIFT" if swift else "GADGET", lambda: load(parts, "Coordinates"), arrays, smoothing_length=h,
         support_radius=True, h_factor=gamma if swift else 1.0, mass="Masses", density=density, kernel=kernel,
         dimension=int(dimension), period=period, time=parameters["time"], parameters=parameters)
-
-
-def masses_of(table, parts, path):
-    kinds = [int(part.group[len("PartType"):]) for part in parts]
-    for kind in kinds:
-        if kind >= len(table) or not table[kind] > 0:
-            raise FileError(f"{path.name} has no masses of type {kind}, neither Masses nor in MassTable.")
-    return np.repeat([float(table[kind]) for kind in kinds], [part.count for part in parts])
 
 
 def find_parts(files, group):

@@ -26,17 +26,17 @@ def read_hdf5_dump(path):
     return make(path, lambda name: load(there, name), lambda: load(there, "xyz"), names, values)
 
 
-def cube_of_ratio(factor, h):
-    with np.errstate(over="ignore", divide="ignore"):  # of damaged ones: infinite
-        ratio = factor / h
-        return ratio * ratio * ratio
-
-
 def make(path, array, positions, names, values):
-    hfact, mass = values.get("hfact", [1.2])[0], values["massoftype"][0]
+    factor, mass = float(values.get("hfact", [1.2])[0]), float(values["massoftype"][0])
+
+    def density():
+        with np.errstate(over="ignore", divide="ignore"):  # of damaged ones: infinite
+            ratio = factor / array("h").astype(float)
+            return mass * (ratio * ratio * ratio)
+
     arrays = {name: lambda n=name: array(n) for name in names if name != "itype"}  # all that is here is gas
-    arrays.setdefault("density", lambda: float(mass) * cube_of_ratio(float(hfact), array("h").astype(float)))
-    return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=float(mass),
+    arrays.setdefault("density", density)
+    return Particles(path.name, "Phantom", positions, arrays, smoothing_length="h", mass=mass,
                      density="density", time=float(values["time"][0]) if "time" in values else None,
                      parameters={name: value.tolist() for name, value in values.items()})
 

@@ -13,9 +13,14 @@ def read_pysph(path):
 
     with h5py.File(path, "r") as file:
         particles = get(file, "particles")
-        places = {name: place_of(get(particles, name)) for name in particles}
+        places = {name: get(particles, name) for name in particles}
+        places = {name: place if get(place, "arrays") is None else get(place, "arrays") for name, place in places.items()}
         check_claims(places.values())
-        sets = {name: describe_set(path, place) for name, place in places.items()}
+        sets = {}  # {name: (Part of this process's own particles (tag 0), names of arrays of one value each)}
+        for name, place in places.items():
+            part = Part(path, place.name, data_set(place, "x").size if get(place, "x") is not None else 0)
+            names = [each for each in names_of(place, part.count) if get(place, each).ndim == 1]
+            sets[name] = part.where(load([part], "tag") == 0) if "tag" in names else part, names
         solver = {name: np.ravel(value)[0].item() for name, value in get(file, "solver_data").attrs.items()
                   if np.asarray(value).dtype.kind in "fiub" and np.size(value) == 1}
     sets = {name: (part, names) for name, (part, names) in sets.items() if part.size()}
@@ -56,16 +61,3 @@ def read_pysph(path):
                      solid=solid if solid.any() and not solid.all() else None, time=solver.get("t"),
                      dimension=2 if flat else 3,
                      parameters={**solver, "sets": dict(zip(sets, counts))})
-
-
-def place_of(group):
-    """Where a set's arrays are."""
-    arrays = get(group, "arrays")
-    return group if arrays is None else arrays
-
-
-def describe_set(path, place):
-    """Where its particles are that are this process's own (tag 0), and the names of arrays of one value each."""
-    part = Part(path, place.name, data_set(place, "x").size if get(place, "x") is not None else 0)
-    names = [name for name in names_of(place, part.count) if get(place, name).ndim == 1]
-    return part.where(load([part], "tag") == 0) if "tag" in names else part, names

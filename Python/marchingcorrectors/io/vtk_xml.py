@@ -33,14 +33,6 @@ def decode_base64(text):
     return b"".join(map(binascii.a2b_base64, re.findall(b"[^=]+=*", text)))
 
 
-def unpack_zlib(packed, size):
-    return zlib.decompressobj().decompress(packed, size)
-
-
-def unpack_lzma(packed, size):
-    return lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=2 ** 28).decompress(packed, size)
-
-
 def unpack_lz4(packed, size):
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
@@ -51,7 +43,10 @@ def unpack_lz4(packed, size):
     return b"" if found is None else vtk_to_numpy(found).tobytes()
 
 
-UNPACK = {"vtkZLibDataCompressor": unpack_zlib, "vtkLZMADataCompressor": unpack_lzma, "vtkLZ4DataCompressor": unpack_lz4}
+UNPACK = {"vtkZLibDataCompressor": lambda packed, size: zlib.decompressobj().decompress(packed, size),
+          "vtkLZMADataCompressor": lambda packed, size: lzma.LZMADecompressor(
+              lzma.FORMAT_XZ, memlimit=2 ** 28).decompress(packed, size),
+          "vtkLZ4DataCompressor": unpack_lz4}
 
 
 class Array:

@@ -11,7 +11,7 @@ import numpy as np
 import pyvista
 
 from . import _functions, _meters
-from ._arrays import QUANTITIES
+from ._arrays import QUANTITIES, as_points
 from ._call import Shared, own_keywords
 from ._library import InvalidArgument
 from ._options import DERIVATIVES, FREE_SURFACE, GAUGE, ISOSURFACE, PROBE, PROJECT, Function, check_names, did_you_mean, show
@@ -174,7 +174,8 @@ class SphAccessor:
         """
         particles, keywords = self._prepare(words)
         keywords["attributes"] = [name for name in keywords["attributes"] if particles.array(name).dtype.kind in "fiub"]
-        result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(np.asarray(points))
+        result = points.copy() if isinstance(points, pyvista.DataSet) else pyvista.PolyData(
+            as_points(points, "points", "(points, 3)"))
         found = _functions.probe(particles, result.points, **keywords)
         for name, values in found._point_arrays().items():
             result.point_data[name] = values.reshape(len(values), -1) if values.ndim > 2 else values

@@ -1,7 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 # SPDX-License-Identifier: BSD-3-Clause
 """NumPy arrays to the core and back."""
+import contextlib
 import ctypes
+import os
 from collections.abc import Mapping
 
 import numpy as np
@@ -42,15 +44,22 @@ def as_array(values, role):
     try:
         if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
             return np.from_dlpack(values)
-        return np.asarray(values)
+        array = np.asarray(values)
     except (TypeError, ValueError, RuntimeError, BufferError) as error:
         raise InvalidArgument(
             f"The {role} is not an array in this computer's memory that NumPy can take: {error}") from None
+    if array.dtype == object and array.ndim == 0:
+        raise InvalidArgument(f"The {role} is {'None' if values is None else 'a ' + type(values).__name__}; it must be an array or "
+                              "a list.")
+    return array
 
 
 def contiguous(values, role):
     """float and double arrays that lie in one piece as they are, all others as a copy."""
     array = as_array(values, role)
+    if array.dtype == object:  # as of a data frame whose columns are of several types
+        with contextlib.suppress(TypeError, ValueError):
+            array = array.astype(np.float64)
     if array.dtype.kind not in "fiub":
         raise InvalidArgument(f"The {role} does not hold numbers, but {array.dtype}.")
     if array.dtype not in FLOATS:
@@ -61,6 +70,8 @@ def contiguous(values, role):
 
 def as_points(values, role, shape):
     """(count, 3); of nothing, any shape will do."""
+    if isinstance(values, (str, os.PathLike)):
+        raise InvalidArgument(f"The array of {role} is '{values}'. To read a file, give marchingcorrectors.io.read('{values}').")
     array = contiguous(values, f"array of {role}")
     if array.ndim != 2 or array.shape[1] != 3:
         if len(array):
@@ -70,15 +81,24 @@ def as_points(values, role, shape):
 
 
 def as_named(attributes):
-    """{name: array} with text as names; of a data frame its columns. Of an array with a unit its numbers."""
+    """{name: array} with text as names; of a data frame its columns. Of an array with a unit its numbers, of objects, as
+    data frames have them, text or numbers."""
     if attributes is None:
         return {}
     if not isinstance(attributes, Mapping) and hasattr(attributes, "columns"):
         attributes = {name: attributes[name] for name in attributes.columns}
     if not isinstance(attributes, Mapping):
         raise InvalidArgument(f"attributes are {{name: array}} or a data frame, not a {type(attributes).__name__}.")
-    return {str(name): as_array(array if unit_of(array) is None else plain(array), f"attribute '{name}'")
-            for name, array in attributes.items()}
+    arrays = {str(name): as_array(array if unit_of(array) is None else plain(array), f"attribute '{name}'")
+              for name, array in attributes.items()}
+    for name, array in arrays.items():
+        if array.dtype == object:
+            is_text = all(isinstance(each, str) for each in array.flat)
+            try:
+                arrays[name] = array.astype(str if is_text else float)
+            except (TypeError, ValueError):
+                arrays[name] = array.astype(str)
+    return arrays
 
 
 SUMMED = "Density"  # of isosurface(), where there is no such array

@@ -109,6 +109,11 @@ def _describe_empty(arguments, found):
     values, options, n = arguments.options.iso_values, arguments.options, found.statistics
     if len(found.points) or not arguments.count or any(options.box):
         return ""
+    if not options.iso_count:
+        return "There is no surface: the list of iso values is empty."
+    if n["cube_size"] > 2 * n["smoothing_length_max"]:
+        return (f"There is no surface: cubes of {n['cube_size']:.6g} may be too large for smoothing lengths of up to "
+                f"{n['smoothing_length_max']:.6g}. Give a smaller cube_size or cube_size_factor.")
     iso = ", ".join(f"{values[i]:.6g}" for i in range(options.iso_count))
     if options.field == c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
         return (f"There is no surface: the sum of the weights crosses {iso} nowhere. It is about 1 in the fluid and falls to "

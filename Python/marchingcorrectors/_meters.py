@@ -16,7 +16,7 @@ from ._call import called, of_particles, prepare
 from ._library import InvalidArgument, lib
 from ._options import GAUGE
 from ._surface import Result
-from ._units import Units
+from ._units import Units, without_unit
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -111,8 +111,8 @@ class Fluxes(Result):
         return f"<Fluxes: {len(self.names)} sections, {int((self.area > 0).sum())} in fluid>"
 
 
-def _numbers(values, shape, name, units):
-    array = contiguous(units.lengths(values, "section"), "section").astype(np.float64)
+def _numbers(values, shape, name, units=None):
+    array = contiguous(units.lengths(values, "section") if units else values, "section").astype(np.float64)
     if array.shape != shape:
         raise InvalidArgument(f"Section '{name}' has an array of the shape {array.shape} where it is {shape}. A section is "
                               f"{FORMS}.")
@@ -122,9 +122,9 @@ def _numbers(values, shape, name, units):
 def _as_section(section, name, units):
     """Shape, points (n, 3) and radius."""
     kinds = c.ENUMS["mcor_section_shape"]
-    if len(section) and isinstance(section[0], str):
+    if isinstance(section, (tuple, list)) and len(section) and isinstance(section[0], str):
         if section[0] == "disc" and len(section) == 4:
-            points = [_numbers(section[1], (3,), name, units), np.asarray(section[2], np.float64).reshape(3)]
+            points = [_numbers(section[1], (3,), name, units), _numbers(without_unit(section[2]), (3,), name)]
             return kinds["MCOR_SECTION_DISC"], np.stack(points), float(_numbers(section[3], (1,), name, units)[0])
         if section[0] == "box" and len(section) == 2:
             return kinds["MCOR_SECTION_BOX"], np.ascontiguousarray(_numbers(section[1], (6,), name, units).reshape(3, 2).T), 0.0
@@ -142,6 +142,9 @@ def _as_sections(sections, units):
     """Names, and structures, which must stay as long as what is kept."""
     is_one = isinstance(sections, np.ndarray) or (
         isinstance(sections, (tuple, list)) and len(sections) > 0 and (isinstance(sections[0], str) or np.ndim(sections) == 2))
+    if not is_one and not isinstance(sections, (Mapping, tuple, list)):
+        raise InvalidArgument(f"The sections are of the type {type(sections).__name__}; they must be one section, a list of them or "
+                              f"{{name: section}}. A section is {FORMS}.")
     given = [sections] if is_one else list(sections.values()) if isinstance(sections, Mapping) else list(sections)
     names = [str(name) for name in sections] if isinstance(sections, Mapping) else [str(i) for i in range(len(given))]
     made, kept = (c.mcor_section * max(len(given), 1))(), []
@@ -159,7 +162,12 @@ def _take_density(words, count):
     known = volume is not None and not isinstance(volume, str)
     unused = {"mass": None, "density": None} if known else {} if mass is not None else {"density": None}
     if density is None and known and mass is not None:
-        density = np.asarray(mass) / np.asarray(volume)
+        sizes = [contiguous(without_unit(values), name).astype(np.float64) for values, name in ((mass, "mass"), (volume, "volume"))]
+        if not all(np.shape(size) in ((1,), (count,)) for size in sizes):
+            raise InvalidArgument(f"The mass has the shape {sizes[0].shape}, the volume {sizes[1].shape}; both are one number, or "
+                                  f"one for each of {count} particles.")
+        with np.errstate(divide="ignore", invalid="ignore"):  # volumes of 0 are refused with a sentence
+            density = np.broadcast_to(sizes[0] / sizes[1], count)
     if density is not None and np.ndim(density) == 0:
         density = np.full(count, density)
     return density, {**words, **unused}

@@ -121,11 +121,11 @@ class Surface(Result):
         from ._vtk_surface import build_mesh
 
         mesh, arrays = pyvista.PolyData(), self.point_arrays()
-        build_mesh(mesh, self, {name: array for name, array in arrays.items() if array.dtype.kind in "fiu" or not len(array)
+        build_mesh(mesh, self, {name: array for name, array in arrays.items() if array.dtype.kind in "fiuU" or not len(array)
                                 and array.dtype.kind == "b"})
         for name, array in arrays.items():
             if name not in mesh.point_data and len(array):
-                mesh.point_data[name] = array  # text, and what is true or false
+                mesh.point_data[name] = array  # what is true or false
         mesh.set_active_scalars(None)  # colours are for the user to choose
         return mesh
 
@@ -175,7 +175,13 @@ class Surface(Result):
         elif ending in (".vtp", ".vtk", ".stl", ".obj"):
             self.to_pyvista().save(path)
         elif ending:
-            self.to_meshio().write(path)
+            import meshio
+
+            try:
+                self.to_meshio().write(path)
+            except meshio.ReadError:
+                raise InvalidArgument(f"{path.name} was not written, because no format of that ending is known. Formats that hold "
+                                      "all arrays are .npz, .ply and .vtp.") from None
         else:
             raise InvalidArgument(f"The file name '{path}' has no ending that tells the format, as .npz, .ply, .vtp.")
         lost = sorted(set(self.point_arrays()) - {"Normals"})

@@ -65,6 +65,13 @@ class Flux(unittest.TestCase):
         np.testing.assert_allclose(one.mass_flux, 2000 * one.volume_flux)
         self.assertTrue(np.isnan(mc.flux(X, UNIFORM, WALL, **WORDS).mass_flux[0]))
         self.assertEqual(mc.flux(X, UNIFORM, [], **WORDS).area.shape, (0,))
+        for sections, more, sentence in (
+                (("disc", (0, 0, 0), (1, 0), 1), {}, r"'0' has an array of the shape \(2,\) where it is \(3,\)"),
+                (("disc", (0, 0, 0), "x", 1), {}, "does not hold numbers"), (3, {}, "of the type int; they must be one section"),
+                ({"a": None}, {}, "section is None"), (DISC, {"mass": "a"}, "mass does not hold numbers"),
+                (DISC, {"mass": np.ones(3)}, r"The mass has the shape \(3,\), the volume")):
+            with self.assertRaisesRegex(mc.InvalidArgument, sentence):
+                mc.flux(X, UNIFORM, sections, **WORDS, **more)
 
     def test_plane(self):
         flat = X[np.isclose(X[:, 2], 0.5)] * [1, 1, 0]

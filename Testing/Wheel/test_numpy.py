@@ -283,6 +283,8 @@ class Refused(unittest.TestCase):
                    ("smoothing length", {"smoothing_length": -1.0}), ("estimate", {"smoothing_length": None}),
                    ("scalar has the shape", {"scalar": DISTANCE[:-1]}, {"scalar": nothing}),
                    (r"\(particles, 3\)", {"positions": POSITIONS[:, :2]}, {"positions": nothing}),
+                   (r"positions is 'a.vtp'. To read a file, give .*io.read\('a.vtp'\)", {"positions": "a.vtp"}),
+                   ("positions is None; it must be an array", {"positions": None}), ("is a set;", {"scalar": {1}}),
                    ("has the shape", {"smoothing_length": nothing}, {"volume": nothing}, {"attributes": {"a": nothing}},
                     {"scalar_dot": nothing}),  # the core reads 0 components as 1
                    ("iso value", {"iso": None}), ("The iso value is nan; it must be a finite number", {"iso": np.nan}),

@@ -208,6 +208,8 @@ class Warned(unittest.TestCase):
         full = {"periodic": (1, 1, 1), "smoothing_length": H, "volume": V}
         for call, sentence in (
                 (lambda: mc.free_surface(POSITIONS, 20.0, smoothing_length=H), "sum of the weights crosses 20 nowhere"),
+                (lambda: mc.free_surface(POSITIONS, [], smoothing_length=H), "list of iso values is empty"),
+                (lambda: mc.free_surface(POSITIONS + 1, smoothing_length=H, cube_size=50), "cubes of 50 may be too large"),
                 (lambda: mc.free_surface(box, **full), "A periodic box full of fluid has no free surface"),
                 (lambda: mc.isosurface(POSITIONS, np.full(COUNT, 3.0), 3.0, smoothing_length=H), "is 3 at all")):
             found = caught(call)
@@ -248,6 +250,13 @@ class Inputs(unittest.TestCase):
         found = mc.isosurface(frame[["x", "y", "z"]], frame["distance"], 0.4, smoothing_length=H, volume=V,
                               attributes=frame[["distance", "id"]])
         self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "id": np.arange(COUNT)}))
+        frame["kind"] = "é"  # so that the table is one of objects
+        rows, fluid = frame.values, {"smoothing_length": H, "volume": V}
+        found = mc.isosurface(rows[:, :3], rows[:, 3], 0.4, attributes={"distance": rows[:, 3], "kind": frame["kind"]}, **fluid)
+        self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "kind": np.full(COUNT, "é")}))
+        self.assertEqual(set(found.to_pyvista()["kind"]), {"é"})
+        with self.assertRaisesRegex(mc.InvalidArgument, "does not hold numbers, but object"):
+            mc.isosurface(rows[:, :3], rows[:, 5], 0.4, **fluid)
 
     def test_dlpack(self):
         class Tensor:
@@ -396,8 +405,9 @@ class Files(unittest.TestCase):
             self.assertRegex("".join(sentences), r"holds no arrays: WeightSum, id, speed, where are not in a\.")
             self.assertEqual(len(trimesh.load(path).faces), len(self.surface.triangles))
             self.assertEqual(self.save(name, sphere())[1], [])
-        with self.assertRaisesRegex(mc.InvalidArgument, "no ending"):
-            self.surface.save(Path(self.folder.name) / "a")
+        for name, sentence in (("a", "no ending"), ("a.dae", "a.dae was not written, because no format of that ending")):
+            with self.assertRaisesRegex(mc.InvalidArgument, sentence):
+                self.surface.save(Path(self.folder.name) / name)
 
     def test_other_libraries(self):
         mesh = self.surface.to_trimesh()

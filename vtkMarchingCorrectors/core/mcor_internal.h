@@ -7,6 +7,7 @@
  * name among the kernels. */
 
 #include "mcor_state.h"
+#include "mcor_system.h"
 
 #include <math.h>
 
@@ -68,15 +69,12 @@ typedef struct mcor_kernel_row
 } mcor_kernel_row;
 const mcor_kernel_row* mcor_kernel_of(mcor_sph_kernel kernel);
 
-/* mcor_memory.c. Fails where memory of the host could not be allocated. */
+/* Fails where memory of the host could not be allocated. */
 mcor_status mcor_allocated(mcor_context* context, bool complete);
 /* Makes room for one more element behind the first `count` of an array, which has room for
  * `room` elements of `width` bytes. */
 mcor_status mcor_make_room(
   mcor_context* context, void** array, int64_t count, int64_t* room, size_t width);
-/* Called before an array of the host, or of a device that shares its memory, is first touched. */
-#define MCOR_LARGE_ARRAY ((size_t)1 << 20)
-void mcor_use_large_pages(void* memory, size_t bytes);
 
 /* Reads element i of an array of the device's real type. */
 static inline double mcor_get_real(const mcor_context* context, const void* array, int64_t i)

@@ -37,29 +37,6 @@ static uint64_t mcor_hash_splits(const mcor_globals* globals)
   return hash;
 }
 
-/* Whether the globals are those of the last call. Components are left out: nothing that is kept
- * depends on them. */
-static bool mcor_same_globals(const mcor_context* context, const mcor_globals* globals)
-{
-  const mcor_globals none = { 0 };
-  const mcor_globals *a = &context->kept.globals, *b = globals ? globals : &none;
-  bool same = a->measured.fluid_count == b->measured.fluid_count &&
-    a->measured.solid_count == b->measured.solid_count && a->measured.h_min == b->measured.h_min &&
-    a->measured.support_min == b->measured.support_min &&
-    a->measured.support_max == b->measured.support_max &&
-    a->measured.h_estimate == b->measured.h_estimate && a->mass_max == b->mass_max &&
-    a->measured.wall_share == b->measured.wall_share &&
-    a->measured.scalar_min == b->measured.scalar_min &&
-    a->measured.scalar_max == b->measured.scalar_max && a->scalar_shift == b->scalar_shift;
-  same = same && context->kept.splits == (globals ? mcor_hash_splits(globals) : 0);
-  for (int i = 0; i < 3; ++i)
-  {
-    same = same && a->measured.low[i] == b->measured.low[i] &&
-      a->measured.high[i] == b->measured.high[i];
-  }
-  return same;
-}
-
 static bool mcor_same_bounds(const double a[6], const double b[6])
 {
   bool same = true;
@@ -100,8 +77,21 @@ void mcor_check_reuse(mcor_context* context, const mcor_input* input, const mcor
 {
   const mcor_input* last = &context->kept.input;
   const bool particles = mcor_same_particles(input, last);
-  const bool parameters = mcor_same_options(options, &context->kept.options) &&
-    mcor_same_globals(context, options->globals);
+  /* Globals, but for their components: nothing that is kept depends on them. */
+  const mcor_globals none = { 0 };
+  const mcor_globals *a = &context->kept.globals, *b = options->globals ? options->globals : &none;
+  const mcor_measure *m = &a->measured, *n = &b->measured;
+  bool parameters = mcor_same_options(options, &context->kept.options) &&
+    m->fluid_count == n->fluid_count && m->solid_count == n->solid_count && m->h_min == n->h_min &&
+    m->support_min == n->support_min && m->support_max == n->support_max &&
+    m->h_estimate == n->h_estimate && m->wall_share == n->wall_share &&
+    m->scalar_min == n->scalar_min && m->scalar_max == n->scalar_max &&
+    a->mass_max == b->mass_max && a->scalar_shift == b->scalar_shift &&
+    context->kept.splits == (options->globals ? mcor_hash_splits(b) : 0);
+  for (int i = 0; i < 3; ++i)
+  {
+    parameters = parameters && m->low[i] == n->low[i] && m->high[i] == n->high[i];
+  }
   context->kept.grid = context->kept.grid && particles && parameters &&
     context->run.uses_solids == context->kept.uses_solids;
   context->kept.value = context->kept.value && context->kept.grid && input->scalar_version != 0 &&

@@ -10,6 +10,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -72,6 +73,25 @@ mcor_status mcor_fail(mcor_context* context, mcor_status status, const char* for
   }
   va_end(args);
   return status;
+}
+
+mcor_status mcor_allocated(mcor_context* context, bool complete)
+{
+  return complete ? MCOR_OK : mcor_fail(context, MCOR_OUT_OF_CAPACITY, "Host memory ran out.");
+}
+
+mcor_status mcor_make_room(
+  mcor_context* context, void** array, int64_t count, int64_t* room, size_t width)
+{
+  if (count < *room)
+  {
+    return MCOR_OK;
+  }
+  const int64_t more = 2 * *room + 1024;
+  void* grown = realloc(*array, (size_t)more * width);
+  *array = grown ? grown : *array;
+  *room = grown ? more : *room;
+  return mcor_allocated(context, grown);
 }
 
 const char* mcor_last_error(const mcor_context* context)

@@ -126,19 +126,6 @@ void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count
   }
 }
 
-/* Asks for large pages on a CPU, where buffers are memory of the host. */
-static mcor_status mcor_enlarge_pages(mcor_context* context, const mcor_buffer* buffer)
-{
-  void* memory;
-  if (!context->cl.is_cpu || buffer->size < MCOR_LARGE_ARRAY)
-  {
-    return MCOR_OK;
-  }
-  MCOR_TRY(mcor_map(context, buffer, buffer->size, true, &memory));
-  mcor_use_large_pages(memory, buffer->size);
-  return mcor_unmap(context, buffer, &memory);
-}
-
 static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size_t bytes)
 {
   mcor_cl* cl = &context->cl;
@@ -170,7 +157,14 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
   buffer->size = size;
   cl->bytes += (int64_t)size;
   cl->bytes_peak = cl->bytes > cl->bytes_peak ? cl->bytes : cl->bytes_peak;
-  return mcor_enlarge_pages(context, buffer);
+  if (cl->is_cpu && size >= MCOR_LARGE_ARRAY) /* buffers are memory of the host */
+  {
+    void* memory;
+    MCOR_TRY(mcor_map(context, buffer, size, true, &memory));
+    mcor_use_large_pages(memory, size);
+    MCOR_TRY(mcor_unmap(context, buffer, &memory));
+  }
+  return MCOR_OK;
 }
 
 mcor_status mcor_reserve(mcor_context* context, mcor_buffer* buffer, size_t bytes)

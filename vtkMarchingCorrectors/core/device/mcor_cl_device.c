@@ -5,7 +5,6 @@
 
 #include "mcor_cl_call.h"
 #include "mcor_program.h"
-#include "mcor_system.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -156,24 +155,9 @@ static cl_device_type mcor_type_of(cl_device_id device)
   return type & ~(cl_device_type)CL_DEVICE_TYPE_DEFAULT;
 }
 
-/* Whether the kernels' form for CPUs suits the device. A device that claims to be a CPU without
- * vectors works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu
- * or gpu, is for tests. */
-static bool mcor_has_cpu_form(const mcor_cl* cl)
-{
-  const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
-  if (forced && *forced)
-  {
-    return strcmp(forced, "gpu") != 0;
-  }
-  cl_uint width = 1;
-  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
-  return (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0 && width > 1;
-}
-
 static void mcor_query_device(mcor_cl* cl)
 {
-  cl_uint units = 1;
+  cl_uint units = 1, width = 1;
   cl_bool unified = CL_FALSE;
   cl_device_fp_config fp32 = 0, fp64 = 0;
   clGetDeviceInfo(cl->device, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
@@ -185,9 +169,15 @@ static void mcor_query_device(mcor_cl* cl)
   clGetDeviceInfo(
     cl->device, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof cl->largest_buffer, &cl->largest_buffer, NULL);
   clGetDeviceInfo(cl->device, CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, NULL);
-  cl->is_cpu = mcor_has_cpu_form(cl);
+  /* The kernels' form for CPUs suits CPUs with vectors. A device that claims to be one without them
+   * works as a GPU does, with a work-item in each lane. The variable MCOR_DEVICE_FORM, cpu or gpu, is
+   * for tests. */
+  const char* forced = mcor_test_setting("MCOR_DEVICE_FORM");
+  const bool claims_cpu = (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0;
+  clGetDeviceInfo(cl->device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
+  cl->is_cpu = forced && *forced ? strcmp(forced, "gpu") != 0 : claims_cpu && width > 1;
   /* A CPU that is made to work as a GPU tests this, too. */
-  cl->is_apart = !cl->is_cpu && (!unified || (mcor_type_of(cl->device) & CL_DEVICE_TYPE_CPU) != 0);
+  cl->is_apart = !cl->is_cpu && (!unified || claims_cpu);
   cl->has_fp64 = fp64 != 0;
   cl->rounds_division = (fp32 & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   cl->units = (int)units;
@@ -244,18 +234,6 @@ static void mcor_take_share(mcor_cl* cl, int place, int count)
   free(made);
 }
 
-/* Ranks devices where none is named: the built-in one is best, which starts at once, then a GPU,
- * then PoCL, then any other. */
-static int mcor_rank_device(cl_platform_id platform, cl_device_id device)
-{
-  char name[128], platform_name[128];
-  mcor_device_names(platform, device, name, platform_name, sizeof name);
-  return platform == mcor_native_platform()             ? 4
-    : (mcor_type_of(device) & CL_DEVICE_TYPE_GPU) != 0  ? 3
-    : strcmp(platform_name, MCOR_DEFAULT_PLATFORM) == 0 ? 2
-                                                        : 1;
-}
-
 /* Whether a device has what a build needs. The built-in one has the kernels that were compiled
  * with this library. */
 static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const mcor_build* build)
@@ -266,17 +244,27 @@ static bool mcor_can_build(cl_platform_id platform, cl_device_id device, const m
                                 : build->precision == MCOR_FLOAT32 || tried.has_fp64;
 }
 
-/* Returns the best of the devices that can do a build; -1: none. */
+/* The build of mcor_set_default_options. */
+static const mcor_build mcor_usual_build = { 0 };
+
+/* Returns the best of the devices that can do a build: the built-in one, which starts at once, then
+ * a GPU, then PoCL, then any other; -1: none. */
 static int mcor_choose_device(const mcor_device_list* list, const mcor_build* build)
 {
-  int best = -1, rank = 0;
+  int best = -1, best_rank = 0;
   for (int i = 0; i < list->count; ++i)
   {
-    const int own = mcor_rank_device(list->platforms[i], list->devices[i]);
-    if (own > rank && mcor_can_build(list->platforms[i], list->devices[i], build))
+    const cl_platform_id platform = list->platforms[i];
+    char device_name[128], name[128];
+    mcor_device_names(platform, list->devices[i], device_name, name, sizeof name);
+    const int rank = platform == mcor_native_platform()            ? 4
+      : (mcor_type_of(list->devices[i]) & CL_DEVICE_TYPE_GPU) != 0 ? 3
+      : strcmp(name, MCOR_DEFAULT_PLATFORM) == 0                   ? 2
+                                                                   : 1;
+    if (rank > best_rank && mcor_can_build(platform, list->devices[i], build))
     {
       best = i;
-      rank = own;
+      best_rank = rank;
     }
   }
   return best;
@@ -323,12 +311,11 @@ static const char* mcor_driver_fault(const mcor_device_list* list)
 static mcor_status mcor_fail_without_device(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {
-  const mcor_build usual = { 0 };
   mcor_build single = *build;
   single.precision = MCOR_FLOAT32;
   char missing[MCOR_BUILD_NAME];
   mcor_name_build(build, missing, sizeof missing);
-  MCOR_RETURN_IF(mcor_choose_device(list, &usual) >= 0, context, MCOR_DEVICE_ERROR,
+  MCOR_RETURN_IF(mcor_choose_device(list, &mcor_usual_build) >= 0, context, MCOR_DEVICE_ERROR,
     "The built-in device has no kernels for %s: they were not compiled with this library. %s "
     "an OpenCL driver (PoCL, Debian package pocl-opencl-icd, runs on the CPU), or build with "
     "MCOR_AHEAD=all. " MCOR_POCL_HINT "%s",
@@ -345,8 +332,8 @@ static mcor_status mcor_start_default(
   mcor_context* context, const mcor_device_list* list, const mcor_build* build)
 {
   mcor_cl* cl = &context->cl;
-  const mcor_build usual = { 0 };
-  const int best = mcor_choose_device(list, &usual), chosen = mcor_choose_device(list, build);
+  const int best = mcor_choose_device(list, &mcor_usual_build),
+            chosen = mcor_choose_device(list, build);
   if (chosen < 0)
   {
     return mcor_fail_without_device(context, list, build);
@@ -369,12 +356,11 @@ mcor_status mcor_open_device(mcor_context* context, const char* device, int plac
   mcor_find_devices(&list, false);
   if (cl->is_default)
   {
-    const mcor_build usual = { 0 };
-    if (mcor_choose_device(&list, &usual) < 0)
+    if (mcor_choose_device(&list, &mcor_usual_build) < 0)
     {
       mcor_find_devices(&list, true);
     }
-    return mcor_start_default(context, &list, &usual);
+    return mcor_start_default(context, &list, &mcor_usual_build);
   }
   int chosen = mcor_find_device(&list, wanted, &by_number);
   if (chosen < 0)

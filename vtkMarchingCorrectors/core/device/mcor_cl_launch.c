@@ -50,10 +50,12 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   mcor_kernel* kernel = *found = &cl->kernels[cl->kernel_count];
   *kernel = (mcor_kernel){ 0 };
   snprintf(kernel->name, sizeof kernel->name, "%s", name);
+  const bool is_probe = strncmp(name, "mcor_probe_", 11) == 0 ||
+    strncmp(name, "mcor_derive_", 12) == 0 || strncmp(name, "mcor_widen_", 11) == 0;
   for (int p = 0; p < MCOR_PROGRAM_COUNT && !kernel->kernel; ++p)
   {
     kernel->program = (mcor_program)p;
-    if (!mcor_program_may_have(kernel->program, name))
+    if (is_probe != (p == MCOR_PROGRAM_PROBE)) /* need not be built to look */
     {
       continue;
     }
@@ -67,23 +69,6 @@ static mcor_status mcor_find_kernel(mcor_context* context, const char* name, mco
   MCOR_CL_TRY(context, error, name);
   ++cl->kernel_count;
   return MCOR_OK;
-}
-
-static cl_int mcor_set_arg(const mcor_cl* cl, cl_kernel kernel, cl_uint i, const mcor_arg* arg)
-{
-  const cl_int integer = arg->integer;
-  const cl_float single = (cl_float)arg->real;
-  const cl_double real = arg->real;
-  switch (arg->kind)
-  {
-    case MCOR_ARG_BUFFER:
-      return clSetKernelArg(kernel, i, sizeof(cl_mem), &arg->buffer->mem);
-    case MCOR_ARG_INT:
-      return clSetKernelArg(kernel, i, sizeof integer, &integer);
-    default:
-      return cl->real_size == sizeof single ? clSetKernelArg(kernel, i, sizeof single, &single)
-                                            : clSetKernelArg(kernel, i, sizeof real, &real);
-  }
 }
 
 /* A kernel that was compiled before takes less at its first launch. */
@@ -135,39 +120,6 @@ static cl_int mcor_enqueue_first(mcor_context* context, cl_kernel kernel, const 
   32 /* the first part, as long as a kernel's time is unknown: the limit over this */
 #define MCOR_DOUBLE_TERMS (1 << 19)
 
-/* Work-items of the first part, and of any part at most. */
-typedef struct mcor_parts
-{
-  double first, limit;
-} mcor_parts;
-
-static bool mcor_is_cut(const mcor_context* context, mcor_load load)
-{
-  const bool watched = context->cl.observer != NULL;
-  return load == MCOR_HEAVY ? !context->cl.is_cpu || watched
-                            : watched && mcor_is_native(&context->cl);
-}
-
-/* Chooses the sizes of parts. An item's work goes with the particles that reach a point. On the
- * built-in device parts cost nothing, so each launch begins with small ones, and none becomes
- * large. A driver may compile a kernel once more for work-items that do not begin at 0. */
-static mcor_parts mcor_parts_of(
-  const mcor_context* context, const mcor_kernel* kernel, mcor_load load)
-{
-  const mcor_cl* cl = &context->cl;
-  const double units = cl->units,
-               terms = cl->real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
-  const double limit = cl->is_cpu ? terms * units / fmax(cl->terms, 1) : INFINITY;
-  if (mcor_is_native(cl))
-  {
-    return load == MCOR_HEAVY ? (mcor_parts){ 32 * units, fmin(2048 * units, limit) }
-      : load == MCOR_MEDIUM   ? (mcor_parts){ 1024 * units, 16384 * units }
-                              : (mcor_parts){ (1 << 17) * units, (1 << 20) * units };
-  }
-  const double first = cl->is_cpu ? limit / MCOR_FIRST_SHARE : MCOR_FIRST_PART;
-  return (mcor_parts){ kernel->part > 0 ? kernel->part : first, limit };
-}
-
 /* Launches `count` work-items from `offset` on. Drivers compile a kernel anew at its first
  * launch with few or many items, from 0 or from elsewhere; the built-in device compiles nothing. */
 static mcor_status mcor_enqueue_part(
@@ -190,12 +142,27 @@ static mcor_status mcor_enqueue_part(
   return MCOR_OK;
 }
 
-/* Launches all work-items in parts. */
+/* Launches all work-items in parts. An item's work goes with the particles that reach a point. On
+ * the built-in device parts cost nothing, so each launch begins with small ones, and none becomes
+ * large. A driver may compile a kernel once more for work-items that do not begin at 0. */
 static mcor_status mcor_enqueue_cut(
   mcor_context* context, mcor_kernel* kernel, mcor_load load, size_t global, size_t group)
 {
-  const mcor_parts parts = mcor_parts_of(context, kernel, load);
-  double part = fmin(parts.first, parts.limit);
+  const mcor_cl* cl = &context->cl;
+  const double units = cl->units,
+               terms = cl->real_size == sizeof(cl_double) ? MCOR_DOUBLE_TERMS : MCOR_PART_TERMS;
+  double limit = cl->is_cpu ? terms * units / fmax(cl->terms, 1) : INFINITY;
+  double part = kernel->part > 0 ? kernel->part
+    : cl->is_cpu                 ? limit / MCOR_FIRST_SHARE
+                                 : MCOR_FIRST_PART;
+  if (mcor_is_native(cl))
+  {
+    limit = load == MCOR_HEAVY ? fmin(2048 * units, limit)
+      : load == MCOR_MEDIUM    ? 16384 * units
+                               : (1 << 20) * units;
+    part = (load == MCOR_HEAVY ? 32 : load == MCOR_MEDIUM ? 1024 : 1 << 17) * units;
+  }
+  part = fmin(part, limit);
   size_t count = 0;
   for (size_t offset = 0; offset < global; offset += count)
   {
@@ -207,11 +174,11 @@ static mcor_status mcor_enqueue_cut(
       return mcor_enqueue_part(context, kernel, 0, count, group);
     }
     MCOR_TRY(mcor_finish(context));
-    const double begin = mcor_seconds(), built = context->cl.build_seconds;
+    const double begin = mcor_seconds(), built = cl->build_seconds;
     MCOR_TRY(mcor_enqueue_part(context, kernel, offset, count, group));
     MCOR_TRY(mcor_finish(context));
-    const double seconds = mcor_seconds() - begin - (context->cl.build_seconds - built);
-    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest ? fmin(2 * part, parts.limit)
+    const double seconds = mcor_seconds() - begin - (cl->build_seconds - built);
+    part = seconds < MCOR_PART_SECONDS / 2 && groups < rest ? fmin(2 * part, limit)
       : seconds > 2 * MCOR_PART_SECONDS ? fmax(part * MCOR_PART_SECONDS / seconds, (double)group)
                                         : part;
     kernel->part = part;
@@ -241,12 +208,24 @@ mcor_status mcor_launch(mcor_context* context, const char* name, mcor_load load,
     "Kernel %s has %u arguments; %zu were given.", name, (unsigned)wanted, arg_count);
   for (size_t i = 0; i < arg_count; ++i)
   {
-    MCOR_CL_TRY(context, mcor_set_arg(cl, kernel->kernel, (cl_uint)i, args + i), name);
+    const mcor_arg* arg = args + i;
+    const cl_int integer = arg->integer;
+    const cl_float single = (cl_float)arg->real;
+    const void* const value = arg->kind == MCOR_ARG_BUFFER ? (const void*)&arg->buffer->mem
+      : arg->kind == MCOR_ARG_INT                          ? (const void*)&integer
+      : cl->real_size == sizeof single                     ? (const void*)&single
+                                                           : &arg->real;
+    const size_t size = arg->kind == MCOR_ARG_BUFFER ? sizeof(cl_mem)
+      : arg->kind == MCOR_ARG_INT                    ? sizeof integer
+                                                     : cl->real_size;
+    MCOR_CL_TRY(context, clSetKernelArg(kernel->kernel, (cl_uint)i, size, value), name);
   }
   const size_t group = cl->is_cpu && load != MCOR_LIGHT ? 1 : 64;
   const size_t global = (items + group - 1) / group * group;
-  return mcor_is_cut(context, load) ? mcor_enqueue_cut(context, kernel, load, global, group)
-                                    : mcor_enqueue_part(context, kernel, 0, global, group);
+  const bool watched = cl->observer != NULL;
+  const bool is_cut = load == MCOR_HEAVY ? !cl->is_cpu || watched : watched && mcor_is_native(cl);
+  return is_cut ? mcor_enqueue_cut(context, kernel, load, global, group)
+                : mcor_enqueue_part(context, kernel, 0, global, group);
 }
 
 mcor_status mcor_finish(mcor_context* context)

@@ -60,27 +60,6 @@ static mcor_status mcor_fail_build(
   return status;
 }
 
-static mcor_status mcor_build_program(mcor_context* context, mcor_program number)
-{
-  mcor_cl* cl = &context->cl;
-  char options[512];
-  const char* sources[MCOR_SOURCE_LIMIT];
-  const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
-  mcor_program_options(cl, number, options, sizeof options);
-  cl_int error;
-  cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
-  MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
-  error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
-  if (error != CL_SUCCESS)
-  {
-    const mcor_status status = mcor_fail_build(context, program, error, options);
-    clReleaseProgram(program);
-    return status;
-  }
-  cl->programs[number] = program;
-  return MCOR_OK;
-}
-
 mcor_status mcor_need_program(mcor_context* context, mcor_program number)
 {
   mcor_cl* cl = &context->cl;
@@ -90,9 +69,23 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   }
   MCOR_TRY(mcor_ask(context, true));
   const double begin = mcor_seconds();
-  const mcor_status status = mcor_build_program(context, number);
+  char options[512];
+  const char* sources[MCOR_SOURCE_LIMIT];
+  const cl_uint count = (cl_uint)mcor_program_sources(cl, number, sources);
+  mcor_program_options(cl, number, options, sizeof options);
+  cl_int error;
+  cl_program program = clCreateProgramWithSource(cl->context, count, sources, NULL, &error);
+  MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
+  error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
   cl->build_seconds += mcor_seconds() - begin;
-  return status;
+  if (error != CL_SUCCESS)
+  {
+    const mcor_status status = mcor_fail_build(context, program, error, options);
+    clReleaseProgram(program);
+    return status;
+  }
+  cl->programs[number] = program;
+  return MCOR_OK;
 }
 
 /* Returns the evaluation points that a work-item treats at once: MCOR_LANES of the programs, and

@@ -384,22 +384,19 @@ mcor_pool* mcor_native_pool(cl_context context)
   return &context->pool;
 }
 
-static size_t mcor_launch_step(int threads, size_t items, size_t group)
-{
-  const size_t parts = (size_t)threads * (group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
-  const size_t step = (items + parts - 1) / parts;
-  return group > 1 && items < MCOR_FEW_LIGHT_ITEMS ? items
-    : step < MCOR_PART_ITEMS                       ? step
-                                                   : MCOR_PART_ITEMS;
-}
-
 static cl_int mcor_launch_kernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
   const size_t* offset, const size_t* items, const size_t* group, cl_uint count,
   const cl_event* wait, cl_event* event)
 {
   const size_t first = offset ? *offset : 0;
   mcor_pool* pool = &queue->context->pool;
-  mcor_pool_run(pool, NULL, first, first + *items, mcor_launch_step(pool->threads, *items, *group),
+  const size_t parts = (size_t)pool->threads * (*group > 1 ? MCOR_LIGHT_PARTS : MCOR_HEAVY_PARTS);
+  const size_t step = (*items + parts - 1) / parts;
+  const bool is_short = *group > 1 && *items < MCOR_FEW_LIGHT_ITEMS;
+  mcor_pool_run(pool, NULL, first, first + *items,
+    is_short                   ? *items
+      : step < MCOR_PART_ITEMS ? step
+                               : MCOR_PART_ITEMS,
     mcor_run_items, kernel);
   return CL_SUCCESS;
 }

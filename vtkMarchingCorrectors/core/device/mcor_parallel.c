@@ -5,7 +5,6 @@
  * the host, too. With any other device, or none, threads live for one loop. */
 
 #include "mcor_cl_call.h"
-#include "mcor_system.h"
 
 #include <fenv.h>
 #include <stdlib.h>

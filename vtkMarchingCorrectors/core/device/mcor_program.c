@@ -24,15 +24,6 @@ int mcor_program_sources(
   return count;
 }
 
-bool mcor_program_may_have(mcor_program program, const char* kernel)
-{
-  const bool is_probe = strncmp(kernel, "mcor_probe_", 11) == 0 ||
-    strncmp(kernel, "mcor_derive_", 12) == 0 || strncmp(kernel, "mcor_widen_", 11) == 0;
-  return program == MCOR_PROGRAM_LATTICE ? !is_probe
-    : program == MCOR_PROGRAM_PROBE      ? is_probe
-                                         : !is_probe;
-}
-
 void mcor_name_build(const mcor_build* build, char* text, size_t size)
 {
   const bool is_double = build->precision == MCOR_FLOAT64;

@@ -27,9 +27,6 @@ extern const mcor_kernel_source mcor_kernel_sources[];
 /* Lists the sources of a program, in order; returns their number. */
 int mcor_program_sources(
   const mcor_cl* cl, mcor_program program, const char* sources[MCOR_SOURCE_LIMIT]);
-/* Returns false where the program certainly lacks the kernel, so that it need not be built to
- * look. */
-bool mcor_program_may_have(mcor_program program, const char* kernel);
 /* Names a build for an error sentence: "the SPH kernel sinc6". */
 #define MCOR_BUILD_NAME 80
 void mcor_name_build(const mcor_build* build, char* text, size_t size);

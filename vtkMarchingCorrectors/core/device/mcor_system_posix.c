@@ -42,12 +42,12 @@ void mcor_system_release(void* memory)
   free(memory);
 }
 
-void mcor_system_want_large_pages(void* memory, size_t bytes)
+void mcor_use_large_pages(void* memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
   const size_t page = (size_t)sysconf(_SC_PAGESIZE);
   const size_t skipped = (page - (uintptr_t)memory % page) % page;
-  if (bytes > skipped)
+  if (bytes >= MCOR_LARGE_ARRAY)
   {
     /* A mere request: where it is refused, pages stay small. */
     (void)madvise((char*)memory + skipped, (bytes - skipped) / page * page, MADV_HUGEPAGE);

@@ -43,7 +43,7 @@ void mcor_system_release(void* memory)
 }
 
 /* Large pages take a right that users lack by default. */
-void mcor_system_want_large_pages(void* memory, size_t bytes)
+void mcor_use_large_pages(void* memory, size_t bytes)
 {
   (void)memory, (void)bytes;
 }
@@ -51,16 +51,11 @@ void mcor_system_want_large_pages(void* memory, size_t bytes)
 /* Rejects Wine's own OpenCL.dll: its objects do not begin with tables of functions, through
  * which all others are called. Wine's libraries name themselves behind their first 64 bytes,
  * where others have a DOS program. */
-static bool mcor_is_wines_own(HMODULE library)
-{
-  static const char mark[] = "Wine builtin DLL";
-  return memcmp((const char*)library + 64, mark, sizeof mark - 1) == 0;
-}
-
 mcor_function mcor_system_opencl(void)
 {
+  static const char mark[] = "Wine builtin DLL";
   const HMODULE loader = LoadLibraryExW(L"OpenCL.dll", NULL, LOAD_LIBRARY_SEARCH_SYSTEM32);
-  return loader && !mcor_is_wines_own(loader)
+  return loader && memcmp((const char*)loader + 64, mark, sizeof mark - 1) != 0
     ? (mcor_function)(void*)GetProcAddress(loader, "clGetPlatformIDs")
     : NULL;
 }

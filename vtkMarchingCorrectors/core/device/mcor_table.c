@@ -14,27 +14,6 @@ static mcor_entry* mcor_entry_of(const mcor_table* map, uint64_t key)
   return &map->entries[at];
 }
 
-static bool mcor_table_grow(mcor_table* map)
-{
-  const mcor_table old = *map;
-  map->capacity = old.capacity ? 2 * old.capacity : 256;
-  map->entries = calloc(map->capacity, sizeof *map->entries);
-  if (!map->entries)
-  {
-    *map = old;
-    return false;
-  }
-  for (size_t i = 0; i < old.capacity; ++i)
-  {
-    if (old.entries[i].value != 0)
-    {
-      *mcor_entry_of(map, old.entries[i].key) = old.entries[i];
-    }
-  }
-  free(old.entries);
-  return true;
-}
-
 uint64_t mcor_table_find(const mcor_table* map, uint64_t key)
 {
   return map->capacity > 0 ? mcor_entry_of(map, key)->value : 0;
@@ -42,9 +21,24 @@ uint64_t mcor_table_find(const mcor_table* map, uint64_t key)
 
 uint64_t* mcor_table_add(mcor_table* map, uint64_t key)
 {
-  if (2 * map->count >= map->capacity && !mcor_table_grow(map))
+  if (2 * map->count >= map->capacity)
   {
-    return NULL;
+    const mcor_table old = *map;
+    map->capacity = old.capacity ? 2 * old.capacity : 256;
+    map->entries = calloc(map->capacity, sizeof *map->entries);
+    if (!map->entries)
+    {
+      *map = old;
+      return NULL;
+    }
+    for (size_t i = 0; i < old.capacity; ++i)
+    {
+      if (old.entries[i].value != 0)
+      {
+        *mcor_entry_of(map, old.entries[i].key) = old.entries[i];
+      }
+    }
+    free(old.entries);
   }
   mcor_entry* entry = mcor_entry_of(map, key);
   map->count += entry->value == 0;

@@ -132,30 +132,6 @@ static mcor_status mcor_sort_same_keys(mcor_context* context, const mcor_key_sor
   return MCOR_OK;
 }
 
-/* Orders the particles of cells that are too large for one work-item. */
-static mcor_status mcor_order_large_cells(mcor_context* context)
-{
-  mcor_grid* grid = &context->grid;
-  const mcor_stage_data* stage = &context->stage;
-  mcor_buffer* most = &context->stage.found;
-  cl_int most_in_cell = MCOR_USUAL_IN_CELL;
-  MCOR_TRY(mcor_write(context, most, &most_in_cell, sizeof most_in_cell));
-  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count", MCOR_LIGHT, mcor_batches(context, grid->count),
-    MCOR_INT(grid->count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(most)));
-  MCOR_TRY(mcor_read(context, most, 0, &most_in_cell, sizeof most_in_cell));
-  grid->most_in_cell = most_in_cell;
-  const mcor_key_sort sort = { .keys = &grid->cell_keys,
-    .x = &stage->x,
-    .y = &stage->y,
-    .z = &stage->z,
-    .inv_h = &stage->inv_h,
-    .size = &stage->size,
-    .value = &stage->inv_h,
-    .most = most_in_cell };
-  return most_in_cell > MCOR_INSERTION_OF(context->cl.lanes) ? mcor_sort_same_keys(context, &sort)
-                                                             : MCOR_OK;
-}
-
 /* Moves particles to where `order` says, one array after the other, so that each may take the
  * place of the one before; then orders those of each cell. */
 static mcor_status mcor_move_particles(mcor_context* context)
@@ -217,7 +193,7 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
 {
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)staging->count;
-  const mcor_stage_data* stage = &context->stage;
+  mcor_stage_data* stage = &context->stage;
   const uint64_t cells = mcor_make_levels(context, staging);
   const int count = grid->count;
   MCOR_TRY(mcor_unmap_all(context, staging->views, staging->view_count, MCOR_OK));
@@ -229,7 +205,24 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
     MCOR_BUFFER(&stage->y), MCOR_BUFFER(&stage->z), MCOR_BUFFER(&grid->cell_keys)));
   MCOR_TRY(mcor_sort(context, &grid->cell_keys, &grid->order, count, cells));
   MCOR_RELEASE_EACH(context, &context->sort);
-  MCOR_TRY(mcor_order_large_cells(context));
+  cl_int most_in_cell = MCOR_USUAL_IN_CELL;
+  MCOR_TRY(mcor_write(context, &stage->found, &most_in_cell, sizeof most_in_cell));
+  MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_count", MCOR_LIGHT, mcor_batches(context, count),
+    MCOR_INT(count), MCOR_BUFFER(&grid->cell_keys), MCOR_BUFFER(&stage->found)));
+  MCOR_TRY(mcor_read(context, &stage->found, 0, &most_in_cell, sizeof most_in_cell));
+  grid->most_in_cell = most_in_cell;
+  if (most_in_cell > MCOR_INSERTION_OF(context->cl.lanes)) /* too large for one work-item */
+  {
+    const mcor_key_sort sort = { .keys = &grid->cell_keys,
+      .x = &stage->x,
+      .y = &stage->y,
+      .z = &stage->z,
+      .inv_h = &stage->inv_h,
+      .size = &stage->size,
+      .value = &stage->inv_h,
+      .most = most_in_cell };
+    MCOR_TRY(mcor_sort_same_keys(context, &sort));
+  }
   MCOR_TRY(mcor_move_particles(context));
   return mcor_index_cells(context, cells);
 }
@@ -238,24 +231,6 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
 static const mcor_buffer* mcor_fluid_weight(const mcor_grid* grid)
 {
   return grid->has_solids ? &grid->fluid_weight : &grid->trim_weight;
-}
-
-/* Says why a particle's volume cannot be computed. */
-static mcor_status mcor_refuse_density(
-  mcor_context* context, const mcor_input* input, int64_t particle)
-{
-  const bool single = context->cl.real_size == sizeof(float);
-  const double mass = mcor_is_given(&input->mass)
-    ? mcor_array_at(&input->mass, particle, 0) * mcor_size_scale(context, input)
-    : 1;
-  MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too small "
-    "for %s precision. Provide volumes, or masses and densities, or remove such particles.",
-    (long long)particle, mass, single ? "single" : "double");
-  return mcor_fail(context, MCOR_INVALID_DATA,
-    "The volume of particle %lld cannot be computed: with kernel %s, which has negative lobes, the "
-    "density there is too low or negative. Provide volumes, or masses and densities.",
-    (long long)particle, mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 
 /* The factor of D^2 by which a side without neighbours adds to a density, see
@@ -292,8 +267,23 @@ static mcor_status mcor_compute_volumes(mcor_context* context, const mcor_input*
     MCOR_REAL(low[2]), MCOR_REAL(high[0]), MCOR_REAL(high[1]), MCOR_REAL(high[2]),
     MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight), MCOR_BUFFER(without)));
   MCOR_TRY(mcor_read(context, without, 0, &first, sizeof first));
-  return first == INT32_MAX ? MCOR_OK
-                            : mcor_refuse_density(context, input, mcor_source_of(context, first));
+  if (first == INT32_MAX)
+  {
+    return MCOR_OK;
+  }
+  const long long particle = mcor_source_of(context, first);
+  const bool single = context->cl.real_size == sizeof(float);
+  const double mass = mcor_is_given(&input->mass)
+    ? mcor_array_at(&input->mass, particle, 0) * mcor_size_scale(context, input)
+    : 1;
+  MCOR_RETURN_IF(mass < (single ? (double)FLT_MIN : DBL_MIN), context, MCOR_INVALID_DATA,
+    "The volume of particle %lld cannot be computed: its mass is %.3g times the largest, too small "
+    "for %s precision. Provide volumes, or masses and densities, or remove such particles.",
+    particle, mass, single ? "single" : "double");
+  return mcor_fail(context, MCOR_INVALID_DATA,
+    "The volume of particle %lld cannot be computed: with kernel %s, which has negative lobes, the "
+    "density there is too low or negative. Provide volumes, or masses and densities.",
+    particle, mcor_sph_kernel_name(context->run.options->sph_kernel));
 }
 
 mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)

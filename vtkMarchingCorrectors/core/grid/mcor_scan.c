@@ -83,27 +83,21 @@ static int mcor_bits_below(uint64_t limit)
   return bits;
 }
 
-/* Returns the bits that one round of sorting treats: the fewest rounds possible, of about equal
- * size, with a histogram no larger than the sorted array. */
-static int mcor_digit_bits(const mcor_context* context, int segments, int count, int bits)
-{
-  int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
-  while (most > 8 && segments << most > count)
-  {
-    --most;
-  }
-  const int rounds = (bits + most - 1) / most;
-  return (bits + rounds - 1) / rounds;
-}
-
 /* Sorts keys below key_limit; values[i] becomes the former position of key i. Stable. */
 mcor_status mcor_sort(
   mcor_context* context, mcor_buffer* keys, mcor_buffer* values, int count, uint64_t key_limit)
 {
   const int segments = mcor_segments(context, count);
   const int key_bits = mcor_bits_below(key_limit), value_bits = mcor_bits_below((uint64_t)count);
-  const int bits = mcor_digit_bits(context, segments, count, key_bits);
   const size_t n = (size_t)count;
+  /* The bits that one round treats: the fewest rounds possible, of about equal size, with a histogram
+   * no larger than the sorted array. */
+  int most = MCOR_DIGIT_BITS_OF(context->cl.lanes);
+  while (most > 8 && segments << most > count)
+  {
+    --most;
+  }
+  const int rounds = (key_bits + most - 1) / most, bits = (key_bits + rounds - 1) / rounds;
   /* Between rounds a key and its value are one number, if both have room in it. */
   const bool packs = key_bits + value_bits <= 64;
   mcor_buffer* sorted = packs ? values : &context->sort.values;

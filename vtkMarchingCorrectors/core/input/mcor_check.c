@@ -17,24 +17,6 @@ mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, doub
     isnan(from) || isnan(to) ? "both must be numbers" : "the first must be lower than the second");
 }
 
-static mcor_status mcor_check_sides(mcor_context* context, const mcor_options* options)
-{
-  for (int a = 0; a < 3 && mcor_has_box(options); ++a)
-  {
-    const double from = options->box[2 * a], to = options->box[2 * a + 1];
-    MCOR_TRY(from < to ? MCOR_OK : mcor_refuse_sides(context, a, from, to));
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
-    MCOR_RETURN_IF(!isfinite(from) || !isfinite(to) || from > to, context, MCOR_INVALID_ARGUMENT,
-      "The period along %c goes from %g to %g; both must be finite, and the second must not be "
-      "lower.",
-      mcor_axis_letter(context, a), from, to);
-  }
-  return MCOR_OK;
-}
-
 /* Refuses values that no measurement yields. Without particles, ranges are empty. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
@@ -146,9 +128,22 @@ static mcor_status mcor_check_options(mcor_context* context, const mcor_options*
                                        : NULL;
   MCOR_NEED(!other || !mcor_wants_pairs(options),
     "%s cannot be combined with pair seeds. Choose complete seeds.", other);
-#undef MCOR_NEED
   MCOR_TRY(options->globals ? mcor_check_globals(context, options->globals) : MCOR_OK);
-  return mcor_check_sides(context, options);
+  for (int a = 0; a < 3 && mcor_has_box(options); ++a)
+  {
+    const double from = options->box[2 * a], to = options->box[2 * a + 1];
+    MCOR_TRY(from < to ? MCOR_OK : mcor_refuse_sides(context, a, from, to));
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    const double from = options->periodic[2 * a], to = options->periodic[2 * a + 1];
+    MCOR_NEED(isfinite(from) && isfinite(to) && from <= to,
+      "The period along %c goes from %g to %g; both must be finite, and the second must not be "
+      "lower.",
+      mcor_axis_letter(context, a), from, to);
+  }
+  return MCOR_OK;
+#undef MCOR_NEED
 }
 
 /* Checks an array's type and number of components. */

@@ -36,13 +36,9 @@ void mcor_read_array(const mcor_array* array, int64_t first, int count, int comp
                     : mcor_read_floats(floats + begin, stride, count, out);
     return;
   }
-  for (int i = 0; i < count && array->data; ++i)
+  for (int i = 0; i < count; ++i)
   {
-    out[i] = doubles[begin + i * stride];
-  }
-  for (int i = 0; i < count && !array->data; ++i)
-  {
-    out[i] = array->constant;
+    out[i] = doubles ? doubles[begin + i * stride] : array->constant;
   }
 }
 
@@ -266,20 +262,6 @@ static int mcor_exponent_of(const mcor_array* array, int64_t i)
   return exponent;
 }
 
-/* Computes a^T b of particle i, or its root. Scales by powers of 2, so that no product overflows
- * or vanishes on the way. */
-static double mcor_scaled_product(
-  const mcor_array* a, const mcor_array* b, int64_t i, bool magnitude)
-{
-  const int ea = mcor_exponent_of(a, i), eb = mcor_exponent_of(b, i);
-  double sum = 0;
-  for (int c = 0; c < mcor_components(a); ++c)
-  {
-    sum += ldexp(mcor_array_at(a, i, c), -ea) * ldexp(mcor_array_at(b, i, c), -eb);
-  }
-  return magnitude ? ldexp(sqrt(sum), ea) : ldexp(sum, ea + eb);
-}
-
 /* Sums of squares between these have lost nothing. */
 #define MCOR_SQUARE_MIN 1e-280
 #define MCOR_SQUARE_MAX 1e280
@@ -312,7 +294,15 @@ void mcor_read_scalar(const mcor_input* input, int64_t first, int count, double*
     }
     else if (is_dot || out[i] != 0 || mcor_exponent_of(a, first + i) != 0)
     {
-      out[i] = mcor_scaled_product(a, b, first + i, !is_dot);
+      /* Scales by powers of 2, so that no product overflows or vanishes on the way. */
+      const int ea = mcor_exponent_of(a, first + i), eb = mcor_exponent_of(b, first + i);
+      double sum = 0;
+      for (int c = 0; c < mcor_components(a); ++c)
+      {
+        sum +=
+          ldexp(mcor_array_at(a, first + i, c), -ea) * ldexp(mcor_array_at(b, first + i, c), -eb);
+      }
+      out[i] = is_dot ? ldexp(sum, ea + eb) : ldexp(sqrt(sum), ea);
     }
   }
 }

@@ -260,26 +260,21 @@ static double mcor_sum_at(
   return job->norm * sum;
 }
 
-/* About the distance of near particles: of those some places before and behind along the curve, the
- * nearer one, as the curve jumps. */
-static double mcor_guess_length(const mcor_neighbour_job* job, int64_t i)
-{
-  double guess = job->extent;
-  for (int64_t k = i - 4; k <= i + 4; k += 8)
-  {
-    double d[3];
-    mcor_subtract(job->sorted[i].x, job->sorted[k < 0 || k >= job->count ? i : k].x, d);
-    const double r = sqrt(mcor_dot(d, d));
-    guess = r > 0 ? fmin(guess, r) : guess;
-  }
-  return fmax(guess, MCOR_LENGTH_ERROR * job->extent);
-}
-
 /* Solves for the smoothing length at a place by false position, halved where that does not help. */
 static double mcor_solve_length(const mcor_neighbour_job* job, int64_t i, mcor_neighbour_list* list)
 {
   const double* x = job->sorted[i].x;
-  double high = mcor_guess_length(job, i), low = high;
+  /* Begins with about the distance of near particles: of those some places before and behind along
+   * the curve, the nearer one, as the curve jumps. */
+  double guess = job->extent;
+  for (int64_t k = i - 4; k <= i + 4; k += 8)
+  {
+    double d[3];
+    mcor_subtract(x, job->sorted[k < 0 || k >= job->count ? i : k].x, d);
+    const double r = sqrt(mcor_dot(d, d));
+    guess = r > 0 ? fmin(guess, r) : guess;
+  }
+  double high = fmax(guess, MCOR_LENGTH_ERROR * job->extent), low = high;
   double above = mcor_sum_at(job, x, high, list) - job->eta, below = above;
   while (above < 0 && high < job->extent)
   {

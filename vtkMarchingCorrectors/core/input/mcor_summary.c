@@ -38,36 +38,6 @@ double mcor_least_smoothing_length(const mcor_input* input)
   return least;
 }
 
-/* Sums h^3 (in a plane h^2) over the fluid in the box, with h in cubes where cubes are larger. */
-static double mcor_sum_cubes(
-  const mcor_input* input, const mcor_options* options, double least, bool is_plane)
-{
-  const bool has_box = mcor_has_box(options) != 0;
-  const mcor_array positions = mcor_positions_of(input);
-  const bool one_for_all = mcor_has_one_length(input) && !input->solid && !has_box;
-  const int levels = options->filled || options->capping ? 0 : options->level_limit;
-  double cubes = 0.0;
-  for (int64_t i = 0; i < (one_for_all && input->count > 1 ? 1 : input->count); ++i)
-  {
-    bool counts = !input->solid || !input->solid[i];
-    for (int a = 0; a < 3 && counts && has_box; ++a)
-    {
-      const double x = mcor_array_at(&positions, i, a), *side = options->box + 2 * a;
-      counts = x >= side[0] && (x < side[1] || x == side[0]); /* a flat box holds flat particles */
-    }
-    if (counts)
-    {
-      double h = mcor_length_at(input, i);
-      for (int level = 0; level < levels && h >= 2.0 * least; ++level)
-      {
-        h *= 0.5;
-      }
-      cubes += mcor_power(h, is_plane ? 2 : 3);
-    }
-  }
-  return one_for_all && input->count > 1 ? cubes * (double)input->count : cubes;
-}
-
 double mcor_estimate_cells(const mcor_input* input, const mcor_options* options, double least)
 {
   const bool is_known = !input->estimate_smoothing_length || options->cube_size <= 0.0;
@@ -77,7 +47,29 @@ double mcor_estimate_cells(const mcor_input* input, const mcor_options* options,
   }
   /* Lengths are in units of the smoothing length, or of the support radius as a multiple of it. */
   const bool is_plane = mcor_find_dimension(input, NULL, options->dimension) == 2;
-  const double cubes = mcor_sum_cubes(input, options, least, is_plane);
+  /* Sums h^3 (in a plane h^2) over the fluid in the box, with h in cubes where cubes are larger. */
+  const bool has_box = mcor_has_box(options) != 0;
+  const mcor_array positions = mcor_positions_of(input);
+  const bool one_for_all =
+    mcor_has_one_length(input) && !input->solid && !has_box && input->count > 1;
+  const int levels = options->filled || options->capping ? 0 : options->level_limit;
+  double cubes = 0.0;
+  for (int64_t i = 0; i < (one_for_all ? 1 : input->count); ++i)
+  {
+    bool counts = !input->solid || !input->solid[i];
+    for (int a = 0; a < 3 && counts && has_box; ++a)
+    {
+      const double x = mcor_array_at(&positions, i, a), *side = options->box + 2 * a;
+      counts = x >= side[0] && (x < side[1] || x == side[0]); /* a flat box holds flat particles */
+    }
+    double h = mcor_length_at(input, i);
+    for (int level = 0; level < levels && h >= 2.0 * least; ++level)
+    {
+      h *= 0.5;
+    }
+    cubes += counts ? mcor_power(h, is_plane ? 2 : 3) : 0;
+  }
+  cubes *= one_for_all ? (double)input->count : 1;
   const bool is_radius =
     input->smoothing_length_is_support_radius && !input->estimate_smoothing_length;
   const double per_length = is_radius ? 1.0 / mcor_support_factor(options->sph_kernel) : 1.0;

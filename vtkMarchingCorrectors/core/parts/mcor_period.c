@@ -45,46 +45,6 @@ static int64_t mcor_count_cubes(
   return 0;
 }
 
-/* Fits adaptive cubes: a period is a whole number of bricks of the level above the highest one,
- * so that levels repeat with it. Drops levels where cubes would have to shrink too much. */
-static int64_t mcor_count_adaptive_cubes(const double length[3], int axis, int64_t least, int* top)
-{
-  int64_t count = 0;
-  for (++*top; count == 0 && *top > 0;)
-  {
-    --*top;
-    count = *top > 0
-      ? mcor_count_cubes(length, axis, least, (int64_t)(MCOR_FINER_CUBES * (double)least),
-          (int64_t)MCOR_BRICK << (*top + 1))
-      : 0;
-  }
-  return count;
-}
-
-/* Fits cells of their own to each period where no cube divides all: as few as are no longer than
- * the cube along any axis, and whole bricks as above. */
-static void mcor_divide_periods(
-  const double length[3], const int64_t fewest[3], int* top, double edge[3])
-{
-  bool fits = false;
-  for (; !fits; *top -= !fits)
-  {
-    const int64_t unit = *top > 0 ? (int64_t)MCOR_BRICK << (*top + 1) : 1;
-    fits = true;
-    for (int a = 0; a < 3; ++a)
-    {
-      const int64_t count = (fewest[a] + unit - 1) / unit * unit;
-      edge[a] = length[a] > 0 ? length[a] / (double)count : 0;
-      fits = fits && (*top == 0 || (double)count <= MCOR_FINER_CUBES * (double)fewest[a]);
-    }
-  }
-  const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
-  for (int a = 0; a < 3; ++a)
-  {
-    edge[a] = length[a] > 0 ? edge[a] : longest;
-  }
-}
-
 /* Finds edges that divide the periods and are no longer than a cube, all equal if possible. */
 static mcor_status mcor_fit_edges(
   mcor_context* context, const double length[3], int axis, double cube, double edge[3], int* top)
@@ -99,17 +59,41 @@ static mcor_status mcor_fit_edges(
       cube, least, mcor_axis_letter(context, a), MCOR_LATTICE_LIMIT);
     fewest[a] = (int64_t)least;
   }
+  /* With adaptive cubes a period is a whole number of bricks of the level above the highest one, so
+   * that levels repeat with it. Drops levels where cubes would have to shrink too much. */
   int levels = *top;
-  int64_t count = mcor_count_adaptive_cubes(length, axis, fewest[axis], top);
+  int64_t count = 0;
+  for (; count == 0 && *top > 0; *top -= count == 0)
+  {
+    count = mcor_count_cubes(length, axis, fewest[axis],
+      (int64_t)(MCOR_FINER_CUBES * (double)fewest[axis]), (int64_t)MCOR_BRICK << (*top + 1));
+  }
   count =
     count == 0 ? mcor_count_cubes(length, axis, fewest[axis], 2 * fewest[axis] + 7, 1) : count;
-  if (count == 0)
+  if (count > 0)
   {
-    mcor_divide_periods(length, fewest, &levels, edge);
-    *top = levels;
+    edge[0] = edge[1] = edge[2] = length[axis] / (double)count;
     return MCOR_OK;
   }
-  edge[0] = edge[1] = edge[2] = length[axis] / (double)count;
+  /* Where no cube divides all periods, each has cells of its own: as few as are no longer than the
+   * cube along any axis, and whole bricks as above. */
+  for (bool fits = false; !fits; levels -= !fits)
+  {
+    const int64_t unit = levels > 0 ? (int64_t)MCOR_BRICK << (levels + 1) : 1;
+    fits = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      const int64_t cells = (fewest[a] + unit - 1) / unit * unit;
+      edge[a] = length[a] > 0 ? length[a] / (double)cells : 0;
+      fits = fits && (levels == 0 || (double)cells <= MCOR_FINER_CUBES * (double)fewest[a]);
+    }
+  }
+  const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
+  for (int a = 0; a < 3; ++a)
+  {
+    edge[a] = length[a] > 0 ? edge[a] : longest;
+  }
+  *top = levels;
   return MCOR_OK;
 }
 

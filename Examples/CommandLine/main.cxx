@@ -11,14 +11,10 @@
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
-#include "Picture.h"
 #include "RunStatistics.h"
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
-#if MCOR_HAS_RANKS
-#include "RankSession.h"
-#endif
 
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
@@ -28,33 +24,16 @@
 #include "vtkVersion.h"
 
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 namespace
 {
-
-/// Lists the outputs of a process; to the first one, those of all.
-std::vector<std::string> ListOutputs(const Job& job, const Sharing& sharing)
-{
-  std::vector<std::string> outputs;
-  for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
-  {
-    if (sharing.IsFirst() || rank == sharing.GetRank())
-    {
-      outputs.push_back(PieceName(job.Output, rank));
-    }
-  }
-  if (sharing.IsFirst())
-  {
-    outputs.insert(outputs.end(),
-      { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File, job.WideningFile });
-  }
-  return outputs;
-}
 
 /// Makes the outputs. Returns false if a step failed; its error was printed.
 bool Make(Sharing& sharing)
@@ -72,34 +51,6 @@ bool Make(Sharing& sharing)
   isProjection || job.IsProbe() ? MakeField(sharing) : MakeSurface(sharing);
   return true;
 }
-
-#if MCOR_HAS_RANKS
-bool MakeOnRanks(Job& job, MessageCapture* messages)
-{
-  RankSession session(job, messages);
-  bool isGood = false;
-  const std::string failure = FailureOf(
-    [&]
-    {
-      session.OnAll(
-        [&job]
-        {
-          if (!job.Picture.File.empty() || job.Repeat > 1)
-          {
-            throw std::runtime_error(
-              "several processes share a surface, a film, a probe, a projection, gauges or fluxes, "
-              "but no --screenshot or --repeat; run these without mpirun");
-          }
-        });
-      isGood = Make(session);
-    });
-  if (!failure.empty() && session.IsFirst())
-  {
-    Say(failure);
-  }
-  return isGood;
-}
-#endif
 
 /// Does what the command line asks for. Returns false if something failed; its error was printed.
 bool Execute(int argc, char* argv[])
@@ -147,12 +98,31 @@ bool Execute(int argc, char* argv[])
     }
     return true;
   }
-#if MCOR_HAS_RANKS
   if (LaunchedCount() > 1)
   {
-    return MakeOnRanks(job, messages);
+    const std::unique_ptr<Sharing> session = NewRankSession(job, messages);
+    bool isGood = false;
+    const std::string failure = FailureOf(
+      [&]
+      {
+        session->OnAll(
+          [&job]
+          {
+            if (!job.Picture.File.empty() || job.Repeat > 1)
+            {
+              throw std::runtime_error("several processes share a surface, a film, a probe, a "
+                                       "projection, gauges or fluxes, but no --screenshot or "
+                                       "--repeat; run these without mpirun");
+            }
+          });
+        isGood = Make(*session);
+      });
+    if (!failure.empty() && session->IsFirst())
+    {
+      Say(failure);
+    }
+    return isGood;
   }
-#endif
   LoadDriversAhead(job.Surface->GetDevice());
   Sharing alone(job, messages);
   return Make(alone);
@@ -191,25 +161,26 @@ int ExecuteAndTell(int argc, char* argv[])
   return isMisused ? 2 : isGood && failure.empty() ? 0 : 1;
 }
 
-/// A file opened by this program must not become its standard output, where that was closed.
-void OpenStandardStreams()
-{
-  int descriptor = 0;
-  while (descriptor >= 0 && descriptor <= STDERR_FILENO)
-  {
-    descriptor = open("/dev/null", O_RDWR);
-  }
-  close(descriptor);
-}
-
 }
 
 void MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
   MessageCapture* const messages = sharing.Messages;
-  sharing.OnAll(
-    [&] { CheckOutputs(ListFiles(job.InputFiles(), messages), ListOutputs(job, sharing)); });
+  std::vector<std::string> outputs; // of this process; of the first one, those of all
+  for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
+  {
+    if (sharing.IsFirst() || rank == sharing.GetRank())
+    {
+      outputs.push_back(PieceName(job.Output, rank));
+    }
+  }
+  if (sharing.IsFirst())
+  {
+    outputs.insert(outputs.end(),
+      { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File, job.WideningFile });
+  }
+  sharing.OnAll([&] { CheckOutputs(ListFiles(job.InputFiles(), messages), outputs); });
   const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
   sharing.OnAll([&] { SetUpSurface(job, particles); });
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
@@ -299,9 +270,30 @@ void MakeSurface(Sharing& sharing)
     });
 }
 
+const Extra& LoadExtra()
+{
+  // By its name alone it is looked for where this program's other libraries are.
+  static void* const library = dlopen(MCOR_EXTRA_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
+  static const void* const extra = library ? dlsym(library, "MarchingCorrectorsExtra") : nullptr;
+  if (!extra)
+  {
+    const char* why = dlerror();
+    throw std::runtime_error("the part of this program for pictures, .vtkhdf, .stl, .ply and .obj "
+                             "files cannot be loaded (" +
+      std::string(why ? why : MCOR_EXTRA_LIBRARY) + "); install it again");
+  }
+  return *static_cast<const Extra*>(extra);
+}
+
 int main(int argc, char* argv[])
 {
-  OpenStandardStreams();
+  // A file opened by this program must not become its standard output, where that was closed.
+  int descriptor = 0;
+  while (descriptor >= 0 && descriptor <= STDERR_FILENO)
+  {
+    descriptor = open("/dev/null", O_RDWR);
+  }
+  close(descriptor);
   PrepareForEnding();
   Finish(ExecuteAndTell(argc, argv));
 }

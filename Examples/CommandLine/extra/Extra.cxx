@@ -3,7 +3,6 @@
 #include "Extra.h"
 
 #include "FileName.h"
-#include "Picture.h"
 
 #include "vtkNew.h"
 #include "vtkOBJReader.h"

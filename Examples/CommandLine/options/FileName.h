@@ -3,13 +3,21 @@
 #ifndef FileName_h
 #define FileName_h
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 inline bool EndsWith(const std::string& text, const std::string& end)
 {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Whether the name ends as that of a .pvd file, ParaView's list of files and their times.
+inline bool IsCollectionFile(const std::string& file)
+{
+  return EndsWith(file, ".pvd");
 }
 
 /// A file format: the ending of its names, and the function that reads or writes it.
@@ -49,9 +57,23 @@ std::string ListEndings(const std::vector<FileFormat<FunctionT>>& formats)
 
 /// Whether a film's name has one place for the number of a step, %d or %0Nd, and no other percent
 /// sign.
-bool HasStepNumber(const std::string& name);
+inline bool HasStepNumber(const std::string& name)
+{
+  const std::size_t percent = name.find('%');
+  const std::size_t letter =
+    percent == std::string::npos ? percent : name.find_first_not_of("0123456789", percent + 1);
+  return letter != std::string::npos && name[letter] == 'd' && letter - percent <= 3 &&
+    std::count(name.begin(), name.end(), '%') == 1;
+}
 
 /// frame_0007.png of frame_%04d.png
-std::string NameOfStep(const std::string& name, std::size_t step);
+inline std::string NameOfStep(const std::string& name, std::size_t step)
+{
+  const std::size_t percent = name.find('%');
+  const auto width = static_cast<std::size_t>(std::atoi(name.c_str() + percent + 1));
+  std::string number = std::to_string(step);
+  number.insert(0, width > number.size() ? width - number.size() : 0, '0');
+  return name.substr(0, percent) + number + name.substr(name.find('d', percent) + 1);
+}
 
 #endif

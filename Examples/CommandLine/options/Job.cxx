@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Job.h"
 
-#include "CollectionFile.h"
 #include "DataFile.h"
 #include "FileName.h"
 #include "OptionValue.h"
@@ -244,32 +243,6 @@ void Check(const Job& job)
   }
 }
 
-const Option& FindOption(const std::string& name)
-{
-  const std::vector<Option>& all = AllOptions();
-  const auto find = [&](const std::string& text)
-  {
-    return std::find_if(
-      all.begin(), all.end(), [&](const Option& o) { return !text.empty() && text == o.Name; });
-  };
-  const auto option = find(name == "-h" ? "--help" : name);
-  if (option == all.end())
-  {
-    const bool lacksDash = find("-" + name) != all.end();
-    throw UsageError("unknown option " + name + (lacksDash ? "; it is -" + name : ""));
-  }
-  return *option;
-}
-
-/// Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, -inf, or axes,
-/// -z.
-bool LooksLikeOption(const std::string& word)
-{
-  return word == "-h" ||
-    (word.size() > 2 && word[0] == '-' && word.compare(0, 4, "-inf") != 0 &&
-      std::string("0123456789.").find(word[1]) == std::string::npos);
-}
-
 /// Takes an option and its value; the name, with a value behind "=" if there is one, was
 /// `next[-1]`.
 void TakeOption(const char* const*& next, const char* const* end, Job& job)
@@ -282,63 +255,44 @@ void TakeOption(const char* const*& next, const char* const* end, Job& job)
     value = name.substr(equals + 1);
     name.resize(equals);
   }
-  const Option& option = FindOption(name);
-  const bool takesValue = option.Argument[0] != '\0';
+  const std::vector<Option>& all = AllOptions();
+  const auto find = [&all](const std::string& text)
+  {
+    return std::find_if(
+      all.begin(), all.end(), [&text](const Option& o) { return !text.empty() && text == o.Name; });
+  };
+  const auto option = find(name == "-h" ? "--help" : name);
+  if (option == all.end())
+  {
+    const bool lacksDash = find("-" + name) != all.end();
+    throw UsageError("unknown option " + name + (lacksDash ? "; it is -" + name : ""));
+  }
+  const bool takesValue = option->Argument[0] != '\0';
   if (isJoined && !takesValue)
   {
     throw UsageError(name + " takes no value");
   }
-  if (takesValue && job.Has(option.Name) && !option.Repeats)
+  if (takesValue && job.Has(option->Name) && !option->Repeats)
   {
     throw UsageError(name + " is given twice");
   }
-  if (takesValue && !isJoined && next < end && !LooksLikeOption(*next))
+  if (takesValue && !isJoined && next < end)
   {
-    value = *next++;
+    // Words that begin with a dash are options, unless they are numbers, -1, -.5, -1,2, -inf, or
+    // axes, -z.
+    const std::string word = *next;
+    const bool isOption = word == "-h" ||
+      (word.size() > 2 && word[0] == '-' && word.compare(0, 4, "-inf") != 0 &&
+        std::string("0123456789.").find(word[1]) == std::string::npos);
+    next += isOption ? 0 : 1;
+    value = isOption ? "" : word;
   }
   if (takesValue && value.empty())
   {
-    throw UsageError(name + " needs " + option.Argument);
+    throw UsageError(name + " needs " + option->Argument);
   }
-  job.Given[option.Name] = value;
-  option.Set(job, name, value);
-}
-
-/// The words of a command line, from left to right.
-void Parse(const char* const* next, const char* const* end, Job& job)
-{
-  std::vector<std::string> files;
-  const std::ptrdiff_t count = end - next;
-  for (bool isEnded = false; next < end;)
-  {
-    const std::string word = *next++;
-    if (!isEnded && word == "--")
-    {
-      isEnded = true;
-    }
-    else if (!isEnded && word.size() > 1 && word[0] == '-')
-    {
-      TakeOption(next, end, job);
-    }
-    else if (word.empty() || word == "-")
-    {
-      throw UsageError("'" + word + "' is not the name of a file");
-    }
-    else
-    {
-      files.push_back(word);
-    }
-  }
-  if (job.ListArrays && (count > 2 || !files.empty()))
-  {
-    throw UsageError("--list-arrays FILE stands alone; leave out the rest");
-  }
-  if (files.size() > 1)
-  {
-    job.Output = files.back();
-    files.pop_back();
-    job.Inputs = files;
-  }
+  job.Given[option->Name] = value;
+  option->Set(job, name, value);
 }
 
 } // namespace
@@ -417,7 +371,39 @@ void ParseCommandLine(int argc, char* argv[], Job& job)
   {
     filter->KeepDeviceDataOff(); // for one run
   }
-  Parse(argv + std::min(argc, 1), argv + argc, job);
+  std::vector<std::string> files;
+  const char* const* const end = argv + argc;
+  bool isEnded = false; // of options
+  for (const char* const* next = argv + std::min(argc, 1); next < end;)
+  {
+    const std::string word = *next++;
+    if (!isEnded && word == "--")
+    {
+      isEnded = true;
+    }
+    else if (!isEnded && word.size() > 1 && word[0] == '-')
+    {
+      TakeOption(next, end, job);
+    }
+    else if (word.empty() || word == "-")
+    {
+      throw UsageError("'" + word + "' is not the name of a file");
+    }
+    else
+    {
+      files.push_back(word);
+    }
+  }
+  if (job.ListArrays && (argc > 3 || !files.empty()))
+  {
+    throw UsageError("--list-arrays FILE stands alone; leave out the rest");
+  }
+  if (files.size() > 1)
+  {
+    job.Output = files.back();
+    files.pop_back();
+    job.Inputs = files;
+  }
   if (!job.Has("--help") && !job.Has("--version") && !job.Has("--list-devices"))
   {
     Check(job);

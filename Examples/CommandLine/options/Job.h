@@ -3,8 +3,6 @@
 #ifndef Job_h
 #define Job_h
 
-#include "Place.h"
-
 #include "vtkMarchingCorrectors.h"
 #include "vtkNew.h"
 #include "vtkSPHDerivatives.h"
@@ -36,6 +34,30 @@ struct SliceOptions
   double Place = 0.0;       ///< on that axis
   std::vector<double> Line; ///< from, to: six numbers; empty: there is none
   int Resolution = 512;     ///< points along the longest side
+};
+
+/// A place of measurement: the line of a gauge, or a section that fluid flows through.
+struct Place
+{
+  enum Kind
+  {
+    Line,      ///< two points
+    Rectangle, ///< a corner, two ends
+    Disc,      ///< centre, normal, radius
+    Box,       ///< bounds
+    Surface    ///< of a file
+  };
+  std::string Name;
+  Kind Shape = Surface;
+  std::vector<double> Numbers;
+  std::string File;
+};
+
+/// Many upright gauges, over a rectangle.
+struct GaugeGrid
+{
+  int Counts[2] = { 0, 0 }; ///< along x and y; 0: there is none
+  std::array<double, 6> Bounds = {};
 };
 
 /// A command line's request: the filters, set up as far as that can be done without the input,
@@ -132,6 +154,20 @@ struct Option
 
 /// Lists every option, in the order of the help. An option without a name starts a group.
 const std::vector<Option>& AllOptions();
+
+/// NAME=x0,y0,z0:x1,y1,z1. Throws UsageError.
+Place ToGauge(const std::string& option, const std::string& text);
+
+/// nx,ny:x0,x1,y0,y1,z0,z1. Throws UsageError.
+GaugeGrid ToGaugeGrid(const std::string& option, const std::string& text);
+
+/// NAME=SECTION. Throws UsageError.
+Place ToFlux(const std::string& option, const std::string& text);
+
+/// Places of the options, in their order, those of the files among them. Throws UsageError where
+/// two have one name, or std::runtime_error where a file cannot be read.
+std::vector<Place> ListGauges(const Job& job);
+std::vector<Place> ListSections(const Job& job);
 
 /// Throws UsageError, see OptionValue.h.
 void ParseCommandLine(int argc, char* argv[], Job& job);

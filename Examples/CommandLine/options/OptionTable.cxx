@@ -56,6 +56,38 @@ void AddOnly(Job& job, Text option, Text text)
   SetAll(job, &vtkSPHAlgorithm::AddOnly, name.c_str(), low, high);
 }
 
+void SetPeriod(Job& job, Text option, Text text)
+{
+  job.DetectPeriod = text == "auto";
+  job.Periodic = job.DetectPeriod ? std::vector<double>() : ToNumbers(option, text);
+  const std::vector<double>& period = job.Periodic;
+  Need(job.DetectPeriod || period.size() == 3 || period.size() == 6, option,
+    "three lengths, or six bounds x0,x1,y0,y1,z0,z1, or auto", text);
+  const std::size_t step = period.size() / 3;
+  for (std::size_t a = 0; a < 3 && step > 0; ++a)
+  {
+    Need(period[step * a + step - 1] >= (step == 1 ? 0.0 : period[2 * a]), option,
+      std::string("a period of 0 or more along ") + "xyz"[a], text);
+  }
+}
+
+void SetSlice(Job& job, Text option, Text text)
+{
+  const std::size_t axis = std::string("xyz").find(text.substr(0, 1));
+  Need(text.size() >= 3 && text[1] == '=' && axis != std::string::npos, option,
+    "an axis and a position, such as z=0.1", text);
+  job.Slice.Axis = static_cast<int>(axis);
+  job.Slice.Place = ToNumber(option, text.substr(2));
+}
+
+std::vector<double> ToDirection(Text option, Text text)
+{
+  const std::vector<double> direction = ToNumbers(option, text);
+  Need(direction.size() == 3 && std::count(direction.begin(), direction.end(), 0.0) < 3, option,
+    "three numbers, not all 0", text);
+  return direction;
+}
+
 void SetWithin(Job& job, Text option, Text text)
 {
   std::vector<double> sides = ToBox(option, text);
@@ -186,10 +218,11 @@ const std::vector<Option> Table = {
     {} },
   { "--probe", "POINTS_FILE", "at the points in this file", DO(j.ProbeFile = v) },
   { "--slice", "AXIS=PLACE",
-    "on a plane through the particles, e.g. z=0.1; OUTPUT is an image (.vti)",
-    DO(ToSlice(n, v, j.Slice.Axis, j.Slice.Place)) },
+    "on a plane through the particles, e.g. z=0.1; OUTPUT is an image (.vti)", SetSlice },
   { "--line", "X,Y,Z,X,Y,Z", "on a line between two points; OUTPUT is a .vtp file",
-    DO(j.Slice.Line = ToLine(n, v)) },
+    DO(const std::vector<double>& x = j.Slice.Line = ToNumbers(n, v);
+       Need(x.size() == 6 && !std::equal(x.begin(), x.begin() + 3, x.begin() + 3), n,
+         "two different points, X,Y,Z,X,Y,Z", v)) },
   { "--resolution", "N",
     "number of points on the line, or on the longest side of the slice or projection (default 512)",
     DO(j.Slice.Resolution = ToCount(n, v, 2, 1 << 15);
@@ -270,7 +303,11 @@ const std::vector<Option> Table = {
     SetSolids },
   { "--wall-share", "S|measured",
     "solids' share of the weight at which walls end the surface (default: measured)",
-    DO(j.Surface->SetWallShare(ToShare(n, v))) },
+    DO(const bool isMeasured = v == "measured";
+       const double share = isMeasured ? -1.0 : ToNumber(n, v);
+       Need(isMeasured || (share > 0.0 && share < 1.0), n,
+         "a number above 0 and below 1, or 'measured'", v);
+       j.Surface->SetWallShare(share)) },
 
   { "", "", "The method", {} },
   { "--kernel", "NAME", DescribeKernels(),
@@ -307,8 +344,7 @@ const std::vector<Option> Table = {
   { "--periodic", "LX,LY,LZ|BOUNDS|auto",
     "periodic particles: lengths (0: not periodic), bounds X0,X1,Y0,Y1,Z0,Z1, or those in the "
     "field data",
-    DO(j.DetectPeriod = v == "auto";
-       j.Periodic = j.DetectPeriod ? std::vector<double>() : ToPeriod(n, v)) },
+    SetPeriod },
   { "--capping", "",
     "close the surface at the sides of the period and the box, where values exceed the iso value; "
     "with --solids wall also the free surface at walls",
@@ -325,7 +361,9 @@ const std::vector<Option> Table = {
     DO(j.Surface->SmoothOn()) },
   { "--widen", "S",
     "smoother: lengthen each smoothing length by up to S (1 to 4; 2 is usual) inside the fluid",
-    DO(j.Surface->SetWidening(ToWidening(n, v))) },
+    DO(const double widening = ToNumber(n, v);
+       Need(widening >= 1.0 && widening <= 4.0, n, "a number from 1 to 4", v);
+       j.Surface->SetWidening(widening)) },
   { "--widening", "FILE.vtp",
     "with --widen, write the particles with the factors of their smoothing lengths, and the "
     "products",
@@ -371,7 +409,11 @@ const std::vector<Option> Table = {
   { "--gradients", "", "add the array Gradients",
     DO(j.Surface->ComputeGradientsOn(); j.Probe->ComputeGradientsOn()) },
   { "--attributes", "NAME[,NAME...]", "interpolate only these arrays to the surface (default all)",
-    DO(j.AttributeNames = ToNames(n, v)) },
+    DO(for (Text name
+            : ItemsOf(v)) {
+      Need(!name.empty(), n, "names separated by commas", v);
+      j.AttributeNames.push_back(Printable(name));
+    }) },
   { "--no-attributes", "", "interpolate no arrays to the surface",
     DO(j.Surface->InterpolateAttributesOff(); j.Probe->InterpolateAttributesOff()) },
   { "--output-precision", "single|double|input",
@@ -415,7 +457,8 @@ const std::vector<Option> Table = {
     DO(j.Picture.ColorBy = Printable(v)) },
   { "--color-range", "LOW,HIGH",
     "values of the first and last colour (default: the range of the array)",
-    DO(j.Picture.ColorRange = ToRange(n, v)) },
+    DO(const std::vector<double>& range = j.Picture.ColorRange = ToNumbers(n, v);
+       Need(range.size() == 2 && range[0] < range[1], n, "two numbers, the lower one first", v)) },
   { "--up", "x|y|z|-x|-y|-z", "axis that points upwards in the picture (default y)",
     DO(
       ToChoice(n, v, { { "x", 0 }, { "y", 0 }, { "z", 0 }, { "-x", 0 }, { "-y", 0 }, { "-z", 0 } });

@@ -4,7 +4,6 @@
 
 #include "SafeText.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -115,24 +114,6 @@ std::vector<double> ToNumbers(Text option, Text text)
   return values;
 }
 
-double ToShare(Text option, Text text)
-{
-  if (text == "measured")
-  {
-    return -1.0; // see vtkMarchingCorrectors::SetWallShare
-  }
-  const double number = ToNumber(option, text);
-  Need(number > 0.0 && number < 1.0, option, "a number above 0 and below 1, or 'measured'", text);
-  return number;
-}
-
-double ToWidening(Text option, Text text)
-{
-  const double number = ToNumber(option, text);
-  Need(number >= 1.0 && number <= 4.0, option, "a number from 1 to 4", text);
-  return number;
-}
-
 std::vector<double> ToBox(Text option, Text text)
 {
   std::vector<double> box;
@@ -151,61 +132,4 @@ std::vector<double> ToBox(Text option, Text text)
       low < high || isFlat, option, std::string("the lower number first along ") + "xyz"[a], text);
   }
   return box;
-}
-
-std::vector<double> ToPeriod(Text option, Text text)
-{
-  const std::vector<double> period = ToNumbers(option, text);
-  Need(period.size() == 3 || period.size() == 6, option,
-    "three lengths, or six bounds x0,x1,y0,y1,z0,z1, or auto", text);
-  const std::size_t step = period.size() / 3;
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    Need(period[step * a + step - 1] >= (step == 1 ? 0.0 : period[2 * a]), option,
-      std::string("a period of 0 or more along ") + "xyz"[a], text);
-  }
-  return period;
-}
-
-void ToSlice(Text option, Text text, int& axis, double& place)
-{
-  const std::size_t found = std::string("xyz").find(text.substr(0, 1));
-  Need(text.size() >= 3 && text[1] == '=' && found != std::string::npos, option,
-    "an axis and a position, such as z=0.1", text);
-  axis = static_cast<int>(found);
-  place = ToNumber(option, text.substr(2));
-}
-
-std::vector<double> ToLine(Text option, Text text)
-{
-  const std::vector<double> line = ToNumbers(option, text);
-  Need(line.size() == 6 && !std::equal(line.begin(), line.begin() + 3, line.begin() + 3), option,
-    "two different points, X,Y,Z,X,Y,Z", text);
-  return line;
-}
-
-std::vector<double> ToRange(Text option, Text text)
-{
-  const std::vector<double> range = ToNumbers(option, text);
-  Need(range.size() == 2 && range[0] < range[1], option, "two numbers, the lower one first", text);
-  return range;
-}
-
-std::vector<double> ToDirection(Text option, Text text)
-{
-  const std::vector<double> direction = ToNumbers(option, text);
-  Need(direction.size() == 3 && std::count(direction.begin(), direction.end(), 0.0) < 3, option,
-    "three numbers, not all 0", text);
-  return direction;
-}
-
-std::vector<std::string> ToNames(Text option, Text text)
-{
-  std::vector<std::string> names;
-  for (Text name : ItemsOf(text))
-  {
-    Need(!name.empty(), option, "names separated by commas", text);
-    names.push_back(Printable(name));
-  }
-  return names;
 }

@@ -39,21 +39,8 @@ int ToChoice(const std::string& option, const std::string& text, const Choices& 
 /// An array name, or a constant, which must then be greater than 0.
 std::string ToQuantity(const std::string& option, const std::string& text);
 std::vector<double> ToNumbers(const std::string& option, const std::string& text);
-double ToShare(const std::string& option, const std::string& text); ///< of walls; measured: -1
-double ToWidening(const std::string& option, const std::string& text);
 /// x0, x1, y0, y1, z0, z1. A side may be open: inf, or -inf.
 std::vector<double> ToBox(const std::string& option, const std::string& text);
-/// Three lengths, or six bounds.
-std::vector<double> ToPeriod(const std::string& option, const std::string& text);
-/// The axis, 0 to 2, and the place on it: z=0.1.
-void ToSlice(const std::string& option, const std::string& text, int& axis, double& place);
-/// Reads two points, which must differ.
-std::vector<double> ToLine(const std::string& option, const std::string& text);
-/// The lower one first.
-std::vector<double> ToRange(const std::string& option, const std::string& text);
-/// Three numbers, not all of them 0.
-std::vector<double> ToDirection(const std::string& option, const std::string& text);
-std::vector<std::string> ToNames(const std::string& option, const std::string& text);
 ///@}
 
 #endif

@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Place.h"
+#include "Job.h"
 
 #include "FileName.h"
-#include "Job.h"
 #include "OptionValue.h"
 #include "SafeText.h"
 
 #include <algorithm>
 #include <fstream>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -52,12 +50,13 @@ std::string ToRowName(Text option, Text noun, Text text)
   return name;
 }
 
-/// Adds the places of a file, one in each line that is not empty and does not begin with #.
-void AddOfFile(Text option, Text file, Text nouns, Text form,
-  Place (*parse)(Text option, Text text), std::vector<Place>& places)
+/// The places, followed by those of a file, if there is one: one in each line that is not empty and
+/// does not begin with #.
+std::vector<Place> WithFile(std::vector<Place> places, Text option, Text file, Text nouns,
+  Text form, Place (*parse)(Text option, Text text))
 {
   const std::size_t most = std::size_t(64) << 20; // a device has no end
-  std::ifstream source(file, std::ios::binary);
+  std::ifstream source(file.empty() ? "/dev/null" : file, std::ios::binary);
   std::string text;
   for (char part[1 << 16]; source && text.size() <= most;)
   {
@@ -70,9 +69,8 @@ void AddOfFile(Text option, Text file, Text nouns, Text form,
       (text.size() > most ? " is larger than 64 MiB; give one of fewer " + nouns
                           : " cannot be read"));
   }
-  std::istringstream stream(text);
   const std::size_t before = places.size();
-  for (std::string line; std::getline(stream, line);)
+  for (const std::string& line : ItemsOf(text, '\n'))
   {
     const std::size_t first = line.find_first_not_of(" \t\r");
     if (first != std::string::npos && line[first] != '#')
@@ -81,14 +79,10 @@ void AddOfFile(Text option, Text file, Text nouns, Text form,
       places.push_back(parse(option + " " + file, line.substr(first, last + 1 - first)));
     }
   }
-  if (places.size() == before)
+  if (!file.empty() && places.size() == before)
   {
     throw UsageError(option + " " + file + " has no " + nouns + "; it needs lines " + form);
   }
-}
-
-void CheckNames(const std::vector<Place>& places, Text nouns)
-{
   std::set<std::string> known;
   for (const Place& place : places)
   {
@@ -98,6 +92,7 @@ void CheckNames(const std::vector<Place>& places, Text nouns)
         "two " + nouns + " have the name '" + place.Name + "'; give each a name of its own");
     }
   }
+  return places;
 }
 
 }
@@ -179,11 +174,8 @@ Place ToFlux(Text option, Text text)
 
 std::vector<Place> ListGauges(const Job& job)
 {
-  std::vector<Place> gauges = job.Gauges;
-  if (!job.GaugeFile.empty())
-  {
-    AddOfFile("--gauges", job.GaugeFile, "gauges", GaugeForm, ToGauge, gauges);
-  }
+  std::vector<Place> gauges =
+    WithFile(job.Gauges, "--gauges", job.GaugeFile, "gauges", GaugeForm, ToGauge);
   const std::array<double, 6>& b = job.Grid.Bounds;
   const auto at = [&job, &b](std::size_t axis, int i)
   {
@@ -200,17 +192,10 @@ std::vector<Place> ListGauges(const Job& job)
         { x, y, b[4], x, y, b[5] }, "" });
     }
   }
-  CheckNames(gauges, "gauges");
   return gauges;
 }
 
 std::vector<Place> ListSections(const Job& job)
 {
-  std::vector<Place> sections = job.Fluxes;
-  if (!job.FluxFile.empty())
-  {
-    AddOfFile("--fluxes", job.FluxFile, "sections", FluxForm, ToFlux, sections);
-  }
-  CheckNames(sections, "sections");
-  return sections;
+  return WithFile(job.Fluxes, "--fluxes", job.FluxFile, "sections", FluxForm, ToFlux);
 }

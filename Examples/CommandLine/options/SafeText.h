@@ -3,6 +3,7 @@
 #ifndef SafeText_h
 #define SafeText_h
 
+#include <charconv>
 #include <functional>
 #include <map>
 #include <string>
@@ -47,6 +48,14 @@ public:
 private:
   std::map<std::string, int> Counts;
 };
+
+/// The fewest digits that read back as the same number, in every locale.
+template <typename T>
+std::string DigitsOf(T number)
+{
+  char digits[32];
+  return { digits, std::to_chars(digits, digits + sizeof(digits), number).ptr };
+}
 
 /// Returns the text as it stands in the attribute of an XML element.
 std::string EscapedForXml(const std::string& text);

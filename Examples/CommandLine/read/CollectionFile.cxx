@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CollectionFile.h"
-
-#include "FileName.h"
 #include "Formats.h"
+
 #include "OptionValue.h"
 #include "SafeText.h"
 
@@ -12,7 +10,6 @@
 #include "vtkXMLUtilities.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 
 namespace
@@ -46,56 +43,11 @@ vtkSmartPointer<vtkXMLDataElement> ReadElement(
   return found;
 }
 
-std::string TextOf(double time)
-{
-  char text[32];
-  return { text, std::to_chars(text, text + sizeof(text), time).ptr };
-}
-
 std::string Resolved(const std::string& list, const std::string& file)
 {
   return (fs::path(list).parent_path() / file).string(); // an absolute name stays as it is
 }
 
-/// A run that was repeated into the same folder adds its steps to the list: the last ones count.
-std::vector<CollectionEntry> TakeRepeated(const std::vector<CollectionEntry>& entries,
-  const std::string& file, std::vector<std::string>& warnings)
-{
-  std::vector<CollectionEntry> kept;
-  std::size_t again = 0;
-  double first = 0.0;
-  for (const CollectionEntry& entry : entries)
-  {
-    const auto same = std::find_if(kept.begin(), kept.end(),
-      [&entry](const CollectionEntry& other)
-      {
-        return other.Time == entry.Time &&
-          (other.File == entry.File || (!entry.Part.empty() && other.Part == entry.Part));
-      });
-    if (same == kept.end())
-    {
-      kept.push_back(entry);
-      continue;
-    }
-    *same = entry;
-    first = again == 0 ? entry.Time : first;
-    ++again;
-  }
-  if (again > 0)
-  {
-    warnings.push_back(file + " lists " + std::to_string(again) +
-      (again == 1 ? " file" : " files") +
-      " of a time and a part that it had before, the first at time " + TextOf(first) +
-      "; the later ones were taken");
-  }
-  return kept;
-}
-
-}
-
-bool IsCollectionFile(const std::string& file)
-{
-  return EndsWith(file, ".pvd");
 }
 
 std::vector<CollectionEntry> ReadCollection(
@@ -128,20 +80,35 @@ std::vector<CollectionEntry> ReadCollection(
   }
   std::stable_sort(entries.begin(), entries.end(),
     [](const CollectionEntry& a, const CollectionEntry& b) { return a.Time < b.Time; });
-  return TakeRepeated(entries, file, warnings);
-}
-
-std::string CollectionText(const std::vector<CollectionEntry>& entries)
-{
-  std::string text = "<?xml version=\"1.0\"?>\n"
-                     "<VTKFile type=\"Collection\" version=\"0.1\">\n"
-                     "  <Collection>\n";
+  // A run that was repeated into the same folder adds its steps to the list: the last ones count.
+  std::vector<CollectionEntry> kept;
+  std::size_t again = 0;
+  double first = 0.0;
   for (const CollectionEntry& entry : entries)
   {
-    text += "    <DataSet timestep=\"" + TextOf(entry.Time) + "\" part=\"0\" file=\"" +
-      EscapedForXml(fs::path(entry.File).filename().string()) + "\"/>\n";
+    const auto same = std::find_if(kept.begin(), kept.end(),
+      [&entry](const CollectionEntry& other)
+      {
+        return other.Time == entry.Time &&
+          (other.File == entry.File || (!entry.Part.empty() && other.Part == entry.Part));
+      });
+    if (same == kept.end())
+    {
+      kept.push_back(entry);
+      continue;
+    }
+    *same = entry;
+    first = again == 0 ? entry.Time : first;
+    ++again;
   }
-  return text + "  </Collection>\n</VTKFile>\n";
+  if (again > 0)
+  {
+    warnings.push_back(file + " lists " + std::to_string(again) +
+      (again == 1 ? " file" : " files") +
+      " of a time and a part that it had before, the first at time " + DigitsOf(first) +
+      "; the later ones were taken");
+  }
+  return kept;
 }
 
 std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* messages)

@@ -13,7 +13,7 @@
 class MessageCapture;
 class vtkDataObject;
 
-// How files are read, for ParticleFile.cxx. All throw std::runtime_error with one sentence.
+// How files are read. All throw std::runtime_error with one sentence.
 
 /// Refuses what is no file, or one that cannot be opened or sought in.
 void CheckRegularFile(const std::string& file);
@@ -32,6 +32,22 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// Points and their arrays are not read.
 std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* messages);
 ///@}
+
+/// An entry of a .pvd file.
+struct CollectionEntry
+{
+  double Time;
+  std::string File; ///< as it can be opened: from the working directory, not from the .pvd file
+  std::string Part; ///< what the list says it is a part of; empty: nothing
+};
+
+/// Reads entries in the order of time. Entries of one time keep the order of the file; a file
+/// counts once, and of one part the last entry. `warnings` gets sentences.
+std::vector<CollectionEntry> ReadCollection(
+  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings);
+
+/// The files that are parts of one set of particles, from a .pvtp or .pvtu file.
+std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* messages);
 
 /// Particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between
 /// blanks with comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Numbers in columns of one

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleFile.h"
 
-#include "CollectionFile.h"
 #include "Ending.h"
 #include "Extra.h"
 #include "FileName.h"

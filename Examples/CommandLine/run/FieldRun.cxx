@@ -9,7 +9,6 @@
 #include "MessageCapture.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
-#include "Picture.h"
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CollectionFile.h"
 #include "ColorScale.h"
 #include "DataFile.h"
 #include "Extra.h"
@@ -10,7 +9,6 @@
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleTimes.h"
-#include "Picture.h"
 #include "RunStatistics.h"
 #include "Runs.h"
 #include "SafeText.h"
@@ -245,17 +243,24 @@ private:
   /// Writes the lists and tables of all surfaces so far.
   void List(bool isLast)
   {
-    std::vector<CollectionEntry> entries;
+    std::string entries;
     for (const FilmStep& step : this->Made)
     {
-      if (step.Error.empty())
-      {
-        entries.push_back({ step.Time, step.Output, "" });
-      }
+      entries += !step.Error.empty()
+        ? ""
+        : "    <DataSet timestep=\"" + DigitsOf(step.Time) + "\" part=\"0\" file=\"" +
+          EscapedForXml(fs::path(step.Output).filename().string()) + "\"/>\n";
     }
     if (!entries.empty())
     {
-      this->ListFile.Write([&entries] { return CollectionText(entries); }, isLast);
+      this->ListFile.Write(
+        [&entries]
+        {
+          return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+                 "  <Collection>\n" +
+            entries + "  </Collection>\n</VTKFile>\n";
+        },
+        isLast);
       this->PieceFile.Write([this] { return this->Pieces; }, isLast);
       this->NumberFile.Write([this] { return this->Numbers; }, isLast);
     }

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ParticleTimes.h"
 
-#include "CollectionFile.h"
 #include "Ending.h"
+#include "FileName.h"
+#include "Formats.h"
 #include "Job.h"
 #include "MessageCapture.h"
 #include "OptionValue.h"
@@ -11,9 +12,19 @@
 #include "ParticleFile.h"
 #include "SafeText.h"
 
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataAlgorithm.h"
 #include "vtkSPHTemporalInterpolator.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
@@ -21,8 +32,157 @@
 namespace
 {
 
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+using Steps = std::vector<ParticleTimes::Step>;
+
+/// The first step that is not before this time; there may be none.
+Steps::const_iterator FindStep(const Steps& steps, double time)
+{
+  return std::lower_bound(steps.begin(), steps.end(), time,
+    [](const ParticleTimes::Step& step, double t) { return step.Time < t; });
+}
+
+/// Steps of a .pvd file.
+Steps ListedSteps(
+  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings)
+{
+  Steps steps;
+  for (const CollectionEntry& entry : ReadCollection(file, messages, warnings))
+  {
+    if (steps.empty() || steps.back().Time != entry.Time)
+    {
+      steps.push_back({ entry.Time, {}, {} });
+    }
+    steps.back().Files.push_back(entry.File);
+  }
+  return steps;
+}
+
+/// A file's name as what stands between numbers, and these: without zeros in front, each behind its
+/// number of digits, so that they compare as numbers do.
+using NumberedName = std::pair<std::string, std::vector<std::pair<std::size_t, std::string>>>;
+
+NumberedName Numbered(const std::string& name)
+{
+  NumberedName numbered;
+  auto& [words, numbers] = numbered;
+  for (const char c : name)
+  {
+    if (c < '0' || c > '9')
+    {
+      words += c;
+      continue;
+    }
+    if (words.empty() || words.back() != '\0')
+    {
+      words += '\0';
+      numbers.emplace_back();
+    }
+    auto& [size, digits] = numbers.back();
+    digits += c == '0' && size == 0 ? "" : std::string(1, c);
+    size = digits.size();
+  }
+  return numbered;
+}
+
+/// Steps of files given one by one, at the times that the files tell of.
+Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::string>& warnings)
+{
+  // If names differ in numbers alone, these tell the order: shells list tank_10 before tank_9.
+  std::vector<std::string> inputs = job.Inputs;
+  const std::string words = Numbered(inputs.front()).first;
+  if (std::all_of(inputs.begin(), inputs.end(),
+        [&words](const std::string& file) { return Numbered(file).first == words; }))
+  {
+    std::stable_sort(inputs.begin(), inputs.end(),
+      [](const std::string& a, const std::string& b)
+      { return Numbered(a).second < Numbered(b).second; });
+  }
+  std::vector<std::string> files;
+  std::vector<double> times;
+  for (const std::string& file : inputs)
+  {
+    const std::vector<double> steps = ::ListTimes(file, messages);
+    const bool isFilm = steps.size() > 1;
+    for (std::size_t k = 0; k < (isFilm ? steps.size() : 1); ++k)
+    {
+      files.push_back(isFilm ? file + "#" + std::to_string(k) : file);
+    }
+    if (isFilm || inputs.size() > 1)
+    {
+      times.insert(times.end(), steps.begin(), steps.end());
+    }
+  }
+  if (job.Has("--time-step"))
+  {
+    times.clear();
+  }
+  const bool areAll = times.size() == files.size();
+  const bool ascend =
+    std::adjacent_find(times.begin(), times.end(), std::greater_equal<double>()) == times.end();
+  if (!times.empty() && !(areAll && ascend))
+  {
+    warnings.push_back("the times in the field data of the files " +
+      std::string(areAll ? "do not ascend in the order of the steps" : "are missing in some") +
+      ", so the steps have times of their own, from 0 on; --time-step sets what is between them");
+  }
+  Steps steps;
+  for (std::size_t i = 0; i < files.size(); ++i)
+  {
+    steps.push_back(
+      { !times.empty() && areAll && ascend ? times[i] : static_cast<double>(i) * job.TimeStep,
+        { files[i] }, {} });
+  }
+  return steps;
+}
+
+/// Adds the walls of a file to steps: to all, or to each those that have its number, or, from a .pvd
+/// file, those of its time (where steps are in a list without times, in its order).
+void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages,
+  std::vector<std::string>& warnings)
+{
+  const bool areListed = IsCollectionFile(file);
+  const Steps walls = areListed ? ListedSteps(file, messages, warnings) : Steps();
+  if (areListed && !haveTimes && walls.size() != steps.size())
+  {
+    throw std::runtime_error("--walls: " + file + " lists " + std::to_string(walls.size()) +
+      " times, and there are " + std::to_string(steps.size()) + " steps");
+  }
+  auto next = walls.begin();
+  for (ParticleTimes::Step& step : steps)
+  {
+    if (areListed)
+    {
+      next = haveTimes ? FindStep(walls, step.Time) : next;
+      if (next == walls.end() || (haveTimes && next->Time != step.Time))
+      {
+        throw std::runtime_error(
+          "--walls: " + file + " has no walls at the time of " + step.Files.front());
+      }
+      step.Walls.insert(step.Walls.end(), next->Files.begin(), next->Files.end());
+      ++next;
+    }
+    else if (HasStepNumber(file))
+    {
+      const std::string name = std::filesystem::path(step.Files.front()).filename().string();
+      const auto numbers = Numbered(name).second; // 120 of WaterBody_120.vtp
+      if (numbers.empty())
+      {
+        throw std::runtime_error("--walls " + file +
+          " needs the number of each step, but the name " + step.Files.front() + " has none");
+      }
+      step.Walls.push_back(
+        NameOfStep(file, std::strtoull(numbers.back().second.c_str(), nullptr, 10)));
+    }
+    else
+    {
+      step.Walls.push_back(file);
+    }
+  }
+}
+
 /// The stored times, or those that were asked for.
-std::vector<double> ListTimes(const Job& job, const std::vector<ParticleTimes::Step>& steps)
+std::vector<double> ChooseTimes(const Job& job, const Steps& steps)
 {
   std::vector<double> times = job.Times;
   for (std::size_t i = 0; job.Times.empty() && i < steps.size(); ++i)
@@ -51,6 +211,55 @@ std::vector<double> ListTimes(const Job& job, const std::vector<ParticleTimes::S
 
 }
 
+/// The stored steps of a film, for VTK's pipeline: reads the particles of the time that is asked
+/// for.
+class StoredSteps : public vtkPolyDataAlgorithm
+{
+public:
+  static StoredSteps* New();
+  vtkTypeMacro(StoredSteps, vtkPolyDataAlgorithm);
+
+  const Steps* Known = nullptr; ///< in the order of time
+  MessageCapture* Messages = nullptr;
+  std::string Error; ///< why the last step could not be read; empty if it could
+
+protected:
+  StoredSteps() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
+  {
+    std::vector<double> times;
+    for (const ParticleTimes::Step& step : *this->Known)
+    {
+      times.push_back(step.Time);
+    }
+    const double range[2] = { times.front(), times.back() };
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    info->Set(Pipeline::TIME_STEPS(), times.data(), static_cast<int>(times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+    return 1;
+  }
+
+  int RequestData(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
+  {
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    const double time = info->Has(Pipeline::UPDATE_TIME_STEP())
+      ? info->Get(Pipeline::UPDATE_TIME_STEP())
+      : this->Known->front().Time;
+    auto step = FindStep(*this->Known, time); // one of the times that were offered
+    step = step == this->Known->end() ? step - 1 : step;
+    vtkPolyData* output = vtkPolyData::GetData(outputVector);
+    output->Initialize(); // the step before it, so that there are never three
+    this->Error = FailureOf([this, output, step]
+      { output->ShallowCopy(ReadParticles(step->Files, this->Messages, true)); });
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), step->Time);
+    return this->Error.empty() ? 1 : 0;
+  }
+};
+vtkStandardNewMacro(StoredSteps);
+
 std::string TimeText(double time)
 {
   std::ostringstream stream;
@@ -63,8 +272,14 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
 {
   const Job& job = sharing.Options;
   std::vector<std::string> notes;
-  this->Steps = ListSteps(job, sharing.Messages, notes);
-  this->Times = ListTimes(job, this->Steps);
+  const bool haveTimes = IsCollectionFile(job.Inputs.front());
+  this->Steps = haveTimes ? ListedSteps(job.Inputs.front(), sharing.Messages, notes)
+                          : GivenSteps(job, sharing.Messages, notes);
+  for (const std::string& walls : job.Walls)
+  {
+    AddStepWalls(walls, haveTimes, this->Steps, sharing.Messages, notes);
+  }
+  this->Times = ChooseTimes(job, this->Steps);
   for (const std::string& note : notes)
   {
     if (LaunchedRank() == 0)
@@ -117,22 +332,21 @@ void ParticleTimes::CheckOutputs(const std::vector<std::string>& outputs) const
 
 void ParticleTimes::Reset()
 {
-  vtkNew<ParticleSteps> source;
-  vtkNew<vtkSPHTemporalInterpolator> interpolator;
-  source->SetSteps(&this->Steps, this->Shared.Messages);
-  interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
-  interpolator->SetInputConnection(source->GetOutputPort());
-  this->Source = source;
-  this->Interpolator = interpolator;
+  this->Source = vtkSmartPointer<StoredSteps>::New();
+  this->Source->Known = &this->Steps;
+  this->Source->Messages = this->Shared.Messages;
+  this->Interpolator = vtkSmartPointer<vtkSPHTemporalInterpolator>::New();
+  this->Interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
+  this->Interpolator->SetInputConnection(this->Source->GetOutputPort());
 }
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
 {
   MessageCapture* const messages = this->Shared.Messages;
   messages->Clear();
-  this->Source->ClearError();
+  this->Source->Error.clear();
   this->Interpolator->UpdateTimeStep(time);
-  const std::string error = this->Source->GetError();
+  const std::string error = this->Source->Error;
   messages->Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
   const bool hasTimes = IsCollectionFile(this->Shared.Options.Inputs.front());
   for (const std::string& sentence : messages->GetWarnings())

@@ -3,12 +3,12 @@
 #ifndef ParticleTimes_h
 #define ParticleTimes_h
 
-#include "ParticleSteps.h"
 #include "Sharing.h"
 
 #include <string>
 #include <vector>
 
+class StoredSteps;
 class vtkSPHTemporalInterpolator;
 
 /// A number of a time, with the digits that it was given with.
@@ -19,7 +19,12 @@ std::string TimeText(double time);
 class ParticleTimes
 {
 public:
-  using Step = ParticleSteps::Step;
+  struct Step
+  {
+    double Time;
+    std::vector<std::string> Files; ///< parts of one set of particles
+    std::vector<std::string> Walls; ///< likewise, of walls beside these
+  };
 
   /// Throws UsageError or std::runtime_error with one sentence.
   explicit ParticleTimes(const Sharing& sharing);
@@ -46,12 +51,12 @@ public:
 
 private:
   const Sharing& Shared;
-  std::vector<Step> Steps;
+  std::vector<Step> Steps; ///< in the order of time
   std::vector<double> Times;
   Sharing::Particles Walls;
   std::vector<std::string>
     WallFiles; ///< that Walls were read from: once where all steps have the same
-  vtkSmartPointer<ParticleSteps> Source;
+  vtkSmartPointer<StoredSteps> Source;
   vtkSmartPointer<vtkSPHTemporalInterpolator> Interpolator;
 };
 

@@ -12,7 +12,6 @@
 #include "vtkVersion.h"
 
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -30,9 +29,7 @@ using Members = std::vector<std::pair<std::string, std::string>>;
 /// Reads back as the same number; JSON has neither NaN nor infinity.
 std::string Json(double number)
 {
-  char digits[32];
-  const auto result = std::to_chars(digits, digits + sizeof(digits), number);
-  return std::isfinite(number) ? std::string(digits, result.ptr) : "null";
+  return std::isfinite(number) ? DigitsOf(number) : "null";
 }
 
 /// An object, or a list, a member a line.

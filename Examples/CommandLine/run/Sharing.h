@@ -8,6 +8,7 @@
 #include "vtkSmartPointer.h"
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -65,5 +66,8 @@ public:
 int LaunchedCount();
 int LaunchedRank();
 ///@}
+
+/// Begins MPI, and ends it with the object, for a job that processes share. One per process.
+std::unique_ptr<Sharing> NewRankSession(Job& job, MessageCapture* messages);
 
 #endif

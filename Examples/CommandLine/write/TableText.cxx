@@ -2,26 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DataFile.h"
 
+#include "SafeText.h"
+
 #include "vtkDataArray.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
-#include <charconv>
 #include <cmath>
-
-namespace
-{
-
-template <typename T>
-std::string Formatted(T number)
-{
-  char digits[32];
-  const auto result = std::to_chars(digits, digits + sizeof(digits), number);
-  return std::string(digits, result.ptr);
-}
-
-}
 
 std::string TableField(const std::string& text)
 {
@@ -50,11 +38,11 @@ std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)
   {
     const vtkVariant value =
       array->GetVariantValue(tuple * array->GetNumberOfComponents() + component);
-    return numbers->GetDataTypeMin() < 0.0 ? Formatted(value.ToLongLong())
-                                           : Formatted(value.ToUnsignedLongLong());
+    return numbers->GetDataTypeMin() < 0.0 ? DigitsOf(value.ToLongLong())
+                                           : DigitsOf(value.ToUnsignedLongLong());
   }
   const double number = numbers->GetComponent(tuple, component) + 0.0; // no -0
-  return std::isnan(number) ? "" : Formatted(number);
+  return std::isnan(number) ? "" : DigitsOf(number);
 }
 
 void AppendTable(std::string& text, vtkTable* table)

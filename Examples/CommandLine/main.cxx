@@ -11,7 +11,6 @@
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleFile.h"
-#include "RunStatistics.h"
 #include "Runs.h"
 #include "SafeText.h"
 #include "Sharing.h"
@@ -23,6 +22,7 @@
 #include "vtkPolyData.h"
 #include "vtkVersion.h"
 
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -126,39 +126,6 @@ bool Execute(int argc, char* argv[])
   LoadDriversAhead(job.Surface->GetDevice());
   Sharing alone(job, messages);
   return Make(alone);
-}
-
-/// Returns the exit status. Says what fails, also standard output that cannot be written.
-int ExecuteAndTell(int argc, char* argv[])
-{
-  bool isGood = false, isMisused = false;
-  const std::string failure = FailureOf(
-    [&]
-    {
-      try
-      {
-        isGood = Execute(argc, argv);
-      }
-      catch (const UsageError& error)
-      {
-        isMisused = true;
-        throw std::runtime_error(std::string(error.what()) + " (see --help)");
-      }
-      std::cout.flush();
-      if (!std::cout)
-      {
-        throw std::runtime_error("standard output could not be written");
-      }
-    });
-  if (isMisused && LaunchedRank() > 0)
-  {
-    return 0; // the first process says it; a failure here could end that one before it has
-  }
-  if (!failure.empty())
-  {
-    Say(failure);
-  }
-  return isMisused ? 2 : isGood && failure.empty() ? 0 : 1;
 }
 
 }
@@ -295,5 +262,33 @@ int main(int argc, char* argv[])
   }
   close(descriptor);
   PrepareForEnding();
-  Finish(ExecuteAndTell(argc, argv));
+  bool isGood = false, isMisused = false;
+  const std::string failure = FailureOf(
+    [&]
+    {
+      try
+      {
+        isGood = Execute(argc, argv);
+      }
+      catch (const UsageError& error)
+      {
+        isMisused = true;
+        throw std::runtime_error(std::string(error.what()) + " (see --help)");
+      }
+      std::cout.flush();
+      if (!std::cout)
+      {
+        throw std::runtime_error("standard output could not be written");
+      }
+    });
+  // On others the first process says it; a failure could end that one before it has.
+  const bool isSilent = isMisused && LaunchedRank() > 0;
+  if (!failure.empty() && !isSilent)
+  {
+    Say(failure);
+  }
+  std::fflush(nullptr);
+  // Nothing that libraries do at the end of a program is to take time, crash, or write what they
+  // think of a damaged file.
+  _exit(isSilent ? 0 : isMisused ? 2 : isGood && failure.empty() ? 0 : 1);
 }

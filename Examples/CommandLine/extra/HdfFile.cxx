@@ -50,23 +50,17 @@ private:
   hid_t Id;
 };
 
-/// Whether values of a data set lie in other files.
-bool LiesElsewhere(hid_t group, const char* name)
-{
-  const Handle data(H5Oopen(group, name, H5P_DEFAULT));
-  if (data < 0 || H5Iget_type(data) != H5I_DATASET)
-  {
-    return false;
-  }
-  const Handle list(H5Dget_create_plist(data));
-  return H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
-}
-
 herr_t VisitLink(hid_t root, const char* name, const H5L_info_t* link, void* found)
 {
   std::string& sentence = *static_cast<std::string*>(found);
-  const bool isHard = link->type == H5L_TYPE_HARD;
-  if ((!isHard && link->type != H5L_TYPE_SOFT) || (isHard && LiesElsewhere(root, name)))
+  bool liesElsewhere = link->type != H5L_TYPE_HARD && link->type != H5L_TYPE_SOFT;
+  const Handle data(link->type == H5L_TYPE_HARD ? H5Oopen(root, name, H5P_DEFAULT) : -1);
+  if (data >= 0 && H5Iget_type(data) == H5I_DATASET)
+  {
+    const Handle list(H5Dget_create_plist(data));
+    liesElsewhere = H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
+  }
+  if (liesElsewhere)
   {
     sentence = std::string("its '") + name +
       "' lies in another file, which is not opened; give a file that holds all of its data";

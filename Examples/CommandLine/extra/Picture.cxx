@@ -195,7 +195,13 @@ public:
     const int axis = sliceAxis >= 0 ? sliceAxis : AxisOfLines(data);
     const bool isSlice = axis >= 0;
     this->Show(data, colors, isSlice);
-    this->ShowOutline(vtkBoundingBox(frame->GetBounds()));
+    double bounds[6];
+    vtkBoundingBox(frame->GetBounds()).GetBounds(bounds);
+    vtkNew<vtkOutlineSource> outline;
+    outline->SetBounds(bounds);
+    outline->Update();
+    const double origin[3] = { 0.0, 0.0, 0.0 };
+    this->ShowLines(outline->GetOutput(), 0.45, 1.0, origin);
     this->Seen.AddBounds(frame->GetBounds());
     if (data->GetNumberOfPoints() > 0)
     {
@@ -282,17 +288,6 @@ private:
         bounds[2] == bounds[3] ? side : 0.0, bounds[4] == bounds[5] ? side : 0.0 };
       this->ShowLines(lines, 0.1, 2.0, position);
     }
-  }
-
-  void ShowOutline(const vtkBoundingBox& box)
-  {
-    double bounds[6];
-    box.GetBounds(bounds);
-    vtkNew<vtkOutlineSource> outline;
-    outline->SetBounds(bounds);
-    outline->Update();
-    const double position[3] = { 0.0, 0.0, 0.0 };
-    this->ShowLines(outline->GetOutput(), 0.45, 1.0, position);
   }
 
   /// Shows the colour bar beside the picture, in a place of its own.

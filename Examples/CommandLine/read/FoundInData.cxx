@@ -43,14 +43,6 @@ std::string DescribeRange(vtkDataArray* array)
   return ends[0].str() + " .. " + ends[1].str();
 }
 
-std::string DescribeVolume(const vtkSPHFound& found)
-{
-  return !found.Volume.empty()                      ? found.Volume
-    : !found.Mass.empty() && !found.Density.empty() ? found.Mass + " / " + found.Density
-    : !found.Mass.empty() ? "computed from the positions and " + found.Mass
-                          : "computed from the positions";
-}
-
 /// "1,1,0", or nothing.
 std::string TextOf(const vtkSPHPeriod& found)
 {
@@ -83,9 +75,13 @@ std::string DescribeArrays(vtkPointSet& particles)
   const vtkSPHPeriod period = vtkSPHFindPeriod(particles.GetFieldData());
   const auto orNone = [](const std::string& name, const char* none)
   { return name.empty() ? none : name; };
+  const std::string volume = !found.Volume.empty() ? found.Volume
+    : !found.Mass.empty() && !found.Density.empty()
+    ? found.Mass + " / " + found.Density
+    : "computed from the positions" + (found.Mass.empty() ? "" : " and " + found.Mass);
   text << "smoothing length  "
        << orNone(found.SmoothingLength, "none (give --smoothing-length NAME, VALUE or estimate)")
-       << "\nvolume            " << DescribeVolume(found) << "\nvelocity          "
+       << "\nvolume            " << volume << "\nvelocity          "
        << orNone(found.Velocity, "none") << "\nfluid             ";
   if (found.Fluid.empty())
   {
@@ -112,11 +108,6 @@ std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& 
     throw std::runtime_error((problem.empty() ? none : problem) + " Give --periodic LX,LY,LZ.");
   }
   return found.Period;
-}
-
-std::vector<double> DetectPeriod(vtkDataObject* particles)
-{
-  return CheckedPeriod(vtkSPHFindPeriod(particles->GetFieldData()), "");
 }
 
 std::string HintOfPeriod(vtkDataObject* particles)

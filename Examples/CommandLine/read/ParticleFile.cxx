@@ -106,9 +106,6 @@ const Kind* KindOf(const Formats& formats, const std::string& file)
   return format ? &format->Process : nullptr;
 }
 
-/// The greatest number of points or particles.
-const vtkIdType MostPoints = VTK_INT_MAX;
-
 vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* messages,
   const Formats& formats = ParticleFormats, std::size_t step = 0)
 {
@@ -189,9 +186,11 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
   return particles;
 }
 
-/// NAME#N is step N of the file NAME, unless a file has that name.
-void TakeStep(std::string& file, std::size_t& step)
+/// Adds what a file holds, unless it has no points; NAME#N is step N of the file NAME, unless a file
+/// has that name. Throws std::runtime_error.
+void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
 {
+  std::size_t step = 0;
   std::error_code error;
   const std::size_t at = file.rfind('#');
   const bool isNumber = at != std::string::npos && at + 1 < file.size() && file.size() - at < 12 &&
@@ -201,13 +200,6 @@ void TakeStep(std::string& file, std::size_t& step)
     step = std::strtoull(file.c_str() + at + 1, nullptr, 10);
     file.resize(at);
   }
-}
-
-/// Adds what a file holds, unless it has no points. Throws std::runtime_error.
-void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
-{
-  std::size_t step = 0;
-  TakeStep(file, step);
   const vtkSmartPointer<vtkDataObject> data = Read(file, messages, ParticleFormats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
   if (!points)
@@ -395,10 +387,10 @@ vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture*
 {
   const vtkSmartPointer<vtkDataObject> data = Read(file, messages, DataFormats);
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
-  if (set && set->GetNumberOfPoints() > MostPoints)
+  if (set && set->GetNumberOfPoints() > VTK_INT_MAX)
   {
     throw std::runtime_error(file + " has " + std::to_string(set->GetNumberOfPoints()) +
-      " points; at most " + std::to_string(MostPoints) + " can be probed at once");
+      " points; at most " + std::to_string(VTK_INT_MAX) + " can be probed at once");
   }
   if (!set || set->GetNumberOfPoints() == 0)
   {

@@ -70,11 +70,8 @@ extern const char* const WallArrayName;
 /// std::runtime_error.
 vtkSmartPointer<vtkPointSet> AddWalls(vtkPointSet* fluid, vtkPointSet* walls);
 
-/// The period that was found, if there is no problem. Throws std::runtime_error where nothing was.
+/// The period for "--periodic auto", if one was found without a problem. Throws std::runtime_error where nothing was.
 std::vector<double> CheckedPeriod(const vtkSPHPeriod& found, const std::string& problem);
-
-/// The period for "--periodic auto". Throws std::runtime_error where there is none.
-std::vector<double> DetectPeriod(vtkDataObject* particles);
 
 /// A hint where --periodic is not given and there is a period; else "".
 std::string HintOfPeriod(vtkDataObject* particles);

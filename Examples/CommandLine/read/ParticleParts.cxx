@@ -51,29 +51,6 @@ vtkSmartPointer<vtkPolyData> Own(vtkPointSet* part)
   return own;
 }
 
-/// Arrays of one name and several types become doubles: VTK would leave them out.
-void MakeTypesAlike(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
-{
-  vtkPointData* arrays = parts.front()->GetPointData();
-  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* first = arrays->GetArray(i);
-    const bool areAlike = std::all_of(parts.begin(), parts.end(),
-      [first](vtkPolyData* part)
-      {
-        vtkDataArray* array = first ? part->GetPointData()->GetArray(first->GetName()) : nullptr;
-        return !array || array->GetDataType() == first->GetDataType();
-      });
-    const std::string name = arrays->GetArrayName(i);
-    for (std::size_t p = 0; p < parts.size() && !areAlike; ++p)
-    {
-      vtkNew<vtkDoubleArray> values;
-      values->DeepCopy(parts[p]->GetPointData()->GetArray(name.c_str()));
-      parts[p]->GetPointData()->AddArray(values);
-    }
-  }
-}
-
 /// Each component's median; 0 for marks of copies, which walls are not.
 std::vector<double> Median(vtkDataArray* array)
 {
@@ -120,7 +97,24 @@ vtkSmartPointer<vtkPointSet> JoinParts(const std::vector<vtkSmartPointer<vtkPoin
 {
   std::vector<vtkSmartPointer<vtkPolyData>> own(parts.size());
   std::transform(parts.begin(), parts.end(), own.begin(), Own);
-  MakeTypesAlike(own);
+  vtkPointData* arrays = own.front()->GetPointData();
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* first = arrays->GetArray(i);
+    const std::string name = arrays->GetArrayName(i);
+    const bool areAlike = std::all_of(own.begin(), own.end(),
+      [first, &name](vtkPolyData* part)
+      {
+        vtkDataArray* array = first ? part->GetPointData()->GetArray(name.c_str()) : nullptr;
+        return !array || array->GetDataType() == first->GetDataType();
+      });
+    for (std::size_t p = 0; p < own.size() && !areAlike; ++p)
+    {
+      vtkNew<vtkDoubleArray> values; // arrays of several types would be left out by VTK
+      values->DeepCopy(own[p]->GetPointData()->GetArray(name.c_str()));
+      own[p]->GetPointData()->AddArray(values);
+    }
+  }
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (const vtkSmartPointer<vtkPolyData>& part : own)
   {

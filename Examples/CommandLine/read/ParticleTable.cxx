@@ -227,18 +227,6 @@ void AddRow(Table& table, const Lines& lines, const std::vector<View>& cells)
   }
 }
 
-/// Whether a column of whole numbers tells particles, or kinds of them, apart.
-bool IsIdentifier(const std::string& name)
-{
-  std::string letters = Small(name);
-  letters.erase(std::remove_if(
-                  letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
-    letters.end());
-  const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
-  return std::any_of(ends.begin(), ends.end(),
-    [&letters](const char* end) { return letters == end || EndsWith(letters, end); });
-}
-
 /// A name without what makes it a component (v:0, v_x, v.x, v[0], v(0), VelX), and which one it is;
 /// below 0: it is none.
 int ComponentOf(const std::string& name, std::string& base)
@@ -377,9 +365,16 @@ vtkSmartPointer<vtkAbstractArray> ArrayOf(
   {
     return ArrayWith<vtkStringArray>(first.Words);
   }
-  if (columns.size() == 1 && !first.Whole.empty() && IsIdentifier(first.Name))
+  std::string letters = Small(first.Name);
+  letters.erase(std::remove_if(
+                  letters.begin(), letters.end(), [](unsigned char c) { return !std::isalpha(c); }),
+    letters.end());
+  const auto ends = { "id", "ids", "idp", "type", "types", "index", "mk", "tag", "mol", "iorig" };
+  if (columns.size() == 1 && !first.Whole.empty() &&
+    std::any_of(ends.begin(), ends.end(),
+      [&letters](const char* end) { return letters == end || EndsWith(letters, end); }))
   {
-    return ArrayWith<vtkTypeInt64Array>(first.Whole);
+    return ArrayWith<vtkTypeInt64Array>(first.Whole); // which tells particles, or kinds, apart
   }
   return JoinColumns(table, columns, static_cast<int>(columns.size()));
 }

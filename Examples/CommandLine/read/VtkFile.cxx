@@ -27,6 +27,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -332,24 +333,6 @@ std::vector<double> TimesOf(vtkDataObject* data)
   return {};
 }
 
-/// The time in an XML file whose field data are at its end: the least and greatest value stand at
-/// its beginning.
-std::vector<double> TimesInRanges(const std::string& head)
-{
-  for (const char* name : TimeNames)
-  {
-    const std::size_t at = head.find("Name=\"" + std::string(name) + "\"");
-    const std::size_t end = head.find('>', at), low = head.find("RangeMin=\"", at);
-    if (low < end && end != std::string::npos)
-    {
-      double time = 0.0;
-      const std::string text = head.substr(low + 10, head.find('"', low + 10) - low - 10);
-      return ParseNumber(text, time) ? std::vector<double>{ time } : std::vector<double>();
-    }
-  }
-  return {};
-}
-
 }
 
 vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t)
@@ -417,5 +400,18 @@ std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* mess
     // A fault is told where all of the file is read.
   }
   messages->Clear();
-  return times.empty() ? TimesInRanges(text) : times;
+  // Field data at the end of an XML file have the least and greatest value at its beginning.
+  for (std::size_t i = 0; i < std::size(TimeNames) && times.empty(); ++i)
+  {
+    const std::size_t at = text.find("Name=\"" + std::string(TimeNames[i]) + "\"");
+    const std::size_t end = text.find('>', at), low = text.find("RangeMin=\"", at);
+    double time = 0.0;
+    if (low < end && end != std::string::npos)
+    {
+      const bool isTime =
+        ParseNumber(text.substr(low + 10, text.find('"', low + 10) - low - 10), time);
+      return isTime ? std::vector<double>{ time } : times;
+    }
+  }
+  return times;
 }

@@ -108,22 +108,6 @@ void EndByCrash(int number)
   _exit(1);
 }
 
-void SetHandlersOfCrashes()
-{
-  stack_t stack = {};
-  stack.ss_sp = StackOfHandler;
-  stack.ss_size = sizeof(StackOfHandler);
-  sigaltstack(&stack, nullptr);
-  struct sigaction action = {};
-  action.sa_handler = EndByCrash;
-  action.sa_flags = SA_ONSTACK | SA_RESETHAND;
-  for (const int number : { SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU })
-  {
-    sigaction(number, &action, nullptr);
-  }
-  std::set_terminate(std::abort); // without more lines
-}
-
 /// Waits for a signal. The program ends as by that itself, so that a shell or a batch system sees
 /// it.
 [[noreturn]] void EndBySignal()
@@ -145,13 +129,29 @@ void SetHandlersOfCrashes()
 
 }
 
+void KeepWatchOfCrashes()
+{
+  stack_t stack = {};
+  stack.ss_sp = StackOfHandler;
+  stack.ss_size = sizeof(StackOfHandler);
+  sigaltstack(&stack, nullptr);
+  struct sigaction action = {};
+  action.sa_handler = EndByCrash;
+  action.sa_flags = SA_ONSTACK | SA_RESETHAND;
+  for (const int number : { SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU })
+  {
+    sigaction(number, &action, nullptr);
+  }
+  std::set_terminate(std::abort); // without more lines
+}
+
 void PrepareForEnding()
 {
   ClearsLine = isatty(STDERR_FILENO);
   // Writing fails then, which is told, where the signal would end the program in silence.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  SetHandlersOfCrashes();
+  KeepWatchOfCrashes();
   // All later threads leave these signals to one thread that waits for them: it may lock and
   // allocate. Ignored ones are blocked, too, and never awaited: LLVM, which PoCL brings, takes
   // them, and its handler unblocks all others.
@@ -164,17 +164,6 @@ void PrepareForEnding()
   {
     pthread_sigmask(SIG_UNBLOCK, &Awaited, nullptr);
   }
-}
-
-void KeepWatchOfCrashes()
-{
-  SetHandlersOfCrashes();
-}
-
-void Finish(int status)
-{
-  std::fflush(nullptr);
-  _exit(status);
 }
 
 std::string FaultsOfDrivers(const std::string& device)

@@ -14,10 +14,6 @@ void PrepareForEnding();
 /// own.
 void KeepWatchOfCrashes();
 
-/// Ends the program at once, so that nothing that libraries do at the end of a program takes time,
-/// crashes, or writes what they think of a damaged file.
-[[noreturn]] void Finish(int status);
-
 /// Names possible causes of a crash. A file that PoCL has kept half-written makes it crash whenever
 /// it loads that. Its folder is named if there is one and `device` does not name the built-in one.
 std::string FaultsOfDrivers(const std::string& device);

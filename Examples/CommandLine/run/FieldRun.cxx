@@ -31,30 +31,6 @@
 namespace
 {
 
-vtkSmartPointer<vtkDataSet> MakeSlice(const SliceOptions& slice, const double bounds[6])
-{
-  double origin[3], size[3];
-  for (int a = 0; a < 3; ++a)
-  {
-    origin[a] = a == slice.Axis ? slice.Place : bounds[2 * a];
-    size[a] = a == slice.Axis ? 0.0 : bounds[2 * a + 1] - bounds[2 * a];
-  }
-  const double longest = *std::max_element(size, size + 3);
-  if (!(longest > 0.0))
-  {
-    throw std::runtime_error(std::string("--slice ") + "xyz"[slice.Axis] +
-      "= has no plane to show: all particles lie on one line along this axis");
-  }
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  const double spacing = longest / (slice.Resolution - 1);
-  const auto count = [spacing](double length)
-  { return 1 + static_cast<int>(std::ceil(length / spacing - 1e-9)); };
-  image->SetOrigin(origin);
-  image->SetSpacing(spacing, spacing, spacing);
-  image->SetDimensions(count(size[0]), count(size[1]), count(size[2]));
-  return image;
-}
-
 /// Makes points on a line, with their distance from its beginning, for plots.
 vtkSmartPointer<vtkDataSet> MakeLine(const SliceOptions& slice)
 {
@@ -95,20 +71,27 @@ vtkSmartPointer<vtkDataSet> MakePoints(const Job& job, vtkPointSet* particles)
     throw std::runtime_error(
       "--slice has no plane to show, as --within and --only leave no particles");
   }
-  return MakeSlice(job.Slice, bounds);
-}
-
-/// Takes the valid part: elsewhere arrays are 0, which would look like values.
-vtkSmartPointer<vtkDataSet> ValidPart(vtkDataSet* data)
-{
-  vtkNew<vtkThreshold> threshold;
-  threshold->SetInputData(data);
-  threshold->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "vtkValidPointMask");
-  threshold->SetLowerThreshold(0.5);
-  threshold->SetUpperThreshold(2.0);
-  threshold->Update();
-  return vtkSmartPointer<vtkDataSet>(threshold->GetOutput());
+  const SliceOptions& slice = job.Slice;
+  double origin[3], size[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    origin[a] = a == slice.Axis ? slice.Place : bounds[2 * a];
+    size[a] = a == slice.Axis ? 0.0 : bounds[2 * a + 1] - bounds[2 * a];
+  }
+  const double longest = *std::max_element(size, size + 3);
+  if (!(longest > 0.0))
+  {
+    throw std::runtime_error(std::string("--slice ") + "xyz"[slice.Axis] +
+      "= has no plane to show: all particles lie on one line along this axis");
+  }
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  const double spacing = longest / (slice.Resolution - 1);
+  const auto count = [spacing](double length)
+  { return 1 + static_cast<int>(std::ceil(length / spacing - 1e-9)); };
+  image->SetOrigin(origin);
+  image->SetSpacing(spacing, spacing, spacing);
+  image->SetDimensions(count(size[0]), count(size[1]), count(size[2]));
+  return image;
 }
 
 /// The first vector, or the first array that is not everywhere the same.
@@ -180,7 +163,14 @@ std::string DrawField(
   if (job.IsProbe())
   {
     frame = vtkDataSet::SafeDownCast(job.Probe->GetOutput());
-    shown = ValidPart(frame);
+    vtkNew<vtkThreshold> valid; // elsewhere arrays are 0, which would look like values
+    valid->SetInputData(frame);
+    valid->SetInputArrayToProcess(
+      0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "vtkValidPointMask");
+    valid->SetLowerThreshold(0.5);
+    valid->SetUpperThreshold(2.0);
+    valid->Update();
+    shown = valid->GetOutput();
     name = ArrayToShow(shown);
   }
   else

@@ -9,7 +9,6 @@
 #include "OptionValue.h"
 #include "OutputFile.h"
 #include "ParticleTimes.h"
-#include "RunStatistics.h"
 #include "Runs.h"
 #include "SafeText.h"
 
@@ -46,26 +45,6 @@ std::vector<std::string> ListSurfaces(const Job& job, std::size_t count)
   return names;
 }
 
-/// Nobody named the files beside a .pvd file: each is new, or a step of an older film.
-void CheckSteps(const Job& job, const std::vector<std::string>& surfaces)
-{
-  if (Printable(job.Output) != job.Output)
-  {
-    throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
-  }
-  for (const std::string& surface : surfaces)
-  {
-    std::error_code error;
-    if (IsCollectionFile(job.Output) && fs::exists(fs::symlink_status(surface, error)) &&
-      !IsFilmStep(surface))
-    {
-      throw UsageError(surface +
-        " already exists and is not a step of a film; choose another name "
-        "for the film, or remove the file");
-    }
-  }
-}
-
 class Film : public Series
 {
 public:
@@ -95,7 +74,22 @@ public:
           { job.StatisticsFile, job.ComponentFile, job.NumbersFile,
             IsCollectionFile(job.Output) ? job.Output : "" });
         this->Times.CheckOutputs(outputs);
-        CheckSteps(job, this->Surfaces);
+        if (Printable(job.Output) != job.Output)
+        {
+          throw UsageError(job.Output + " has characters in its name that a .pvd file cannot hold");
+        }
+        // Nobody named the files beside a .pvd file: each is new, or a step of an older film.
+        for (const std::string& surface : this->Surfaces)
+        {
+          std::error_code error;
+          if (IsCollectionFile(job.Output) && fs::exists(fs::symlink_status(surface, error)) &&
+            !IsFilmStep(surface))
+          {
+            throw UsageError(surface +
+              " already exists and is not a step of a film; choose another name "
+              "for the film, or remove the file");
+          }
+        }
       });
     if (!job.Picture.File.empty())
     {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RunStatistics.h"
+#include "Runs.h"
 
 #include "Job.h"
 #include "SafeText.h"
@@ -126,24 +126,6 @@ std::string Value(vtkFieldData* run, const std::string& name)
     }
   }
   return !text.empty() ? text : array.empty() ? stream.str() : array;
-}
-
-/// There may be more triangles than before: what a cut leaves of one is one or two.
-std::string DescribeTrimming(vtkFieldData* run)
-{
-  const double caps = Number(run, "CapTriangles");
-  const bool hasLines = run->HasArray("Lines");
-  std::string text;
-  if (!hasLines && Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
-  {
-    text = Fill(run, "{TrianglesBeforeTrimming} before trimming, which cuts some in two");
-  }
-  if (caps > 0.0)
-  {
-    text += (text.empty() ? "" : "; ") + Fill(run, "{CapTriangles} ") +
-      (hasLines ? "parts of them in caps" : "of them in caps");
-  }
-  return text.empty() ? "" : " (" + text + ")";
 }
 
 /// "SeedCellsNotIntersected" -> "seed_cells_not_intersected", "search grid" -> "search_grid"
@@ -297,6 +279,19 @@ std::string DescribeRun(vtkFieldData* run)
   const std::vector<double> lengths = Numbers(run, "SmoothingLengthRange");
   const bool areMany = lengths.size() == 2 && lengths[0] < lengths[1];
   const bool isPreview = Number(run, "Preview") != 0.0;
+  const double caps = Number(run, "CapTriangles");
+  const bool hasLines = run->HasArray("Lines");
+  std::string trimming; // there may be more triangles than before: a cut leaves one or two of one
+  if (!hasLines && Number(run, "Triangles") - caps != Number(run, "TrianglesBeforeTrimming"))
+  {
+    trimming = "{TrianglesBeforeTrimming} before trimming, which cuts some in two";
+  }
+  if (caps > 0.0)
+  {
+    trimming += std::string(trimming.empty() ? "" : "; ") + "{CapTriangles} " +
+      (hasLines ? "parts of them in caps" : "of them in caps");
+  }
+  trimming = trimming.empty() ? "" : " (" + trimming + ")";
   const std::string pieces = Number(run, "Pieces") == 1.0 ? "piece" : "pieces";
   return Fill(run,
     std::string("particles   {FluidParticles} fluid, {SolidParticles} solid; "
@@ -317,7 +312,7 @@ std::string DescribeRun(vtkFieldData* run)
                    "{IterationsMax}; largest remaining error {ResidualMax}") +
       "\n[lines       {Points} points, {Lines} lines|"
       "surface     {Points} points, {Triangles} triangles]" +
-      DescribeTrimming(run) + "[; length {Length}][; {Pieces} " + pieces +
+      trimming + "[; length {Length}][; {Pieces} " + pieces +
       " of area {Area}|; area {Area}][, volume {Volume}]\n");
 }
 

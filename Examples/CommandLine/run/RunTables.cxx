@@ -62,29 +62,6 @@ void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
   WriteDataSet(job.Output, image, messages);
 }
 
-void AddSection(const Job& job, const Place& section, MessageCapture* messages)
-{
-  const char* name = section.Name.c_str();
-  const double* n = section.Numbers.data();
-  switch (section.Shape)
-  {
-    case Place::Line:
-      job.Flux->AddLine(name, n, n + 3);
-      break;
-    case Place::Rectangle:
-      job.Flux->AddRectangle(name, n, n + 3, n + 6);
-      break;
-    case Place::Disc:
-      job.Flux->AddDisc(name, n, n + 3, n[6]);
-      break;
-    case Place::Box:
-      job.Flux->AddBox(name, n);
-      break;
-    default:
-      job.Flux->AddSurface(name, ReadDataSet(section.File, messages));
-  }
-}
-
 /// The integrals of fluxes in time, by trapezia between steps.
 class Flowed
 {
@@ -224,12 +201,6 @@ void AddNumber(vtkFieldData* data, const std::string& name, double value)
   data->AddArray(array);
 }
 
-double SumOf(vtkTable* table, const char* column)
-{
-  auto* numbers = vtkDoubleArray::SafeDownCast(table->GetColumnByName(column));
-  return std::accumulate(numbers->Begin(), numbers->End(), 0.0);
-}
-
 }
 
 vtkTable* MeasureWith(vtkSPHMeter* meter, const Sharing& sharing, vtkPointSet* particles,
@@ -258,7 +229,25 @@ bool MakeMeterTable(Sharing& sharing)
   const std::vector<Place> sections = job.IsFlux() ? ListSections(job) : std::vector<Place>();
   for (const Place& section : sections)
   {
-    AddSection(job, section, sharing.Messages);
+    const char* name = section.Name.c_str();
+    const double* n = section.Numbers.data();
+    switch (section.Shape)
+    {
+      case Place::Line:
+        job.Flux->AddLine(name, n, n + 3);
+        break;
+      case Place::Rectangle:
+        job.Flux->AddRectangle(name, n, n + 3, n + 6);
+        break;
+      case Place::Disc:
+        job.Flux->AddDisc(name, n, n + 3, n[6]);
+        break;
+      case Place::Box:
+        job.Flux->AddBox(name, n);
+        break;
+      default:
+        job.Flux->AddSurface(name, ReadDataSet(section.File, sharing.Messages));
+    }
   }
   const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
   return MeterTable(sharing).Make(places);
@@ -301,7 +290,9 @@ void AddPieces(
   {
     if ((job.LeastVolume > 0.0 || job.LeastParticles > 0) && run.Statistics->HasArray(name))
     {
-      AddNumber(run.Statistics, name, SumOf(pieces, name[0] == 'A' ? "area" : "volume"));
+      auto* numbers =
+        vtkDoubleArray::SafeDownCast(pieces->GetColumnByName(name[0] == 'A' ? "area" : "volume"));
+      AddNumber(run.Statistics, name, std::accumulate(numbers->Begin(), numbers->End(), 0.0));
     }
   }
   vtkNew<vtkTable> table;

@@ -10,7 +10,6 @@
 #include "MessageCapture.h"
 #include "OptionValue.h"
 #include "ParticleFile.h"
-#include "RunStatistics.h"
 #include "SafeText.h"
 #include "Sharing.h"
 
@@ -83,34 +82,13 @@ void SetParticles(vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* particle
     filter->SetSmoothingLength(job.CoefH * std::sqrt(dimension) * job.ParticleDistance);
     filter->SetParticleVolume(std::pow(job.ParticleDistance, dimension));
   }
-  const std::vector<double> period = job.DetectPeriod ? DetectPeriod(particles) : job.Periodic;
+  const std::vector<double> period = job.DetectPeriod
+    ? CheckedPeriod(vtkSPHFindPeriod(particles->GetFieldData()), "")
+    : job.Periodic;
   if (!period.empty())
   {
     filter->SetPeriodicBounds(vtkSPHBoundsOfPeriod(period, particles->GetBounds()).data());
   }
-}
-
-/// The particles with the arrays that are made of one of theirs, if that is asked for.
-vtkSmartPointer<vtkPointSet> AddDerivedArrays(const Job& job, vtkPointSet* particles)
-{
-  if (job.Derive.empty())
-  {
-    return particles;
-  }
-  vtkSPHDerivatives* filter = job.Derivatives;
-  SetParticles(filter, job, particles);
-  filter->ComputeStrainRateOn();
-  filter->ReplaceArraysOn(); // the next step is to find them under their names
-  filter->SetInputData(particles);
-  filter->Update();
-  const std::string error = filter->GetErrorMessage();
-  if (!error.empty())
-  {
-    throw std::runtime_error(error);
-  }
-  auto derived = vtk::TakeSmartPointer(particles->NewInstance());
-  derived->ShallowCopy(filter->GetOutput()); // the next step has the output itself
-  return derived;
 }
 
 /// Arrays of the particles that are not interpolated because the surface's file could not hold
@@ -197,28 +175,6 @@ std::string ReasonForNoSurface(vtkFieldData* run)
       "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
-/// Prints the iso value that the filter has chosen, if none was given, and keeps it for the next
-/// steps.
-void KeepIsoValue(const Sharing& sharing, vtkFieldData* statistics)
-{
-  const Job& job = sharing.Options;
-  vtkDataArray* values = statistics->GetArray("IsoValues");
-  if (job.Scalar.empty() || job.Surface->GetNumberOfContours() > 0 ||
-    !statistics->HasArray("ScalarRange") || !values || values->GetNumberOfValues() == 0)
-  {
-    return;
-  }
-  job.Surface->SetValue(0, values->GetComponent(0, 0));
-  if (!job.Quiet && sharing.IsFirst())
-  {
-    std::cout
-      << Fill(statistics,
-           "iso value   {IsoValues}, chosen for {Scalar}, whose range is {ScalarRange:0} .. "
-           "{ScalarRange:1} (--iso gives another one)")
-      << std::endl;
-  }
-}
-
 /// Prints a notice, once, if an update that shows no progress waits for a driver after a few
 /// seconds.
 class BuildNotice
@@ -296,7 +252,23 @@ vtkSmartPointer<vtkPointSet> SetUpParticles(
   vtkSPHAlgorithm* filter, const Job& job, vtkPointSet* input)
 {
   AwaitDrivers();
-  vtkSmartPointer<vtkPointSet> particles = AddDerivedArrays(job, input);
+  vtkSmartPointer<vtkPointSet> particles = input;
+  if (!job.Derive.empty())
+  {
+    vtkSPHDerivatives* derivatives = job.Derivatives;
+    SetParticles(derivatives, job, input);
+    derivatives->ComputeStrainRateOn();
+    derivatives->ReplaceArraysOn(); // the next step is to find them under their names
+    derivatives->SetInputData(input);
+    derivatives->Update();
+    const std::string error = derivatives->GetErrorMessage();
+    if (!error.empty())
+    {
+      throw std::runtime_error(error);
+    }
+    particles.TakeReference(input->NewInstance());
+    particles->ShallowCopy(derivatives->GetOutput()); // the next step has the output itself
+  }
   SetParticles(filter, job, particles);
   SetAttributes(filter, job, particles);
   return particles;
@@ -342,7 +314,19 @@ Run Extract(const Sharing& sharing, const std::string& before)
   filter->GetOutput()->Initialize(); // not two at once: the peak of memory is a statistic
   run.Statistics = vtkSmartPointer<vtkFieldData>::New();
   run.Statistics->PassData(filter->GetRunStatistics());
-  KeepIsoValue(sharing, run.Statistics);
+  vtkDataArray* values = run.Statistics->GetArray("IsoValues");
+  if (!sharing.Options.Scalar.empty() && filter->GetNumberOfContours() == 0 &&
+    run.Statistics->HasArray("ScalarRange") && values && values->GetNumberOfValues() > 0)
+  {
+    filter->SetValue(0, values->GetComponent(0, 0)); // was chosen, and is kept for the next steps
+    if (!sharing.Options.Quiet && sharing.IsFirst())
+    {
+      std::cout << Fill(run.Statistics,
+                     "iso value   {IsoValues}, chosen for {Scalar}, whose range is "
+                     "{ScalarRange:0} .. {ScalarRange:1} (--iso gives another one)")
+                << std::endl;
+    }
+  }
   for (const std::string& sentence : sharing.Messages->GetWarnings())
   {
     run.Warnings.push_back(WithOptions(sentence)); // they are in the statistics, too

@@ -78,34 +78,6 @@ private:
   std::vector<std::pair<std::string, Setter>> Before;
 };
 
-/// Writes to memory, because the writer of VTK 9.1 crashes on a full disk. Does not append data,
-/// VTK's default, which ParaView 5.11 of Debian 12 cannot read. Returns false if VTK gave up.
-bool WriteXml(vtkDataSet* data, std::string& bytes)
-{
-  const NamesForXml names(data);
-  const auto writer =
-    vtk::TakeSmartPointer(vtkXMLDataObjectWriter::NewWriter(data->GetDataObjectType()));
-  writer->SetInputDataObject(data);
-  writer->SetDataModeToBinary();
-  writer->WriteToOutputStringOn();
-  writer->SetCompressorTypeToLZ4(); // which takes a third of the time of zlib, VTK's default
-  writer->SetBlockSize(1 << 19);
-  const bool good = writer->Write() != 0;
-  bytes = writer->GetOutputString();
-  return good;
-}
-
-bool WriteLegacy(vtkDataSet* data, std::string& bytes)
-{
-  vtkNew<vtkGenericDataObjectWriter> writer;
-  writer->SetInputData(data);
-  writer->SetFileTypeToBinary();
-  writer->WriteToOutputStringOn();
-  const bool good = writer->Write() != 0;
-  bytes = writer->GetOutputStdString();
-  return good;
-}
-
 /// Every format that is written, with the class that it holds, and those derived from it.
 const std::vector<FileFormat<const char*>> Formats = { { ".vti", "vtkImageData" },
   { ".vtr", "vtkRectilinearGrid" }, { ".vts", "vtkStructuredGrid" }, { ".vtp", "vtkPolyData" },
@@ -135,8 +107,30 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCaptu
 {
   const Activity writing(file + " could not be written", "memory may have run out");
   messages->Clear();
-  std::string bytes;
-  const bool isGood = (EndsWith(file, ".vtk") ? WriteLegacy : WriteXml)(data, bytes);
+  std::string bytes; // in memory, because the writer of VTK 9.1 crashes on a full disk
+  bool isGood = false;
+  if (EndsWith(file, ".vtk"))
+  {
+    vtkNew<vtkGenericDataObjectWriter> writer;
+    writer->SetInputData(data);
+    writer->SetFileTypeToBinary();
+    writer->WriteToOutputStringOn();
+    isGood = writer->Write() != 0;
+    bytes = writer->GetOutputStdString();
+  }
+  else
+  {
+    const NamesForXml names(data);
+    const auto writer =
+      vtk::TakeSmartPointer(vtkXMLDataObjectWriter::NewWriter(data->GetDataObjectType()));
+    writer->SetInputDataObject(data);
+    writer->SetDataModeToBinary(); // ParaView 5.11 of Debian 12 cannot read appended data
+    writer->WriteToOutputStringOn();
+    writer->SetCompressorTypeToLZ4(); // which takes a third of the time of zlib, VTK's default
+    writer->SetBlockSize(1 << 19);
+    isGood = writer->Write() != 0;
+    bytes = writer->GetOutputString();
+  }
   if (!isGood || !messages->GetErrors().empty())
   {
     FailToWrite(file, messages->GetErrors().empty() ? "" : messages->GetErrors().front());

@@ -72,53 +72,29 @@ int DescriptorOf(const std::string& path)
     : -1;
 }
 
-/// Follows symbolic links, also to a file that does not exist yet.
-void FollowLinks(Target& target)
+/// Follows symbolic links, also to a file that does not exist yet, and asks the system whether the
+/// file may be replaced, by the name as given: its rules for symbolic links, and for files that may
+/// not be written, hold for replacing, too.
+Target Find(const std::string& name)
 {
+  Target target;
+  target.Name = target.Path = name;
   const int mostLinks = 40; // as the kernel of Linux
   std::error_code error;
-  for (int i = 0; i <= mostLinks; ++i)
+  for (int i = 0;; ++i)
   {
     target.Descriptor = DescriptorOf(target.Path);
     if (target.Descriptor >= 0 || !fs::is_symlink(target.Path, error))
     {
-      return;
+      break;
+    }
+    if (i == mostLinks)
+    {
+      FailToWrite(name, std::strerror(ELOOP));
     }
     // The operator leaves an absolute path as it is.
     target.Path = (FolderOf(target.Path) / fs::read_symlink(target.Path, error)).string();
   }
-  FailToWrite(target.Name, std::strerror(ELOOP));
-}
-
-/// Asks the system whether the file may be replaced, by the name as given: its rules for symbolic
-/// links, and for files that may not be written, hold for replacing, too.
-void CheckAccess(const Target& target)
-{
-  if (!target.IsReplaced())
-  {
-    Require(target.Descriptor >= 0 || access(target.Name.c_str(), W_OK) == 0, target.Name);
-    return;
-  }
-  if (target.Exists)
-  {
-    const int descriptor = open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    Require(descriptor >= 0, target.Name);
-    close(descriptor);
-  }
-  const std::string folder = FolderOf(target.Path);
-  if (access(folder.c_str(), W_OK | X_OK) != 0)
-  {
-    FailToWrite(target.Name,
-      "no file can be created in the folder " + folder + " (" + std::strerror(errno) + ")");
-  }
-}
-
-Target Find(const std::string& name)
-{
-  Target target;
-  target.Name = name;
-  target.Path = name;
-  FollowLinks(target);
   target.Exists = (target.Descriptor >= 0 ? fstat(target.Descriptor, &target.Status)
                                           : stat(name.c_str(), &target.Status)) == 0;
   Require(target.Exists || (errno == ENOENT && target.Descriptor < 0), name);
@@ -126,7 +102,23 @@ Target Find(const std::string& name)
   {
     FailToWrite(name, "it is a directory");
   }
-  CheckAccess(target);
+  if (!target.IsReplaced())
+  {
+    Require(target.Descriptor >= 0 || access(name.c_str(), W_OK) == 0, name);
+    return target;
+  }
+  if (target.Exists)
+  {
+    const int descriptor = open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    Require(descriptor >= 0, name);
+    close(descriptor);
+  }
+  const std::string folder = FolderOf(target.Path);
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+  {
+    FailToWrite(
+      name, "no file can be created in the folder " + folder + " (" + std::strerror(errno) + ")");
+  }
   return target;
 }
 
@@ -165,19 +157,6 @@ bool WriteAll(int descriptor, const std::string& bytes)
   return true;
 }
 
-/// Writes to a device, a FIFO or an open descriptor.
-void WriteStraight(const Target& target, const std::string& bytes)
-{
-  const int descriptor = target.Descriptor >= 0
-    ? fcntl(target.Descriptor, F_DUPFD_CLOEXEC, 0)
-    : open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  const bool isWritten = descriptor >= 0 && WriteAll(descriptor, bytes);
-  const int problem = errno;
-  const bool isClosed = descriptor < 0 || close(descriptor) == 0;
-  errno = isWritten ? errno : problem;
-  Require(isWritten && isClosed, target.Name);
-}
-
 /// Sets mode, owner and group as those of the file that is replaced; for a new one, as the umask
 /// says.
 void SetAttributes(int descriptor, const Target& target)
@@ -194,14 +173,6 @@ void SetAttributes(int descriptor, const Target& target)
     mode &= ~static_cast<mode_t>((sameGroup ? 0 : 02070) | (sameOwner ? 0 : 04000));
   }
   Require(fchmod(descriptor, mode) == 0, target.Name);
-}
-
-/// The beginning of a name for a file beside the target.
-std::string NameBeside(const Target& target)
-{
-  const std::size_t longest = 200; // of 255 bytes
-  const std::string name = fs::path(target.Path).filename().string().substr(0, longest);
-  return FolderOf(target.Path) + "/." + name + ".";
 }
 
 }
@@ -271,7 +242,10 @@ void OutputFiles::Write(const std::string& file, const std::string& bytes)
   }
   else
   {
-    output.File = std::make_unique<TemporaryFile>(NameBeside(output.Place));
+    const std::string& path = output.Place.Path;
+    const std::size_t longest = 200; // of 255 bytes
+    output.File = std::make_unique<TemporaryFile>(
+      FolderOf(path) + "/." + fs::path(path).filename().string().substr(0, longest) + ".");
     const int descriptor = output.File->GetDescriptor();
     Require(descriptor >= 0 && WriteAll(descriptor, bytes), file);
     SetAttributes(descriptor, output.Place);
@@ -286,14 +260,20 @@ void OutputFiles::Commit()
 {
   for (const Output& output : this->Files)
   {
+    const Target& target = output.Place;
     if (output.File)
     {
-      Require(output.File->TakePlaceOf(output.Place.Path), output.Place.Name);
+      Require(output.File->TakePlaceOf(target.Path), target.Name);
+      continue;
     }
-    else
-    {
-      WriteStraight(output.Place, output.Bytes);
-    }
+    const int descriptor = target.Descriptor >= 0
+      ? fcntl(target.Descriptor, F_DUPFD_CLOEXEC, 0)
+      : open(target.Name.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    const bool isWritten = descriptor >= 0 && WriteAll(descriptor, output.Bytes);
+    const int problem = errno;
+    const bool isClosed = descriptor < 0 || close(descriptor) == 0;
+    errno = isWritten ? errno : problem;
+    Require(isWritten && isClosed, target.Name);
   }
   this->Files.clear();
 }

@@ -243,8 +243,8 @@ void WriteCsv(vtkPolyData* surface, const ColorScale&, std::string& bytes)
   }
 }
 
-/// VTK's XML names of types, which tell their size.
-std::string TypeOf(vtkAbstractArray* array)
+/// The type has VTK's XML name, which tells its size.
+void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& name)
 {
   const int type = array->GetDataType();
   const auto* numbers = vtkArrayDownCast<vtkDataArray>(array);
@@ -252,13 +252,10 @@ std::string TypeOf(vtkAbstractArray* array)
   const std::string kind = type == VTK_FLOAT || type == VTK_DOUBLE ? "Float"
     : isSigned                                                     ? "Int"
                                                                    : "UInt";
-  return type == VTK_STRING ? "String" : kind + std::to_string(8 * array->GetDataTypeSize());
-}
-
-void Describe(std::ostream& text, vtkAbstractArray* array, const std::string& name)
-{
-  text << "      <PDataArray type=\"" << TypeOf(array) << "\" Name=\"" << EscapedForXml(name)
-       << "\" NumberOfComponents=\"" << array->GetNumberOfComponents() << "\"/>\n";
+  text << "      <PDataArray type=\""
+       << (type == VTK_STRING ? "String" : kind + std::to_string(8 * array->GetDataTypeSize()))
+       << "\" Name=\"" << EscapedForXml(name) << "\" NumberOfComponents=\""
+       << array->GetNumberOfComponents() << "\"/>\n";
 }
 
 /// The arrays and which are the normals, and so on, as VTK's writers say it of a single file.

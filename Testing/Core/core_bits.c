@@ -33,42 +33,29 @@ typedef struct bits_case
 } bits_case;
 
 static const bits_case cases[] = {
-  { "shepard", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "pairs", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_PAIRS, MCOR_BOUNDARY_WEIGHT_SUM, 1,
-    1, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "eigenvalue", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "sum", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE, MCOR_BOUNDARY_WEIGHT_SUM, 0, 1,
-    1.5, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "tensor_eigenvalue", MCOR_M_PRIME_4, MCOR_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 0, 1, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "weight", MCOR_QUINTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT64, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "double_eigenvalue", MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "sinc6_eigenvalue", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "double_sinc6", MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT64, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "quartic", MCOR_QUARTIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "wendland_c6_eigenvalue", MCOR_WENDLAND_C6, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 0, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 0 },
-  { "topology", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.1, MCOR_TOPOLOGY_FIELD, 0, 0, 0 },
-  { "wall", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0.2, 0, 0 },
-  { "mixed", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE, MCOR_BOUNDARY_EIGENVALUE,
-    1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 1, 0 },
-  { "compact", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 1 },
-  { "compact_trimmed", MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_EIGENVALUE, 1, 0, -14, MCOR_TOPOLOGY_TABLE, 0, 0, 1 },
-  { "widened", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 1, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 2 },
-  { "smooth", MCOR_CUBIC_SPLINE, MCOR_WEIGHT_SUM, MCOR_FLOAT32, MCOR_COMPLETE,
-    MCOR_BOUNDARY_WEIGHT_SUM, 0, 0, 0.5, MCOR_TOPOLOGY_TABLE, 0, 0, 3 },
+  { "shepard", .solids = 1, .iso = 0.5 },
+  { "pairs", .seeds = MCOR_PAIRS, .solids = 1, .volumes = 1, .iso = 0.5 },
+  { "eigenvalue", .boundary = MCOR_BOUNDARY_EIGENVALUE, .solids = 1, .iso = -14 },
+  { "sum", .kernel = MCOR_M_PRIME_4, .field = MCOR_SUM, .volumes = 1, .iso = 1.5 },
+  { "tensor_eigenvalue", .kernel = MCOR_M_PRIME_4, .field = MCOR_SUM,
+    .boundary = MCOR_BOUNDARY_EIGENVALUE, .volumes = 1, .iso = -14 },
+  { "weight", .kernel = MCOR_QUINTIC_SPLINE, .field = MCOR_WEIGHT_SUM, .precision = MCOR_FLOAT64,
+    .iso = 0.5 },
+  { "double_eigenvalue", .kernel = MCOR_QUINTIC_SPLINE, .precision = MCOR_FLOAT64,
+    .boundary = MCOR_BOUNDARY_EIGENVALUE, .iso = -14 },
+  { "sinc6_eigenvalue", .kernel = MCOR_SINC_6, .boundary = MCOR_BOUNDARY_EIGENVALUE, .solids = 1,
+    .iso = -14 },
+  { "double_sinc6", .kernel = MCOR_SINC_6, .precision = MCOR_FLOAT64, .iso = 0.5 },
+  { "quartic", .kernel = MCOR_QUARTIC_SPLINE, .field = MCOR_WEIGHT_SUM, .iso = 0.5 },
+  { "wendland_c6_eigenvalue", .kernel = MCOR_WENDLAND_C6, .boundary = MCOR_BOUNDARY_EIGENVALUE,
+    .iso = -14 },
+  { "topology", .solids = 1, .iso = 0.1, .topology = MCOR_TOPOLOGY_FIELD },
+  { "wall", .field = MCOR_WEIGHT_SUM, .solids = 1, .iso = 0.5, .wall_share = 0.2 },
+  { "mixed", .boundary = MCOR_BOUNDARY_EIGENVALUE, .solids = 1, .iso = -14, .mixed = 1 },
+  { "compact", .field = MCOR_WEIGHT_SUM, .iso = 0.5, .smooth = 1 },
+  { "compact_trimmed", .boundary = MCOR_BOUNDARY_EIGENVALUE, .solids = 1, .iso = -14, .smooth = 1 },
+  { "widened", .field = MCOR_WEIGHT_SUM, .solids = 1, .iso = 0.5, .smooth = 2 },
+  { "smooth", .field = MCOR_WEIGHT_SUM, .iso = 0.5, .smooth = 3 },
 };
 
 /* Gives some particles a far larger support, and as much weight as the others have. */
@@ -237,13 +224,12 @@ int main(int argc, char** argv)
   {
     return run_devices() ? 0 : 1;
   }
-  mcor_context* context = NULL;
-  if (mcor_create_context(NULL, &context) != MCOR_OK)
+  void* made;
+  if (core_set_up(&made) != 0)
   {
-    fprintf(stderr, "%s\n", mcor_last_error(context));
-    mcor_free_context(context);
     return 1;
   }
+  CORE_CONTEXT context = made;
   const char* word = argc > 1 ? argv[1] : "";
   const int fewer = strcmp(word, "fewer") == 0, usual = strcmp(word, "usual") == 0;
   const int kernels = strcmp(word, "kernels") == 0;
@@ -258,6 +244,5 @@ int main(int argc, char** argv)
       (fewer && repeats) || (usual && !is_usual(cases + i)) || (kernels && is_usual(cases + i));
     good = (skipped || run_case(context, cases + i, small, &hash)) && good;
   }
-  mcor_free_context(context);
   return good ? 0 : 1;
 }

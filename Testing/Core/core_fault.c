@@ -3,8 +3,11 @@
 
 #include "core_fault.h"
 
+#include <CL/cl_icd.h>
+
 #include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <threads.h>
 
@@ -48,6 +51,16 @@ static int fails(const char* name, int kind)
     return fails(#name, kind) ? fail_with : __real_##name arguments;                               \
   }
 
+/* Writes a buffer that the host has written to once more, if CORE_SHADOWS says so. */
+static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error);
+
+#define FAULT_WRITE(name, mem, parameters, arguments)                                              \
+  WRAP(cl_int, name, parameters)                                                                   \
+  {                                                                                                \
+    return fails(#name, COMMAND) ? fail_with                                                       \
+                                 : write_again(queue, mem, __real_##name arguments);               \
+  }
+
 FAULT_CALL(mcor_clBuildProgram,
   (cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
     void(CL_CALLBACK* notify)(cl_program, void*), void* data),
@@ -63,15 +76,15 @@ FAULT_CALL(mcor_clEnqueueReadBuffer,
   (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size, void* data,
     cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_CALL(mcor_clEnqueueWriteBuffer,
+FAULT_WRITE(mcor_clEnqueueWriteBuffer, mem,
   (cl_command_queue queue, cl_mem mem, cl_bool blocking, size_t offset, size_t size,
     const void* data, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, blocking, offset, size, data, waits, wait, event))
-FAULT_CALL(mcor_clEnqueueFillBuffer,
+FAULT_WRITE(mcor_clEnqueueFillBuffer, mem,
   (cl_command_queue queue, cl_mem mem, const void* pattern, size_t pattern_size, size_t offset,
     size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, mem, pattern, pattern_size, offset, size, waits, wait, event))
-FAULT_CALL(mcor_clEnqueueCopyBuffer,
+FAULT_WRITE(mcor_clEnqueueCopyBuffer, to,
   (cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset, size_t to_offset,
     size_t size, cl_uint waits, const cl_event* wait, cl_event* event),
   (queue, from, to, from_offset, to_offset, size, waits, wait, event))
@@ -82,8 +95,30 @@ WRAP(cl_int, mcor_clEnqueueUnmapMemObject,
   (cl_command_queue queue, cl_mem mem, void* mapped, cl_uint waits, const cl_event* wait,
     cl_event* event))
 {
-  const cl_int error = __real_mcor_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event);
+  const cl_int error = write_again(
+    queue, mem, __real_mcor_clEnqueueUnmapMemObject(queue, mem, mapped, waits, wait, event));
   return fails("clEnqueueUnmapMemObject", COMMAND) ? fail_with : error;
+}
+
+static cl_int write_again(cl_command_queue queue, cl_mem mem, cl_int error)
+{
+  size_t size = 0;
+  if (error != CL_SUCCESS || !getenv("CORE_SHADOWS"))
+  {
+    return error;
+  }
+  error = (*(cl_icd_dispatch* const*)mem)
+            ->clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof size, &size, NULL);
+  void* data = calloc(size, 1);
+  if (error == CL_SUCCESS && data)
+  {
+    error = clEnqueueReadBuffer(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL);
+    error = error == CL_SUCCESS
+      ? __real_mcor_clEnqueueWriteBuffer(queue, mem, CL_TRUE, 0, size, data, 0, NULL, NULL)
+      : error;
+  }
+  free(data);
+  return error;
 }
 
 static const char* build_log;
@@ -97,8 +132,10 @@ WRAP(cl_int, mcor_clGetProgramBuildInfo,
   (cl_program program, cl_device_id device, cl_program_build_info info, size_t size, void* value,
     size_t* needed))
 {
-  (void)program;
-  (void)device;
+  if (!build_log)
+  {
+    return __real_mcor_clGetProgramBuildInfo(program, device, info, size, value, needed);
+  }
   assert_int_equal(info, CL_PROGRAM_BUILD_LOG);
   if (needed)
   {
@@ -118,7 +155,7 @@ WRAP(cl_int, mcor_clGetProgramBuildInfo,
 WRAP(cl_int, mcor_clReleaseMemObject, (cl_mem mem))
 {
   atomic_fetch_sub(&live_buffers, 1);
-  return __real_mcor_clReleaseMemObject(mem);
+  return getenv("CORE_SHADOWS") ? CL_SUCCESS : __real_mcor_clReleaseMemObject(mem);
 }
 
 /* For calls that return the object that they make. */
@@ -132,12 +169,41 @@ static int fails_to_make(const char* name, cl_int* error)
   return failed;
 }
 
+/* The device of the context that was made last. */
+static cl_device_id device_now;
+
+WRAP(cl_context, mcor_clCreateContext,
+  (const cl_context_properties* properties, cl_uint count, const cl_device_id* devices,
+    void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user, cl_int* error))
+{
+  device_now = devices[0];
+  return __real_mcor_clCreateContext(properties, count, devices, notify, user, error);
+}
+
+static cl_int fill(cl_context context, cl_mem mem, size_t size, unsigned char byte)
+{
+  cl_int error;
+  cl_command_queue queue = clCreateCommandQueue(context, device_now, 0, &error);
+  if (queue)
+  {
+    error = clEnqueueFillBuffer(queue, mem, &byte, 1, 0, size, 0, NULL, NULL);
+    error = error == CL_SUCCESS ? clFinish(queue) : error;
+    clReleaseCommandQueue(queue);
+  }
+  return error;
+}
+
 WRAP(cl_mem, mcor_clCreateBuffer,
   (cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error))
 {
   cl_mem mem = fails_to_make("clCreateBuffer", error)
     ? NULL
     : __real_mcor_clCreateBuffer(context, flags, size, host, error);
+  const char* byte = getenv("CORE_FILL");
+  if (mem && byte)
+  {
+    *error = fill(context, mem, size, (unsigned char)atoi(byte));
+  }
   atomic_fetch_add(&live_buffers, mem != NULL);
   return mem;
 }

@@ -4,7 +4,10 @@
 #define core_fault_h
 
 /* OpenCL calls, and allocations of the host, that fail when a test wants it: the linker puts these in
- * front of the real ones (CMakeLists.txt). */
+ * front of the real ones (CMakeLists.txt). CORE_FILL=BYTE in the environment: new buffers are filled with
+ * this byte, so that reading what was never written changes results. CORE_SHADOWS: for oclgrind
+ * --uninitialized, which takes a buffer for as large as what the host wrote last, and a new one for the one
+ * released before: here none is released, and what the host has written to is written once more as a whole. */
 
 #include "core_fixture.h"
 

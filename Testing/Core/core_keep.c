@@ -7,28 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static FILE* open_part(const char* name, const char* part)
+void core_keep(const char* name, const char* part, const void* data, size_t bytes)
 {
   const char* folder = getenv("CORE_KEEP");
   char path[1024];
-  if (!folder)
+  if (!data || !folder)
   {
-    return NULL;
+    return;
   }
   const int length = snprintf(path, sizeof path, "%s/%s.%s", folder, name, part);
   FILE* file = length < (int)sizeof path ? fopen(path, "ab") : NULL;
   assert_non_null(file);
-  return file;
-}
-
-void core_keep(const char* name, const char* part, const void* data, size_t bytes)
-{
-  FILE* file = data ? open_part(name, part) : NULL;
-  if (file)
-  {
-    assert_int_equal(fwrite(data, 1, bytes, file), bytes);
-    assert_int_equal(fclose(file), 0);
-  }
+  assert_int_equal(fwrite(data, 1, bytes, file), bytes);
+  assert_int_equal(fclose(file), 0);
 }
 
 void core_keep_size(const char* name, int64_t points, int64_t cells)
@@ -48,13 +39,6 @@ typedef struct keep_cells
   int64_t count;
   unsigned char* bytes;
 } keep_cells;
-
-static size_t g_width; /* bytes that qsort's function compares */
-
-static int compare_bytes(const void* a, const void* b)
-{
-  return memcmp(a, b, g_width);
-}
 
 /* Adds a cell, from its least corner on. */
 static void add_cell(
@@ -80,11 +64,7 @@ static void add_cell(
 static void keep_sorted(const char* name, keep_cells* cells)
 {
   const size_t bytes = (size_t)cells->corners * cells->width;
-  g_width = bytes;
-  if (cells->count > 0)
-  {
-    qsort(cells->bytes, (size_t)cells->count, bytes, compare_bytes);
-  }
+  core_sort_records(cells->bytes, cells->count, bytes);
   core_keep(name, "canonical", cells->bytes, (size_t)cells->count * bytes);
   free(cells->bytes);
 }

@@ -6,6 +6,7 @@
  * them for bits.cmake; whether these are right is tested elsewhere. With words: those of these runs. */
 
 #include "core_keep.h"
+#include "core_parts.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,10 +87,7 @@ static mcor_options modules_options(mcor_field field)
   mcor_options options = core_options(field == MCOR_WEIGHT_SUM ? &modules_weight : modules_isos);
   options.field = field;
   options.cube_size_factor = 1;
-  options.outputs |=
-    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
-  options.outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_NEAREST_PARTICLE | MCOR_OUT_ISO_VALUE;
-  options.outputs |= MCOR_OUT_POINT_KEYS | MCOR_OUT_TRIANGLE_KEYS;
+  core_ask_for_all(&options);
   return options;
 }
 
@@ -480,13 +478,12 @@ int main(int argc, char** argv)
     { "uniform", modules_uniform }, { "plane", modules_plane }, { "probe", modules_probe },
     { "derive", modules_derive }, { "gauge", modules_gauge }, { "flux", modules_flux },
     { "project", modules_project }, { "tank", modules_tank } };
-  mcor_context* context = NULL;
-  if (mcor_create_context(NULL, &context) != MCOR_OK)
+  void* made;
+  if (core_set_up(&made) != 0)
   {
-    fprintf(stderr, "%s\n", mcor_last_error(context));
-    mcor_free_context(context);
     return 1;
   }
+  CORE_CONTEXT context = made;
   CORE_SET set = modules_set();
   set.has_solids = 1;
   const mcor_array attributes[2] = { core_array(set.position, 3), core_array(set.scalar, 1) };
@@ -503,6 +500,5 @@ int main(int argc, char** argv)
     }
     good = (!wanted || runs[i].run(context, &input)) && good;
   }
-  mcor_free_context(context);
   return good ? 0 : 1;
 }

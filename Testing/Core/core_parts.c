@@ -7,11 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-static size_t g_width;
+static size_t g_width; /* bytes that qsort's function compares */
 
-static int compare_triangles(const void* a, const void* b)
+static int compare_bytes(const void* a, const void* b)
 {
   return memcmp(a, b, g_width);
+}
+
+void core_sort_records(void* records, int64_t count, size_t width)
+{
+  g_width = width;
+  if (count > 0)
+  {
+    qsort(records, (size_t)count, width, compare_bytes);
+  }
 }
 
 unsigned char* core_put_point(
@@ -85,19 +94,10 @@ void core_add_surface(core_triangles* triangles, const mcor_input* input, mcor_s
   }
 }
 
-static void sort_triangles(core_triangles* triangles)
-{
-  g_width = triangles->width;
-  if (triangles->count > 0)
-  {
-    qsort(triangles->bytes, (size_t)triangles->count, triangles->width, compare_triangles);
-  }
-}
-
 void core_expect_same(const char* name, core_triangles* all, core_triangles* whole)
 {
-  sort_triangles(all);
-  sort_triangles(whole);
+  core_sort_records(all->bytes, all->count, all->width);
+  core_sort_records(whole->bytes, whole->count, whole->width);
   CORE_CHECK(all->count == whole->count, "%s: %lld triangles, not %lld", name,
     (long long)all->count, (long long)whole->count);
   int64_t other = 0;

@@ -16,6 +16,8 @@ typedef struct core_triangles
   unsigned char* bytes;
 } core_triangles;
 
+/* Sorts records by their bytes. */
+void core_sort_records(void* records, int64_t count, size_t width);
 /* All that a point carries; returns where the next one goes. Keys number the bricks. */
 unsigned char* core_put_point(
   unsigned char* to, const mcor_input* input, mcor_surface* s, int64_t i, bool keys);

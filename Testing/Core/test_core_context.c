@@ -3,21 +3,13 @@
 
 /* A context over several calls: reuse, order of the input, devices, statistics. */
 
-#include "core_fixture.h"
+#include "core_parts.h"
 
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void ask_for_all(mcor_options* options)
-{
-  options->outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
-  options->outputs |=
-    MCOR_OUT_GRADIENTS | MCOR_OUT_WEIGHT_SUM | MCOR_OUT_CORRECTION_LENGTH | MCOR_OUT_RESIDUAL;
-  options->outputs |= MCOR_OUT_BOUNDARY_FLAG | MCOR_OUT_ISO_VALUE | MCOR_OUT_NEAREST_PARTICLE;
-}
 
 static uint64_t hash_of(mcor_context* context, const mcor_input* input, const mcor_options* options)
 {
@@ -37,7 +29,8 @@ static void test_several_iso_values(void** state)
   const double iso[3] = { 5, 0, 2.5 };
   const mcor_input input = core_input(&set);
   mcor_options options = core_options(iso);
-  ask_for_all(&options);
+  core_ask_for_all(&options);
+  options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
   options.iso_count = 3;
   CORE_SURFACE all = core_extract(*state, &input, &options);
   int64_t point = 0, triangle = 0;
@@ -132,7 +125,8 @@ static uint64_t permuted_hash(
   input.volume = at->volumes == 0 ? input.volume : none;
   input.estimate_smoothing_length = at->estimate;
   mcor_options options = core_options(&iso);
-  ask_for_all(&options);
+  core_ask_for_all(&options);
+  options.outputs |= MCOR_OUT_BOUNDARY_EIGENVALUE;
   options.outputs &= ~(unsigned)MCOR_OUT_NEAREST_PARTICLE;
   options.field = at->field;
   options.precision = at->precision;

@@ -115,7 +115,7 @@ static size_t result_size(const char* name)
 static void test_functions(void** state)
 {
   (void)state;
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   if (mcor_create_context("pocl", &context) != MCOR_OK)
   {
     mcor_free_context(context);
@@ -158,7 +158,6 @@ static void test_functions(void** state)
     free(data[i]);
   }
   clReleaseProgram(program);
-  mcor_free_context(context);
 }
 
 /* ---- Threads ---- */
@@ -238,7 +237,7 @@ static mcor_context* make_native(void)
 static void test_fork(void** state)
 {
   (void)state;
-  mcor_context* context = make_native();
+  CORE_CONTEXT context = make_native();
   const uint64_t hash = extract(context);
   const pid_t child = fork();
   if (child == 0)
@@ -251,7 +250,6 @@ static void test_fork(void** state)
   assert_int_equal(waitpid(child, &status, 0), child);
   assert_int_equal(status, 0);
   assert_true(extract(context) == hash);
-  mcor_free_context(context);
 }
 
 /* Where drivers would end the process: the built-in device works, named or not, and a driver's is refused in a
@@ -360,8 +358,7 @@ static void test_locked(void** state)
     LARGEST = 1 << 20,
     MAPPED = LARGEST - 512
   };
-  CORE_CONTEXT context = NULL;
-  CORE_OK(context, mcor_create_context("built in", &context));
+  CORE_CONTEXT context = make_native();
   context->cl.is_apart = true;
   context->cl.largest_buffer = LARGEST;
   mcor_buffer buffer = { 0 };

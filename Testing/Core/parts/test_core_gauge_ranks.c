@@ -34,8 +34,8 @@ typedef struct gauge_job
   int axis, periodic, volumes;  /* volumes: computed */
   mcor_globals globals;
   mcor_status status[CORE_MOST_RANKS];
-  mcor_gauges gauges[CORE_MOST_RANKS];
-  mcor_fluxes fluxes[CORE_MOST_RANKS];
+  mcor_gauges gauges[CORE_MOST_RANKS + 1]; /* the last: of one process */
+  mcor_fluxes fluxes[CORE_MOST_RANKS + 1];
   char error[CORE_MOST_RANKS][400];
 } gauge_job;
 
@@ -69,6 +69,14 @@ static mcor_input gauge_input(
     input.attribute_count = 2;
   }
   return input;
+}
+
+static mcor_status read_all(mcor_context* context, gauge_job* job, const mcor_input* input,
+  const mcor_options* options, int rank)
+{
+  return job->sections
+    ? mcor_flux(context, input, options, job->sections, SECTIONS, &job->fluxes[rank])
+    : mcor_gauge(context, input, options, job->lines, LINES, &job->gauges[rank]);
 }
 
 /* Takes the particles that the box between two sides needs: nearer than `reach` to it, or to its
@@ -124,9 +132,7 @@ static void gauge_part(core_rank* rank, void* data)
   job->status[r] = mcor_create_context(NULL, &context);
   if (job->status[r] == MCOR_OK)
   {
-    job->status[r] = job->sections
-      ? mcor_flux(context, &input, &options, job->sections, SECTIONS, &job->fluxes[r])
-      : mcor_gauge(context, &input, &options, job->lines, LINES, &job->gauges[r]);
+    job->status[r] = read_all(context, job, &input, &options, r);
   }
   snprintf(job->error[r], sizeof job->error[r], "%s", mcor_last_error(context));
   if (job->status[r] != MCOR_OK)
@@ -171,6 +177,50 @@ static void make_lines(mcor_gauge_line* lines, int axis)
   lines[2] = (mcor_gauge_line){ .from = { 100, 100, 100 }, .to = { 101, 102, 103 } };
 }
 
+static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
+{
+  int same = a->count == b->count;
+  for (int64_t i = 0; i < a->count && same; ++i)
+  {
+    same = !a->readings[i].outside == !b->readings[i].outside &&
+      memcmp(&a->readings[i].area, &b->readings[i].area, 4 * sizeof(double)) == 0;
+  }
+  return same;
+}
+
+/* What any number of ranks read is what one process reads. */
+static void check_ranks(mcor_context* context, gauge_job* job, int kind)
+{
+  const mcor_gauges* gauges = &job->gauges[CORE_MOST_RANKS];
+  const mcor_fluxes* fluxes = &job->fluxes[CORE_MOST_RANKS];
+  mcor_array arrays[2];
+  const mcor_input input = gauge_input(job, job->set, arrays);
+  mcor_options options = gauge_options(job);
+  CORE_OK(context, read_all(context, job, &input, &options, CORE_MOST_RANKS));
+  CORE_OK(context, mcor_measure_globals(context, &input, &options, &job->globals));
+  CORE_CHECK(job->sections
+      ? fluxes->readings[0].area > 20 && fluxes->readings[3].outside
+      : gauges->crossing_count > 80 && gauges->readings[2].outside && !gauges->readings[0].outside,
+    "%lld crossings", (long long)gauges->crossing_count);
+  for (int count = 1; count <= CORE_MOST_RANKS; count += job->sections ? 1 + count / 3 : 1)
+  {
+    core_world world;
+    core_run_ranks(count, gauge_part, job, &world);
+    for (int r = 0; r < count; ++r)
+    {
+      const int same =
+        job->sections ? same_fluxes(&job->fluxes[r], fluxes) : same_gauges(&job->gauges[r], gauges);
+      CORE_CHECK(job->status[r] == MCOR_OK && same, "case %d: rank %d of %d differs: %s", kind, r,
+        count, job->error[r]);
+      mcor_free_fluxes(&job->fluxes[r]);
+      mcor_free_gauges(&job->gauges[r]);
+    }
+  }
+  mcor_free_fluxes(&job->fluxes[CORE_MOST_RANKS]);
+  mcor_free_gauges(&job->gauges[CORE_MOST_RANKS]);
+  mcor_free_globals(&job->globals);
+}
+
 static void test_same_bits(void** state)
 {
   CORE_SET set = make_sparse();
@@ -183,38 +233,8 @@ static void test_same_bits(void** state)
       .periodic = kind >= 3,
       .volumes = kind == 1 || kind == 5 };
     make_lines(lines, job.axis);
-    mcor_array arrays[2];
-    const mcor_input input = gauge_input(&job, &set, arrays);
-    mcor_options options = gauge_options(&job);
-    CORE_GAUGES alone;
-    CORE_OK(*state, mcor_gauge(*state, &input, &options, lines, LINES, &alone));
-    CORE_CHECK(alone.crossing_count > 80, "%lld crossings", (long long)alone.crossing_count);
-    assert_true(alone.readings[2].outside && !alone.readings[0].outside);
-    CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
-    for (int count = 1; count <= CORE_MOST_RANKS; ++count)
-    {
-      core_world world;
-      core_run_ranks(count, gauge_part, &job, &world);
-      for (int r = 0; r < count; ++r)
-      {
-        CORE_CHECK(job.status[r] == MCOR_OK && same_gauges(&job.gauges[r], &alone),
-          "case %d: rank %d of %d differs: %s", kind, r, count, job.error[r]);
-        mcor_free_gauges(&job.gauges[r]);
-      }
-    }
-    mcor_free_globals(&job.globals);
+    check_ranks(*state, &job, kind);
   }
-}
-
-static int same_fluxes(const mcor_fluxes* a, const mcor_fluxes* b)
-{
-  int same = a->count == b->count;
-  for (int64_t i = 0; i < a->count && same; ++i)
-  {
-    same = !a->readings[i].outside == !b->readings[i].outside &&
-      memcmp(&a->readings[i].area, &b->readings[i].area, 4 * sizeof(double)) == 0;
-  }
-  return same;
 }
 
 /* Through all boxes, beyond a period, in one box alone, and outside. */
@@ -237,25 +257,7 @@ static void test_same_fluxes(void** state)
       .axis = kind % 3,
       .periodic = kind >= 2,
       .volumes = kind == 1 };
-    mcor_array arrays[2];
-    const mcor_input input = gauge_input(&job, &set, arrays);
-    mcor_options options = gauge_options(&job);
-    CORE_FLUXES alone;
-    CORE_OK(*state, mcor_flux(*state, &input, &options, sections, SECTIONS, &alone));
-    assert_true(alone.readings[0].area > 20 && alone.readings[3].outside);
-    CORE_OK(*state, mcor_measure_globals(*state, &input, &options, &job.globals));
-    for (int count = 1; count <= CORE_MOST_RANKS; count += 1 + count / 3)
-    {
-      core_world world;
-      core_run_ranks(count, gauge_part, &job, &world);
-      for (int r = 0; r < count; ++r)
-      {
-        CORE_CHECK(job.status[r] == MCOR_OK && same_fluxes(&job.fluxes[r], &alone),
-          "case %d: rank %d of %d differs: %s", kind, r, count, job.error[r]);
-        mcor_free_fluxes(&job.fluxes[r]);
-      }
-    }
-    mcor_free_globals(&job.globals);
+    check_ranks(*state, &job, kind);
   }
 }
 

@@ -114,6 +114,17 @@ static void images_count(void** state)
   check_images(*state, "pairs", &set, &options, 0);
 }
 
+/* Smoothing lengths that grow with the distance from a period's edge along z, in the middle of it. */
+static void grade_lengths(particle_set* set, double side, double middle, double most)
+{
+  for (int64_t p = 0; p < set->count; ++p)
+  {
+    const double* x = set->position + 3 * p;
+    const double dx = fmin(x[0], side - x[0]), dy = fmin(x[1], side - x[1]), dz = x[2] - middle;
+    set->smoothing_length[p] = fmin(0.6 * exp2(sqrt(dx * dx + dy * dy + dz * dz) / 2.5), most);
+  }
+}
+
 /* Adaptive cubes: levels go around the period, too, of which the finest particles are at a side. With
  * sides that are no whole number of large cubes, fewer levels are used. */
 static void adaptive_cubes(void** state)
@@ -124,14 +135,7 @@ static void adaptive_cubes(void** state)
   for (int i = 0; i < 3; ++i)
   {
     CORE_SET set = core_make_period(i < 2 ? length : cube, 5);
-    for (int64_t p = 0; p < set.count; ++p)
-    {
-      const double* x = set.position + 3 * p;
-      const double side = i < 2 ? 16 : 14, dx = fmin(x[0], side - x[0]),
-                   dy = fmin(x[1], side - x[1]);
-      const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 4) * (x[2] - 4)) / 2.5);
-      set.smoothing_length[p] = h < 3.3 ? h : 3.3;
-    }
+    grade_lengths(&set, i < 2 ? 16 : 14, 4, 3.3);
     mcor_options options = core_period_options(i == 1 ? &half : &iso, i < 2 ? along : around);
     options.level_limit = MCOR_CUBE_LEVELS - 1;
     options.cube_size = 0.3;
@@ -254,13 +258,7 @@ static void adaptive_unequal(void** state)
   {
     double around[6] = { 0, 16, 0, 16, 0, 16 };
     CORE_SET set = core_make_period(length, 5);
-    for (int64_t p = 0; p < set.count; ++p)
-    {
-      const double* x = set.position + 3 * p;
-      const double dx = fmin(x[0], 16 - x[0]), dy = fmin(x[1], 16 - x[1]);
-      const double h = 0.6 * exp2(sqrt(dx * dx + dy * dy + (x[2] - 8) * (x[2] - 8)) / 2.5);
-      set.smoothing_length[p] = h < 3 ? h : 3;
-    }
+    grade_lengths(&set, 16, 8, 3);
     core_stretch_period(&set, around);
     around[4] = i == 0 ? around[4] : 0;
     around[5] = i == 0 ? around[5] : 0;

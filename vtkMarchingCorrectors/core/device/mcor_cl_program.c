@@ -35,31 +35,6 @@ void mcor_drop_programs(mcor_cl* cl, bool all)
   }
 }
 
-static mcor_status mcor_fail_build(
-  mcor_context* context, cl_program program, cl_int error, const char* options)
-{
-  const mcor_cl* cl = &context->cl;
-  char missing[MCOR_BUILD_NAME];
-  mcor_name_build(&cl->build, missing, sizeof missing);
-  MCOR_RETURN_IF(mcor_is_native(cl), context, MCOR_DEVICE_ERROR,
-    "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
-    "another device, or build with MCOR_AHEAD=all.",
-    missing);
-  size_t size = 0;
-  clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
-  char* log = calloc(size + 1, 1);
-  if (log)
-  {
-    clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
-  }
-  const mcor_status status = mcor_fail(context, MCOR_DEVICE_ERROR,
-    "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
-    mcor_cl_error_name(error), options, log ? log : "");
-  free(log);
-  mcor_blame_files(context);
-  return status;
-}
-
 mcor_status mcor_need_program(mcor_context* context, mcor_program number)
 {
   mcor_cl* cl = &context->cl;
@@ -78,14 +53,35 @@ mcor_status mcor_need_program(mcor_context* context, mcor_program number)
   MCOR_CL_TRY(context, error, "clCreateProgramWithSource");
   error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
   cl->build_seconds += mcor_seconds() - begin;
-  if (error != CL_SUCCESS)
+  if (error == CL_SUCCESS)
   {
-    const mcor_status status = mcor_fail_build(context, program, error, options);
-    clReleaseProgram(program);
-    return status;
+    cl->programs[number] = program;
+    return MCOR_OK;
   }
-  cl->programs[number] = program;
-  return MCOR_OK;
+  if (mcor_is_native(cl))
+  {
+    char missing[MCOR_BUILD_NAME];
+    clReleaseProgram(program);
+    mcor_name_build(&cl->build, missing, sizeof missing);
+    return mcor_fail(context, MCOR_DEVICE_ERROR,
+      "The built-in device has no kernels for %s: they were not compiled with this library. Choose "
+      "another device, or build with MCOR_AHEAD=all.",
+      missing);
+  }
+  size_t size = 0;
+  clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, 0, NULL, &size);
+  char* log = calloc(size + 1, 1);
+  if (log)
+  {
+    clGetProgramBuildInfo(program, cl->device, CL_PROGRAM_BUILD_LOG, size, log, NULL);
+  }
+  clReleaseProgram(program);
+  mcor_fail(context, MCOR_DEVICE_ERROR,
+    "OpenCL device %s could not build the program (%s); options %s; log:\n%s", cl->device_name,
+    mcor_cl_error_name(error), options, log ? log : "");
+  free(log);
+  mcor_blame_files(context);
+  return MCOR_DEVICE_ERROR;
 }
 
 /* Returns the evaluation points that a work-item treats at once: MCOR_LANES of the programs, and

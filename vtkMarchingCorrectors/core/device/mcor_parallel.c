@@ -75,20 +75,6 @@ static void* mcor_pool_thread(void* data)
   return NULL;
 }
 
-/* Prepares a pool; if memory ran out, it has the calling thread alone. */
-static void mcor_begin_pool(mcor_pool* pool)
-{
-  free(pool->all);
-  pool->all = malloc((size_t)pool->threads * sizeof *pool->all);
-  pool->threads = pool->all ? pool->threads : 1;
-  pool->process = (long)getpid();
-  pool->count = pool->active = 0;
-  pool->round = 0;
-  pthread_mutex_init(&pool->lock, NULL);
-  pthread_cond_init(&pool->wake, NULL);
-  pthread_cond_init(&pool->done, NULL);
-}
-
 void mcor_end_pool(mcor_pool* pool)
 {
   if (pool->process == (long)getpid())
@@ -148,9 +134,17 @@ mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, 
   fenv_t environment;
   fegetenv(&environment);
   fesetenv(FE_DFL_ENV);
-  if (shared && pool->process != (long)getpid())
+  if (shared && pool->process != (long)getpid()) /* the first loop of this process */
   {
-    mcor_begin_pool(pool);
+    free(pool->all);
+    pool->all = malloc((size_t)pool->threads * sizeof *pool->all);
+    pool->threads = pool->all ? pool->threads : 1; /* the calling one alone if memory ran out */
+    pool->process = (long)getpid();
+    pool->count = pool->active = 0;
+    pool->round = 0;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->wake, NULL);
+    pthread_cond_init(&pool->done, NULL);
   }
   pool->body = body;
   pool->data = data;

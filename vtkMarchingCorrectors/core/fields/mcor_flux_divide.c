@@ -37,7 +37,7 @@ mcor_status mcor_scale_sections(mcor_flux_job* job)
     MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, seen, 2));
     found->speed = fmax(seen[0], job->speed_floor);
     found->density = fmax(seen[1], job->density_floor);
-    MCOR_TRY(mcor_reduce_count(context, MCOR_GREATEST, &found->reached));
+    MCOR_TRY(mcor_reduce_counts(context, MCOR_GREATEST, &found->reached, 1));
   }
   return MCOR_OK;
 }

@@ -147,13 +147,13 @@ static mcor_status mcor_mark_farthest(mcor_context* context, mcor_far_job* job, 
     return MCOR_OK;
   }
   /* The place is that of a rank whose first one has the least number of all. */
-  MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &far->first));
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &far->first, 1));
   bool is_mine = own == far->first;
   for (int a = 0; a < 3; ++a)
   {
     const double at = is_mine ? mcor_array_at(&job->input->positions, own, a) : DBL_MAX;
     far->place[a] = at;
-    MCOR_TRY(mcor_reduce_double(context, MCOR_LEAST, &far->place[a]));
+    MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, &far->place[a], 1));
     is_mine = is_mine && at == far->place[a];
   }
   return MCOR_OK;

@@ -25,7 +25,7 @@ mcor_status mcor_measure_components(
     /* Finds the first particle that is not finite: of the rank where its number is least. */
     int64_t not_finite = mcor_find_not_finite(context, array, input->solid, input->count);
     not_finite = not_finite < 0 ? INT64_MAX : not_finite;
-    MCOR_TRY(mcor_reduce_count(context, MCOR_LEAST, &not_finite));
+    MCOR_TRY(mcor_reduce_counts(context, MCOR_LEAST, &not_finite, 1));
     not_finite = not_finite == INT64_MAX ? -1 : not_finite;
     for (int c = 0; c < mcor_components(array); ++c)
     {
@@ -65,14 +65,14 @@ static mcor_status mcor_measure_all(
   context->kept.uses_solids = context->run.uses_solids;
   MCOR_TRY(mcor_check_input(context, input, options));
   int64_t particles = input->count;
-  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, &particles));
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, &particles, 1));
   MCOR_RETURN_IF(particles == 0, context, MCOR_INVALID_DATA, "There are no particles to measure.");
   MCOR_TRY(mcor_measure_input(context, input, options));
   MCOR_TRY(mcor_measure_wall(context, input));
   globals->measured = context->measure;
   globals->mass_max =
     mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 0;
-  MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &globals->mass_max));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, &globals->mass_max, 1));
   if (options->field == MCOR_SHEPARD)
   {
     MCOR_TRY(mcor_find_median(context, input, &globals->scalar_shift));

@@ -175,7 +175,7 @@ static mcor_status mcor_weigh_samples(mcor_context* context, mcor_wall_measure* 
     memcpy(wall->sample[to].x, x, sizeof wall->sample[to].x);
   }
   wall->mass_max = mcor_is_given(&input->mass) ? mcor_largest(context, input, &input->mass, 0) : 1;
-  MCOR_TRY(mcor_reduce_double(context, MCOR_GREATEST, &wall->mass_max));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, &wall->mass_max, 1));
   int slices;
   MCOR_TRY(
     mcor_parallel_run(context, input->count, MCOR_HEAVY_GRAIN, mcor_wall_slice, wall, &slices));

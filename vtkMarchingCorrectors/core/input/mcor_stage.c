@@ -147,6 +147,20 @@ static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last
   staging->slices[slice].used = used;
 }
 
+/* Returns the weight above which the device's numbers would be infinite. */
+static double mcor_weight_limit(const mcor_context* context)
+{
+  return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
+}
+
+/* Returns the weight of particle i of a chunk on the device: large where the volume is huge
+ * against the smoothing length. */
+static double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
+{
+  const double inv_h = context->lattice.cube / context->run.options->h_scale / chunk->h[i];
+  return chunk->size[i] * inv_h * inv_h * inv_h;
+}
+
 /* Stages a chunk from element *to on, and advances *to. Stops at a particle that is too heavy, or
  * that has changed: outside of the measured bounds, on which everything that follows relies. */
 static void mcor_stage_chunk_at(
@@ -363,35 +377,6 @@ static void mcor_find_reaching(void* data, int slice, int64_t first, int64_t las
   staging->slices[slice].farthest = farthest;
 }
 
-/* Widens the reach for what is not a sum over supports: a volume sums all particles within the
- * particle's unscaled support; the nearest particle may be nearer than one that reaches; and the
- * other particle of a pair is within the smoothing length. Sums at particles with longer lengths
- * are needed as far as a support from the box. */
-static void mcor_widen_reach(mcor_staging* staging)
-{
-  mcor_context* context = staging->context;
-  const mcor_options* options = context->run.options;
-  const double widest = context->run.widest;
-  const bool computes = mcor_needs_density(staging->input),
-             nearest = mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE);
-  if (!computes && !nearest && widest == 0 && (!mcor_uses_pairs(context) || context->box.of_points))
-  {
-    return;
-  }
-  const int slices = mcor_parallel_for(
-    context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_find_reaching, staging);
-  double farthest = 0;
-  for (int s = 0; s < slices; ++s)
-  {
-    farthest = fmax(farthest, staging->slices[s].farthest);
-  }
-  const double volumes = computes ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
-  const double others = nearest || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
-  const double beyond =
-    widest > 0 ? fmax(volumes, farthest) * (1 + widest) + 2 : fmax(volumes, others);
-  staging->reach->radius = farthest > 0 ? beyond : 0;
-}
-
 mcor_status mcor_stage(mcor_staging* staging)
 {
   mcor_context* context = staging->context;
@@ -403,7 +388,28 @@ mcor_status mcor_stage(mcor_staging* staging)
   if (mcor_find_reach(context, &reach))
   {
     staging->reach = &reach;
-    mcor_widen_reach(staging);
+    /* Widens the reach for what is not a sum over supports: a volume sums all particles within the
+     * particle's unscaled support; the nearest particle may be nearer than one that reaches; and
+     * the other particle of a pair is within the smoothing length. Sums at particles with longer
+     * lengths are needed as far as a support from the box. */
+    const double widest = context->run.widest;
+    const bool computes = mcor_needs_density(staging->input),
+               nearest = mcor_wants(context, MCOR_OUT_NEAREST_PARTICLE),
+               pairs = mcor_uses_pairs(context) && !context->box.of_points;
+    const int slices = computes || nearest || widest > 0 || pairs
+      ? mcor_parallel_for(
+          context, staging->input->count, MCOR_HEAVY_GRAIN, mcor_find_reaching, staging)
+      : 0;
+    double farthest = 0;
+    for (int s = 0; s < slices; ++s)
+    {
+      farthest = fmax(farthest, staging->slices[s].farthest);
+    }
+    const double volumes = computes ? farthest * (1 + 1 / options->h_scale) + 1 : 0;
+    const double others = nearest || options->seeds == MCOR_PAIRS ? farthest + 2 : 0;
+    const double beyond =
+      widest > 0 ? fmax(volumes, farthest) * (1 + widest) + 2 : fmax(volumes, others);
+    reach.radius = farthest > 0 ? beyond : 0;
     staging->images = malloc((size_t)staging->input->count + 1);
     MCOR_TRY(mcor_allocated(context, staging->images));
   }

@@ -61,12 +61,6 @@ typedef struct mcor_stage_chunk
 void mcor_read_stage_places(const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk);
 void mcor_read_stage_sizes(const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk);
 
-/* Returns the weight above which the device's numbers would be infinite. */
-double mcor_weight_limit(const mcor_context* context);
-/* Returns the weight of particle i of a chunk on the device: large where the volume is huge
- * against the smoothing length. */
-double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i);
-
 /* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
 void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk* chunk, int64_t to);
 

@@ -56,17 +56,6 @@ void mcor_read_stage_sizes(const mcor_staging* staging, int64_t first, mcor_stag
   }
 }
 
-double mcor_weight_limit(const mcor_context* context)
-{
-  return context->cl.real_size == sizeof(float) ? 1e30 : 1e290;
-}
-
-double mcor_stage_weight(const mcor_context* context, const mcor_stage_chunk* chunk, int i)
-{
-  const double inv_h = context->lattice.cube / context->run.options->h_scale / chunk->h[i];
-  return chunk->size[i] * inv_h * inv_h * inv_h;
-}
-
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level)
 {
   const int digits = context->run.options->precision == MCOR_FLOAT64 ? DBL_MANT_DIG : FLT_MANT_DIG;

@@ -133,7 +133,7 @@ mcor_status mcor_fit_period(
   }
   MCOR_TRY(mcor_fit_edges(context, length, axis, cube, edge, top));
   const double longest = fmax(edge[0], fmax(edge[1], edge[2]));
-  /* How far from the period an image may be and still be needed, L; see mcor_widen_reach. */
+  /* How far from the period an image may be and still be needed, L; see mcor_stage. */
   const double beyond = context->run.widest * (1 + 1 / options->h_scale);
   const double reach = m->support_max * (2 + 1 / options->h_scale + beyond) + 8 * longest;
   const double margin = *top > 0 ? ldexp(8 * longest, *top) : 0;

@@ -33,16 +33,6 @@ mcor_status mcor_reduce_counts(
     : MCOR_OK;
 }
 
-mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value)
-{
-  return mcor_reduce_doubles(context, reduction, value, 1);
-}
-
-mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value)
-{
-  return mcor_reduce_counts(context, reduction, value, 1);
-}
-
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count)
 {

@@ -20,8 +20,4 @@ mcor_status mcor_reduce_counts(
 mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
   const void** all, int64_t* all_count);
 
-/* Reduces one number. */
-mcor_status mcor_reduce_double(mcor_context* context, mcor_reduction reduction, double* value);
-mcor_status mcor_reduce_count(mcor_context* context, mcor_reduction reduction, int64_t* value);
-
 #endif

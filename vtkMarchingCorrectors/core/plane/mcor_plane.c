@@ -168,7 +168,7 @@ static mcor_status mcor_is_rounding(mcor_context* context, const mcor_input* inp
   {
     counts[0] += mcor_is_present(input, i);
   }
-  MCOR_TRY(mcor_reduce_count(context, MCOR_SUM_OF, counts));
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, counts, 1));
   double area = 1;
   for (int a = 0; a < 2; ++a)
   {

@@ -277,21 +277,19 @@ void core_build(
   CORE_OK(context, mcor_choose_build(context, &build));
 }
 
-/* A program with the sources of all, and more behind them. */
-static cl_program core_make_program(mcor_context* context, const char* source)
+void core_extend_program(mcor_context* context, const char* source)
 {
-  const mcor_cl* cl = &context->cl;
+  mcor_cl* cl = &context->cl;
   const char* sources[MCOR_SOURCE_LIMIT + 1];
   /* Masks of cells, and what the field's topology is made of, belong to the lattice's program. */
   const bool of_lattice = strstr(source, "mcor_topology_") || strstr(source, "mcor_cell_");
   const mcor_program base = of_lattice ? MCOR_PROGRAM_LATTICE : MCOR_PROGRAM_FIELD;
-  const int count = mcor_program_sources(cl, base, sources);
+  const cl_uint count = (cl_uint)mcor_program_sources(cl, base, sources);
   char options[512];
   mcor_program_options(cl, base, options, sizeof options);
   sources[count] = source;
   cl_int error;
-  cl_program program =
-    clCreateProgramWithSource(cl->context, (cl_uint)count + 1, sources, NULL, &error);
+  cl_program program = clCreateProgramWithSource(cl->context, count + 1, sources, NULL, &error);
   assert_int_equal(error, CL_SUCCESS);
   error = clBuildProgram(program, 1, &cl->device, options, NULL, NULL);
   if (error != CL_SUCCESS)
@@ -301,13 +299,6 @@ static cl_program core_make_program(mcor_context* context, const char* source)
     clReleaseProgram(program);
     fail_msg("build error %d: %s", (int)error, log);
   }
-  return program;
-}
-
-void core_extend_program(mcor_context* context, const char* source)
-{
-  mcor_cl* cl = &context->cl;
-  cl_program program = core_make_program(context, source);
   for (const char* at = strstr(source, "__kernel void "); at; at = strstr(at, "__kernel void "))
   {
     at += strlen("__kernel void ");
@@ -324,7 +315,6 @@ void core_extend_program(mcor_context* context, const char* source)
         mcor_make_room(
           context, (void**)&cl->kernels, cl->kernel_count, &cl->kernel_room, sizeof *cl->kernels));
       mcor_kernel* kernel = &cl->kernels[cl->kernel_count++];
-      cl_int error;
       *kernel = (mcor_kernel){ .program = MCOR_PROGRAM_FIELD };
       strcpy(kernel->name, name);
       kernel->kernel = clCreateKernel(program, name, &error);

@@ -380,7 +380,7 @@ static void extract_all(mcor_context* context, reuse_call* call)
 static void test_release(void** state)
 {
   (void)state;
-  mcor_context* context = NULL;
+  CORE_CONTEXT context = NULL;
   reuse_call call;
   CORE_OK(context, mcor_create_context(NULL, &context));
   const int64_t at_first = context->cl.bytes;
@@ -400,7 +400,6 @@ static void test_release(void** state)
   mcor_release_memory(context);
   set_base(&call, REUSE_ARRAYS);
   CORE_CHECK(hash_of(context, &call, "after") == fresh_hash(&call, "fresh"), "after a release");
-  mcor_free_context(context);
   end_call(&call);
 }
 

@@ -115,27 +115,20 @@ static int callbacks, fail_callback = -1;
 
 static int reduce_doubles(void* user, mcor_reduction reduction, double* values, int count)
 {
-  (void)user;
-  (void)reduction;
-  (void)values;
-  (void)count;
+  (void)user, (void)reduction, (void)values, (void)count;
   return callbacks++ == fail_callback;
 }
 
 static int reduce_counts(void* user, mcor_reduction reduction, int64_t* values, int count)
 {
-  (void)user;
-  (void)reduction;
-  (void)values;
-  (void)count;
+  (void)user, (void)reduction, (void)values, (void)count;
   return callbacks++ == fail_callback;
 }
 
 static int gather(void* user, const void* records, int64_t count, size_t width, const void** all,
   int64_t* all_count)
 {
-  (void)user;
-  (void)width;
+  (void)user, (void)width;
   *all = records;
   *all_count = count;
   return callbacks++ == fail_callback;

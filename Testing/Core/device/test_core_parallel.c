@@ -4,21 +4,14 @@
 /* Loops in several threads: every element once, and results that do not depend on how many
  * threads. */
 
-#if defined(__linux__) && !defined(_GNU_SOURCE)
-#define _GNU_SOURCE /* for setenv */
-#endif
-
 #include "core_fixture.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-
-#ifndef _WIN32
-#include <pthread.h>
-#endif
 
 /* How often the elements and slices of a loop were visited. */
 typedef struct visits
@@ -88,15 +81,12 @@ static void test_every_element_once(void** state)
   assert_true(are_all_complete());
 }
 
-#ifndef _WIN32
 static void* check_all(void* good)
 {
   *(bool*)good = are_all_complete();
   return NULL;
 }
-#endif
 
-#ifndef _WIN32
 typedef struct cancelled_loop
 {
   int asked, asked_most;
@@ -108,17 +98,12 @@ static int ask(void* user, double fraction, const char* phase)
   (void)fraction, (void)phase;
   return loop->asked++ == loop->asked_most;
 }
-#endif
 
 /* A loop of a call asks after each of its own slices, and leaves out what no thread has begun: of one thread,
  * all that follow. */
 static void test_cancelled(void** state)
 {
-#ifdef _WIN32
-  (void)state;
-  skip();
-#else
-  mcor_context* context;
+  CORE_CONTEXT context = NULL;
   const double iso = 0;
   const int64_t count = MCOR_SLICES * 64;
   (void)state;
@@ -151,16 +136,11 @@ static void test_cancelled(void** state)
     free(v.elements);
   }
   before ? setenv("MCOR_THREADS", before, 1) : unsetenv("MCOR_THREADS");
-  mcor_free_context(context);
-#endif
 }
 
 static void test_several_at_once(void** state)
 {
   (void)state;
-#ifdef _WIN32
-  skip();
-#else
   pthread_t threads[4];
   bool good[4] = { false };
   for (int t = 0; t < 4; ++t)
@@ -172,7 +152,6 @@ static void test_several_at_once(void** state)
     assert_int_equal(pthread_join(threads[t], NULL), 0);
     assert_true(good[t]);
   }
-#endif
 }
 
 /* The first of several bad particles is named, whichever thread finds one first. */

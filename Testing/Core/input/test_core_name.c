@@ -5,6 +5,7 @@
  * value. */
 
 #include "core_fixture.h"
+#include "mcor_input.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -130,12 +131,6 @@ static void test_view_ranks(void** state)
   assert_int_equal(mcor_view_priority(NULL, 1, 1, 1), -1);
 }
 
-static int compare_values(const void* a, const void* b)
-{
-  const double x = *(const double*)a, y = *(const double*)b;
-  return (x > y) - (x < y);
-}
-
 /* The iso value is the one in the middle of the values' order, whatever their distribution;
  * solids and values that are not finite are left out. */
 static void test_iso_values(void** state)
@@ -166,7 +161,7 @@ static void test_iso_values(void** state)
         sorted[fluid++] = value[i];
       }
     }
-    qsort(sorted, (size_t)fluid, sizeof *sorted, compare_values);
+    qsort(sorted, (size_t)fluid, sizeof *sorted, mcor_compare_doubles);
     const mcor_input input = {
       .count = count, .scalar = { value, MCOR_FLOAT64, 1, 0, "A" }, .solid = solid
     };

@@ -5,6 +5,7 @@
  * has what such a surface is. */
 
 #include "core_fixture.h"
+#include "mcor_input.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -120,12 +121,6 @@ static double find_share(const particle_set* set, oracle_kernel kernel, double p
   return at[i - 1].share;
 }
 
-static int compare_doubles(const void* a, const void* b)
-{
-  const double s = *(const double*)a, t = *(const double*)b;
-  return (s > t) - (s < t);
-}
-
 /* The block with 200 solids: so few that all of them are sampled. */
 static particle_set make_small_tank(void)
 {
@@ -136,7 +131,7 @@ static particle_set make_small_tank(void)
   {
     height[0][j] = height[1][j] = set.position[3 * j + 2] + 0.3 * set.position[3 * j];
   }
-  qsort(height[1], 1000, sizeof(double), compare_doubles);
+  qsort(height[1], 1000, sizeof(double), mcor_compare_doubles);
   for (int64_t j = 0; j < set.count; ++j)
   {
     set.solid[j] = height[0][j] < height[1][200];

@@ -95,6 +95,10 @@ def _words_of_file(particles, given, masses):
                 (name, text) == ("scalar", SUMMED) and SUMMED not in particles):
             words[name] = particles.array(text)
     words = particles.words(words)
+    if words.get("smoothing_length") is None and not words.get("estimate_smoothing_length") and len(particles):
+        raise InvalidArgument(f"{particles.file} tells no smoothing length. Give smoothing_length=, an array's name or a value, or "
+                              "estimate_smoothing_length=True (in a shell --smoothing-length NAME, VALUE or estimate). Arrays: "
+                              f"{', '.join(particles.arrays) or 'none'}.")
     for name in ("mass", "density") if masses else ():
         words[name] = particles.quantity(name) if words.get(name) is None else words[name]
     if isinstance(only, Mapping):

@@ -33,6 +33,11 @@ def numbers(text):
     return [float(part) for part in text.split(",")]
 
 
+def period(text):
+    """LX,LY,LZ|BOUNDS|auto"""
+    return text if text == "auto" else numbers(text)
+
+
 def named_line(text):
     """NAME=X,Y,Z:X,Y,Z"""
     name, _, ends = text.rpartition("=")
@@ -65,13 +70,13 @@ def plane(text):
     return "xyz".index(axis), float(place)
 
 
-for function in (named_line, named_value, named_range, plane):
+for function in (period, named_line, named_value, named_range, plane):
     function.__name__ = function.__doc__  # which argparse names where a value is wrong
 
 # The program's words for options are their names, or these; and values are the option's own, or these.
 OTHER_WORDS = {"scalar_component": "component", "smoothing_length_is_support_radius": "support-radius", "sph_kernel": "kernel",
                "cube_size_factor": "cube-factor", "level_limit": "max-level", "boundary_detection": "boundary"}
-OTHER_VALUES = {"dimension": {"auto": 0, "2": 2, "3": 3}, "field": {"shepard": "shepard", "sum": "sum"},
+OTHER_VALUES = {"periodic": period, "dimension": {"auto": 0, "2": 2, "3": 3}, "field": {"shepard": "shepard", "sum": "sum"},
                 "boundary_detection": {"weight_sum": "weight_sum", "weight": "weight_sum", "eigenvalue": "eigenvalue"}}
 
 
@@ -118,6 +123,7 @@ def make_parser(command):
         add("--scalar", metavar="NAME", help="array to contour")
         add("--free-surface", action="store_true", help="contour the sum of the weights, as without --scalar")
         add("--cubes", choices=("uniform", "adaptive"), help="cubes of one size, or larger ones where h is (default)")
+        add("--curvature", action="store_true", help="the mean and the Gaussian curvature at the points")
         add("--solids", choices=("auto", "weight", "ignore", "wall"), help="what solids do where they meet the surface")
     if command in ("surface", "gauge"):
         add("--iso", metavar="V[,V...]", type=numbers, help="values of the scalar, or of the sum of the weights (0.5)")
@@ -186,6 +192,12 @@ def find_words(given, names, particles):
         words.setdefault("wall_share", "measured")
     if solids in ("weight", "ignore"):
         words["wall_share"] = 0.0
+    if words.get("periodic") == "auto":
+        if particles.period is None:
+            raise InvalidArgument(f"{particles.file} tells no period. Give --periodic LX,LY,LZ.")
+        del words["periodic"]  # which is taken
+    if getattr(given, "curvature", None):
+        words.update(mean_curvature=True, gauss_curvature=True)
     if given.memory_limit is not None:
         words["memory_limit"] = given.memory_limit << 20
     return {**words, "device": given.device}

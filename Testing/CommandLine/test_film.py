@@ -155,6 +155,16 @@ class Film(CommandLineTest):
 
     # Failures
 
+    def test_step_without_points(self):
+        """As VTK writes it."""
+        path = self.write_steps(3)[1]
+        files.write_vtp(path, [], {})
+        text = path.read_text()
+        path.write_text(text[:text.index("<Points>")] + "<Points>" + text[text.index("</Points>"):])
+        result = self.make("steps.pvd")
+        self.assertEqual((result.returncode, len(self.listed())), (0, 3), result.stderr)
+        self.assertRegex(result.stderr, r"^marching-correctors: warning: \S*film_0001.vtp .*the surface is empty\n$")
+
     def test_failing_step(self):
         paths = self.write_steps(5)
         paths[2].write_text(paths[2].read_text()[:3000])

@@ -40,6 +40,20 @@ class Command(unittest.TestCase):
             self.assertEqual((mine.points.tobytes(), mine.faces.tolist()), (its.points.tobytes(), its.faces.tolist()))
             np.testing.assert_array_equal(mine["Velocity"], its["Velocity"])
 
+    def test_period_and_curvature(self):
+        """The period of the file."""
+        line = np.arange(12) * 0.1
+        data = pyvista.PolyData(np.stack(np.meshgrid(line, line, line[:6]), -1).reshape(-1, 3))
+        data.field_data["PeriodicBounds"] = [0, 1.2, 0, 1.2, 0, 0]
+        for name in ("in.vtp", "in.vtk"):
+            given = str(Path(self.folder.name) / name)
+            data.save(given)
+            words = ["--smoothing-length", "0.13", "--periodic", "auto", "--curvature"]
+            mine, its = map(pyvista.read, self.run_it("surface", "a.vtp", *words, program=["--free-surface"], given=given))
+            self.assertEqual(mine.points.tobytes(), its.points.tobytes())
+            self.assertAlmostEqual(mine.bounds[1] - mine.bounds[0], 1.2)
+            np.testing.assert_array_equal(mine["MeanCurvature"], its["MeanCurvature"])
+
     def test_left_out(self):
         """Any of several ranges of one array counts; several arrays, and the bounds, all do."""
         words = ["--within", "-inf,2,0.05,inf,-inf,inf", "--only", "Density=0:990", "--only", "Density=1000:2000", "--only",
@@ -96,6 +110,7 @@ class Command(unittest.TestCase):
     def test_sentences(self):
         for words, sentence in ((["--field", "sum"], "--field is not for the free surface"),
                                 (["--scalar", "Velocity"], "give --iso"), (["--mass", "Msas"], "Did you mean 'Mass'"),
+                                (["--periodic", "auto"], "dam_break_45k.vtp tells no period. Give --periodic LX,LY,LZ"),
                                 (["--dp", "1", "--smoothing-length", "1"], "leave one of them out")):
             self.run_it("surface", "a.ply", *words, status=1)
             self.assertRegex(self.said, rf"^marchingcorrectors: .*{sentence}.*\n$")

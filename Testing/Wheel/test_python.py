@@ -155,6 +155,8 @@ class Objects(unittest.TestCase):
         joined = mc.isosurface(again, "Velocity", 0.4, smoothing_length=H, volume=V, solid=np.zeros(COUNT, bool),
                                attributes=["Velocity"])
         np.testing.assert_allclose(np.linalg.norm(joined.attributes["Velocity"], axis=1), 0.4, atol=0.03)
+        with self.assertRaisesRegex(mc.InvalidArgument, "a.vtk tells no smoothing length. Give .*Arrays: distance, Type"):
+            mc.free_surface(particles)
         told = caught(mc.free_surface, particles, smoothing_length=H, volume=V)
         self.assertIn("say solid=particles['Type'] != VALUE", str(told[0].message))
         with warnings.catch_warnings():

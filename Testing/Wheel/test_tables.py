@@ -236,6 +236,9 @@ class Tables(Case):
         self.assertEqual(io.read(self.at("p.dat")).positions.tolist(), [[1.5, 0, 0], [-2, 1, 1]])
         self.at("p.txt").write_text("x y z vx vy vz\n1 2 3 4 5 6\n")
         self.assertEqual(io.read(self.at("p.txt")).arrays["Velocity"].tolist(), [[4, 5, 6]])
+        for data in (b"x,y,z\r1,2,3\r", "x,y,z\n1,2,3\n".encode("utf-16"), "x,y,z\r\n1,2,3".encode("utf-8-sig")):
+            self.at("p.csv").write_bytes(data)
+            self.assertEqual(io.read(self.at("p.csv")).positions.tolist(), [[1, 2, 3]])
 
     def test_surface(self):
         """From a file alone, as from arrays; walls of a file of their own."""

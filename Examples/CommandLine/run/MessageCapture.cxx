@@ -50,8 +50,9 @@ void MessageCapture::DisplayErrorText(const char* text)
 {
   const std::string sentence = Sentence(text);
   // An array's range is passed over, in which VTK writes inf and cannot read it: arrays are checked
-  // when used.
-  if (sentence.find("reading InformationKey element") == std::string::npos)
+  // when used. So are files without points, as VTK writes them.
+  if (sentence.find("reading InformationKey element") == std::string::npos &&
+    sentence.find("No Points element available") == std::string::npos)
   {
     this->Errors.push_back(sentence);
   }

@@ -256,6 +256,12 @@ def choose_step(file, step, times):
     return step % len(times)
 
 
+def period_of_field(field):
+    """Six bounds, as convert writes them, of {name: array}; None where there are none."""
+    bounds = np.ravel(field.get("PeriodicBounds", ()))
+    return bounds.tolist() if len(bounds) == 6 and np.isfinite(bounds).all() and bounds.any() else None
+
+
 def check_claim(file, thing, claimed, there):
     """A declared size costs nothing in a file: one that the file cannot hold, packed by less than 1000 to 1, is refused."""
     if claimed > 2 ** 24 + 1000 * there:

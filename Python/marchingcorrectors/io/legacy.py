@@ -9,7 +9,7 @@ import numpy as np
 
 from .._warnings import warn
 from ._cells import offsets_of, take_vertices
-from ._particles import TIMES, Body, FileError
+from ._particles import TIMES, Body, FileError, period_of_field
 from ._text import parse_numbers
 
 KINDS = {"unsigned_char": "u1", "char": "i1", "signed_char": "i1", "unsigned_short": "u2", "short": "i2", "unsigned_int": "u4",
@@ -166,7 +166,7 @@ def read_legacy(path):
     count = len(legacy.points)
     time = next((legacy.field[name] for name in TIMES if name in legacy.field), ())
     body = Body(legacy.points, {name: array for name, array in legacy.arrays.items() if len(array) == count},
-                float(np.ravel(time)[0]) if len(time) else None)
+                float(np.ravel(time)[0]) if len(time) else None, period_of_field(legacy.field))
     try:
         return take_vertices(path.name, body, *cells_of(legacy), legacy.cell_arrays) if legacy.cells else body
     except (ValueError, IndexError):  # damaged ones tell nothing

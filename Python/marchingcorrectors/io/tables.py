@@ -17,9 +17,11 @@ IS_IDENTIFIER = re.compile(r"(id|idp|ids|types?|index|mk|tag|mol|iorig)$")
 
 def lines_of(path):
     data = path.read_bytes()
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):  # as Excel's "Unicode text"
+        data = data.decode("utf-16", errors="replace").encode()
     if b"\0" in data:
         raise FileError(f"{path.name} is no text.")
-    text = data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n")
+    text = data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n")
     return (text[:-1] if text.endswith("\n") else text).split("\n")
 
 

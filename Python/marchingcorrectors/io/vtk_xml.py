@@ -16,7 +16,7 @@ import numpy as np
 
 from .._warnings import warn
 from ._cells import VERTICES, take_vertices, tell_mesh
-from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies
+from ._particles import TIMES, Body, FileError, by_name, check_claim, join_bodies, period_of_field
 from ._text import parse_numbers
 
 KINDS = {**{f"{sign}Int{bits}": f"{sign[:1].lower() or 'i'}{bits // 8}" for sign in ("", "U") for bits in (8, 16, 32, 64)},
@@ -201,13 +201,14 @@ def read_xml(path):
     try:
         file = XmlFile(path)
         bodies = [file.body(path.name, piece) for piece in file.pieces if piece["count"]]
-        time = next((file.values(array).ravel() for array in file.field if array.name in TIMES), ())
+        field = {array.name: file.values(array).ravel() for array in file.field if array.name in (*TIMES, "PeriodicBounds")}
+        time = next((array for name, array in field.items() if name in TIMES), ())
         body = join_bodies(bodies or [Body(np.empty((0, 3)), {})])
     except (FileError, ImportError, MemoryError):
         raise
     except Exception as error:
         raise FileError(f"{path.name} has no points, ends too early, or is damaged: {error}.") from None
-    return body._replace(time=float(time[0]) if len(time) else None)
+    return body._replace(time=float(time[0]) if len(time) else None, period=period_of_field(field))
 
 
 def elements(path, tag):

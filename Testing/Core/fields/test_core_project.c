@@ -534,7 +534,8 @@ static void test_bad_input(void** state)
     { { .resolution = 8 }, 4, MCOR_INVALID_ARGUMENT }, /* a period much shorter than h */
     { { .direction = { 0, 0, 1 }, .resolution = 8 }, 5,
       MCOR_INVALID_ARGUMENT }, /* a plane seen from the side */
-    { { .box = { 0, 1, 0, 20, 0, 1 }, .resolution = 8 }, 6, MCOR_INVALID_ARGUMENT } };
+    { { .box = { 0, 1, 0, 20, 0, 1 }, .resolution = 8 }, 6, MCOR_INVALID_ARGUMENT },
+    { { .resolution = 8 }, 7, MCOR_INVALID_DATA } }; /* one that is far away */
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
   {
     CORE_SET copy = core_permute(cases[i].change == 5 ? &flat : &set,
@@ -562,6 +563,10 @@ static void test_bad_input(void** state)
     {
       options.periodic[3] = cases[i].change == 4 ? 0.1 : 1.2;
       copy.smoothing_length[0] = 1.3;
+    }
+    else if (cases[i].change == 7)
+    {
+      copy.position[0] = 1e9;
     }
     mcor_projection found;
     const mcor_status status = mcor_project(*state, &input, &options, &cases[i].view, &found);

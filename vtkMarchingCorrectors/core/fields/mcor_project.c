@@ -17,6 +17,7 @@
 #define MCOR_MOST_PIXELS 32768 /* along a side */
 #define MCOR_MOST_PERIODS 2    /* longer supports have too many images */
 #define MCOR_MOST_IMAGES 16    /* of a period in a box, along an axis */
+#define MCOR_MOST_LENGTHS 1e6  /* of an image without a box, in the largest smoothing length */
 
 /* ---- the image ---- */
 
@@ -179,6 +180,11 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
   const double extent[2] = { to[0] - from[0], to[1] - from[1] };
   *is_empty = !(extent[0] > 0 && extent[1] > 0 && isfinite(extent[0]) && isfinite(extent[1]));
   const int longer = extent[1] > extent[0];
+  MCOR_RETURN_IF(!is_given && extent[longer] > MCOR_MOST_LENGTHS * high[6], context,
+    MCOR_INVALID_DATA,
+    "The particles reach over %g in the image, %.3g times the largest smoothing length. Leave out "
+    "those that are far away by a range of positions, or give a box.",
+    extent[longer], extent[longer] / high[6]);
   for (int k = 0; k < 2 && !*is_empty; ++k)
   {
     const double pixels = k == longer

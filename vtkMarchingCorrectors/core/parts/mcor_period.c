@@ -101,8 +101,8 @@ mcor_status mcor_check_digits(mcor_context* context, double low, double high, do
 {
   const double farthest = fmax(fabs(low), fabs(high));
   MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
-    "The particles are about %g away from the origin, where a double cannot resolve cubes of size "
-    "%g. Move the particles towards the origin.",
+    "Particles are about %g away from the origin, where a double cannot resolve cubes of size %g. "
+    "Leave out those that are far away by a range of positions, or move all towards the origin.",
     farthest, cube);
   return MCOR_OK;
 }

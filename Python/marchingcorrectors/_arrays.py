@@ -72,10 +72,15 @@ def as_points(values, role, shape):
     """(count, 3); of nothing, any shape will do."""
     if isinstance(values, (str, os.PathLike)):
         raise InvalidArgument(f"The array of {role} is '{values}'. To read a file, give marchingcorrectors.io.read('{values}').")
+    if hasattr(values, "columns") and len(values.columns) != 3:
+        raise InvalidArgument(f"The array of {role} is a table of {len(values.columns)} columns. Give three of them, as "
+                              "table[['x', 'y', 'z']].")
     array = contiguous(values, f"array of {role}")
     if array.ndim != 2 or array.shape[1] != 3:
         if len(array):
-            raise InvalidArgument(f"{role.capitalize()} have the shape {shape}, not {array.shape}.")
+            remedy = " Give its transpose." if len(array) == 3 else " In two dimensions the third coordinate is a constant." \
+                if array.shape[1:] == (2,) else ""
+            raise InvalidArgument(f"{role.capitalize()} have the shape {shape}, not {array.shape}.{remedy}")
         array = array.reshape(0, 3)
     return array
 

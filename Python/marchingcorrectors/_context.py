@@ -105,8 +105,11 @@ class Context:
             finally:
                 options.progress = c.Progress()
             error = ERRORS.get(status, Error)(self._sentence()) if status else None
-        if watch.failure is not None or watch.interrupted:
-            watch.raise_it()
+        if watch.failure is not None:
+            raise watch.failure
+        if watch.interrupted:
+            watch.before(*watch.interrupted)
+            raise KeyboardInterrupt  # a handler that returns: the run has ended all the same
         if error:
             raise error
 
@@ -144,12 +147,6 @@ class Watch:
         except BaseException as failure:  # raised again where the call returns
             self.failure = failure
             return 1
-
-    def raise_it(self):
-        if self.failure is not None:
-            raise self.failure
-        self.before(*self.interrupted)
-        raise KeyboardInterrupt  # a handler that returns: the run has ended all the same
 
 
 _contexts = {}

@@ -82,12 +82,25 @@ def _extract(positions, iso, attributes, words, scalar=None, scalar_dot=None):
     scalar, scalar_dot, iso = scalar_and_iso(scalar, scalar_dot, iso)
     arguments = prepare(Units(positions), words, real, attributes)
     if arguments.options.field != c.ENUMS["mcor_field"]["MCOR_WEIGHT_SUM"]:
-        _set_scalar(arguments, scalar, scalar_dot)
+        if scalar is None:
+            raise InvalidArgument('Give the scalar to contour, or call free_surface().')
+        scalar = arguments.sum_densities(scalar) if isinstance(scalar, str) else scalar
+        arguments.input.scalar = arguments.per_particle(scalar, "scalar")
+        arguments.input.scalar.name = None  # the core then says "the scalar"
+        if arguments.input.scalar.components == 1:
+            arguments.input.scalar_component = 0
+        if scalar_dot is not None:
+            arguments.input.scalar_dot = arguments.per_particle(scalar_dot, "scalar_dot")
     if iso is None:
         raise InvalidArgument("Give the iso value: a number, or a list of them.")
     arguments.set_iso_values(iso)
     wanted = bool(arguments.options.nearest_particle)
-    from_nearest = _from_nearest(attributes, real, arguments)
+    from_nearest = [name for name in attributes if name not in real]
+    for name in from_nearest:
+        arguments.options.nearest_particle = 1
+        if attributes[name].ndim == 0 or len(attributes[name]) != arguments.count:
+            raise InvalidArgument(f"The attribute '{name}' has the shape {attributes[name].shape} for "
+                                  f"{arguments.count} particles.")
     with called(lib.mcor_extract, c.mcor_surface, arguments) as surface:
         found = take_surface(surface, arguments)
         sentences = describe_warnings(arguments, surface)
@@ -122,30 +135,6 @@ def _describe_empty(arguments, found):
         return f"There is no surface: the scalar is {n['scalar_min']:.6g} at all fluid particles."
     return (f"There is no surface: the field crosses {iso} nowhere, although the scalar goes from {n['scalar_min']:.6g} to "
             f"{n['scalar_max']:.6g}. Perhaps the particles there are too few or too far apart for the node threshold.")
-
-
-def _set_scalar(arguments, scalar, scalar_dot):
-    if scalar is None:
-        raise InvalidArgument('Give the scalar to contour, or call free_surface().')
-    if isinstance(scalar, str):
-        scalar = arguments.sum_densities(scalar)
-    arguments.input.scalar = arguments.per_particle(scalar, "scalar")
-    arguments.input.scalar.name = None  # the core then says "the scalar"
-    if arguments.input.scalar.components == 1:
-        arguments.input.scalar_component = 0
-    if scalar_dot is not None:
-        arguments.input.scalar_dot = arguments.per_particle(scalar_dot, "scalar_dot")
-
-
-def _from_nearest(attributes, real, arguments):
-    names = [name for name in attributes if name not in real]
-    for name in names:
-        if attributes[name].ndim == 0 or len(attributes[name]) != arguments.count:
-            raise InvalidArgument(f"The attribute '{name}' has the shape {attributes[name].shape} for "
-                                  f"{arguments.count} particles.")
-    if names:
-        arguments.options.nearest_particle = 1
-    return names
 
 
 def take_surface(surface, arguments):

@@ -38,21 +38,18 @@ class TqdmBar:
         self.bar.close()
 
 
-def _make_bar():
-    try:
-        from tqdm import tqdm
-    except ImportError:
-        return TextBar()
-    return TqdmBar(tqdm)
-
-
 @contextlib.contextmanager
 def callback_of(progress):
     """The function to call with a fraction and a phase, or None."""
     if progress is None or progress is False:
         yield None
     elif progress is True:
-        bar = _make_bar()
+        try:
+            from tqdm import tqdm
+
+            bar = TqdmBar(tqdm)
+        except ImportError:
+            bar = TextBar()
         try:
             yield bar
         finally:

@@ -197,9 +197,8 @@ PLY_TYPES = {"f8": "double", "f4": "float", "i4": "int", "i2": "short", "i1": "c
              "u1": "uchar"}
 
 
-def _ply_columns(surface):
-    """(property, values) of the points. PLY has no whole numbers of 64 bits: they are written as double."""
-    arrays = surface.point_arrays()
+def _save_ply(path, surface):
+    arrays, columns = surface.point_arrays(), []  # (property, values) of the points
     arrays.pop("Normals", None)
     named = [(["x", "y", "z"], surface.points), (["nx", "ny", "nz"], surface.normals)]
     for name, array in arrays.items():
@@ -208,12 +207,8 @@ def _ply_columns(surface):
     for names, array in named:
         if array is not None and array.dtype.kind in "fiub":
             array = array.astype(np.uint8) if array.dtype == bool else array
-            array = array if array.dtype.str[1:] in PLY_TYPES else array.astype(np.float64)
-            yield from zip(names, array.reshape(len(array), len(names)).T)
-
-
-def _save_ply(path, surface):
-    columns = list(_ply_columns(surface))
+            array = array if array.dtype.str[1:] in PLY_TYPES else array.astype(np.float64)  # PLY has no int64
+            columns += zip(names, array.reshape(len(array), len(names)).T)
     lines = ["ply", "format binary_little_endian 1.0", "comment marching-correctors", f"element vertex {len(surface.points)}",
              *(f"property {PLY_TYPES[column.dtype.str[1:]]} {name}" for name, column in columns),
              f"element face {len(surface.triangles)}", "property list uchar int vertex_indices", "end_header", ""]

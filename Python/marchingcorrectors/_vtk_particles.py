@@ -78,12 +78,9 @@ def join_velocity(data, count):
             part is not None and is_real(part) and part.GetNumberOfComponents() == 1
             and part.GetNumberOfTuples() == count for part in parts):
         return None
-    joined = (vtkFloatArray if all(map(is_single, parts)) else vtkDoubleArray)()
+    kind = np.float32 if all(map(is_single, parts)) else np.float64
+    joined = numpy_to_vtk(np.stack(list(map(to_numpy, parts)), axis=1).astype(kind), deep=True)
     joined.SetName("Velocity")
-    joined.SetNumberOfComponents(3)
-    joined.SetNumberOfTuples(count)
-    for component, part in enumerate(parts):
-        joined.CopyComponent(component, part, 0)
     return joined
 
 

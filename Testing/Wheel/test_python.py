@@ -257,6 +257,8 @@ class Inputs(unittest.TestCase):
         found = mc.isosurface(rows[:, :3], rows[:, 3], 0.4, attributes={"distance": rows[:, 3], "kind": frame["kind"]}, **fluid)
         self.assertEqual(found, sphere(attributes={"distance": DISTANCE, "kind": np.full(COUNT, "é")}))
         self.assertEqual(set(found.to_pyvista()["kind"]), {"é"})
+        with self.assertRaisesRegex(mc.InvalidArgument, r"positions is a table of 6 columns. .*table\[\['x', 'y', 'z'\]\]"):
+            mc.free_surface(frame, **fluid)
         with self.assertRaisesRegex(mc.InvalidArgument, "does not hold numbers, but object"):
             mc.isosurface(rows[:, :3], rows[:, 5], 0.4, **fluid)
 

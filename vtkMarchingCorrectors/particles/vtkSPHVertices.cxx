@@ -15,7 +15,6 @@
 #include "vtkPolyData.h"
 #include "vtkSPHArrays.h"
 #include "vtkSPHBlocks.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <cstddef>
@@ -33,7 +32,7 @@ bool IsVertex(int type)
 struct Cells
 {
   vtkCellArray* List = nullptr;
-  vtkUnsignedCharArray* Types = nullptr; ///< null: all are vertices
+  vtkUnstructuredGrid* Grid = nullptr; ///< null: all are vertices
   bool HasVertices = false, HasOthers = false;
 
   explicit Cells(vtkPointSet* data)
@@ -51,10 +50,10 @@ struct Cells
     if (grid && grid->GetNumberOfCells() > 0)
     {
       this->List = grid->GetCells();
-      this->Types = grid->GetCellTypesArray();
-      for (vtkIdType i = 0; i < this->Types->GetNumberOfTuples(); ++i)
+      this->Grid = grid;
+      for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i)
       {
-        (IsVertex(this->Types->GetValue(i)) ? this->HasVertices : this->HasOthers) = true;
+        (IsVertex(grid->GetCellType(i)) ? this->HasVertices : this->HasOthers) = true;
       }
     }
   }
@@ -68,7 +67,7 @@ std::vector<vtkIdType> FindVertices(const Cells& cells, vtkIdType points)
   {
     vtkIdType count = 0;
     const vtkIdType* ids = nullptr;
-    if (!cells.Types || IsVertex(cells.Types->GetValue(cell)))
+    if (!cells.Grid || IsVertex(cells.Grid->GetCellType(cell)))
     {
       cells.List->GetCellAtId(cell, count, ids);
     }

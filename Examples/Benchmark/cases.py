@@ -17,13 +17,6 @@ def medians(rows):
     return [statistics.median(column) for column in zip(*rows)]
 
 
-def best_of(benchmark, start):
-    """Medians by the clock and of processors of whole processes, after one that builds the OpenCL programs; the last
-    one's report."""
-    found = [start() for _ in range(benchmark.runs + 1)]
-    return (*medians(run[1:] for run in found[1:]), found[-1][0])
-
-
 def adaptive(benchmark):
     """With particles: triangles, and seconds of both kinds of cubes, in turn; each process extracts twice, its second
     surface is timed, and the processors' time is a difference. Without: of whole processes, for smoothing lengths 1:10,
@@ -33,8 +26,8 @@ def adaptive(benchmark):
         options = ["--cubes", "adaptive", *(benchmark.more or ["--free-surface"])]
         for kind in ("graded-10", "graded-100", "graded-1000"):
             path = benchmark.sets.get(kind, benchmark.sizes[-1])
-            wall, processors, report = best_of(benchmark, lambda: program.start(path, options))
-            found = report["statistics"]
+            runs = [program.start(path, options) for _ in range(benchmark.runs + 1)]  # the first builds OpenCL programs
+            (wall, processors), found = medians(run[1:] for run in runs[1:]), runs[-1][0]["statistics"]
             out.text(f"{kind:12}{found['fluid_particles']:>8} particles {found['triangles']:>9} triangles {wall:8.3f} s, "
                      f"processors {processors:.3f} s")
         return

@@ -57,10 +57,6 @@ def text_of(count):
     return str(count)
 
 
-def options_of(kind):
-    return SETS[kind][2]
-
-
 class Sets:
     """The folder where the sets lie. One that is already there, made in the same way, is not made again."""
 
@@ -138,13 +134,13 @@ class Program:
         self.folder, self.surface = folder, folder / "surface.vtp"  # of the last run
         self.run = functools.lru_cache(None)(self.measure)
 
-    def measure(self, path, options, runs=None):
+    def measure(self, path, options):
         """Medians of the timed runs: one process that extracts the surface once more than it is timed, each time from
         scratch but for the OpenCL program. The first, which loads that, is apart. A process before it builds the
         program, if that is not cached: the compiler takes memory."""
         print(f"marching-correctors {path.name} {' '.join(map(str, options))}", file=sys.stderr)
         self.start(path, options)
-        found = self.start(path, options, (runs or self.runs) + 1)[0]
+        found = self.start(path, options, self.runs + 1)[0]
         first, *rest = found["runs"]
         seconds = [run["wall_seconds"] for run in rest]
         return {
@@ -178,10 +174,6 @@ def need_surface(result, what):
     if result["triangles"] == 0:
         sys.exit(f"benchmark.py: {what}: no surface")
     return result
-
-
-def sum_of(result, *names):
-    return sum(result["phases"][name] for name in names)
 
 
 def lattice(particles, cube, dimension):

@@ -19,7 +19,7 @@ What the rows are, in phases of marching-correctors:
 """
 import dataclasses
 
-from measure import mebibytes, need_surface, options_of, ratio, seconds_of, sum_of
+from measure import SETS, mebibytes, need_surface, ratio, seconds_of
 
 H_SCALES = (1.0, 0.75, 0.5)
 CUBE_FACTORS = (0.5, 1.0)
@@ -113,7 +113,7 @@ def run_columns(benchmark, data, count, iso):
 
     def run(column, field, *more):
         return benchmark.program.run(path, (
-            "--scalar", data.scalar, "--iso", iso, *options_of(data.kind), "--no-attributes", "--field", field, "--seeds",
+            "--scalar", data.scalar, "--iso", iso, *SETS[data.kind][2], "--no-attributes", "--field", field, "--seeds",
             "pairs", "--cubes", "uniform", "--h-scale", column["h_scale"], "--cube-factor", column["cube_factor"], *more))
 
     columns = [{"h_scale": scale, "cube_factor": factor} for scale in H_SCALES for factor in CUBE_FACTORS]
@@ -124,6 +124,10 @@ def run_columns(benchmark, data, count, iso):
             need_surface(column["corrected"], data.title)
             column["shepard"] = run(column, "shepard")
     return columns
+
+
+def sum_of(result, *names):
+    return sum(result["phases"][name] for name in names)
 
 
 def extraction(result):

@@ -75,12 +75,11 @@ bool Execute(int argc, char* argv[])
     return true;
   }
   const Activity running("the run failed", FaultsOfDrivers(job.Surface->GetDevice()));
-  vtkNew<MessageCapture> messages;
-  vtkOutputWindow::SetInstance(messages);
+  Messages(); // are caught from here on
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   if (job.ListArrays)
   {
-    std::cout << DescribeArrays(*ReadParticles({ job.Inputs.front() }, messages));
+    std::cout << DescribeArrays(*ReadParticles({ job.Inputs.front() }));
     return true;
   }
   if (job.Has("--list-devices"))
@@ -100,7 +99,7 @@ bool Execute(int argc, char* argv[])
   }
   if (LaunchedCount() > 1)
   {
-    const std::unique_ptr<Sharing> session = NewRankSession(job, messages);
+    const std::unique_ptr<Sharing> session = NewRankSession(job);
     bool isGood = false;
     const std::string failure = FailureOf(
       [&]
@@ -124,7 +123,7 @@ bool Execute(int argc, char* argv[])
     return isGood;
   }
   LoadDriversAhead(job.Surface->GetDevice());
-  Sharing alone(job, messages);
+  Sharing alone(job);
   return Make(alone);
 }
 
@@ -133,7 +132,6 @@ bool Execute(int argc, char* argv[])
 void MakeSurface(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  MessageCapture* const messages = sharing.Messages;
   std::vector<std::string> outputs; // of this process; of the first one, those of all
   for (int rank = 0; IsInPieces(job.Output) && rank < sharing.GetCount(); ++rank)
   {
@@ -147,7 +145,7 @@ void MakeSurface(Sharing& sharing)
     outputs.insert(outputs.end(),
       { job.Output, job.StatisticsFile, job.ComponentFile, job.Picture.File, job.WideningFile });
   }
-  sharing.OnAll([&] { CheckOutputs(ListFiles(job.InputFiles(), messages), outputs); });
+  sharing.OnAll([&] { CheckOutputs(ListFiles(job.InputFiles()), outputs); });
   const vtkSmartPointer<vtkPointSet> particles = sharing.Read();
   sharing.OnAll([&] { SetUpSurface(job, particles); });
   std::vector<vtkSmartPointer<vtkFieldData>> runs;
@@ -180,7 +178,7 @@ void MakeSurface(Sharing& sharing)
       if (isInPieces)
       {
         const std::string piece = PieceName(job.Output, sharing.GetRank());
-        files.Write(piece, SurfaceBytes(piece, part, colors, messages));
+        files.Write(piece, SurfaceBytes(piece, part, colors));
       }
       if (!sharing.IsFirst())
       {
@@ -196,7 +194,7 @@ void MakeSurface(Sharing& sharing)
       }
       files.Write(job.Output,
         isInPieces ? ListPieces(job.Output, sharing.GetCount(), part)
-                   : SurfaceBytes(job.Output, run.Surface, colors, messages));
+                   : SurfaceBytes(job.Output, run.Surface, colors));
       if (!job.ComponentFile.empty())
       {
         files.Write(job.ComponentFile, pieces);
@@ -209,15 +207,15 @@ void MakeSurface(Sharing& sharing)
     sharing.OnAll(
       [&]
       {
-        messages->Clear();
+        Messages().Clear();
         if (!job.Surface->Widen(vtkPointSet::SafeDownCast(job.Surface->GetInput()), widened))
         {
-          messages->Check();
+          Messages().Check();
           throw std::runtime_error("the factors could not be found");
         }
       });
     widened = sharing.Append(widened);
-    sharing.OnFirst([&] { WriteDataSet(job.WideningFile, widened, messages); });
+    sharing.OnFirst([&] { WriteDataSet(job.WideningFile, widened); });
   }
   sharing.OnFirst(
     [&]

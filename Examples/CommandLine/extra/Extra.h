@@ -10,7 +10,6 @@
 #include <vector>
 
 class ColorScale;
-class MessageCapture;
 class vtkDataObject;
 class vtkDataSet;
 struct PictureOptions;
@@ -29,7 +28,7 @@ public:
   /// The bytes of a .png file, which the sentence of a std::runtime_error names. A slice is seen
   /// along this axis.
   virtual std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
-    const ColorScale& colors, MessageCapture* messages, int sliceAxis = -1) = 0;
+    const ColorScale& colors, int sliceAxis = -1) = 0;
 };
 
 /// Names what needs many libraries, VTK's rendering and HDF5. These take longer to load than a

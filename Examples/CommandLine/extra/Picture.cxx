@@ -188,10 +188,10 @@ public:
   }
 
   std::string Draw(const std::string& file, vtkDataSet* data, vtkDataSet* frame,
-    const ColorScale& colors, MessageCapture* messages, int sliceAxis) override
+    const ColorScale& colors, int sliceAxis) override
   {
     const Activity drawing(file + " could not be written", "the graphics driver may be at fault");
-    messages->Clear();
+    Messages().Clear();
     const int axis = sliceAxis >= 0 ? sliceAxis : AxisOfLines(data);
     const bool isSlice = axis >= 0;
     this->Show(data, colors, isSlice);
@@ -219,9 +219,9 @@ public:
                      : ObliqueView(up),
       this->Seen, (this->HasBar ? 1.0 - WidthOfBar : 1.0) * Width / Height);
     std::string bytes = this->Render();
-    if (bytes.empty() || !messages->GetErrors().empty())
+    if (bytes.empty() || !Messages().GetErrors().empty())
     {
-      FailToWrite(file, messages->GetErrors().empty() ? "" : messages->GetErrors().front());
+      FailToWrite(file, Messages().GetErrors().empty() ? "" : Messages().GetErrors().front());
     }
     return bytes;
   }

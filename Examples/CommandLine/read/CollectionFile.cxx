@@ -24,12 +24,11 @@ std::string AttributeOf(vtkXMLDataElement* element, const char* name)
 }
 
 /// The element below the root of a VTK XML file that has this name.
-vtkSmartPointer<vtkXMLDataElement> ReadElement(
-  const std::string& file, const char* name, MessageCapture* messages)
+vtkSmartPointer<vtkXMLDataElement> ReadElement(const std::string& file, const char* name)
 {
   CheckRegularFile(file);
   vtkSmartPointer<vtkXMLDataElement> root;
-  ReadWithCare(file, messages,
+  ReadWithCare(file,
     [&file, &root] { root.TakeReference(vtkXMLUtilities::ReadElementFromFile(file.c_str())); });
   if (!root)
   {
@@ -51,9 +50,9 @@ std::string Resolved(const std::string& list, const std::string& file)
 }
 
 std::vector<CollectionEntry> ReadCollection(
-  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings)
+  const std::string& file, std::vector<std::string>& warnings)
 {
-  const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection", messages);
+  const vtkSmartPointer<vtkXMLDataElement> list = ReadElement(file, "Collection");
   std::vector<CollectionEntry> entries;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)
   {
@@ -111,11 +110,11 @@ std::vector<CollectionEntry> ReadCollection(
   return kept;
 }
 
-std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* messages)
+std::vector<std::string> ReadPieces(const std::string& file)
 {
   const bool isPolyData = file.back() == 'p';
   const vtkSmartPointer<vtkXMLDataElement> list =
-    ReadElement(file, isPolyData ? "PPolyData" : "PUnstructuredGrid", messages);
+    ReadElement(file, isPolyData ? "PPolyData" : "PUnstructuredGrid");
   std::vector<std::string> pieces;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i)
   {

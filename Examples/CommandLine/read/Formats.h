@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-class MessageCapture;
 class vtkDataObject;
 
 // How files are read. All throw std::runtime_error with one sentence.
@@ -20,8 +19,7 @@ void CheckRegularFile(const std::string& file);
 
 /// Lets libraries read a file: the sentence where they crash over it, ask for more memory than
 /// there is, or say that they failed. After errors VTK goes on, with arrays of zeros.
-void ReadWithCare(
-  const std::string& file, MessageCapture* messages, const std::function<void()>& read);
+void ReadWithCare(const std::string& file, const std::function<void()>& read);
 
 /// Files of VTK. Its readers ask for memory, and go round in loops, by the counts that a file
 /// declares: one below 0, or greater than a file of its size can hold, means that it is damaged.
@@ -30,7 +28,7 @@ vtkSmartPointer<vtkDataObject> ReadXml(const std::string& file, std::size_t);
 vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t);
 /// The time that the field data at the beginning tell of (TimeValue, TIME, time), or nothing.
 /// Points and their arrays are not read.
-std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* messages);
+std::vector<double> ListTimesOfVtk(const std::string& file);
 ///@}
 
 /// An entry of a .pvd file.
@@ -44,10 +42,10 @@ struct CollectionEntry
 /// Reads entries in the order of time. Entries of one time keep the order of the file; a file
 /// counts once, and of one part the last entry. `warnings` gets sentences.
 std::vector<CollectionEntry> ReadCollection(
-  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings);
+  const std::string& file, std::vector<std::string>& warnings);
 
 /// The files that are parts of one set of particles, from a .pvtp or .pvtu file.
-std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* messages);
+std::vector<std::string> ReadPieces(const std::string& file);
 
 /// Particles from text, one in each line: .csv (with commas, semicolons or tabs), columns between
 /// blanks with comments behind #, .xyz and extended XYZ, dumps of LAMMPS. Numbers in columns of one
@@ -55,7 +53,7 @@ std::vector<std::string> ReadPieces(const std::string& file, MessageCapture* mes
 /// where a file tells of none; a table has none.
 ///@{
 vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t step);
-std::vector<double> ListTimesInText(const std::string& file, MessageCapture*);
+std::vector<double> ListTimesInText(const std::string& file);
 ///@}
 
 /// Snapshots of GADGET's binary formats 1 and 2, of any name: whether a file begins as one does,
@@ -63,8 +61,8 @@ std::vector<double> ListTimesInText(const std::string& file, MessageCapture*);
 /// GADGET's, which is the support radius.
 ///@{
 bool IsGadget(const std::string& file);
-std::vector<std::string> ListGadget(const std::string& file, MessageCapture*);
-std::vector<double> ListTimesOfGadget(const std::string& file, MessageCapture*);
+std::vector<std::string> ListGadget(const std::string& file);
+std::vector<double> ListTimesOfGadget(const std::string& file);
 vtkSmartPointer<vtkDataObject> ReadGadget(const std::string& file, std::size_t);
 ///@}
 

@@ -254,14 +254,14 @@ bool IsGadget(const std::string& file)
   return std::filesystem::is_regular_file(file, error) && File(file).IsGadget;
 }
 
-std::vector<double> ListTimesOfGadget(const std::string& name, MessageCapture*)
+std::vector<double> ListTimesOfGadget(const std::string& name)
 {
   File file(name);
   file.ReadHeader();
   return { file.Time };
 }
 
-std::vector<std::string> ListGadget(const std::string& name, MessageCapture*)
+std::vector<std::string> ListGadget(const std::string& name)
 {
   File file(name);
   file.ReadHeader();

@@ -37,10 +37,9 @@ struct Kind
 {
   vtkSmartPointer<vtkDataObject> (*Read)(const std::string& file, std::size_t step);
   /// Lists the times of a file's steps; null where it is one step, and tells no time.
-  std::vector<double> (*ListTimes)(const std::string& file, MessageCapture* messages) = nullptr;
+  std::vector<double> (*ListTimes)(const std::string& file) = nullptr;
   /// Lists the files that hold parts of the particles; null where that is the file itself.
-  std::vector<std::string> (*ListParts)(
-    const std::string& file, MessageCapture* messages) = nullptr;
+  std::vector<std::string> (*ListParts)(const std::string& file) = nullptr;
 };
 using Formats = std::vector<FileFormat<Kind>>;
 
@@ -49,10 +48,10 @@ vtkSmartPointer<vtkDataObject> ReadHdf(const std::string& file, std::size_t step
   return LoadExtra().ReadHdf(file, step);
 }
 
-std::vector<double> ListTimesOfHdf(const std::string& file, MessageCapture* messages)
+std::vector<double> ListTimesOfHdf(const std::string& file)
 {
   std::vector<double> times;
-  ReadWithCare(file, messages, [&file, &times] { times = LoadExtra().ListHdfTimes(file); });
+  ReadWithCare(file, [&file, &times] { times = LoadExtra().ListHdfTimes(file); });
   return times;
 }
 
@@ -106,8 +105,8 @@ const Kind* KindOf(const Formats& formats, const std::string& file)
   return format ? &format->Process : nullptr;
 }
 
-vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* messages,
-  const Formats& formats = ParticleFormats, std::size_t step = 0)
+vtkSmartPointer<vtkDataObject> Read(
+  const std::string& file, const Formats& formats = ParticleFormats, std::size_t step = 0)
 {
   CheckRegularFile(file);
   const Kind* kind = KindOf(formats, file);
@@ -120,7 +119,7 @@ vtkSmartPointer<vtkDataObject> Read(const std::string& file, MessageCapture* mes
     FailToRead(file, "it has no step " + std::to_string(step));
   }
   vtkSmartPointer<vtkDataObject> data;
-  ReadWithCare(file, messages, [kind, &data, &file, step] { data = kind->Read(file, step); });
+  ReadWithCare(file, [kind, &data, &file, step] { data = kind->Read(file, step); });
   return data;
 }
 
@@ -188,7 +187,7 @@ vtkSmartPointer<vtkPointSet> TakeParticles(
 
 /// Adds what a file holds, unless it has no points; NAME#N is step N of the file NAME, unless a file
 /// has that name. Throws std::runtime_error.
-void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
+void ReadSet(std::string file, ParticleSets& sets)
 {
   std::size_t step = 0;
   std::error_code error;
@@ -200,7 +199,7 @@ void ReadSet(std::string file, ParticleSets& sets, MessageCapture* messages)
     step = std::strtoull(file.c_str() + at + 1, nullptr, 10);
     file.resize(at);
   }
-  const vtkSmartPointer<vtkDataObject> data = Read(file, messages, ParticleFormats, step);
+  const vtkSmartPointer<vtkDataObject> data = Read(file, ParticleFormats, step);
   vtkPointSet* points = vtkPointSet::SafeDownCast(data);
   if (!points)
   {
@@ -228,14 +227,14 @@ bool IsList(const std::string& file)
 }
 
 /// The pieces of a list of them, or the file itself.
-std::vector<std::string> ListParts(const std::string& file, MessageCapture* messages)
+std::vector<std::string> ListParts(const std::string& file)
 {
   const Kind* kind = KindOf(ParticleFormats, file);
   if (!kind || !kind->ListParts)
   {
     return { file };
   }
-  const std::vector<std::string> parts = kind->ListParts(file, messages);
+  const std::vector<std::string> parts = kind->ListParts(file);
   for (const std::string& part : parts)
   {
     if (IsList(part))
@@ -265,18 +264,17 @@ void CheckRegularFile(const std::string& file)
   }
 }
 
-void ReadWithCare(
-  const std::string& file, MessageCapture* messages, const std::function<void()>& read)
+void ReadWithCare(const std::string& file, const std::function<void()>& read)
 {
-  messages->Clear();
+  Messages().Clear();
   const Activity reading("the reader of VTK failed on " + file, "the file may be damaged");
   const Silence silence;
   try
   {
     read();
-    if (!messages->GetErrors().empty())
+    if (!Messages().GetErrors().empty())
     {
-      FailToRead(file, messages->GetErrors().front());
+      FailToRead(file, Messages().GetErrors().front());
     }
     return;
   }
@@ -294,15 +292,14 @@ std::string ParticleFileEndings()
   return ListEndings(ParticleFormats);
 }
 
-vtkSmartPointer<vtkPointSet> ReadParticles(
-  const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty)
+vtkSmartPointer<vtkPointSet> ReadParticles(const std::vector<std::string>& files, bool mayBeEmpty)
 {
   ParticleSets sets;
   for (const std::string& file : files)
   {
-    for (const std::string& part : ListParts(file, messages))
+    for (const std::string& part : ListParts(file))
     {
-      ReadSet(part, sets, messages);
+      ReadSet(part, sets);
     }
   }
   if (sets.Sets.empty() && !mayBeEmpty)
@@ -313,19 +310,18 @@ vtkSmartPointer<vtkPointSet> ReadParticles(
   return JoinSets(sets);
 }
 
-std::vector<double> ListTimes(const std::string& file, MessageCapture* messages)
+std::vector<double> ListTimes(const std::string& file)
 {
   const Kind* kind = KindOf(ParticleFormats, file);
-  return kind && kind->ListTimes ? kind->ListTimes(file, messages) : std::vector<double>();
+  return kind && kind->ListTimes ? kind->ListTimes(file) : std::vector<double>();
 }
 
-vtkSmartPointer<vtkPointSet> ReadWalls(
-  const std::vector<std::string>& files, MessageCapture* messages)
+vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files)
 {
-  return files.empty() ? nullptr : ReadParticles(files, messages);
+  return files.empty() ? nullptr : ReadParticles(files);
 }
 
-std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages)
+std::vector<std::string> ListFiles(const std::vector<std::string>& files)
 {
   std::vector<std::string> all = files;
   for (const std::string& file : files)
@@ -333,7 +329,7 @@ std::vector<std::string> ListFiles(const std::vector<std::string>& files, Messag
     try
     {
       const std::vector<std::string> parts =
-        IsList(file) ? ListParts(file, messages) : std::vector<std::string>();
+        IsList(file) ? ListParts(file) : std::vector<std::string>();
       all.insert(all.end(), parts.begin(), parts.end());
     }
     catch (const std::runtime_error&)
@@ -344,10 +340,9 @@ std::vector<std::string> ListFiles(const std::vector<std::string>& files, Messag
   return all;
 }
 
-ParticleSets ReadParticlesPart(
-  const std::string& file, int rank, int count, MessageCapture* messages)
+ParticleSets ReadParticlesPart(const std::string& file, int rank, int count)
 {
-  const std::vector<std::string> all = ListParts(file, messages);
+  const std::vector<std::string> all = ListParts(file);
   ParticleSets sets;
   const auto endOf = [&all, count](int ranks)
   {
@@ -356,7 +351,7 @@ ParticleSets ReadParticlesPart(
   };
   for (std::size_t i = endOf(rank); i < endOf(rank + 1); ++i)
   {
-    ReadSet(all[i], sets, messages);
+    ReadSet(all[i], sets);
   }
   sets.IsList = IsList(file);
   return sets;
@@ -383,9 +378,9 @@ vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets)
   return sets.IsList || parts.size() > 1 ? JoinParts(parts) : parts.front();
 }
 
-vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages)
+vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file)
 {
-  const vtkSmartPointer<vtkDataObject> data = Read(file, messages, DataFormats);
+  const vtkSmartPointer<vtkDataObject> data = Read(file, DataFormats);
   vtkDataSet* set = vtkDataSet::SafeDownCast(data);
   if (set && set->GetNumberOfPoints() > VTK_INT_MAX)
   {

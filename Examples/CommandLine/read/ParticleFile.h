@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-class MessageCapture;
 class vtkDataObject;
 class vtkDataSet;
 class vtkPointSet;
@@ -23,18 +22,17 @@ std::string ParticleFileEndings();
 /// damaged, or there are no points, which a step of a film may lack; where VTK's reader crashes
 /// over it, the program ends with a sentence. Names of arrays are made fit to print.
 vtkSmartPointer<vtkPointSet> ReadParticles(
-  const std::vector<std::string>& files, MessageCapture* messages, bool mayBeEmpty = false);
+  const std::vector<std::string>& files, bool mayBeEmpty = false);
 
 /// The times of the steps that one file holds, which are read as FILE#0, FILE#1, ... where there
 /// are several; none where it tells of none. Throws std::runtime_error.
-std::vector<double> ListTimes(const std::string& file, MessageCapture* messages);
+std::vector<double> ListTimes(const std::string& file);
 
 /// Particles that --walls names, as one set; null where that is nothing. Throws std::runtime_error.
-vtkSmartPointer<vtkPointSet> ReadWalls(
-  const std::vector<std::string>& files, MessageCapture* messages);
+vtkSmartPointer<vtkPointSet> ReadWalls(const std::vector<std::string>& files);
 
 /// These files, and those that they list as pieces: all that is read, as far as lists can be.
-std::vector<std::string> ListFiles(const std::vector<std::string>& files, MessageCapture* messages);
+std::vector<std::string> ListFiles(const std::vector<std::string>& files);
 
 /// Particles that files hold at one time. Where any of the data have vertices, points of meshes
 /// without vertices are no particles, so cells are kept until all is read.
@@ -48,14 +46,13 @@ struct ParticleSets
 
 /// The part that this one of `count` processes reads: some pieces of a file that lists pieces, those
 /// behind the pieces of the processes before it; another file is the first one's.
-ParticleSets ReadParticlesPart(
-  const std::string& file, int rank, int count, MessageCapture* messages);
+ParticleSets ReadParticlesPart(const std::string& file, int rank, int count);
 
 /// The particles, which may be none.
 vtkSmartPointer<vtkPointSet> JoinSets(const ParticleSets& sets);
 
 /// Reads a data set of any class, with the same care; as it is, but for names.
-vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file, MessageCapture* messages);
+vtkSmartPointer<vtkDataSet> ReadDataSet(const std::string& file);
 
 /// Joins parts to one set of particles, with the arrays that all of them have. Leaves out particles
 /// that a part marks as copies of another part's ("vtkGhostType").

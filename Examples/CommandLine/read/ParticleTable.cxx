@@ -772,7 +772,7 @@ vtkSmartPointer<vtkDataObject> ReadStep(
   {
     if (KnownSteps[file].Size != std::filesystem::file_size(file))
     {
-      ListTimesInText(file, nullptr);
+      ListTimesInText(file);
     }
     const std::vector<Lines::Place>& places = KnownSteps[file].Places;
     isThere = number < places.size();
@@ -831,7 +831,7 @@ vtkSmartPointer<vtkDataObject> ReadText(const std::string& file, std::size_t ste
   return find ? ReadStep(file, find, step) : ReadRows(file);
 }
 
-std::vector<double> ListTimesInText(const std::string& file, MessageCapture*)
+std::vector<double> ListTimesInText(const std::string& file)
 {
   std::vector<double> times;
   const StepFinder find = FinderOf(file);

@@ -357,7 +357,7 @@ vtkSmartPointer<vtkDataObject> ReadLegacy(const std::string& file, std::size_t)
   return reader->GetOutput();
 }
 
-std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* messages)
+std::vector<double> ListTimesOfVtk(const std::string& file)
 {
   std::string head(1 << 16, '\0'); // field data behind it are not looked at
   std::ifstream stream(file, std::ios::binary);
@@ -392,14 +392,14 @@ std::vector<double> ListTimesOfVtk(const std::string& file, MessageCapture* mess
   {
     if (!text.empty())
     {
-      ReadWithCare(file, messages, read);
+      ReadWithCare(file, read);
     }
   }
   catch (const std::exception&)
   {
     // A fault is told where all of the file is read.
   }
-  messages->Clear();
+  Messages().Clear();
   // Field data at the end of an XML file have the least and greatest value at its beginning.
   for (std::size_t i = 0; i < std::size(TimeNames) && times.empty(); ++i)
   {

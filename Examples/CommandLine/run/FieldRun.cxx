@@ -184,13 +184,12 @@ std::string DrawField(
   }
   colors.SetName(job.Picture.ColorBy.empty() ? name : job.Picture.ColorBy);
   colors.Include(shown);
-  return picture.Draw(file, shown, frame, colors, sharing.Messages, axis);
+  return picture.Draw(file, shown, frame, colors, axis);
 }
 
 void MakeField(Sharing& sharing)
 {
   const Job& job = sharing.Options;
-  MessageCapture* const messages = sharing.Messages;
   const bool isProbe = job.IsProbe();
   vtkSPHAlgorithm* const filter =
     isProbe ? static_cast<vtkSPHAlgorithm*>(job.Probe) : job.Projection.Get();
@@ -198,10 +197,10 @@ void MakeField(Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
-      CheckOutputs(ListFiles(job.InputFiles(), messages), { job.Output, job.Picture.File });
+      CheckOutputs(ListFiles(job.InputFiles()), { job.Output, job.Picture.File });
       if (!job.ProbeFile.empty())
       {
-        points = ReadDataSet(job.ProbeFile, messages);
+        points = ReadDataSet(job.ProbeFile);
         CheckDataSetFile(job.Output, points);
       }
     });
@@ -226,7 +225,7 @@ void MakeField(Sharing& sharing)
   sharing.OnFirst(
     [&]
     {
-      for (const std::string& warning : messages->GetWarnings())
+      for (const std::string& warning : Messages().GetWarnings())
       {
         Say("warning: " + warning);
       }
@@ -236,7 +235,7 @@ void MakeField(Sharing& sharing)
       {
         std::cout << Describe(result) << "seconds     " << seconds << "\n";
       }
-      WriteDataSet(job.Output, result, messages);
+      WriteDataSet(job.Output, result);
       if (!job.Picture.File.empty())
       {
         ColorScale colors(job.Picture);

@@ -144,12 +144,12 @@ private:
     this->Shared.OnAll(
       [&] { projection->SetInputData(SetUpParticles(projection, this->Options, particles)); });
     this->Shared.OnAll([&] { seconds = Update(projection, this->Shared, progress); });
-    this->Messages->AppendWarnings(warnings);
+    Messages().AppendWarnings(warnings);
     this->Shared.OnFirst(
       [&]
       {
         vtkImageData* image = SeenImage(this->Options);
-        this->Write(i, DataSetBytes(this->Surfaces[i], image, this->Messages),
+        this->Write(i, DataSetBytes(this->Surfaces[i], image),
           [&](const std::string& frame)
           { return DrawField(this->Shared, frame, *this->Drawn, this->FrameColors); });
         this->Keep(i, nullptr, DescribeSize(image), seconds);
@@ -179,7 +179,7 @@ private:
         const std::string& file = this->Surfaces[i];
         vtkPolyData* surface = run.Surface;
         Inspect(this->Options, file, run, particles, this->Colors, i == 0);
-        this->Write(i, SurfaceBytes(file, surface, this->Colors, this->Messages),
+        this->Write(i, SurfaceBytes(file, surface, this->Colors),
           [&](const std::string& frame) {
             return DrawSurface(
               this->Shared, frame, surface, particles, *this->Drawn, this->FrameColors);

@@ -78,3 +78,14 @@ void MessageCapture::AppendWarnings(std::vector<std::string>& to) const
 {
   to.insert(to.end(), this->Warnings.begin(), this->Warnings.end());
 }
+
+MessageCapture& Messages()
+{
+  static MessageCapture* const only = []
+  {
+    MessageCapture* const made = MessageCapture::New();
+    vtkOutputWindow::SetInstance(made);
+    return made;
+  }();
+  return *only;
+}

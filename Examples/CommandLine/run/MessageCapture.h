@@ -34,4 +34,7 @@ private:
   std::vector<std::string> Warnings;
 };
 
+/// VTK has one window for messages of all objects: this one, from its first use on.
+MessageCapture& Messages();
+
 #endif

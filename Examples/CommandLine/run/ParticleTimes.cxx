@@ -43,11 +43,10 @@ Steps::const_iterator FindStep(const Steps& steps, double time)
 }
 
 /// Steps of a .pvd file.
-Steps ListedSteps(
-  const std::string& file, MessageCapture* messages, std::vector<std::string>& warnings)
+Steps ListedSteps(const std::string& file, std::vector<std::string>& warnings)
 {
   Steps steps;
-  for (const CollectionEntry& entry : ReadCollection(file, messages, warnings))
+  for (const CollectionEntry& entry : ReadCollection(file, warnings))
   {
     if (steps.empty() || steps.back().Time != entry.Time)
     {
@@ -86,7 +85,7 @@ NumberedName Numbered(const std::string& name)
 }
 
 /// Steps of files given one by one, at the times that the files tell of.
-Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::string>& warnings)
+Steps GivenSteps(const Job& job, std::vector<std::string>& warnings)
 {
   // If names differ in numbers alone, these tell the order: shells list tank_10 before tank_9.
   std::vector<std::string> inputs = job.Inputs;
@@ -102,7 +101,7 @@ Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::stri
   std::vector<double> times;
   for (const std::string& file : inputs)
   {
-    const std::vector<double> steps = ::ListTimes(file, messages);
+    const std::vector<double> steps = ::ListTimes(file);
     const bool isFilm = steps.size() > 1;
     for (std::size_t k = 0; k < (isFilm ? steps.size() : 1); ++k)
     {
@@ -138,11 +137,11 @@ Steps GivenSteps(const Job& job, MessageCapture* messages, std::vector<std::stri
 
 /// Adds the walls of a file to steps: to all, or to each those that have its number, or, from a .pvd
 /// file, those of its time (where steps are in a list without times, in its order).
-void AddStepWalls(const std::string& file, bool haveTimes, Steps& steps, MessageCapture* messages,
-  std::vector<std::string>& warnings)
+void AddStepWalls(
+  const std::string& file, bool haveTimes, Steps& steps, std::vector<std::string>& warnings)
 {
   const bool areListed = IsCollectionFile(file);
-  const Steps walls = areListed ? ListedSteps(file, messages, warnings) : Steps();
+  const Steps walls = areListed ? ListedSteps(file, warnings) : Steps();
   if (areListed && !haveTimes && walls.size() != steps.size())
   {
     throw std::runtime_error("--walls: " + file + " lists " + std::to_string(walls.size()) +
@@ -220,8 +219,7 @@ public:
   vtkTypeMacro(StoredSteps, vtkPolyDataAlgorithm);
 
   const Steps* Known = nullptr; ///< in the order of time
-  MessageCapture* Messages = nullptr;
-  std::string Error; ///< why the last step could not be read; empty if it could
+  std::string Error;            ///< why the last step could not be read; empty if it could
 
 protected:
   StoredSteps() { this->SetNumberOfInputPorts(0); }
@@ -252,8 +250,8 @@ protected:
     step = step == this->Known->end() ? step - 1 : step;
     vtkPolyData* output = vtkPolyData::GetData(outputVector);
     output->Initialize(); // the step before it, so that there are never three
-    this->Error = FailureOf([this, output, step]
-      { output->ShallowCopy(ReadParticles(step->Files, this->Messages, true)); });
+    this->Error =
+      FailureOf([output, step] { output->ShallowCopy(ReadParticles(step->Files, true)); });
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), step->Time);
     return this->Error.empty() ? 1 : 0;
   }
@@ -273,11 +271,10 @@ ParticleTimes::ParticleTimes(const Sharing& sharing)
   const Job& job = sharing.Options;
   std::vector<std::string> notes;
   const bool haveTimes = IsCollectionFile(job.Inputs.front());
-  this->Steps = haveTimes ? ListedSteps(job.Inputs.front(), sharing.Messages, notes)
-                          : GivenSteps(job, sharing.Messages, notes);
+  this->Steps = haveTimes ? ListedSteps(job.Inputs.front(), notes) : GivenSteps(job, notes);
   for (const std::string& walls : job.Walls)
   {
-    AddStepWalls(walls, haveTimes, this->Steps, sharing.Messages, notes);
+    AddStepWalls(walls, haveTimes, this->Steps, notes);
   }
   this->Times = ChooseTimes(job, this->Steps);
   for (const std::string& note : notes)
@@ -327,14 +324,13 @@ void ParticleTimes::CheckOutputs(const std::vector<std::string>& outputs) const
     inputs.insert(inputs.end(), step.Files.begin(), step.Files.end());
     inputs.insert(inputs.end(), step.Walls.begin(), step.Walls.end());
   }
-  ::CheckOutputs(::ListFiles(inputs, this->Shared.Messages), outputs);
+  ::CheckOutputs(::ListFiles(inputs), outputs);
 }
 
 void ParticleTimes::Reset()
 {
   this->Source = vtkSmartPointer<StoredSteps>::New();
   this->Source->Known = &this->Steps;
-  this->Source->Messages = this->Shared.Messages;
   this->Interpolator = vtkSmartPointer<vtkSPHTemporalInterpolator>::New();
   this->Interpolator->SetIdArrayName(this->Shared.Options.IdArray.c_str());
   this->Interpolator->SetInputConnection(this->Source->GetOutputPort());
@@ -342,14 +338,13 @@ void ParticleTimes::Reset()
 
 Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warnings)
 {
-  MessageCapture* const messages = this->Shared.Messages;
-  messages->Clear();
+  Messages().Clear();
   this->Source->Error.clear();
   this->Interpolator->UpdateTimeStep(time);
   const std::string error = this->Source->Error;
-  messages->Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
+  Messages().Check(error.empty() ? this->Interpolator->GetErrorMessage() : error);
   const bool hasTimes = IsCollectionFile(this->Shared.Options.Inputs.front());
-  for (const std::string& sentence : messages->GetWarnings())
+  for (const std::string& sentence : Messages().GetWarnings())
   {
     warnings.push_back(Reworded(sentence, "set the time scale",
       hasTimes ? "change those in the .pvd file" : "use --time-step"));
@@ -359,7 +354,7 @@ Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warn
   const std::vector<std::string>& walls = FindStep(this->Steps, time)->Walls;
   if (this->WallFiles != walls)
   {
-    this->Walls = ReadWalls(walls, messages);
+    this->Walls = ReadWalls(walls);
     this->WallFiles = walls;
   }
   return AddWalls(particles, this->Walls);
@@ -368,7 +363,6 @@ Sharing::Particles ParticleTimes::At(double time, std::vector<std::string>& warn
 Series::Series(Sharing& sharing)
   : Shared(sharing)
   , Options(sharing.Options)
-  , Messages(sharing.Messages)
   , Times(sharing)
 {
 }

@@ -80,7 +80,6 @@ protected:
 
   Sharing& Shared;
   const Job& Options;
-  MessageCapture* const Messages;
   ParticleTimes Times;
 };
 

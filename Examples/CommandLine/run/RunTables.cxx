@@ -35,7 +35,7 @@ namespace
 {
 
 /// An elevation map: Level is the height of the surface.
-void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
+void WriteGrid(const Job& job, vtkTable* table)
 {
   const GaugeGrid& grid = job.Grid;
   vtkNew<vtkImageData> image;
@@ -59,46 +59,8 @@ void WriteGrid(const Job& job, vtkTable* table, MessageCapture* messages)
     image->GetPointData()->AddArray(array);
   }
   image->GetPointData()->SetActiveScalars("Level");
-  WriteDataSet(job.Output, image, messages);
+  WriteDataSet(job.Output, image);
 }
-
-/// The integrals of fluxes in time, by trapezia between steps.
-class Flowed
-{
-public:
-  /// Adds them to the table of a step, the columns volume and mass.
-  void AddTo(vtkTable* table, double time)
-  {
-    const double passed = this->Before.empty() ? 0.0 : time - this->Time;
-    const auto rows = static_cast<std::size_t>(table->GetNumberOfRows());
-    std::vector<double> now(2 * rows);
-    this->Sums.resize(2 * rows);
-    this->Time = time;
-    for (std::size_t flux = 0; flux < 2; ++flux)
-    {
-      vtkNew<vtkDoubleArray> column;
-      column->SetName(flux == 0 ? "volume" : "mass");
-      for (std::size_t row = 0; row < rows; ++row)
-      {
-        const std::size_t i = 2 * row + flux;
-        now[i] =
-          table->GetValueByName(
-                 static_cast<vtkIdType>(row), flux == 0 ? "volume_flux" : "mass_flux")
-            .ToDouble();
-        const double before = this->Before.empty() ? now[i] : this->Before[i];
-        this->Sums[i] +=
-          passed * 0.5 * (before + now[i]) + 0.0 * now[i]; // no number where there is no flux
-        column->InsertNextValue(this->Sums[i]);
-      }
-      table->AddColumn(column);
-    }
-    this->Before = rows > 0 ? now : std::vector<double>();
-  }
-
-private:
-  double Time = 0.0;
-  std::vector<double> Before, Sums; ///< of volume and mass, for each section
-};
 
 /// The steps of a table, or the one of an image.
 class MeterTable : public Series
@@ -132,7 +94,7 @@ public:
         this->File.Write([this] { return this->Text; }, true);
         if (this->IsImage)
         {
-          WriteGrid(this->Options, this->Meter->GetOutput(), this->Messages);
+          WriteGrid(this->Options, this->Meter->GetOutput());
         }
         if (!this->Options.Quiet)
         {
@@ -161,11 +123,28 @@ private:
     vtkTable* table = nullptr;
     this->Shared.OnAll(
       [&] { table = MeasureWith(this->Meter, this->Shared, particles, time, progress); });
-    if (this->IsFlux)
+    for (std::size_t flux = 0; this->IsFlux && flux < 2; ++flux)
     {
-      this->Sums.AddTo(table, time);
+      // Integrals in time, by trapezia between steps.
+      const std::string name = flux == 0 ? "volume" : "mass";
+      auto* rates = vtkDoubleArray::SafeDownCast(table->GetColumnByName((name + "_flux").c_str()));
+      std::vector<double>&before = this->Rates[flux], &sums = this->Sums[flux];
+      sums.resize(static_cast<std::size_t>(rates->GetNumberOfValues()));
+      const double passed = before.empty() ? 0.0 : time - this->LastTime;
+      before = before.empty() ? std::vector<double>(rates->Begin(), rates->End()) : before;
+      vtkNew<vtkDoubleArray> column;
+      column->SetName(name.c_str());
+      for (std::size_t row = 0; row < sums.size(); ++row)
+      {
+        const double now = rates->GetValue(static_cast<vtkIdType>(row));
+        sums[row] += passed * 0.5 * (before[row] + now) + 0.0 * now; // no number where no flux is
+        column->InsertNextValue(sums[row]);
+      }
+      table->AddColumn(column);
+      before.assign(rates->Begin(), rates->End());
     }
-    for (const std::string& warning : this->Messages->GetWarnings())
+    this->LastTime = time;
+    for (const std::string& warning : Messages().GetWarnings())
     {
       if (!this->IsImage || warning.find("is outside of all fluid") == std::string::npos)
       {
@@ -188,7 +167,8 @@ private:
   const bool IsFlux, IsImage;
   vtkSPHMeter* const Meter;
   GrowingFile File; ///< nameless for an image
-  Flowed Sums;
+  double LastTime = 0.0;
+  std::vector<double> Rates[2], Sums[2]; ///< of volume and mass, for each section
   std::string Text;
 };
 
@@ -246,7 +226,7 @@ bool MakeMeterTable(Sharing& sharing)
         job.Flux->AddBox(name, n);
         break;
       default:
-        job.Flux->AddSurface(name, ReadDataSet(section.File, sharing.Messages));
+        job.Flux->AddSurface(name, ReadDataSet(section.File));
     }
   }
   const std::size_t places = job.IsFlux() ? sections.size() : AddGauges(job);
@@ -282,7 +262,7 @@ void AddPieces(
   split->SetLeastVolume(job.LeastVolume);
   split->SetLeastParticles(job.LeastParticles);
   split->Update();
-  sharing.Messages->Check();
+  Messages().Check();
   vtkTable* pieces = split->GetTable();
   run.Surface->ShallowCopy(split->GetOutput());
   AddNumber(run.Statistics, "Pieces", static_cast<double>(pieces->GetNumberOfRows()));
@@ -338,7 +318,7 @@ void AddFilmNumbers(
   if (job.Gauge->GetNumberOfGauges() > 0)
   {
     vtkTable* gauges = MeasureWith(job.Gauge, sharing, particles, time, "");
-    sharing.Messages->AppendWarnings(run.Warnings);
+    Messages().AppendWarnings(run.Warnings);
     for (vtkIdType i = 0; i < gauges->GetNumberOfRows(); ++i)
     {
       const std::string name = gauges->GetValueByName(i, "gauge").ToString();

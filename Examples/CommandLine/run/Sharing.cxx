@@ -30,7 +30,7 @@ namespace
 class RankSession : public Sharing
 {
 public:
-  RankSession(Job& job, MessageCapture* messages);
+  explicit RankSession(Job& job);
   ~RankSession() override;
 
   int GetRank() const override { return this->Controller->GetLocalProcessId(); }
@@ -60,8 +60,8 @@ private:
   const bool DetectPeriod;
 };
 
-RankSession::RankSession(Job& job, MessageCapture* messages)
-  : Sharing(job, messages)
+RankSession::RankSession(Job& job)
+  : Sharing(job)
   , Periodic(job.Periodic)
   , DetectPeriod(job.DetectPeriod)
 {
@@ -124,8 +124,7 @@ Sharing::Particles RankSession::Read(
   return this->Share(
     [&]
     {
-      return step ? AddWalls(ReadParticles(step->Files, this->Messages, true),
-                      ReadWalls(step->Walls, this->Messages))
+      return step ? AddWalls(ReadParticles(step->Files, true), ReadWalls(step->Walls))
                   : times.At(time, warnings);
     },
     true);
@@ -153,8 +152,7 @@ Sharing::Particles RankSession::Part(const std::string& file, bool mayBeEmpty)
 {
   Particles particles;
   ParticleSets sets;
-  this->OnAll(
-    [&] { sets = ReadParticlesPart(file, this->GetRank(), this->GetCount(), this->Messages); });
+  this->OnAll([&] { sets = ReadParticlesPart(file, this->GetRank(), this->GetCount()); });
   const int own = sets.HaveVertices ? 1 : 0;
   int any = own;
   this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
@@ -216,8 +214,7 @@ Sharing::Particles RankSession::Complete(vtkPointSet* particles, bool mayBeEmpty
 
 Sharing::Particles Sharing::Read()
 {
-  return AddWalls(ReadParticles(this->Options.Inputs, this->Messages),
-    ReadWalls(this->Options.Walls, this->Messages));
+  return AddWalls(ReadParticles(this->Options.Inputs), ReadWalls(this->Options.Walls));
 }
 
 Sharing::Particles Sharing::Read(
@@ -240,11 +237,10 @@ int LaunchedRank()
   return LaunchedCount() > 1 ? Number("OMPI_COMM_WORLD_RANK", "PMI_RANK", 0) : 0;
 }
 
-std::unique_ptr<Sharing> NewRankSession(
-  [[maybe_unused]] Job& job, [[maybe_unused]] MessageCapture* messages)
+std::unique_ptr<Sharing> NewRankSession([[maybe_unused]] Job& job)
 {
 #if MCOR_HAS_RANKS
-  return std::make_unique<RankSession>(job, messages);
+  return std::make_unique<RankSession>(job);
 #else
   return nullptr;
 #endif

@@ -12,20 +12,18 @@
 #include <string>
 #include <vector>
 
-class MessageCapture;
 class ParticleTimes;
 struct Job;
 
-/// A job and VTK's messages about it. Hides whether processes share the work; this class is that of
-/// one process. If one of them throws, all throw.
+/// A job. Hides whether processes share the work; this class is that of one process. If one of them
+/// throws, all throw.
 class Sharing
 {
 public:
   using Particles = vtkSmartPointer<vtkPointSet>;
 
-  Sharing(Job& job, MessageCapture* messages)
+  explicit Sharing(Job& job)
     : Options(job)
-    , Messages(messages)
   {
   }
   virtual ~Sharing() = default;
@@ -57,7 +55,6 @@ public:
   virtual vtkSmartPointer<vtkPolyData> Append(vtkPolyData* particles) { return particles; }
 
   Job& Options;
-  MessageCapture* const Messages;
 };
 
 /// How many processes mpirun started, 1 without mpirun, and the number of this one, 0 then. Its
@@ -68,6 +65,6 @@ int LaunchedRank();
 ///@}
 
 /// Begins MPI, and ends it with the object, for a job that processes share. One per process.
-std::unique_ptr<Sharing> NewRankSession(Job& job, MessageCapture* messages);
+std::unique_ptr<Sharing> NewRankSession(Job& job);
 
 #endif

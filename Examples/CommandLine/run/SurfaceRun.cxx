@@ -13,7 +13,7 @@
 #include "SafeText.h"
 #include "Sharing.h"
 
-#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -25,7 +25,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <future>
 #include <iostream>
 #include <stdexcept>
@@ -175,17 +174,37 @@ std::string ReasonForNoSurface(vtkFieldData* run)
       "[; the particles have values from {ScalarRange:0} to {ScalarRange:1}]");
 }
 
-/// Prints a notice, once, if an update that shows no progress waits for a driver after a few
+/// A run's progress line; where none is shown, a notice, once, if a driver is waited for after a few
 /// seconds.
-class BuildNotice
+class Progress
 {
 public:
-  ~BuildNotice() { this->End.set_value(); } // then Waiting ends, and is awaited
-
-  void Tell(bool isBuilding)
+  Progress(const std::string& before, bool isShown, bool isQuiet)
+    : Before(before)
+    , IsShown(isShown)
+    , IsQuiet(isQuiet)
   {
-    this->IsBuilding = isBuilding;
-    if (!isBuilding || std::exchange(this->HasBegun, true))
+  }
+  ~Progress()
+  {
+    std::fputs(this->IsShown ? "\r\033[K" : "", stderr);
+    this->End.set_value(); // then Waiting ends, and is awaited
+  }
+
+  void Take(vtkObject* caller, unsigned long, void*)
+  {
+    KeepWatchOfCrashes();
+    auto* filter = static_cast<vtkAlgorithm*>(caller);
+    const std::string phase = filter->GetProgressText() ? filter->GetProgressText() : "";
+    if (this->IsShown)
+    {
+      std::fprintf(stderr, "\r\033[K%s%3.0f %% %s", this->Before.c_str(),
+        100.0 * filter->GetProgress(), Printable(phase).c_str());
+      std::fflush(stderr);
+      return;
+    }
+    this->IsBuilding = phase.find("first time") != std::string::npos;
+    if (this->IsQuiet || !this->IsBuilding || std::exchange(this->HasBegun, true))
     {
       return;
     }
@@ -211,40 +230,13 @@ public:
   }
 
 private:
+  const std::string& Before; ///< the words before the line
+  const bool IsShown, IsQuiet;
   std::atomic<bool> IsBuilding{ false };
   bool HasBegun = false;
   std::promise<void> End;
   std::future<void> Waiting; ///< the last member, as its thread uses the others
 };
-
-/// A run's progress line.
-struct Progress
-{
-  ~Progress() { std::fputs(this->IsShown ? "\r\033[K" : "", stderr); }
-
-  const std::string& Before; ///< the words before it
-  const bool IsShown, IsQuiet;
-  BuildNotice Notice = {};
-};
-
-void TakeProgress(vtkObject* caller, unsigned long, void* data, void*)
-{
-  KeepWatchOfCrashes();
-  auto* progress = static_cast<Progress*>(data);
-  auto* filter = static_cast<vtkAlgorithm*>(caller);
-  const char* phase = filter->GetProgressText();
-  if (!progress->IsShown)
-  {
-    if (!progress->IsQuiet)
-    {
-      progress->Notice.Tell(phase && std::strstr(phase, "first time"));
-    }
-    return;
-  }
-  std::fprintf(stderr, "\r\033[K%s%3.0f %% %s", progress->Before.c_str(),
-    100.0 * filter->GetProgress(), Printable(phase ? phase : "").c_str());
-  std::fflush(stderr);
-}
 
 }
 
@@ -287,20 +279,18 @@ double Update(vtkSPHAlgorithm* filter, const Sharing& sharing, const std::string
 {
   const bool isQuiet = sharing.Options.Quiet;
   std::chrono::duration<double> elapsed;
-  sharing.Messages->Clear();
+  Messages().Clear();
   filter->Modified();
   {
-    Progress progress{ before, !isQuiet && isatty(STDERR_FILENO), isQuiet || !sharing.IsFirst() };
-    vtkNew<vtkCallbackCommand> observer;
-    observer->SetCallback(TakeProgress);
-    observer->SetClientData(&progress);
-    const unsigned long observed = filter->AddObserver(vtkCommand::ProgressEvent, observer);
+    Progress progress(before, !isQuiet && isatty(STDERR_FILENO), isQuiet || !sharing.IsFirst());
+    const unsigned long observed =
+      filter->AddObserver(vtkCommand::ProgressEvent, &progress, &Progress::Take);
     const auto start = std::chrono::steady_clock::now();
     filter->Update();
     elapsed = std::chrono::steady_clock::now() - start;
     filter->RemoveObserver(observed);
   }
-  sharing.Messages->Check(filter->GetErrorMessage());
+  Messages().Check(filter->GetErrorMessage());
   return elapsed.count();
 }
 
@@ -327,7 +317,7 @@ Run Extract(const Sharing& sharing, const std::string& before)
                 << std::endl;
     }
   }
-  for (const std::string& sentence : sharing.Messages->GetWarnings())
+  for (const std::string& sentence : Messages().GetWarnings())
   {
     run.Warnings.push_back(WithOptions(sentence)); // they are in the statistics, too
   }
@@ -359,5 +349,5 @@ std::string DrawSurface(const Sharing& sharing, const std::string& file, vtkPoly
 {
   colors.Suggest(surface, sharing.Options.Surface->GetIsoValueArrayName());
   colors.Include(surface);
-  return picture.Draw(file, surface, particles, colors, sharing.Messages);
+  return picture.Draw(file, surface, particles, colors);
 }

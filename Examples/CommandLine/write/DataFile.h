@@ -9,7 +9,6 @@
 #include <vector>
 
 class ColorScale;
-class MessageCapture;
 class vtkAbstractArray;
 class vtkDataSet;
 class vtkPolyData;
@@ -20,10 +19,10 @@ class vtkTable;
 void CheckDataSetFile(const std::string& file, vtkDataSet* data);
 
 /// The bytes of a data set in the format of the file's ending. Throws std::runtime_error.
-std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCapture* messages);
+std::string DataSetBytes(const std::string& file, vtkDataSet* data);
 
 /// Writes a data set, completely or not at all. Throws std::runtime_error with one sentence.
-void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages);
+void WriteDataSet(const std::string& file, vtkDataSet* data);
 
 /// Whether the ending of the name is that of a format which WriteSurface knows.
 bool IsSurfaceFile(const std::string& file);
@@ -34,8 +33,7 @@ std::string SurfaceFileEndings();
 /// The bytes of a surface in the format of the file's ending. .stl, .ply and .obj have triangles
 /// and normals, .ply also colours, and no other arrays; .csv the points of lines with all arrays.
 /// Throws std::runtime_error with one sentence.
-std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors,
-  MessageCapture* messages);
+std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors);
 
 /// The bytes of an XML file with a mark: a step of a film, which another film may replace.
 std::string MarkedStep(std::string bytes);

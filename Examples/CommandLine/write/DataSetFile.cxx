@@ -10,13 +10,18 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
+#include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkGenericDataObjectWriter.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
 #include "vtkXMLDataObjectWriter.h"
 
+#include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <stdexcept>
@@ -103,10 +108,10 @@ void CheckDataSetFile(const std::string& file, vtkDataSet* data)
     std::string(data->GetClassName()) + ", for a " + endings + " file, not '" + file + "'");
 }
 
-std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCapture* messages)
+std::string DataSetBytes(const std::string& file, vtkDataSet* data)
 {
   const Activity writing(file + " could not be written", "memory may have run out");
-  messages->Clear();
+  Messages().Clear();
   std::string bytes; // in memory, because the writer of VTK 9.1 crashes on a full disk
   bool isGood = false;
   if (EndsWith(file, ".vtk"))
@@ -131,14 +136,63 @@ std::string DataSetBytes(const std::string& file, vtkDataSet* data, MessageCaptu
     isGood = writer->Write() != 0;
     bytes = writer->GetOutputString();
   }
-  if (!isGood || !messages->GetErrors().empty())
+  if (!isGood || !Messages().GetErrors().empty())
   {
-    FailToWrite(file, messages->GetErrors().empty() ? "" : messages->GetErrors().front());
+    FailToWrite(file, Messages().GetErrors().empty() ? "" : Messages().GetErrors().front());
   }
   return bytes;
 }
 
-void WriteDataSet(const std::string& file, vtkDataSet* data, MessageCapture* messages)
+void WriteDataSet(const std::string& file, vtkDataSet* data)
 {
-  WriteOutput(file, DataSetBytes(file, data, messages));
+  WriteOutput(file, DataSetBytes(file, data));
+}
+
+std::string TableField(const std::string& text)
+{
+  const bool isFormula = !text.empty() && std::string("=+-@").find(text[0]) != std::string::npos;
+  const std::string plain = (isFormula ? "'" : "") + text;
+  if (plain.find_first_of(",\"\n\r") == std::string::npos)
+  {
+    return plain;
+  }
+  std::string quoted = "\"";
+  for (const char c : plain)
+  {
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+std::string TableField(vtkAbstractArray* array, vtkIdType tuple, int component)
+{
+  if (auto* texts = vtkStringArray::SafeDownCast(array))
+  {
+    return TableField(texts->GetValue(tuple));
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  if (array->GetDataTypeSize() == 8 && array->GetDataType() != VTK_DOUBLE) // beyond 2^53, too
+  {
+    const vtkVariant value =
+      array->GetVariantValue(tuple * array->GetNumberOfComponents() + component);
+    return numbers->GetDataTypeMin() < 0.0 ? DigitsOf(value.ToLongLong())
+                                           : DigitsOf(value.ToUnsignedLongLong());
+  }
+  const double number = numbers->GetComponent(tuple, component) + 0.0; // no -0
+  return std::isnan(number) ? "" : DigitsOf(number);
+}
+
+void AppendTable(std::string& text, vtkTable* table)
+{
+  const vtkIdType header = -1;
+  for (vtkIdType row = text.empty() ? header : 0; row < table->GetNumberOfRows(); ++row)
+  {
+    for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
+    {
+      text += (c ? "," : "") +
+        (row == header ? TableField(table->GetColumnName(c))
+                       : TableField(table->GetColumn(c), row));
+    }
+    text += "\n";
+  }
 }

@@ -298,12 +298,11 @@ std::string SurfaceFileEndings()
   return ListEndings(Formats);
 }
 
-std::string SurfaceBytes(
-  const std::string& file, vtkPolyData* surface, const ColorScale& colors, MessageCapture* messages)
+std::string SurfaceBytes(const std::string& file, vtkPolyData* surface, const ColorScale& colors)
 {
   if (EndsWith(file, ".vtp"))
   {
-    return DataSetBytes(file, surface, messages);
+    return DataSetBytes(file, surface);
   }
   const Activity writing(file + " could not be written", "memory may have run out");
   const bool isTable = EndsWith(file, ".csv");

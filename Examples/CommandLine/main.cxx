@@ -17,7 +17,6 @@
 
 #include "vtkFieldData.h"
 #include "vtkLogger.h"
-#include "vtkNew.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkVersion.h"

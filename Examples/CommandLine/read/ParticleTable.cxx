@@ -27,7 +27,6 @@
 #include <map>
 #include <set>
 #include <string_view>
-#include <utility>
 
 namespace
 {

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 
 #include <fcntl.h>

@@ -28,7 +28,6 @@
 #include <functional>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <vector>
 
 namespace

@@ -3,7 +3,8 @@
 
 /* Fluxes through sections: integrals of the Shepard means of velocity and density, over the area
  * where the weight sum is at least the level. The probe evaluates samples; the gauges find
- * crossings of the level. */
+ * crossings of the level. A piece of a section is divided until its parts together have the
+ * integrals of the piece itself. */
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
@@ -18,6 +19,204 @@
 /* Room of sums above the largest one that means allow. Weights below 0, as M'4 has, make sums a
  * little larger. */
 #define MCOR_FLUX_ROOM 8
+/* Cells treated together. */
+#define MCOR_FLUX_TOGETHER 4096
+/* Greatest difference between the integrals of a piece and its parts, relative to the piece's
+ * area times the speeds of its section. A piece that is small beside the section may differ by
+ * more (MCOR_FLUX_SMALL), because errors of many pieces cancel. */
+#define MCOR_FLUX_TOLERANCE 2.5e-7
+#define MCOR_FLUX_SMALL 0.125
+/* A bulge may be this many times larger than the tolerance: parabolas are that much nearer to
+ * the level than chords. */
+#define MCOR_FLUX_BULGE 64
+/* Most divisions of a piece, and of one that is unclear. */
+#define MCOR_FLUX_DEPTH 12
+#define MCOR_FLUX_UNCLEAR_DEPTH 6
+
+/* ---- speeds ---- */
+
+/* Reduces the greatest speeds and densities of sections over all ranks, those without particles,
+ * too. */
+static mcor_status mcor_scale_sections(mcor_flux_job* job)
+{
+  mcor_context* context = job->edges.context;
+  for (int64_t s = 0; s < job->section_count; ++s)
+  {
+    mcor_flux_section* found = &job->found[s];
+    double seen[2] = { found->speed, found->density };
+    MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, seen, 2));
+    found->speed = fmax(seen[0], job->speed_floor);
+    found->density = fmax(seen[1], job->density_floor);
+    MCOR_TRY(mcor_reduce_counts(context, MCOR_GREATEST, &found->reached, 1));
+  }
+  return MCOR_OK;
+}
+
+static mcor_status mcor_find_speeds(mcor_flux_job* job)
+{
+  const mcor_flux_field* field = &job->field;
+  for (int64_t first = 0; first < job->cells.count; first += MCOR_GAUGE_BATCH)
+  {
+    const int64_t rest = job->cells.count - first;
+    const int count = rest < MCOR_GAUGE_BATCH ? (int)rest : MCOR_GAUGE_BATCH;
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_flux_cell* cell = &job->cells.of[first + i];
+      const double* counts = job->patches.of[cell->patch].counts;
+      field->at[i][0] = ((double)cell->u + 0.5) / counts[0];
+      field->at[i][1] = job->is_plane ? 0 : ((double)cell->v + 0.5) / counts[1];
+      field->at[i][2] = (double)cell->patch;
+    }
+    MCOR_TRY(mcor_sample_flux(job, count));
+    for (int i = 0; i < count; ++i)
+    {
+      const mcor_patch* patch = &job->patches.of[job->cells.of[first + i].patch];
+      mcor_flux_section* found = &job->found[patch->section];
+      found->reached = found->reached || field->weight[i] != 0;
+      if (field->weight[i] >= job->edges.level)
+      {
+        const double* velocity = field->velocity + (int64_t)i * job->velocity_components;
+        found->speed = fmax(found->speed, sqrt(mcor_speed_along(job, i, velocity)));
+        found->density = fmax(found->density, fabs(field->density[i]));
+      }
+    }
+  }
+  return mcor_scale_sections(job);
+}
+
+/* ---- division ---- */
+
+/* Makes the pieces of cells [first, last). */
+static mcor_status mcor_begin_pieces(mcor_flux_job* job, int64_t first, int64_t last)
+{
+  job->pieces.count = 0;
+  for (int64_t i = first; i < last; ++i)
+  {
+    const mcor_flux_cell* cell = &job->cells.of[i];
+    const mcor_patch* patch = &job->patches.of[cell->patch];
+    const double u[2] = { (double)cell->u / patch->counts[0],
+      (double)(cell->u + 1) / patch->counts[0] };
+    const double v[2] = { (double)cell->v / patch->counts[1],
+      (double)(cell->v + 1) / patch->counts[1] };
+    const double middle[2] = { 0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1]) };
+    const double size = job->is_plane ? u[1] - u[0] : 0.5 * (u[1] - u[0]) * (v[1] - v[0]);
+    const double low = job->is_plane ? 0 : v[0];
+    mcor_flux_piece piece = { .patch = cell->patch,
+      .factor = 1,
+      .corner = { { u[0], low }, { u[1], low }, { u[0], v[1] } },
+      .area = size * mcor_patch_measure(patch, middle) };
+    MCOR_APPEND(job->edges.context, &job->pieces, piece);
+    /* A triangle patch has no second piece beyond its diagonal. */
+    if (!job->is_plane &&
+      (patch->shape != MCOR_PATCH_TRIANGLE || (double)(cell->u + cell->v + 2) <= patch->counts[0]))
+    {
+      const double corner[3][2] = { { u[1], v[1] }, { u[0], v[1] }, { u[1], v[0] } };
+      memcpy(piece.corner, corner, sizeof corner);
+      MCOR_APPEND(job->edges.context, &job->pieces, piece);
+    }
+  }
+  return MCOR_OK;
+}
+
+/* Whether the parts of a piece may replace it in the sum. Sets `sum` to the sum of the parts. */
+static bool mcor_is_settled(const mcor_flux_job* job, const mcor_flux_piece* piece,
+  const mcor_flux_piece* parts, double sum[MCOR_FLUX_SUMS])
+{
+  const mcor_flux_section* section = &job->found[job->patches.of[piece->patch].section];
+  const double tolerance = MCOR_FLUX_TOLERANCE *
+    fmax(piece->area, MCOR_FLUX_SMALL * sqrt(piece->area) * sqrt(section->area));
+  const double scale[MCOR_FLUX_SUMS] = { 1, section->speed, section->speed * section->density };
+  double bulge = 0;
+  bool settled = true;
+  memset(sum, 0, MCOR_FLUX_SUMS * sizeof *sum);
+  for (int part = 0; part < job->form->parts; ++part)
+  {
+    settled = settled && !(parts[part].unclear && parts[part].depth < MCOR_FLUX_UNCLEAR_DEPTH);
+    bulge += parts[part].bulge;
+    for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+    {
+      sum[s] += parts[part].sum[s];
+    }
+  }
+  settled = settled && bulge <= MCOR_FLUX_BULGE * tolerance;
+  for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+  {
+    settled = settled && fabs(sum[s] - piece->sum[s]) <= tolerance * scale[s];
+  }
+  return settled || parts[0].depth >= MCOR_FLUX_DEPTH;
+}
+
+/* Divides the pieces into their parts until they are settled, and adds them to their sections. */
+static mcor_status mcor_settle_pieces(mcor_flux_job* job)
+{
+  const int divided = job->form->parts;
+  while (job->pieces.count > 0)
+  {
+    job->parts.count = 0;
+    for (int64_t i = 0; i < divided * job->pieces.count; ++i)
+    {
+      const mcor_flux_piece* whole = &job->pieces.of[i / divided];
+      mcor_flux_piece part = *whole;
+      ++part.depth;
+      for (int c = 0; c < 3; ++c)
+      {
+        double at[3];
+        mcor_place_point(job, whole, job->form->part[i % divided][c], at);
+        memcpy(part.corner[c], at, sizeof part.corner[c]);
+      }
+      MCOR_APPEND(job->edges.context, &job->parts, part);
+    }
+    MCOR_TRY(mcor_measure_pieces(job, &job->parts));
+    mcor_flux_piece* parts = job->parts.of;
+    int64_t left = 0;
+    for (int64_t i = 0; i < job->pieces.count; ++i)
+    {
+      const mcor_flux_piece* piece = &job->pieces.of[i];
+      mcor_flux_section* found = &job->found[job->patches.of[piece->patch].section];
+      double sum[MCOR_FLUX_SUMS];
+      if (!mcor_is_settled(job, piece, &parts[divided * i], sum))
+      {
+        memmove(&parts[left], &parts[divided * i], (size_t)divided * sizeof *parts);
+        left += divided;
+        continue;
+      }
+      for (int s = 0; s < MCOR_FLUX_SUMS; ++s)
+      {
+        found->sum[s] += llrint(fmin(fmax(sum[s] / found->unit[s], -0x1p62), 0x1p62));
+      }
+    }
+    const mcor_flux_pieces settled = job->pieces;
+    job->pieces = job->parts;
+    job->pieces.count = left;
+    job->parts = settled;
+  }
+  return MCOR_OK;
+}
+
+/* Adds up all cells. */
+static mcor_status mcor_add_fluxes(mcor_gauge_job* edges)
+{
+  mcor_flux_job* job = (mcor_flux_job*)edges;
+  const size_t n = MCOR_GAUGE_BATCH;
+  const double count = (double)job->cells.count;
+  double* samples = malloc(8 * n * sizeof *samples);
+  MCOR_TRY(mcor_allocated(edges->context, samples));
+  double *weight = samples + 3 * n, *velocity = weight + n, *density = velocity + 3 * n;
+  job->field =
+    (mcor_flux_field){ (double(*)[3])samples, weight, velocity, density, { velocity, density } };
+  MCOR_TRY(mcor_find_speeds(job));
+  for (int64_t first = 0, last; first < job->cells.count; first = last)
+  {
+    const int64_t rest = job->cells.count - first;
+    last = first + (rest < MCOR_FLUX_TOGETHER ? rest : MCOR_FLUX_TOGETHER);
+    MCOR_TRY(mcor_report(
+      edges->context, "flux", 0.2 + 0.8 * (double)first / count, 0.2 + 0.8 * (double)last / count));
+    MCOR_TRY(mcor_begin_pieces(job, first, last));
+    MCOR_TRY(mcor_measure_pieces(job, &job->pieces));
+    MCOR_TRY(mcor_settle_pieces(job));
+  }
+  return MCOR_OK;
+}
 
 /* ---- the call ---- */
 

@@ -139,9 +139,4 @@ void mcor_place_point(const mcor_flux_job* job, const mcor_flux_piece* piece, in
 /* Integrates pieces. */
 mcor_status mcor_measure_pieces(mcor_flux_job* job, mcor_flux_pieces* pieces);
 
-/* mcor_flux_divide.c. Adds up all cells. A rank without particles calls mcor_scale_sections alone,
- * because it reduces over all ranks. */
-mcor_status mcor_add_fluxes(mcor_gauge_job* job);
-mcor_status mcor_scale_sections(mcor_flux_job* job);
-
 #endif

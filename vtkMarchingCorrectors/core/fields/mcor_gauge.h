@@ -85,20 +85,10 @@ mcor_status mcor_bound_level(mcor_context* context, const mcor_input* input,
  * `work`. */
 mcor_status mcor_run_points(
   mcor_gauge_job* job, const mcor_input* input, mcor_status (*work)(mcor_gauge_job*));
-
-/* mcor_gauge_line.c */
 mcor_gauge_label mcor_label_gauge(const char* name, int64_t number);
 /* Finds the cells of a box along x, y, z; tells whether a point is in one of them. */
 void mcor_own_cells(const mcor_context* context, const double* box, double cells[3][2]);
 bool mcor_owns_point(const mcor_context* context, const double point[3], double cells[3][2]);
-mcor_status mcor_check_line(mcor_context* context, const mcor_gauge_line* line, int64_t number);
-/* Returns the greatest distance between samples, L. */
-double mcor_gauge_step(double h_scale, double smoothing_length_min);
-/* Appends the samples of a line; with a box, only the owned ones. The lattice must be known. */
-mcor_status mcor_plan_line(mcor_gauge_job* job, int64_t number);
-/* Makes the readings of all lines from the records of all ranks. */
-mcor_status mcor_read_lines(
-  const mcor_gauge_job* job, const mcor_gauge_place* records, int64_t count);
 
 /* mcor_gauge_solve.c. Evaluates entries [first, last) of the job's samples, and appends the
  * results to its records. */

@@ -154,7 +154,7 @@ mcor_options core_options(const double* iso)
   options.wall_share = 0;  /* ends nothing, unless a test says so */
   options.level_limit = 0; /* where a test does not ask for others */
   options.iso_values = iso;
-  options.iso_count = 1;
+  options.iso_count = iso != NULL;
   return options;
 }
 

@@ -16,6 +16,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <string.h>
 /* cmocka wants the above first. */
 #include <cmocka.h>
 
@@ -35,6 +36,15 @@
     const mcor_status core_status_ = (call);                                                       \
     CORE_CHECK(core_status_ == MCOR_OK, "%s: %s", mcor_status_name(core_status_),                  \
       mcor_last_error(context));                                                                   \
+  } while (0)
+
+/* The call fails with this status, and a sentence that has these words. */
+#define CORE_FAILS(context, expected, call, words)                                                 \
+  do                                                                                               \
+  {                                                                                                \
+    const mcor_status core_status_ = (call);                                                       \
+    CORE_CHECK(core_status_ == (expected) && strstr(mcor_last_error(context), words), "%s: %s",    \
+      mcor_status_name(core_status_), mcor_last_error(context));                                   \
   } while (0)
 
 /* Before a declaration: what it declares is freed at the end of its block, in reverse order. */
@@ -80,7 +90,7 @@ double core_slope(const double x[3]); /* linear */
 
 /* As core_input, but the particles stay on the device after the extraction. */
 mcor_input core_input_to_keep(const particle_set* set);
-mcor_options core_options(const double* iso);
+mcor_options core_options(const double* iso); /* NULL: no iso value */
 
 /* Particle i of the result is particle order[i] of the set. */
 particle_set core_permute(const particle_set* set, const int64_t* order);

@@ -30,7 +30,6 @@ static mcor_derivatives derive(mcor_context* context, const particle_set* set, c
   input.attributes = &attribute;
   input.attribute_count = 1;
   mcor_options options = core_options(NULL);
-  options.iso_count = 0;
   options.precision = precision;
   options.dimension = 3; /* also of three particles */
   mcor_derivatives derivatives;

@@ -112,7 +112,6 @@ static mcor_input fluid_input(const fluid* made)
 static mcor_options flux_options(mcor_type precision)
 {
   mcor_options options = core_options(NULL);
-  options.iso_count = 0;
   options.precision = precision;
   return options;
 }

@@ -24,7 +24,6 @@ static double* probe_points(int64_t count, double size, uint64_t seed)
 static mcor_options probe_options(void)
 {
   mcor_options options = core_options(NULL);
-  options.iso_count = 0;
   options.outputs |= MCOR_OUT_GRADIENTS;
   return options;
 }
@@ -289,7 +288,6 @@ static void test_odd_points(void** state)
   input.attributes = &attribute;
   input.attribute_count = 1;
   mcor_options options = core_options(NULL);
-  options.iso_count = 0;
   const double points[] = { 0, 0, 0, NAN, 0, 0, 1e300, 0, 0, INFINITY, 0, 0, -40, 0, 0 };
   CORE_FREED double* copy = core_copy(points, sizeof points);
   const mcor_array at = core_array(copy, 3);
@@ -323,7 +321,6 @@ static void test_threshold_itself(void** state)
   const mcor_input input = core_input(&set);
   const mcor_array points = core_array(at, 3);
   mcor_options options = core_options(NULL);
-  options.iso_count = 0;
   mcor_samples samples;
   CORE_OK(context, mcor_probe(context, &input, &options, &points, 1, &samples));
   const double weight = samples.weight_sum[0];
@@ -394,7 +391,6 @@ static void test_kept_attributes(void** state)
   kept_call call = { .set = core_make_random(800, 6, 0.6, 1.2, 31), .options = core_options(NULL) };
   call.points = probe_points(KEPT_POINTS, 6, 9);
   call.other = probe_points(call.set.count, 3, 7);
-  call.options.iso_count = 0;
   call.input = core_input_to_keep(&call.set);
   call.input.attributes = call.attributes;
   call.input.attribute_count = 1;

@@ -26,6 +26,7 @@ static bad_call make_call(void)
   call.input = core_input(&call.set);
   call.vector = core_copy(call.set.position, (size_t)call.set.count * 3 * sizeof(double));
   call.options = core_options(NULL);
+  call.options.iso_count = 1;
   return call;
 }
 

@@ -284,12 +284,8 @@ static void test_points_and_rows(void** state)
   }
 }
 
-int main(int argc, char** argv)
+int main(void)
 {
-  if (argc > 1)
-  {
-    cmocka_set_test_filter(argv[1]);
-  }
   const struct CMUnitTest tests[] = { cmocka_unit_test(test_random_lines),
     cmocka_unit_test(test_estimated_length), cmocka_unit_test(test_adaptive_lines),
     cmocka_unit_test(test_periods), cmocka_unit_test(test_points_and_rows) };

@@ -57,9 +57,7 @@ static void test_vertex_limit(void** state)
   mesh->march_count = mesh->vertex_count = MCOR_COUNT_LIMIT - 1;
   context->run.options = &options;
   context->run.statistics = &surface.statistics;
-  assert_int_equal(mcor_trim(context), MCOR_OUT_OF_CAPACITY);
-  CORE_CHECK(
-    strstr(mcor_last_error(context), "2147479553 vertices"), "%s", mcor_last_error(context));
+  CORE_FAILS(context, MCOR_OUT_OF_CAPACITY, mcor_trim(context), "2147479553 vertices");
   mcor_release_memory(context);
 }
 

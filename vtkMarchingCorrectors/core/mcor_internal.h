@@ -308,8 +308,6 @@ mcor_status mcor_list_components(
   mcor_context* context, const mcor_input* input, bool of_surface, int64_t* not_finite);
 bool mcor_evaluate_without_scalar(const mcor_input* input, mcor_options* options);
 mcor_status mcor_load_attributes(mcor_context* context, const mcor_input* input, int first);
-mcor_status mcor_find_curvature(mcor_context* context); /* likewise */
-mcor_status mcor_find_nearest(mcor_context* context);   /* of all vertices */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface);
 bool mcor_output_evaluates(const mcor_context* context);

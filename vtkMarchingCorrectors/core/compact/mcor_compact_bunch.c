@@ -181,34 +181,28 @@ static int mcor_size_of(const mcor_bunches* bunches, int32_t bunch)
   return size;
 }
 
-/* Finds the fan of lines to and from a bunch. */
-static bool mcor_read_line_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
-{
-  int within = 0, before = 0, behind = 0;
-  for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
-  {
-    const cl_int* corner = bunches->triangles + e / 3 * 3;
-    const int c = e % 3;
-    const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
-    within += joins && c == 0;
-    before += !joins && c == 1;
-    behind += !joins && c == 0;
-    fan->from[0] = !joins && c == 1 ? corner[0] : fan->from[0];
-    fan->to[0] = !joins && c == 0 ? corner[1] : fan->to[0];
-  }
-  fan->count = 1;
-  return mcor_size_of(bunches, bunch) - within == 1 && before == 1 && behind == 1;
-}
-
 /* Finds the fan around a bunch. Returns false if the bunch cannot be drawn together, or has no
  * fan. */
 static bool mcor_read_fan(const mcor_bunches* bunches, int32_t bunch, mcor_fan* fan)
 {
+  int within = 0; /* triangles with two or three corners in the bunch; lines with two */
   if (bunches->corners == 2)
   {
-    return mcor_read_line_fan(bunches, bunch, fan);
+    int before = 0, behind = 0;
+    for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
+    {
+      const cl_int* corner = bunches->triangles + e / 3 * 3;
+      const int c = e % 3;
+      const bool joins = bunches->first[corner[0]] == bunches->first[corner[1]];
+      within += joins && c == 0;
+      before += !joins && c == 1;
+      behind += !joins && c == 0;
+      fan->from[0] = !joins && c == 1 ? corner[0] : fan->from[0];
+      fan->to[0] = !joins && c == 0 ? corner[1] : fan->to[0];
+    }
+    fan->count = 1;
+    return mcor_size_of(bunches, bunch) - within == 1 && before == 1 && behind == 1;
   }
-  int within = 0; /* triangles with two or three corners in the bunch */
   fan->count = 0;
   for (int32_t e = bunches->star[bunch]; e >= 0; e = bunches->before[e])
   {

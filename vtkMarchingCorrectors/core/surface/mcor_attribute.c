@@ -146,27 +146,6 @@ static mcor_status mcor_store_attributes(
   return status;
 }
 
-mcor_status mcor_find_curvature(mcor_context* context)
-{
-  mcor_mesh* mesh = &context->mesh;
-  MCOR_TRY(mcor_reserve(
-    context, &mesh->curvature, 2 * (size_t)mesh->vertex_count * context->cl.real_size));
-  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_curvature_points",
-    MCOR_BUFFER(&mesh->offset), MCOR_REAL(context->run.iso.relative), MCOR_INT(context->space.flat),
-    MCOR_BUFFER(&mesh->curvature));
-}
-
-mcor_status mcor_find_nearest(mcor_context* context)
-{
-  const mcor_mesh* mesh = &context->mesh;
-  mcor_buffer* nearest = &context->attributes.nearest;
-  const bool uniform = context->measure.support_min == context->measure.support_max;
-  MCOR_TRY(mcor_reserve(context, nearest, (size_t)mesh->vertex_count * sizeof(cl_int)));
-  return MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_nearest",
-    MCOR_BUFFER(&mesh->offset), MCOR_INT(uniform), MCOR_BUFFER(&context->grid.order),
-    MCOR_BUFFER(nearest));
-}
-
 /* Adds the attributes of the vertices that go to the output, see mcor_is_output. */
 mcor_status mcor_add_attributes(
   mcor_context* context, const mcor_input* input, const cl_int* scanned, mcor_surface* surface)

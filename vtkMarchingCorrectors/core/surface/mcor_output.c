@@ -378,8 +378,11 @@ static mcor_status mcor_append_mesh(
   mcor_context* context, const mcor_input* input, bool all, mcor_download* download)
 {
   mcor_surface* surface = download->surface;
-  const mcor_options* options = context->run.options;
-  const int64_t triangles = context->mesh.triangle_count, base = surface->point_count;
+  mcor_mesh* mesh = &context->mesh;
+  mcor_buffer* nearest = &context->attributes.nearest;
+  const unsigned wanted = context->run.options->outputs;
+  const size_t vertices = (size_t)mesh->vertex_count, real = context->cl.real_size;
+  const int64_t triangles = mesh->triangle_count, base = surface->point_count;
   int count;
   MCOR_TRY(mcor_number_vertices(context, all, &count));
   MCOR_RETURN_IF(base + count > INT32_MAX, context, MCOR_OUT_OF_CAPACITY,
@@ -387,17 +390,26 @@ static mcor_status mcor_append_mesh(
     (long long)(base + count), INT32_MAX);
   if (count > 0)
   {
-    if (options->outputs & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
+    const bool uniform = context->measure.support_min == context->measure.support_max;
+    if (wanted & MCOR_OUT_BOUNDARY_EIGENVALUE) /* trimming left it at other vertices */
     {
-      mcor_buffer* eigenvalue = &context->trim.eigenvalue;
-      MCOR_TRY(mcor_reserve(
-        context, eigenvalue, (size_t)context->mesh.vertex_count * context->cl.real_size));
-      MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, eigenvalue));
+      MCOR_TRY(mcor_reserve(context, &context->trim.eigenvalue, vertices * real));
+      MCOR_TRY(mcor_evaluate_boundary(context, MCOR_ALL_VERTICES, &context->trim.eigenvalue));
     }
-    MCOR_TRY(options->outputs & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE)
-        ? mcor_find_curvature(context)
-        : MCOR_OK);
-    MCOR_TRY(options->outputs & MCOR_OUT_NEAREST_PARTICLE ? mcor_find_nearest(context) : MCOR_OK);
+    if (wanted & (MCOR_OUT_MEAN_CURVATURE | MCOR_OUT_GAUSS_CURVATURE))
+    {
+      MCOR_TRY(mcor_reserve(context, &mesh->curvature, 2 * vertices * real));
+      MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_curvature_points",
+        MCOR_BUFFER(&mesh->offset), MCOR_REAL(context->run.iso.relative),
+        MCOR_INT(context->space.flat), MCOR_BUFFER(&mesh->curvature)));
+    }
+    if (wanted & MCOR_OUT_NEAREST_PARTICLE)
+    {
+      MCOR_TRY(mcor_reserve(context, nearest, vertices * sizeof(cl_int)));
+      MCOR_TRY(MCOR_LAUNCH_AT_VERTICES(context, MCOR_ALL_VERTICES, "mcor_attribute_nearest",
+        MCOR_BUFFER(&mesh->offset), MCOR_INT(uniform), MCOR_BUFFER(&context->grid.order),
+        MCOR_BUFFER(nearest)));
+    }
     MCOR_TRY(mcor_map_vertices(download));
     mcor_number_lines(context, download->scanned, base);
   }

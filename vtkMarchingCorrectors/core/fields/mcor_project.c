@@ -147,16 +147,13 @@ static mcor_status mcor_place_image(mcor_project_job* job, bool* is_empty)
       "The period along %c is %g, too short for support radii of up to %g. Correct the period, or "
       "the smoothing lengths.",
       'x' + axis, job->period[a], high[6] * support);
-    const bool is_open = a >= context->space.axes; /* across the plane */
-    job->box[2 * a] = is_open ? -INFINITY
-      : isfinite(from)        ? from
-      : is_periodic           ? periodic[2 * a]
-                              : -INFINITY;
-    job->box[2 * a + 1] = is_open ? INFINITY
-      : isfinite(to)              ? to
-      : is_periodic               ? periodic[2 * a + 1]
-                                  : INFINITY;
-    is_bounded = is_bounded || isfinite(job->box[2 * a]) || isfinite(job->box[2 * a + 1]);
+    const bool is_across = a >= context->space.axes; /* the plane */
+    for (int i = 2 * a; i < 2 * a + 2; ++i)
+    {
+      const double given = i % 2 ? to : from, end = i % 2 ? INFINITY : -INFINITY;
+      job->box[i] = is_across ? end : isfinite(given) ? given : is_periodic ? periodic[i] : end;
+      is_bounded = is_bounded || isfinite(job->box[i]);
+    }
     MCOR_RETURN_IF(
       is_periodic && job->box[2 * a + 1] - job->box[2 * a] > MCOR_MOST_IMAGES * job->period[a],
       context, MCOR_INVALID_ARGUMENT,

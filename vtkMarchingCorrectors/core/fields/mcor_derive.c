@@ -33,8 +33,9 @@ typedef struct mcor_derive_run
   mcor_buffer arrays;     /* fix [varying_count][grid.count], sorted */
   mcor_point_batch batch; /* of particles */
   mcor_buffer moments, slopes;
-  int first, count;  /* sorted particles in the batch */
-  int inside;        /* particles of the batch whose gradients are wanted */
+  void *orders, *moment, *slope; /* views of the batch's order, and of these */
+  int first, count;              /* sorted particles in the batch */
+  int inside;                    /* particles of the batch whose gradients are wanted */
   cl_int* particles; /* [grid.count] index on the device, in input order, of each sorted particle */
 } mcor_derive_run;
 
@@ -69,27 +70,20 @@ static bool mcor_invert(const double m[3][3], double inverse[3][3])
   return true;
 }
 
-typedef struct mcor_derive_job
-{
-  const mcor_derive_run* run;
-  void *order, *moments, *slopes; /* views */
-} mcor_derive_job;
-
 static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t last)
 {
-  const mcor_derive_job* job = data;
-  const mcor_derive_run* run = job->run;
+  const mcor_derive_run* run = data;
   const mcor_context* context = run->context;
   const mcor_attributes* attributes = &context->attributes;
   const mcor_derivatives* derivatives = run->derivatives;
   for (int64_t i = first; i < last; ++i)
   {
     const int64_t to =
-      mcor_source_of(context, run->particles[run->first + ((const cl_int*)job->order)[i]]);
+      mcor_source_of(context, run->particles[run->first + ((const cl_int*)run->orders)[i]]);
     double m[3][3], inverse[3][3];
     for (int k = 0; k < 9; ++k)
     {
-      m[k / 3][k % 3] = mcor_get_real(context, job->moments, 9 * i + k);
+      m[k / 3][k % 3] = mcor_get_real(context, run->moment, 9 * i + k);
     }
     if (context->space.axes == 2) /* keeps the condition of two axes where the third is empty */
     {
@@ -111,7 +105,7 @@ static void mcor_put_derivatives(void* data, int slice, int64_t first, int64_t l
       double slope[3];
       for (int a = 0; a < 3; ++a)
       {
-        slope[a] = mcor_get_real(context, job->slopes, 3 * (i * attributes->varying_count + c) + a);
+        slope[a] = mcor_get_real(context, run->slope, 3 * (i * attributes->varying_count + c) + a);
       }
       for (int a = 0; a < 3; ++a)
       {
@@ -163,13 +157,12 @@ static mcor_status mcor_derive_batch(mcor_derive_run* run)
   }
   MCOR_TRY(mcor_finish(context));
   MCOR_TRY(mcor_report_launch(context));
-  mcor_derive_job job = { .run = run };
-  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &job.order },
-    { &run->moments, n * 9 * real, &job.moments },
-    { &run->slopes, n * 3 * (size_t)arrays * real, &job.slopes } };
+  const mcor_mapping views[] = { { &run->batch.order, n * sizeof(cl_int), &run->orders },
+    { &run->moments, n * 9 * real, &run->moment },
+    { &run->slopes, n * 3 * (size_t)arrays * real, &run->slope } };
   mcor_status status = mcor_map_all(context, views, 3);
   MCOR_THEN(status,
-    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, &job, NULL));
+    mcor_parallel_run(context, run->inside, MCOR_HEAVY_GRAIN, mcor_put_derivatives, run, NULL));
   return mcor_unmap_all(context, views, 3, status);
 }
 

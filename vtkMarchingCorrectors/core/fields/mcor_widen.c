@@ -31,12 +31,17 @@
 
 typedef struct mcor_widen_run
 {
+  const mcor_context* context;
+  const mcor_input* input;
   mcor_widening* out;
   double widest, iso;
   mcor_buffer sizes, factor, limited, wanted, list, outside;
   mcor_point_batch batch;
-  cl_int*
-    originals; /* whether a sorted particle is in the box, and no periodic image; NULL: all are */
+  /* Whether a sorted particle is in the box, and no periodic image; NULL: all are. */
+  cl_int* originals;
+  void *order, *weight, *inv_h; /* views, as are these, but NULL if only volumes are wanted */
+  void *factors, *is_outside;
+  int64_t left[MCOR_SLICES]; /* particles outside */
 } mcor_widen_run;
 
 static void mcor_release_run(mcor_context* context, mcor_widen_run* run)
@@ -89,23 +94,13 @@ static mcor_status mcor_find_factors(mcor_context* context, mcor_widen_run* run)
     MCOR_BUFFER(&run->limited), MCOR_BUFFER(&run->wanted), MCOR_BUFFER(&run->outside));
 }
 
-typedef struct mcor_widen_job
-{
-  const mcor_context* context;
-  const mcor_input* input;
-  const mcor_widen_run* run;
-  void *order, *weight, *inv_h, *factors,
-    *outside;                /* views; the last two: NULL if only volumes are wanted */
-  int64_t left[MCOR_SLICES]; /* particles outside */
-} mcor_widen_job;
-
 /* Writes factors to the particles' places in the input; volumes too, from the weights, if they
  * were computed. */
 static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
 {
-  mcor_widen_job* job = data;
-  const mcor_context* context = job->context;
-  const mcor_widening* out = job->run->out;
+  mcor_widen_run* run = data;
+  const mcor_context* context = run->context;
+  const mcor_widening* out = run->out;
   const mcor_sph_kernel kernel = context->run.options->sph_kernel;
   const bool plane = mcor_is_plane(context);
   const double cube = context->lattice.cube,
@@ -113,21 +108,21 @@ static void mcor_put_factors(void* data, int slice, int64_t first, int64_t last)
                  mcor_kernel_of(kernel)->norm * (plane ? mcor_kernel_of(kernel)->plane_factor : 1);
   for (int64_t i = first; i < last; ++i)
   {
-    const int64_t to = mcor_source_of(context, ((const cl_int*)job->order)[i]);
-    if (job->run->originals && !job->run->originals[i])
+    const int64_t to = mcor_source_of(context, ((const cl_int*)run->order)[i]);
+    if (run->originals && !run->originals[i])
     {
       continue;
     }
-    if (job->factors && !(job->input->solid && job->input->solid[to]))
+    if (run->factors && !(run->input->solid && run->input->solid[to]))
     {
-      out->factor[to] = mcor_get_real(context, job->factors, i);
-      out->outside[to] = ((const cl_int*)job->outside)[i] != 0;
-      job->left[slice] += out->outside[to];
+      out->factor[to] = mcor_get_real(context, run->factors, i);
+      out->outside[to] = ((const cl_int*)run->is_outside)[i] != 0;
+      run->left[slice] += out->outside[to];
     }
     if (out->volume)
     {
-      const double h = 1 / mcor_get_real(context, job->inv_h, i);
-      out->volume[to] = mcor_get_real(context, job->weight, i) / norm * h * h *
+      const double h = 1 / mcor_get_real(context, run->inv_h, i);
+      out->volume[to] = mcor_get_real(context, run->weight, i) / norm * h * h *
         (plane ? cube * cube : h * cube * cube * cube);
     }
   }
@@ -140,10 +135,13 @@ static mcor_status mcor_deliver_factors(
   mcor_grid* grid = &context->grid;
   const size_t n = (size_t)grid->count, real = n * context->cl.real_size;
   const int count = run->out->factor ? 5 : 3;
-  mcor_widen_job job = { .context = context, .input = input, .run = run };
-  const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &job.order },
-    { &grid->trim_weight, real, &job.weight }, { &grid->inv_h, real, &job.inv_h },
-    { &run->limited, real, &job.factors }, { &run->outside, n * sizeof(cl_int), &job.outside } };
+  run->context = context;
+  run->input = input;
+  memset(run->left, 0, sizeof run->left);
+  const mcor_mapping views[] = { { &grid->order, n * sizeof(cl_int), &run->order },
+    { &grid->trim_weight, real, &run->weight }, { &grid->inv_h, real, &run->inv_h },
+    { &run->limited, real, &run->factors },
+    { &run->outside, n * sizeof(cl_int), &run->is_outside } };
   int first[3], last[3];
   if (mcor_bound_particles(context, first, last))
   {
@@ -153,11 +151,11 @@ static mcor_status mcor_deliver_factors(
     MCOR_TRY(mcor_read(context, &context->points.flags, 0, run->originals, n * sizeof(cl_int)));
   }
   mcor_status status = mcor_map_all(context, views, count);
-  MCOR_THEN(status,
-    mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, &job, NULL));
+  MCOR_THEN(
+    status, mcor_parallel_run(context, grid->count, MCOR_HEAVY_GRAIN, mcor_put_factors, run, NULL));
   for (int i = 0; i < MCOR_SLICES; ++i)
   {
-    context->run.statistics->widening_outside += job.left[i];
+    context->run.statistics->widening_outside += run->left[i];
   }
   return mcor_unmap_all(context, views, count, status);
 }

@@ -9,18 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Disordered particles with one h, or with h that varies by a factor of 2. */
-static particle_set derive_set(bool varies)
-{
-  particle_set set = core_make_block(14, 0.15, 77, core_slope);
-  uint64_t seed = 5;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.smoothing_length[i] = varies ? 1.2 * (1 + random_unit(&seed)) : 1.3;
-  }
-  return set;
-}
-
 static mcor_derivatives derive(mcor_context* context, const particle_set* set, const double* values,
   int components, mcor_type precision, mcor_gradient form)
 {
@@ -40,22 +28,22 @@ static mcor_derivatives derive(mcor_context* context, const particle_set* set, c
 /* v = J x, J with a rotation, a shear and a strain; far from 0. */
 static const double derive_jacobian[3][3] = { { 0.3, -2, 0.5 }, { 2, -0.1, 1 }, { 0, 0.7, 0.4 } };
 
-static double* derive_linear(const particle_set* set)
-{
-  double* v = oracle_allocate(set->count * 3, sizeof(double));
-  for (int64_t i = 0; i < 3 * set->count; ++i)
-  {
-    const double *x = set->position + i / 3 * 3, *j = derive_jacobian[i % 3];
-    v[i] = 1000 + j[0] * x[0] + j[1] * x[1] + j[2] * x[2];
-  }
-  return v;
-}
-
+/* Disordered particles with one h, or with h that varies by a factor of 2. */
 static void derive_check_linear(
   mcor_context* context, bool varies, mcor_type precision, double tolerance)
 {
-  CORE_SET set = derive_set(varies);
-  CORE_FREED double* v = derive_linear(&set);
+  CORE_SET set = core_make_block(14, 0.15, 77, core_slope);
+  CORE_FREED double* v = oracle_allocate(set.count * 3, sizeof(double));
+  uint64_t seed = 5;
+  for (int64_t i = 0; i < set.count; ++i)
+  {
+    set.smoothing_length[i] = varies ? 1.2 * (1 + random_unit(&seed)) : 1.3;
+    for (int a = 0; a < 3; ++a)
+    {
+      const double *x = set.position + 3 * i, *j = derive_jacobian[a];
+      v[3 * i + a] = 1000 + j[0] * x[0] + j[1] * x[1] + j[2] * x[2];
+    }
+  }
   mcor_derivatives d = derive(context, &set, v, 3, precision, MCOR_GRADIENT_CORRECTED);
   assert_int_equal(d.statistics.fluid_particles, set.count);
   assert_true(d.statistics.seconds[MCOR_PHASE_CORRECTION] > 0);

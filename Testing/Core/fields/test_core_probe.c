@@ -42,16 +42,6 @@ static mcor_samples probe(mcor_context* context, const particle_set* set,
   return samples;
 }
 
-typedef struct probe_case
-{
-  mcor_sph_kernel sph_kernel;
-  mcor_field field;
-  mcor_type precision;
-  double offset; /* added to the scalar */
-  double tolerance;
-  double size; /* of the particles' box; where it is small, more reach a point than are gathered at once */
-} probe_case;
-
 /* Compares everything at one point. scale: of the array's values; steep: gradients are relative to the expected
  * one. Returns that one's largest component. */
 static double probe_compare(const oracle_field* field, const double point[3], double threshold,
@@ -87,65 +77,52 @@ static double probe_compare(const oracle_field* field, const double point[3], do
   return steepest;
 }
 
-static void probe_case_run(mcor_context* context, const probe_case* c)
-{
-  CORE_SET set = core_make_random(3000, c->size, 0.6, 1.8, 11);
-  set.has_solids = 1;
-  for (int64_t i = 0; i < set.count; ++i)
-  {
-    set.volume[i] = pow(c->size, 3) / 3000;
-    set.solid[i] = i % 7 == 0;
-    set.scalar[i] += c->offset;
-  }
-  const int64_t count = 2000;
-  CORE_FREED double* points = probe_points(count, 1.2 * c->size, 5);
-  mcor_options options = probe_options();
-  options.sph_kernel = c->sph_kernel;
-  options.field = c->field;
-  options.precision = c->precision;
-  CORE_SAMPLES samples = probe(context, &set, &options, points, count);
-  CORE_FIELD field = oracle_make_field(
-    &set, (oracle_kernel)c->sph_kernel, c->field == MCOR_SUM ? ORACLE_SUM : ORACLE_SHEPARD, 1);
-  int valid = 0;
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const double scale = 1 + (c->field == MCOR_SUM ? fabs(c->offset) : 0);
-    probe_compare(
-      &field, points + 3 * i, options.node_threshold, scale, false, c->tolerance, &samples, i);
-    valid += samples.valid[i];
-  }
-  assert_in_range(valid, count / 4, count - 1);
-}
-
 static void test_against_oracle(void** state)
 {
-  const probe_case cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 3e-6, 10 },
+  static const struct
+  {
+    mcor_sph_kernel sph_kernel;
+    mcor_field field;
+    mcor_type precision;
+    double offset; /* added to the scalar */
+    double tolerance;
+    double size; /* of the particles' box; where it is small, more reach a point than are gathered at once */
+  } cases[] = { { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 3e-6, 10 },
     { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 0, 1e-5, 3 },
     { MCOR_CUBIC_SPLINE, MCOR_SUM, MCOR_FLOAT32, 100, 3e-6, 10 },
     { MCOR_CUBIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT32, 1e5, 3e-6, 10 },
     { MCOR_QUINTIC_SPLINE, MCOR_SHEPARD, MCOR_FLOAT64, -3, 1e-11, 10 },
     { MCOR_SINC_6, MCOR_SHEPARD, MCOR_FLOAT64, -3, 1e-11, 10 } };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+  const int64_t count = 2000;
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c)
   {
-    probe_case_run(*state, cases + i);
-  }
-}
-
-/* Points within the supports of single particles, small and large ones. */
-static double* points_at(const particle_set* set, int64_t count)
-{
-  double* points = oracle_allocate(count * 3, sizeof(double));
-  uint64_t seed = 31;
-  for (int64_t i = 0; i < count; ++i)
-  {
-    const int64_t j = (int64_t)(random_unit(&seed) * (double)set->count);
-    for (int a = 0; a < 3; ++a)
+    const double size = cases[c].size, offset = cases[c].offset;
+    const bool is_sum = cases[c].field == MCOR_SUM;
+    CORE_SET set = core_make_random(3000, size, 0.6, 1.8, 11);
+    set.has_solids = 1;
+    for (int64_t i = 0; i < set.count; ++i)
     {
-      points[3 * i + a] =
-        set->position[3 * j + a] + set->smoothing_length[j] * (2 * random_unit(&seed) - 1);
+      set.volume[i] = pow(size, 3) / 3000;
+      set.solid[i] = i % 7 == 0;
+      set.scalar[i] += offset;
     }
+    CORE_FREED double* points = probe_points(count, 1.2 * size, 5);
+    mcor_options options = probe_options();
+    options.sph_kernel = cases[c].sph_kernel;
+    options.field = cases[c].field;
+    options.precision = cases[c].precision;
+    CORE_SAMPLES samples = probe(*state, &set, &options, points, count);
+    CORE_FIELD field = oracle_make_field(
+      &set, (oracle_kernel)cases[c].sph_kernel, is_sum ? ORACLE_SUM : ORACLE_SHEPARD, 1);
+    int valid = 0;
+    for (int64_t i = 0; i < count; ++i)
+    {
+      probe_compare(&field, points + 3 * i, options.node_threshold,
+        1 + (is_sum ? fabs(offset) : 0), false, cases[c].tolerance, &samples, i);
+      valid += samples.valid[i];
+    }
+    assert_in_range(valid, count / 4, count - 1);
   }
-  return points;
 }
 
 /* Smoothing lengths from 1 to 1000: values, weights and gradients in units of what they are made of. */
@@ -158,7 +135,17 @@ static void wide_range_run(mcor_context* context, mcor_type precision, double to
       0.8 * pow(set.smoothing_length[i], 2); /* the small ones weigh most where they are */
   }
   const int64_t count = 3000;
-  CORE_FREED double* points = points_at(&set, count);
+  CORE_FREED double* points = oracle_allocate(count * 3, sizeof(double));
+  uint64_t seed = 31;
+  for (int64_t i = 0; i < count; ++i) /* within the supports of single particles */
+  {
+    const int64_t j = (int64_t)(random_unit(&seed) * (double)set.count);
+    for (int a = 0; a < 3; ++a)
+    {
+      points[3 * i + a] =
+        set.position[3 * j + a] + set.smoothing_length[j] * (2 * random_unit(&seed) - 1);
+    }
+  }
   mcor_options options = probe_options();
   options.precision = precision;
   options.node_threshold = 0;
@@ -377,14 +364,6 @@ static void kept_probe(mcor_context* context, const kept_call* call, bool reused
   }
 }
 
-static void kept_extract(mcor_context* context, const kept_call* call)
-{
-  const double iso = 0.3;
-  mcor_options options = core_options(&iso);
-  CORE_SURFACE surface;
-  CORE_OK(context, mcor_extract(context, &call->input, &options, &surface));
-}
-
 static void test_kept_attributes(void** state)
 {
   mcor_context* context = *state;
@@ -408,7 +387,9 @@ static void test_kept_attributes(void** state)
   call.attributes[0] = core_array(call.other, 1);
   call.input.attributes_version = 6;
   kept_probe(context, &call, false, "other values");
-  kept_extract(context, &call);
+  const double iso = 0.3;
+  const mcor_options of_surface = core_options(&iso);
+  CORE_SURFACE surface = core_extract(context, &call.input, &of_surface);
   kept_probe(context, &call, false, "after a surface");
   call.options.h_scale = 1.2;
   kept_probe(context, &call, false, "another search grid");

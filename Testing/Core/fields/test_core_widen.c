@@ -121,38 +121,6 @@ static double expected_factor(const particle_set* set, int64_t j, double iso)
   return 1 + (s - 1) * ramp(crowd, 2.2, 4.5);
 }
 
-static void expect_factors(const particle_set* set, const mcor_widening* w, double iso)
-{
-  CORE_FREED double* s = oracle_allocate(set->count, sizeof *s);
-  for (int64_t j = 0; j < set->count; ++j)
-  {
-    s[j] = expected_factor(set, j, iso);
-  }
-  int wide = 0, narrow = 0, outside = 0;
-  for (int64_t j = 0; j < set->count; ++j)
-  {
-    double mean = 0, weight = 0;
-    for (int64_t k = 0; k < set->count; ++k)
-    {
-      const double h = set->smoothing_length[k],
-                   v = set->volume[k] * cubic(distance(set, j, k) / h) / (h * h * h);
-      mean += v * s[k];
-      weight += v;
-    }
-    const int is = weight_with(set, j, 1) >= iso && weight_with(set, j, w->factor[j]) < iso;
-    assert_int_equal(w->outside[j], is);
-    outside += is;
-    const double expected = fmax(fmin(s[j], mean / weight), 1);
-    CORE_CHECK(fabs(w->factor[j] - expected) < 2e-4, "particle %lld: %g, expected %g", (long long)j,
-      w->factor[j], expected);
-    wide += expected > 1.9;
-    narrow += expected < 1.01;
-  }
-  CORE_CHECK(wide > 50 && narrow >= 4, "%d wide, %d narrow", wide, narrow);
-  CORE_CHECK(outside > 10 && w->statistics.widening_outside == outside, "%d outside, expected %d",
-    (int)w->statistics.widening_outside, outside);
-}
-
 static void test_factors(void** state)
 {
   mcor_context* context = *state;
@@ -162,12 +130,39 @@ static void test_factors(void** state)
   mcor_options options = core_options(&iso);
   options.field = MCOR_WEIGHT_SUM;
   options.widen = WIDEST;
+  CORE_FREED double* s = oracle_allocate(set.count, sizeof *s);
+  for (int64_t j = 0; j < set.count; ++j)
+  {
+    s[j] = expected_factor(&set, j, iso);
+  }
   for (int precision = 0; precision < 2; ++precision)
   {
     CORE_WIDENING w;
     options.precision = precision ? MCOR_FLOAT64 : MCOR_FLOAT32;
     CORE_OK(context, mcor_widen(context, &input, &options, &w));
-    expect_factors(&set, &w, iso);
+    int wide = 0, narrow = 0, outside = 0;
+    for (int64_t j = 0; j < set.count; ++j)
+    {
+      double mean = 0, weight = 0;
+      for (int64_t k = 0; k < set.count; ++k)
+      {
+        const double h = set.smoothing_length[k],
+                     v = set.volume[k] * cubic(distance(&set, j, k) / h) / (h * h * h);
+        mean += v * s[k];
+        weight += v;
+      }
+      const int is = weight_with(&set, j, 1) >= iso && weight_with(&set, j, w.factor[j]) < iso;
+      assert_int_equal(w.outside[j], is);
+      outside += is;
+      const double expected = fmax(fmin(s[j], mean / weight), 1);
+      CORE_CHECK(fabs(w.factor[j] - expected) < 2e-4, "particle %lld: %g, expected %g", (long long)j,
+        w.factor[j], expected);
+      wide += expected > 1.9;
+      narrow += expected < 1.01;
+    }
+    CORE_CHECK(wide > 50 && narrow >= 4, "%d wide, %d narrow", wide, narrow);
+    CORE_CHECK(outside > 10 && w.statistics.widening_outside == outside, "%d outside, expected %d",
+      (int)w.statistics.widening_outside, outside);
   }
 }
 

@@ -95,7 +95,7 @@ double plane_range(const plane_field* f)
   return f->options->field == MCOR_WEIGHT_SUM ? 1 : high - low;
 }
 
-void plane_check_lines(const plane_field* f, double iso, const mcor_surface* surface, int closed)
+void plane_check_lines(const plane_field* f, const mcor_surface* surface, int closed)
 {
   const double cube = surface->statistics.cube_size;
   const double largest = ldexp(cube, surface->statistics.highest_level), range = plane_range(f);
@@ -148,7 +148,6 @@ void plane_check_lines(const plane_field* f, double iso, const mcor_surface* sur
           (1 - 1e-5) * length,
       "normal %lld", (long long)p);
   }
-  (void)iso;
 }
 
 mcor_options plane_options(const double* iso)

@@ -39,8 +39,7 @@ plane_sample plane_evaluate(const plane_field* field, double u, double v);
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface);
 /* As plane_compare; checks the lines' directions, ends and normals, too. closed: they must be
  * closed. */
-void plane_check_lines(
-  const plane_field* field, double iso, const mcor_surface* surface, int closed);
+void plane_check_lines(const plane_field* field, const mcor_surface* surface, int closed);
 
 /* Options for one iso value; lines are not trimmed. */
 mcor_options plane_options(const double* iso);

@@ -287,18 +287,6 @@ static plane_squares plane_create(const plane_field* f, double iso, double cube)
   return s;
 }
 
-static void plane_destroy(plane_squares* s)
-{
-  for (int l = 1; l <= s->top + 1; ++l)
-  {
-    free(s->split[l]);
-  }
-  oracle_map_free(&s->node_map);
-  oracle_map_free(&s->edge_map);
-  free(s->nodes);
-  free(s->edges);
-}
-
 /* Whether the field at the edge's crossing has too little fluid for a mean, so that trimming takes it. */
 static int plane_is_trimmed(const plane_squares* s, const plane_edge* e)
 {
@@ -409,6 +397,13 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
     (long long)found);
   plane_compare_lines(&s, of, surface);
   free(of);
-  plane_destroy(&s);
+  for (int l = 1; l <= s.top + 1; ++l)
+  {
+    free(s.split[l]);
+  }
+  oracle_map_free(&s.node_map);
+  oracle_map_free(&s.edge_map);
+  free(s.nodes);
+  free(s.edges);
   return crossed;
 }

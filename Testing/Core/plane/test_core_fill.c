@@ -47,30 +47,6 @@ static double fill_cross(
   return 0.5 * ((q[u] - p[u]) * (r[v] - p[v]) - (r[u] - p[u]) * (q[v] - p[v]));
 }
 
-static fill_edge* fill_list(const mcor_surface* s, int64_t* count)
-{
-  fill_edge* edges =
-    malloc((size_t)(3 * s->triangle_count + s->line_point_count + 1) * sizeof *edges);
-  assert_non_null(edges);
-  *count = 0;
-  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
-  {
-    const int64_t t = i / 3;
-    edges[(*count)++] =
-      (fill_edge){ s->triangles[i], s->triangles[3 * t + (i + 1) % 3], 0, s->band_value[t] };
-  }
-  for (int64_t l = 0; l < s->line_count; ++l)
-  {
-    for (int64_t i = s->line_offsets[l]; i + 1 < s->line_offsets[l + 1]; ++i)
-    {
-      const int32_t from = s->line_points[i];
-      edges[(*count)++] = (fill_edge){ from, s->line_points[i + 1], 1, s->iso_value[from] };
-    }
-  }
-  qsort(edges, (size_t)*count, sizeof *edges, fill_compare);
-  return edges;
-}
-
 /* Edges between the same two points. */
 static void fill_check_edge(const plane_field* f, const mcor_surface* s, const fill_edge* edges,
   int64_t count, double least, fill_report* report)
@@ -121,14 +97,31 @@ static void fill_check_edge(const plane_field* f, const mcor_surface* s, const f
 static fill_report fill_check(const plane_field* field, const mcor_surface* s)
 {
   fill_report report = { 0 };
-  int64_t count;
   CORE_CHECK(s->band_value && s->iso_value && s->triangle_count > 0, "nothing is filled");
   double least = INFINITY;
   for (int i = 0; i < field->options->iso_count; ++i)
   {
     least = fmin(least, field->options->iso_values[i]);
   }
-  CORE_FREED fill_edge* edges = fill_list(s, &count);
+  CORE_FREED fill_edge* edges =
+    malloc((size_t)(3 * s->triangle_count + s->line_point_count + 1) * sizeof *edges);
+  assert_non_null(edges);
+  int64_t count = 0;
+  for (int64_t i = 0; i < 3 * s->triangle_count; ++i)
+  {
+    const int64_t t = i / 3;
+    edges[count++] =
+      (fill_edge){ s->triangles[i], s->triangles[3 * t + (i + 1) % 3], 0, s->band_value[t] };
+  }
+  for (int64_t l = 0; l < s->line_count; ++l)
+  {
+    for (int64_t i = s->line_offsets[l]; i + 1 < s->line_offsets[l + 1]; ++i)
+    {
+      const int32_t from = s->line_points[i];
+      edges[count++] = (fill_edge){ from, s->line_points[i + 1], 1, s->iso_value[from] };
+    }
+  }
+  qsort(edges, (size_t)count, sizeof *edges, fill_compare);
   for (int64_t i = 0, next; i < count; i = next)
   {
     next = i + 1;

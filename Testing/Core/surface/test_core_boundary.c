@@ -24,34 +24,6 @@ static const char source[] =
   "    out[4 * i + 1 + a] = MCOR_GET(e[a], MCOR_LANES - 1);\n"
   "}\n";
 
-static void write_reals(
-  mcor_context* context, mcor_buffer* buffer, const double* values, size_t count)
-{
-  CORE_FREED float* single = oracle_allocate((int64_t)count, sizeof(float));
-  for (size_t i = 0; i < count; ++i)
-  {
-    single[i] = (float)values[i];
-  }
-  const size_t real = context->cl.real_size;
-  const void* data = real == sizeof(float) ? (const void*)single : (const void*)values;
-  CORE_OK(context, mcor_write(context, buffer, data, count * real));
-}
-
-/* Reads [count][4] reals, releases the buffer. */
-static void read_reals(mcor_context* context, mcor_buffer* buffer, int count, double* values)
-{
-  const size_t bytes = (size_t)count * 4 * context->cl.real_size;
-  void* host = malloc(bytes);
-  assert_non_null(host);
-  CORE_OK(context, mcor_read(context, buffer, 0, host, bytes));
-  for (int i = 0; i < 4 * count; ++i)
-  {
-    values[i] = mcor_get_real(context, host, i);
-  }
-  free(host);
-  mcor_release(context, buffer);
-}
-
 /* xx yy zz xy yz zx */
 static const double matrices[][6] = { { 0, 0, 0, 0, 0, 0 }, { 1, 1, 1, 0, 0, 0 },
   { 3, 1, 2, 0, 0, 0 }, { 2, 2, 2, 1, 1, 1 }, { 2, 2, 2, -1, -1, -1 }, { 1, 1, 1, 1, 1, 1 },
@@ -104,13 +76,27 @@ static void test_eigenvalues(void** state)
     double found[4 * N];
     core_build(*state, MCOR_CUBIC_SPLINE, MCOR_SHEPARD, (mcor_type)precision);
     core_extend_program(*state, source);
-    write_reals(*state, &in, matrices[0], N * 6);
+    const size_t real = precision == MCOR_FLOAT64 ? sizeof(double) : sizeof(float);
+    float single[6 * N];
+    double host[4 * N];
+    for (int i = 0; i < 6 * N; ++i)
+    {
+      single[i] = (float)matrices[i / 6][i % 6];
+    }
+    CORE_OK(*state,
+      mcor_write(*state, &in, real == sizeof(float) ? (const void*)single : (const void*)matrices,
+        N * 6 * real));
     CORE_OK(*state, mcor_reserve(*state, &out, N * 4 * sizeof(double)));
     CORE_OK(*state,
       MCOR_LAUNCH(
         *state, "test_eigen", MCOR_LIGHT, N, MCOR_INT(N), MCOR_BUFFER(&in), MCOR_BUFFER(&out)));
-    read_reals(*state, &out, N, found);
+    CORE_OK(*state, mcor_read(*state, &out, 0, host, N * 4 * real));
+    for (int i = 0; i < 4 * N; ++i)
+    {
+      found[i] = mcor_get_real(*state, host, i);
+    }
     mcor_release(*state, &in);
+    mcor_release(*state, &out);
     for (int i = 0; i < N; ++i)
     {
       check_eigen(matrices[i], found + 4 * i, precision == MCOR_FLOAT64 ? 1e-14 : 1e-6);

@@ -70,20 +70,6 @@ typedef struct cap_case
   mcor_type precision;
 } cap_case;
 
-/* Where caps are: sides of the cells of a box, else of a period, else infinite. */
-static void find_planes(const mcor_options* options, const mcor_surface* s, double planes[6])
-{
-  for (int i = 0; i < 6; ++i)
-  {
-    const double edge = s->statistics.cube_edges[i / 2], *period = options->periodic + i / 2 * 2;
-    const double begin = ceil(period[0] / edge - 0.5) * edge, box = options->box[i];
-    const bool has_box = box != 0 && !isinf(box);
-    planes[i] = has_box       ? ceil(box / edge - 0.5) * edge
-      : period[0] < period[1] ? begin + i % 2 * (period[1] - period[0])
-                              : (i % 2 ? INFINITY : -INFINITY);
-  }
-}
-
 /* Points of caps alone are on planes, with the oracle's values; their normals point out. */
 static void check_points(const particle_set* all, const mcor_options* options,
   const mcor_surface* open, const mcor_surface* closed, const double planes[6])
@@ -138,25 +124,10 @@ static void check_alike(const mcor_surface* open, const mcor_surface* s)
   }
 }
 
+/* Whether trimming, or a lack of weight, ends the surface at a point. */
 static int ends_at(const mcor_surface* s, int32_t p)
 {
   return s->boundary_flag[p] % 8 != 0 || s->weight_sum[p] < 0.5f;
-}
-
-/* Edges are open only where trimming, or a lack of weight, ends the surface. */
-static void check_open_edges(const mcor_surface* s, int is_closed)
-{
-  CORE_REPORT report = core_check_mesh(s);
-  for (int64_t i = 0; i < report.side_count; ++i)
-  {
-    const mesh_edge* side = report.side + i;
-    CORE_CHECK(mesh_count_sides(&report, side->a, side->b) == 2 ||
-        (ends_at(s, side->a) && ends_at(s, side->b)),
-      "the edge from point %d to %d is open", side->a, side->b);
-  }
-  CORE_CHECK(
-    !is_closed || (s->statistics.is_closed == (report.edges > 0) && report.boundary_edges == 0),
-    "%lld of %lld edges are open", (long long)report.boundary_edges, (long long)report.edges);
 }
 
 /* is_closed: nothing is trimmed. */
@@ -175,10 +146,27 @@ static void check_caps(
   options.capping = capping;
   CORE_SURFACE closed = core_extract(context, &input, &options);
   CORE_SET all = core_add_images(set, options.periodic);
-  find_planes(&options, &closed, planes);
+  for (int i = 0; i < 6; ++i) /* sides of the cells of a box, else of a period, else infinite */
+  {
+    const double edge = closed.statistics.cube_edges[i / 2], *period = options.periodic + i / 2 * 2;
+    const double begin = ceil(period[0] / edge - 0.5) * edge, box = options.box[i];
+    planes[i] = box != 0 && !isinf(box) ? ceil(box / edge - 0.5) * edge
+      : period[0] < period[1]           ? begin + i % 2 * (period[1] - period[0])
+                                        : (i % 2 ? INFINITY : -INFINITY);
+  }
   cap_check_prefix(&open, &closed);
   check_points(&all, &options, &open, &closed, planes);
-  check_open_edges(&closed, is_closed);
+  CORE_REPORT report = core_check_mesh(&closed);
+  for (int64_t i = 0; i < report.side_count; ++i)
+  {
+    const mesh_edge* side = report.side + i;
+    CORE_CHECK(mesh_count_sides(&report, side->a, side->b) == 2 ||
+        (ends_at(&closed, side->a) && ends_at(&closed, side->b)),
+      "the edge from point %d to %d is open", side->a, side->b);
+  }
+  CORE_CHECK(
+    !is_closed || (closed.statistics.is_closed == (report.edges > 0) && report.boundary_edges == 0),
+    "%lld of %lld edges are open", (long long)report.boundary_edges, (long long)report.edges);
   if (is_closed)
   {
     for (int i = 0; i < 6; ++i) /* beyond that there is nothing */

@@ -291,6 +291,8 @@ class RealFiles(CommandLineTest):
         self.assertIn('Name="Vel" NumberOfComponents="3"', surface)
         self.assertRegex(surface, 'type="Int64"[^>]*Name="Point ID"')
         self.check_table("crlf.csv", paraview.replace("\n", "\r\n") + "\r\n")
+        self.check_table("units.csv", "x (m),y (m),z (m),v (x),v (y)\n" + "\n".join(f"{x},{y},{z},1,2" for x, y, z in points))
+        self.assertIn('Name="v (x)"', self.output.read_text())
         self.check_table("spaces.csv", "x, y , z, rho\n" + "\n".join(f"{x}, {y}, {z}, 1e3" for x, y, z in points))
         self.check_table("excel.csv", "\ufeffPos.x [m];Pos.y [m];Pos.z [m];Rhop [kg/m^3]\n" + "\n".join(
             ";".join(repr(v).replace(".", ",").lstrip("0") + "0" * 600 for v in (*p, 1000.5)) for p in points))
@@ -300,7 +302,8 @@ class RealFiles(CommandLineTest):
             ("a,b\n1,2\n", "no columns of positions, which are called x, y and z, .* there are a, b"),
             ("x|y|z\n1|2|3\n", "no columns of positions, .* there are x.y.z"),
             ("x,y,z\n1,2\n", "line 2 has 2 values for 3 columns"), ("", "no row of values"), ("x,y,z\n", "holds no points"),
-            ("x,y,z\nnan,0,0\n", "not a number"), ("x\0y,z\n1,2,3\n", "line 1 is no text")])
+            ("x,y,z\nnan,0,0\n", "not a number"), ("x\0y,z\n1,2,3\n", "line 1 is no text; .* save it as UTF-8"),
+            ("x,y,z\r1,2,3\r", "carriage returns alone; save it with line feeds")])
 
     def test_columns(self):
         points = block((6, 6, 6))

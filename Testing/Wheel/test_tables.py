@@ -236,6 +236,8 @@ class Tables(Case):
         self.assertEqual(io.read(self.at("p.dat")).positions.tolist(), [[1.5, 0, 0], [-2, 1, 1]])
         self.at("p.txt").write_text("x y z vx vy vz\n1 2 3 4 5 6\n")
         self.assertEqual(io.read(self.at("p.txt")).arrays["Velocity"].tolist(), [[4, 5, 6]])
+        self.at("p.csv").write_text("x (m),y (m),z (m),v (x)\n1,2,3,4\n")
+        self.assertEqual(list(io.read(self.at("p.csv")).arrays), ["v (x)"])
         for data in (b"x,y,z\r1,2,3\r", "x,y,z\n1,2,3\n".encode("utf-16"), "x,y,z\r\n1,2,3".encode("utf-8-sig")):
             self.at("p.csv").write_bytes(data)
             self.assertEqual(io.read(self.at("p.csv")).positions.tolist(), [[1, 2, 3]])

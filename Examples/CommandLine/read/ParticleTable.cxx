@@ -129,11 +129,16 @@ public:
     }
     if (this->Line.find('\0') != std::string::npos)
     {
-      FailToRead(this->File, "line " + std::to_string(this->Number) + " is no text");
+      FailToRead(this->File,
+        "line " + std::to_string(this->Number) + " is no text; if it is UTF-16, save it as UTF-8");
     }
     if (!this->Line.empty() && this->Line.back() == '\r')
     {
       this->Line.pop_back();
+    }
+    if (this->Line.find('\r') != std::string::npos)
+    {
+      FailToRead(this->File, "its lines end in carriage returns alone; save it with line feeds");
     }
     return true;
   }
@@ -418,7 +423,12 @@ std::vector<std::string> NamesOf(const std::vector<View>& cells)
   std::set<std::string> taken;
   for (const View cell : cells)
   {
-    std::string name(Trimmed(cell.substr(0, cell.find(" ["))));
+    const std::size_t bracket = cell.find(" (");
+    const View inside = bracket == View::npos ? View() : cell.substr(bracket + 2);
+    const bool isUnit = // and not a component, as in "v (x)"
+      inside.size() != 2 || View("012345678xyzXYZ").find(inside[0]) == View::npos;
+    std::string name(
+      Trimmed(cell.substr(0, std::min(cell.find(" ["), isUnit ? bracket : View::npos))));
     name = name.empty() ? "Column" + std::to_string(names.size() + 1) : name;
     while (!taken.insert(name).second)
     {

@@ -43,6 +43,8 @@ def read(path: Union[PathName, Sequence[PathName]], *, types: Union[None, str, i
         raise
     except ImportError as error:
         package = "vtk" if str(error.name).startswith("vtk") else str(error.name).partition(".")[0]
+        if package == "marchingcorrectors":  # a module of Python's is hidden by a script of its name, say
+            raise
         raise FileError(f"{paths[0].name} needs the package {package}: pip install {package}.") from None
     except MemoryError:
         raise FileError(f"{paths[0].name} asks for more memory than there is: it is damaged, or too large.") from None

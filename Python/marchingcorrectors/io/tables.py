@@ -130,7 +130,7 @@ def name_columns(file, cells):
     check_width(file, len(cells))
     names = {}
     for i, cell in enumerate(cells):
-        name = cell.split(" [")[0].strip(' "') or f"Column{i + 1}"
+        name = re.sub(r" (\[|\((?![0-8xyzXYZ]\)$)).*", "", cell).strip(' "') or f"Column{i + 1}"
         names[name if name not in names else f"{name}_{i + 1}"] = i
     return list(names)
 

@@ -333,6 +333,10 @@ class RealFiles(CommandLineTest):
         film.write_text(steps)
         self.assertEqual([(round(t, 9), round(level, 1)) for t, _, level in self.levels([film], *H)],
                          [(0.4, 0.4), (0.6, 0.6), (0.9, 0.9)])
+        film.write_text(steps + "25\n")
+        self.one_sentence(self.run_program(film, "levels.csv", "--quiet", "--gauge", "a=0.25,0.25,-1:0.25,0.25,2", *H), 1,
+                          "film.xyz#3: .*film.xyz cannot be read: it ends before the second line of a step")
+        self.assertEqual(len(read_table(self.directory / "levels.csv")), 3)
         self.refuse_texts("bad.xyz", [
             ("5\nx\nA 1 2 3\n", "it ends before all particles of a step"), ("3\n", "ends before the second line"),
             ("1\nProperties=pos:R:x\nA 1 2 3\n", "Properties give pos x columns"), ("999999999999\nc\nA 1 2 3\n", "ends before")])

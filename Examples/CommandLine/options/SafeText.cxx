@@ -223,23 +223,3 @@ std::string FailureOf(const std::function<void()>& work)
     return error.what();
   }
 }
-
-void Sentences::Tell(const std::string& kind, const std::string& step, const std::string& sentence)
-{
-  if (++this->Counts[kind + sentence] == 1)
-  {
-    const bool isNamed = sentence.compare(0, step.size() + 1, step + " ") == 0;
-    Say(kind + (isNamed ? "" : step + ": ") + sentence);
-  }
-}
-
-void Sentences::TellCounts() const
-{
-  for (const auto& [sentence, count] : this->Counts)
-  {
-    if (count > 1)
-    {
-      Say(std::to_string(count - 1) + (count == 2 ? " more step: " : " more steps: ") + sentence);
-    }
-  }
-}

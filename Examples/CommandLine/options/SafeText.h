@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <functional>
-#include <map>
 #include <string>
 
 /// Text from a file or the command line, made fit for a terminal and for XML: one line of UTF-8.
@@ -36,18 +35,6 @@ void Say(const std::string& sentence);
 
 /// Returns why the work failed, in one sentence; empty if it did not fail.
 std::string FailureOf(const std::function<void()>& work);
-
-/// Prints each sentence of many steps once, with the first step's name, and at the end how often it
-/// came.
-class Sentences
-{
-public:
-  void Tell(const std::string& kind, const std::string& step, const std::string& sentence);
-  void TellCounts() const;
-
-private:
-  std::map<std::string, int> Counts;
-};
 
 /// The fewest digits that read back as the same number, in every locale.
 template <typename T>

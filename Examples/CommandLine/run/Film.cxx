@@ -108,7 +108,7 @@ public:
         {
           std::cout.flush(); // the file may be /dev/stdout
           WriteOutput(
-            this->Options.StatisticsFile, FilmAsJson(this->Options, this->Made, this->Last));
+            this->Options.StatisticsFile, FilmAsJson(this->Options, this->Reports, this->Last));
         }
       });
     return isGood;
@@ -134,7 +134,11 @@ private:
     }
   }
 
-  void Miss(std::size_t i, const std::string& error) override { this->Add(i, nullptr, 0.0, error); }
+  void Miss(std::size_t i, const std::string& error) override
+  {
+    const double time = this->Times.Get()[i];
+    this->Reports.push_back(StepAsJson(time, this->Times.ListFiles(time), error, nullptr, 0.0));
+  }
 
   void MakeImage(std::size_t i, vtkPointSet* particles, const std::string& progress,
     std::vector<std::string>& warnings)
@@ -213,7 +217,14 @@ private:
   /// Lists a step that was written, and says so.
   void Keep(std::size_t i, vtkFieldData* statistics, const std::string& what, double seconds)
   {
-    this->Add(i, statistics, seconds, "");
+    const double time = this->Times.Get()[i];
+    this->Entries += "    <DataSet timestep=\"" + DigitsOf(time) + "\" part=\"0\" file=\"" +
+      EscapedForXml(fs::path(this->Surfaces[i]).filename().string()) + "\"/>\n";
+    if (!this->Options.StatisticsFile.empty())
+    {
+      this->Reports.push_back(
+        StepAsJson(time, this->Times.ListFiles(time), this->Surfaces[i], statistics, seconds));
+    }
     this->List(false);
     if (!this->Options.Quiet)
     {
@@ -222,46 +233,28 @@ private:
     }
   }
 
-  /// The statistics of many steps are kept where somebody wants them only.
-  void Add(std::size_t i, vtkFieldData* statistics, double seconds, const std::string& error)
-  {
-    const double time = this->Times.Get()[i];
-    FilmStep step{ time, this->Times.ListFiles(time), this->Surfaces[i], error, "" };
-    if (!this->Options.StatisticsFile.empty())
-    {
-      step.Statistics = StepAsJson(step, statistics, seconds);
-    }
-    this->Made.push_back(step);
-  }
-
   /// Writes the lists and tables of all surfaces so far.
   void List(bool isLast)
   {
-    std::string entries;
-    for (const FilmStep& step : this->Made)
+    if (this->Entries.empty())
     {
-      entries += !step.Error.empty()
-        ? ""
-        : "    <DataSet timestep=\"" + DigitsOf(step.Time) + "\" part=\"0\" file=\"" +
-          EscapedForXml(fs::path(step.Output).filename().string()) + "\"/>\n";
+      return;
     }
-    if (!entries.empty())
-    {
-      this->ListFile.Write(
-        [&entries]
-        {
-          return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
-                 "  <Collection>\n" +
-            entries + "  </Collection>\n</VTKFile>\n";
-        },
-        isLast);
-      this->PieceFile.Write([this] { return this->Pieces; }, isLast);
-      this->NumberFile.Write([this] { return this->Numbers; }, isLast);
-    }
+    this->ListFile.Write(
+      [this]
+      {
+        return "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+               "  <Collection>\n" +
+          this->Entries + "  </Collection>\n</VTKFile>\n";
+      },
+      isLast);
+    this->PieceFile.Write([this] { return this->Pieces; }, isLast);
+    this->NumberFile.Write([this] { return this->Numbers; }, isLast);
   }
 
   const std::vector<std::string> Surfaces;
-  std::vector<FilmStep> Made;
+  std::string Entries;                ///< of the .pvd file
+  std::vector<std::string> Reports;   ///< of all steps, where somebody wants them
   vtkSmartPointer<vtkFieldData> Last; ///< of the last one that went well
   ColorScale Colors, FrameColors;
   std::string Pieces, Numbers; ///< tables

@@ -26,6 +26,7 @@
 #include <filesystem>
 #include <functional>
 #include <iomanip>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
@@ -370,7 +371,7 @@ Series::Series(Sharing& sharing)
 bool Series::MakeAll()
 {
   bool isGood = true;
-  Sentences said;
+  std::map<std::string, int> counts; // of each sentence, which is said once, with the first step
   for (std::size_t i = 0; i < this->Times.Get().size(); ++i)
   {
     const std::string label = this->Label(i);
@@ -391,13 +392,21 @@ bool Series::MakeAll()
     }
     for (const std::string& warning : error.empty() ? warnings : std::vector<std::string>{ error })
     {
-      if (this->Shared.IsFirst())
+      const std::string kind = error.empty() ? "warning: " : "";
+      if (this->Shared.IsFirst() && ++counts[kind + warning] == 1)
       {
-        said.Tell(error.empty() ? "warning: " : "", label, warning);
+        const bool isNamed = warning.compare(0, label.size() + 1, label + " ") == 0;
+        Say(kind + (isNamed ? "" : label + ": ") + warning);
       }
     }
     isGood = isGood && error.empty();
   }
-  said.TellCounts();
+  for (const auto& [sentence, count] : counts)
+  {
+    if (count > 1)
+    {
+      Say(std::to_string(count - 1) + (count == 2 ? " more step: " : " more steps: ") + sentence);
+    }
+  }
   return isGood;
 }

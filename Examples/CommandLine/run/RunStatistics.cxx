@@ -337,23 +337,24 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
     "\n";
 }
 
-std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds)
+std::string StepAsJson(double time, const std::vector<std::string>& inputs,
+  const std::string& result, vtkFieldData* run, double wallSeconds)
 {
-  const Members members = { { "time", Json(step.Time) }, { "inputs", JsonList(step.Inputs) } };
+  const Members members = { { "time", Json(time) }, { "inputs", JsonList(inputs) } };
   return Json(members +
     (run
-        ? Members{ { "output", QuotedForJson(step.Output) }, { "seconds", JsonSeconds(run) },
+        ? Members{ { "output", QuotedForJson(result) }, { "seconds", JsonSeconds(run) },
             { "statistics", JsonGroup(run, StatisticNames) }, { "wall_seconds", Json(wallSeconds) },
             { "peak_resident_bytes", Json(PeakResidentBytes()) } }
-        : Members{ { "error", QuotedForJson(step.Error) } }));
+        : Members{ { "error", QuotedForJson(result) } }));
 }
 
-std::string FilmAsJson(const Job& job, const std::vector<FilmStep>& steps, vtkFieldData* run)
+std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vtkFieldData* run)
 {
   Members each;
-  for (const FilmStep& step : steps)
+  for (const std::string& step : steps)
   {
-    each.emplace_back("", step.Statistics);
+    each.emplace_back("", step);
   }
   return Json(ListSetting(job, run) +
            Members{ { "steps", Json(each, "[]") },

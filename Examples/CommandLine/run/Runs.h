@@ -107,21 +107,13 @@ std::string StatisticsAsJson(const Job& job, const std::vector<vtkSmartPointer<v
   const std::vector<double>& wallSeconds, const std::vector<std::string>& warnings,
   double peakResidentBytes);
 
-/// Report on one step of a film.
-struct FilmStep
-{
-  double Time = 0.0;
-  std::vector<std::string> Inputs; ///< the files of the step, or of the two steps around the time
-  std::string Output;
-  std::string Error;      ///< one sentence; empty: the surface was written
-  std::string Statistics; ///< as StepAsJson() gives it
-};
-
-/// Reports a step whose surface was written (run is not null), or that failed.
-std::string StepAsJson(const FilmStep& step, vtkFieldData* run, double wallSeconds);
+/// Reports a step of a film, of these files: `result` is the surface's file, or, where `run` is null,
+/// why there is none.
+std::string StepAsJson(double time, const std::vector<std::string>& inputs,
+  const std::string& result, vtkFieldData* run, double wallSeconds);
 
 /// `run` is the last one that went well, or null.
-std::string FilmAsJson(const Job& job, const std::vector<FilmStep>& steps, vtkFieldData* run);
+std::string FilmAsJson(const Job& job, const std::vector<std::string>& steps, vtkFieldData* run);
 
 /// The most memory that this process has had so far; 0 where the system does not tell.
 double PeakResidentBytes();

@@ -121,10 +121,7 @@ mcor_status mcor_prepare(
     fmin(m->neighbours * pow(options->h_scale, 3), (double)(m->fluid_count + m->solid_count));
   mcor_place_box(context, options);
   context->grid.has_solids = context->measure.solid_count > 0 && context->run.uses_solids;
-  const mcor_build build = { .sph_kernel = options->sph_kernel,
-    .field = options->field,
-    .precision = options->precision,
-    .solids = context->grid.has_solids };
+  const mcor_build build = mcor_build_of(options, context->grid.has_solids);
   MCOR_TRY(mcor_choose_build(context, &build));
   if (!context->kept.grid)
   {

@@ -175,6 +175,12 @@ static inline double mcor_fluid_share(const mcor_context* context)
   return mcor_ends_at_solids(context) ? 1 - mcor_wall_share(context) : 0;
 }
 
+/* Returns the variant of the kernels that a call needs. */
+static inline mcor_build mcor_build_of(const mcor_options* options, bool solids)
+{
+  return (mcor_build){ options->sph_kernel, options->field, options->precision, solids };
+}
+
 /* Whether seeds are the paper's pairs. A free surface has no values for pairs to straddle. */
 static inline bool mcor_wants_pairs(const mcor_options* options)
 {
@@ -208,6 +214,18 @@ void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_
 #define MCOR_RELEASE_EACH(context, s)                                                              \
   mcor_release_each(context, (mcor_buffer*)(s), sizeof *(s) / sizeof(mcor_buffer))
 void mcor_release_each(mcor_context* context, mcor_buffer* buffers, size_t count);
+
+/* mcor_ranks.c. Turns the result of a function of options.ranks into a status. */
+mcor_status mcor_heard(mcor_context* context, int failed);
+/* Exchange between ranks; a process alone has all values already. */
+mcor_status mcor_reduce_doubles(
+  mcor_context* context, mcor_reduction reduction, double* values, int count);
+mcor_status mcor_reduce_counts(
+  mcor_context* context, mcor_reduction reduction, int64_t* values, int count);
+/* Gathers the records of all ranks, valid until the next gathering; alone, they are the
+ * caller's. */
+mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count, size_t width,
+  const void** all, int64_t* all_count);
 
 /* mcor_statistics.c. Reports what runs from one fraction of the call to another; the report may
  * cancel it. */

@@ -4,7 +4,6 @@
 /* Adaptive cubes: keys of split bricks, which are numbers of the bricks of all levels. Other
  * ranks and calls get split bricks as keys. */
 
-#include "mcor_ranks.h"
 #include "mcor_tree.h"
 
 #include <stdlib.h>
@@ -85,7 +84,7 @@ mcor_status mcor_join_splits(mcor_context* context, mcor_tree* tree)
   const void* all;
   int64_t count;
   mcor_status status = mcor_list_splits(context, tree, &own, &count);
-  MCOR_THEN(status, mcor_gather(context, own, count, sizeof *own, &all, &count));
+  MCOR_THEN(status, mcor_gather_records(context, own, count, sizeof *own, &all, &count));
   MCOR_THEN(status, mcor_take_splits(context, tree, all, count));
   free(own);
   return status;

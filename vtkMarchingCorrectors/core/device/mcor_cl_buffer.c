@@ -90,26 +90,6 @@ void mcor_begin_buffers(mcor_context* context)
   cl->bytes_peak = cl->bytes;
 }
 
-/* Takes the smallest kept buffer with enough room, unless it is far too large. */
-static bool mcor_take_kept(mcor_cl* cl, mcor_buffer* buffer, size_t bytes)
-{
-  int best = -1;
-  for (int i = 0; i < cl->kept_count; ++i)
-  {
-    const size_t size = cl->kept[i].size;
-    if (size >= bytes && size - size / 8 <= bytes && (best < 0 || size < cl->kept[best].size))
-    {
-      best = i;
-    }
-  }
-  if (best < 0)
-  {
-    return false;
-  }
-  *buffer = mcor_take_out(cl, best);
-  return true;
-}
-
 void mcor_release_all(mcor_context* context, mcor_buffer* const buffers[], size_t count)
 {
   for (size_t i = 0; i < count; ++i)
@@ -131,8 +111,19 @@ static mcor_status mcor_enlarge(mcor_context* context, mcor_buffer* buffer, size
   mcor_cl* cl = &context->cl;
   const size_t size = (bytes + 255) / 256 * 256 + 256; /* never empty */
   mcor_release(context, buffer);
-  if (mcor_take_kept(cl, buffer, bytes))
+  /* Takes the smallest kept buffer with enough room, unless it is far too large. */
+  int best = -1;
+  for (int i = 0; i < cl->kept_count; ++i)
   {
+    const size_t kept = cl->kept[i].size;
+    if (kept >= bytes && kept - kept / 8 <= bytes && (best < 0 || kept < cl->kept[best].size))
+    {
+      best = i;
+    }
+  }
+  if (best >= 0)
+  {
+    *buffer = mcor_take_out(cl, best);
     return MCOR_OK;
   }
   mcor_drop_kept(context, mcor_most_held(cl) - (int64_t)size);

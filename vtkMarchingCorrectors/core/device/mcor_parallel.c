@@ -94,39 +94,6 @@ void mcor_end_pool(mcor_pool* pool)
   free(pool->all);
 }
 
-/* Opens the loop to waiting threads, and makes further ones while work is left and the system
- * allows it. */
-static void mcor_open_loop(mcor_pool* pool)
-{
-  pthread_mutex_lock(&pool->lock);
-  pool->open = true;
-  ++pool->round;
-  pthread_cond_broadcast(&pool->wake);
-  pthread_mutex_unlock(&pool->lock);
-  while (pool->count + 1 < pool->threads && atomic_load(&pool->next) + pool->step < pool->last)
-  {
-    if (pthread_create(&pool->all[pool->count], NULL, mcor_pool_thread, pool) != 0)
-    {
-      pool->threads = pool->count + 1;
-      return;
-    }
-    ++pool->count;
-  }
-}
-
-/* Closes the loop. It is done when the calling thread finds no more work and all threads that
- * joined are back; a thread that wakes later finds it closed. */
-static void mcor_close_loop(mcor_pool* pool)
-{
-  pthread_mutex_lock(&pool->lock);
-  pool->open = false;
-  while (pool->active > 0)
-  {
-    pthread_cond_wait(&pool->done, &pool->lock);
-  }
-  pthread_mutex_unlock(&pool->lock);
-}
-
 mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, size_t last,
   size_t step, mcor_pool_body* body, void* data)
 {
@@ -151,14 +118,38 @@ mcor_status mcor_pool_run(mcor_pool* pool, mcor_context* context, size_t first, 
   atomic_store(&pool->next, first);
   pool->last = last;
   pool->step = step;
-  if (shared)
+  if (shared) /* opens the loop to waiting threads */
   {
-    mcor_open_loop(pool);
+    pthread_mutex_lock(&pool->lock);
+    pool->open = true;
+    ++pool->round;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+  }
+  /* Makes further threads while work is left and the system allows it. */
+  while (shared && pool->count + 1 < pool->threads && atomic_load(&pool->next) + step < last)
+  {
+    if (pthread_create(&pool->all[pool->count], NULL, mcor_pool_thread, pool) == 0)
+    {
+      ++pool->count;
+    }
+    else
+    {
+      pool->threads = pool->count + 1;
+    }
   }
   const mcor_status status = mcor_pool_work(pool, context);
+  /* Closes the loop. It is done when the calling thread finds no more work and all threads that
+   * joined are back; a thread that wakes later finds it closed. */
   if (shared)
   {
-    mcor_close_loop(pool);
+    pthread_mutex_lock(&pool->lock);
+    pool->open = false;
+    while (pool->active > 0)
+    {
+      pthread_cond_wait(&pool->done, &pool->lock);
+    }
+    pthread_mutex_unlock(&pool->lock);
   }
   fesetenv(&environment);
   return status;

@@ -8,7 +8,6 @@
 
 #include "mcor_flux.h"
 #include "mcor_plane.h"
-#include "mcor_ranks.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,6 @@
 #include "mcor_project.h"
 #include "mcor_plane.h"
 #include "mcor_probe.h"
-#include "mcor_ranks.h"
 #include "mcor_widen.h"
 
 #include <float.h>

@@ -8,7 +8,6 @@
 
 #include "mcor_plane.h"
 #include "mcor_project.h"
-#include "mcor_ranks.h"
 
 #include <float.h>
 #include <stdlib.h>

@@ -213,14 +213,8 @@ static mcor_status mcor_sort_particles(mcor_context* context, mcor_staging* stag
   grid->most_in_cell = most_in_cell;
   if (most_in_cell > MCOR_INSERTION_OF(context->cl.lanes)) /* too large for one work-item */
   {
-    const mcor_key_sort sort = { .keys = &grid->cell_keys,
-      .x = &stage->x,
-      .y = &stage->y,
-      .z = &stage->z,
-      .inv_h = &stage->inv_h,
-      .size = &stage->size,
-      .value = &stage->inv_h,
-      .most = most_in_cell };
+    const mcor_key_sort sort = { &grid->cell_keys, &stage->x, &stage->y, &stage->z, &stage->inv_h,
+      &stage->size, &stage->inv_h, 0, most_in_cell };
     MCOR_TRY(mcor_sort_same_keys(context, &sort));
   }
   MCOR_TRY(mcor_move_particles(context));
@@ -307,6 +301,83 @@ mcor_status mcor_make_grid(mcor_context* context, const mcor_input* input)
         MCOR_BUFFER(mcor_fluid_weight(grid)), MCOR_BUFFER(&grid->trim_weight));
 }
 
+typedef struct mcor_value_job
+{
+  const mcor_context* context;
+  const mcor_input* input;
+  const mcor_array* array;
+  int component;
+  double shift, scale;
+  bool fixed;
+  void* values;
+} mcor_value_job;
+
+static void mcor_store_value_slice(void* data, int slice, int64_t first, int64_t last)
+{
+  const mcor_value_job* job = data;
+  const mcor_input* input = job->input;
+  const double shift = job->shift, scale = job->scale;
+  const bool single = job->context->cl.fix_size == sizeof(int32_t);
+  int n = 0;
+  for (int64_t begin = first; begin < last; begin += n)
+  {
+    const int64_t from = mcor_source_of(job->context, begin);
+    const int count = mcor_chunk_of(input->count - from);
+    double chunk[MCOR_CHUNK], used[MCOR_CHUNK];
+    job->array ? mcor_read_array(job->array, from, count, job->component, chunk)
+               : mcor_read_scalar(input, from, count, chunk);
+    /* The images of a particle stand side by side. */
+    for (n = 0; n < MCOR_CHUNK && begin + n < last &&
+         mcor_source_of(job->context, begin + n) < from + count;
+         ++n)
+    {
+      used[n] = (chunk[mcor_source_of(job->context, begin + n) - from] - shift) * scale;
+    }
+    /* Values of solids play no part, whatever they are. */
+    for (int i = 0; i < n && input->solid; ++i)
+    {
+      used[i] = input->solid[mcor_source_of(job->context, begin + i)] ? 0 : used[i];
+    }
+    for (int i = 0; i < n && job->fixed; ++i)
+    {
+      if (single)
+      {
+        ((int32_t*)job->values)[begin + i] = (int32_t)lrint(used[i]);
+      }
+      else
+      {
+        ((int64_t*)job->values)[begin + i] = (int64_t)llrint(used[i]);
+      }
+    }
+    for (int i = 0; i < n && !job->fixed; ++i)
+    {
+      mcor_put_real(job->context, job->values, begin + i, used[i]);
+    }
+  }
+  (void)slice;
+}
+
+/* Copies one component of an array (or the scalar, if `array` is NULL), less `shift`, times
+ * `scale`, as real or fixed-point numbers, into row `to_row`; a row has one value per particle. */
+mcor_status mcor_sort_values(mcor_context* context, const mcor_input* input,
+  const mcor_array* array, int component, double shift, double scale, bool fixed, mcor_buffer* to,
+  int to_row)
+{
+  const mcor_grid* grid = &context->grid;
+  const size_t bytes = (size_t)grid->count * context->cl.real_size;
+  mcor_buffer* raw = &context->stage.values;
+  mcor_value_job job = { context, input, array, component, shift, scale, fixed, NULL };
+  MCOR_TRY(mcor_reserve(context, raw, bytes));
+  MCOR_TRY(mcor_map(context, raw, bytes, true, &job.values));
+  const mcor_status status =
+    mcor_parallel_run(context, grid->count, MCOR_LIGHT_GRAIN, mcor_store_value_slice, &job, NULL);
+  MCOR_TRY(mcor_unmap(context, raw, &job.values));
+  MCOR_TRY(status);
+  return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, grid->count,
+    MCOR_INT(grid->count), MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(to),
+    MCOR_INT(to_row));
+}
+
 #define MCOR_COINCIDENT_ARGS(g)                                                                    \
   MCOR_BUFFER(&(g)->px), MCOR_BUFFER(&(g)->py), MCOR_BUFFER(&(g)->pz), MCOR_BUFFER(&(g)->inv_h),   \
     MCOR_BUFFER(mcor_fluid_weight(g)), MCOR_BUFFER(&(g)->trim_weight)
@@ -337,15 +408,7 @@ static mcor_status mcor_order_coincident(mcor_context* context)
   MCOR_TRY(mcor_scan(context, flags, count, &places));
   MCOR_TRY(MCOR_LAUNCH(context, "mcor_grid_fill_places", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(flags), MCOR_BUFFER(keys)));
-  const mcor_key_sort sort = { .keys = keys,
-    .x = &grid->px,
-    .y = &grid->py,
-    .z = &grid->pz,
-    .inv_h = raw,
-    .size = raw,
-    .value = raw,
-    .by_value = 1,
-    .most = count };
+  const mcor_key_sort sort = { keys, &grid->px, &grid->py, &grid->pz, raw, raw, raw, 1, count };
   MCOR_TRY(mcor_sort_same_keys(context, &sort));
   return MCOR_LAUNCH(context, "mcor_grid_gather_value", MCOR_LIGHT, count, MCOR_INT(count),
     MCOR_BUFFER(&grid->order), MCOR_BUFFER(raw), MCOR_BUFFER(&grid->value), MCOR_INT(0));

@@ -20,19 +20,19 @@ mcor_status mcor_refuse_sides(mcor_context* context, int axis, double from, doub
 /* Refuses values that no measurement yields. Without particles, ranges are empty. */
 static mcor_status mcor_check_globals(mcor_context* context, const mcor_globals* g)
 {
-  bool good = g->measured.fluid_count >= 0 && g->measured.solid_count >= 0 &&
-    g->component_count >= 0 && (g->components || g->component_count == 0) && g->split_count >= 0;
-  for (int a = 0; a < 3 && good && g->measured.fluid_count > 0; ++a)
+  const mcor_measure* m = &g->measured;
+  const bool is_empty = m->fluid_count == 0;
+  bool good = m->fluid_count >= 0 && m->solid_count >= 0 && g->component_count >= 0 &&
+    (g->components || g->component_count == 0) && g->split_count >= 0;
+  for (int a = 0; a < 3; ++a)
   {
-    good = g->measured.low[a] <= g->measured.high[a];
+    good = good && (is_empty || m->low[a] <= m->high[a]);
   }
-  if (good && g->measured.fluid_count > 0)
-  {
-    good = g->measured.h_min > 0 && g->measured.h_min <= g->measured.h_max &&
-      g->measured.support_min > 0 && g->measured.support_min <= g->measured.support_max &&
-      g->measured.h_estimate >= 0 && isfinite(g->scalar_shift) && g->mass_max >= 0 &&
-      g->measured.wall_share >= 0 && g->measured.wall_share <= 1;
-  }
+  good = good &&
+    (is_empty ||
+      (m->h_min > 0 && m->h_min <= m->h_max && m->support_min > 0 &&
+        m->support_min <= m->support_max && m->h_estimate >= 0 && isfinite(g->scalar_shift) &&
+        g->mass_max >= 0 && m->wall_share >= 0 && m->wall_share <= 1));
   MCOR_RETURN_IF(!good, context, MCOR_INVALID_ARGUMENT,
     "options.globals was not produced by mcor_measure_globals, or has been changed.");
   return MCOR_OK;
@@ -280,10 +280,7 @@ mcor_status mcor_check_input(
     const mcor_array* attribute = &input->attributes[a];
     MCOR_TRY(mcor_check_form(context, attribute, "attribute", mcor_components(attribute)));
   }
-  const mcor_build build = { .sph_kernel = options->sph_kernel,
-    .field = options->field,
-    .precision = options->precision,
-    .solids = mcor_uses_solids(input, options) && input->solid };
+  const mcor_build build = mcor_build_of(options, mcor_uses_solids(input, options) && input->solid);
   MCOR_TRY(mcor_settle_device(context, &build, mcor_release_all_data));
   return mcor_upload_case_table(context);
 }

@@ -9,7 +9,6 @@
 
 #include "mcor_box.h"
 #include "mcor_input.h"
-#include "mcor_ranks.h"
 
 #include <float.h>
 #include <math.h>

@@ -6,7 +6,6 @@
 
 #include "mcor_input.h"
 #include "mcor_plane.h"
-#include "mcor_ranks.h"
 #include "mcor_tree.h"
 
 #include <math.h>

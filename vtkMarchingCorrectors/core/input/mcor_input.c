@@ -4,7 +4,6 @@
 /* Reads the arrays that a caller hands in, and answers questions about all their elements. */
 
 #include "mcor_input.h"
-#include "mcor_ranks.h"
 
 #include <float.h>
 #include <math.h>

@@ -8,7 +8,6 @@
  * ranks share them. */
 
 #include "mcor_input.h"
-#include "mcor_ranks.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,6 @@
  * is also seen whether all others do. */
 
 #include "mcor_input.h"
-#include "mcor_ranks.h"
 #include "mcor_vector.h"
 
 #include <float.h>

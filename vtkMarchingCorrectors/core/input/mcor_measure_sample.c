@@ -6,7 +6,6 @@
  * smoothing length is estimated for particles that have none. */
 
 #include "mcor_input.h"
-#include "mcor_ranks.h"
 
 #include <limits.h>
 #include <math.h>
@@ -115,7 +114,8 @@ mcor_status mcor_choose_samples(mcor_context* context, const mcor_input* input, 
         mcor_add_sample(own, &job->found[s][k].of[i]);
       }
     }
-    MCOR_THEN(status, mcor_gather(context, own->of, own->count, sizeof *own->of, &all, &count));
+    MCOR_THEN(
+      status, mcor_gather_records(context, own->of, own->count, sizeof *own->of, &all, &count));
     chosen->count = 0;
     chosen->most = own->most;
     for (int64_t i = 0; i < count; ++i)
@@ -248,7 +248,8 @@ mcor_status mcor_estimate_smoothing_length(
   {
     job.nearest[s].sample = s;
   }
-  MCOR_TRY(mcor_gather(context, job.nearest, samples, sizeof job.nearest[0], &found, &count));
+  MCOR_TRY(
+    mcor_gather_records(context, job.nearest, samples, sizeof job.nearest[0], &found, &count));
   for (int64_t i = 0; i < count; ++i)
   {
     const mcor_neighbours* of = (const mcor_neighbours*)found + i;

@@ -8,7 +8,6 @@
  * on the order of the particles nor on how ranks share them. */
 
 #include "mcor_input.h"
-#include "mcor_ranks.h"
 #include "mcor_vector.h"
 
 #include <math.h>

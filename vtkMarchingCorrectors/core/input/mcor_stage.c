@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Copies the particles that a call needs from the caller's arrays to the device, in input order;
- * in a periodic box their images, too. */
+/* Copies the particles that a call needs from the caller's arrays to the device, in its units and in
+ * input order; in a periodic box their images, too. */
 
 #include "mcor_stage.h"
 #include "mcor_plane.h"
 #include "mcor_tree.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,6 +34,64 @@ double mcor_size_scale(mcor_context* context, const mcor_input* input)
   }
   const mcor_globals* globals = options->globals;
   return 1 / (globals ? globals->mass_max : mcor_largest(context, input, &input->mass, 0));
+}
+
+/* A chunk of particles, in the units of the staging arrays. */
+typedef struct mcor_stage_chunk
+{
+  int count;
+  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK]; /* h: the kernel's length */
+  uint8_t level[MCOR_CHUNK];                                /* of adaptive cubes */
+  int32_t source[MCOR_CHUNK];
+} mcor_stage_chunk;
+
+/* Reads positions and smoothing lengths of a chunk whose count is set. */
+static void mcor_read_stage_places(
+  const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk)
+{
+  const mcor_context* context = staging->context;
+  const mcor_lattice* lattice = &context->lattice;
+  const mcor_reach_box* reach = staging->reach;
+  const int count = chunk->count;
+  double h[MCOR_CHUNK];
+  for (int a = 0; a < 3; ++a)
+  {
+    const double origin = (double)lattice->origin[a], scale = (double)lattice->step[a];
+    double* x = chunk->x[a];
+    mcor_read_array(&staging->input->positions, first, count, a, x);
+    for (int i = 0; i < count; ++i)
+    {
+      x[i] = (x[i] / lattice->edge[a] - origin) * scale;
+    }
+    for (int i = 0; i < count && reach && reach->period[a] > 0; ++i)
+    {
+      x[i] = mcor_wrap(reach, a, x[i]);
+    }
+  }
+  mcor_read_smoothing_length(context, staging->input, first, count, h);
+  mcor_widen_lengths(staging->input, first, count, h, chunk->h);
+  for (int i = 0; i < count; ++i)
+  {
+    chunk->level[i] =
+      (uint8_t)mcor_tree_level_of(h[i], context->measure.h_min, lattice->levels - 1);
+    chunk->source[i] = (int32_t)(first + i);
+  }
+}
+
+/* Reads the volumes or masses of a chunk. */
+static void mcor_read_stage_sizes(
+  const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk)
+{
+  const bool are_areas = staging->context->space.flat && !mcor_needs_density(staging->input);
+  mcor_read_size(staging->input, first, chunk->count, chunk->size);
+  for (int i = 0; i < chunk->count; ++i)
+  {
+    chunk->size[i] *= staging->size_scale;
+  }
+  for (int i = 0; i < chunk->count && are_areas; ++i)
+  {
+    chunk->size[i] *= chunk->h[i];
+  }
 }
 
 /* Lists the images of particle i of a chunk that are staged. */
@@ -145,6 +204,83 @@ static void mcor_count_staged(void* data, int slice, int64_t first, int64_t last
     }
   }
   staging->slices[slice].used = used;
+}
+
+int mcor_spared_bits(const mcor_context* context, double support, double cube, int level)
+{
+  const int digits = context->run.options->precision == MCOR_FLOAT64 ? DBL_MANT_DIG : FLT_MANT_DIG;
+  int exponent;
+  frexp(1.0001 * support / cube + ldexp(MCOR_POINT_EXTENT, level), &exponent);
+  const int bits = exponent + context->lattice.fix_bits - digits;
+  return bits > 0 ? bits : 0;
+}
+
+/* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
+static void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk* chunk, int64_t to)
+{
+  const mcor_context* context = staging->context;
+  const uint8_t* solid = staging->input->solid;
+  const mcor_measure* m = &context->measure;
+  const int count = chunk->count, top = context->lattice.levels - 1;
+  const double h_scale = context->run.options->h_scale, cube = context->lattice.cube,
+               scaled_cube = cube / h_scale;
+  const double reach = mcor_support_factor(context->run.options->sph_kernel) * h_scale;
+  uint8_t* level = (uint8_t*)staging->level + to;
+  /* Rounds positions to the digits that evaluations use. */
+  const bool are_rounded = mcor_spared_bits(context, m->support_max, cube, top) > 0;
+  for (int i = 0; i < count && are_rounded; ++i)
+  {
+    const double unit =
+      ldexp(1, mcor_spared_bits(context, chunk->h[i] * reach, cube, chunk->level[i]));
+    for (int a = 0; a < 3; ++a)
+    {
+      chunk->x[a][i] = unit * floor(chunk->x[a][i] / unit + 0.5);
+    }
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    /* No position is below the lattice's origin, so adding 1/2 and truncating rounds. */
+    const double* x = chunk->x[a];
+    int32_t* narrow = (int32_t*)staging->x[a] + to;
+    int64_t* wide = (int64_t*)staging->x[a] + to;
+    if (context->cl.fix_size == sizeof *narrow)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        narrow[i] = (int32_t)(x[i] + 0.5);
+      }
+    }
+    else
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        wide[i] = (int64_t)(x[i] + 0.5);
+      }
+    }
+  }
+  for (int i = 0; i < count && solid; ++i)
+  {
+    chunk->size[i] = solid[chunk->source[i]] ? -chunk->size[i] : chunk->size[i];
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    mcor_put_real(context, staging->size, to + i, chunk->size[i]);
+  }
+  memset(level, 0, (size_t)count);
+  for (int i = 0; i < count && m->support_min < m->support_max; ++i)
+  {
+    const double support = chunk->h[i] * reach;
+    const int of = support < m->support_max ? ilogb(m->support_max / support) : 0;
+    level[i] = (uint8_t)(of < 0 ? 0 : of >= MCOR_LEVEL_LIMIT ? MCOR_LEVEL_LIMIT - 1 : of);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    mcor_put_real(context, staging->inv_h, to + i, scaled_cube / chunk->h[i]);
+  }
+  if (context->source)
+  {
+    memcpy(context->source + to, chunk->source, (size_t)count * sizeof chunk->source[0]);
+  }
 }
 
 /* Returns the weight above which the device's numbers would be infinite. */

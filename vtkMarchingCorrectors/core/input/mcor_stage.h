@@ -45,23 +45,4 @@ mcor_status mcor_stage(mcor_staging* staging);
  * support are, see MCOR_POINT_EXTENT. cube: a cube's length, or less. */
 int mcor_spared_bits(const mcor_context* context, double support, double cube, int level);
 
-/* ---- mcor_stage_chunk.c ---- */
-
-/* A chunk of particles, in the units of the staging arrays. */
-typedef struct mcor_stage_chunk
-{
-  int count;
-  double x[3][MCOR_CHUNK], h[MCOR_CHUNK], size[MCOR_CHUNK]; /* h: the kernel's length */
-  uint8_t level[MCOR_CHUNK];                                /* of adaptive cubes */
-  int32_t source[MCOR_CHUNK];
-} mcor_stage_chunk;
-
-/* Reads positions and smoothing lengths of a chunk whose count is set; then their volumes or
- * masses. */
-void mcor_read_stage_places(const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk);
-void mcor_read_stage_sizes(const mcor_staging* staging, int64_t first, mcor_stage_chunk* chunk);
-
-/* Writes a chunk to element `to` of the staging arrays; changes the chunk. */
-void mcor_store_stage_chunk(const mcor_staging* staging, mcor_stage_chunk* chunk, int64_t to);
-
 #endif

@@ -5,7 +5,7 @@
  * are spread over them: least and greatest values, exact sums, and records that are then sorted
  * or used as a set. */
 
-#include "mcor_ranks.h"
+#include "mcor_internal.h"
 
 mcor_status mcor_heard(mcor_context* context, int failed)
 {
@@ -33,8 +33,8 @@ mcor_status mcor_reduce_counts(
     : MCOR_OK;
 }
 
-mcor_status mcor_gather(mcor_context* context, const void* records, int64_t count, size_t width,
-  const void** all, int64_t* all_count)
+mcor_status mcor_gather_records(mcor_context* context, const void* records, int64_t count,
+  size_t width, const void** all, int64_t* all_count)
 {
   const mcor_ranks* ranks = context->run.options->ranks;
   *all = records;

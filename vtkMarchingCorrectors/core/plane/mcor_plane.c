@@ -8,7 +8,6 @@
 #include "mcor_adaptive.h"
 #include "mcor_input.h"
 #include "mcor_parallel.h"
-#include "mcor_ranks.h"
 #include "mcor_vector.h"
 
 #include <float.h>

@@ -201,29 +201,6 @@ double mcor_cube_root(double value);
 /* Sorts `count` numbers and returns their median; 0 without any. */
 double mcor_median_of(double* values, int count);
 
-/* mcor_measure_neighbours.c. A watch is shown all positions, and at its end fills in the
- * measure's neighbours, spacing, filled and h_median. It watches some sampled fluid particles. */
-#define MCOR_WATCHED 32 /* bits of a mask */
-#define MCOR_WATCH_CELLS 64
-typedef struct mcor_watch
-{
-  /* Intervals along each axis, and the watched particles that may reach each: bit s for particle s.
-   * None reaches the outermost intervals. */
-  double low[3], per_length[3];
-  uint32_t reached[3][MCOR_WATCH_CELLS];
-  int count;
-  const mcor_sample* sample;
-  double support;
-  int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
-  double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
-  double normal[3];                          /* 0: they do not lie in a plane */
-  /* Distances along the normal from the first one: the greatest, and the greatest of their
-   * negatives. */
-  double beyond[MCOR_SLICES][2];
-} mcor_watch;
-void mcor_begin_watch(const mcor_context* context, mcor_watch* watch);
-void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK]);
-mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices);
 /* Reads smoothing lengths, unscaled, unit L. */
 void mcor_read_smoothing_length(
   const mcor_context* context, const mcor_input* input, int64_t first, int count, double* out);

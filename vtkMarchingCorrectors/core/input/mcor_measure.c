@@ -1,24 +1,225 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Measures the particles for the other phases: ranges, bounds, the lattice. */
+/* Measures the particles for the other phases: ranges, bounds, neighbours; then the lattice. */
 
 #include "mcor_box.h"
 #include "mcor_input.h"
-#include "mcor_plane.h"
-#include "mcor_tree.h"
+#include "mcor_vector.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* The least support radius, in cubes. Below it, hardly any node would see a particle. */
-#define MCOR_LEAST_SUPPORT 1e-3
+/* ---- Neighbours ---- how many a fluid particle has, and how near the nearest one is. A few watched
+ * particles suffice to notice smoothing lengths that cannot be meant. A watch is shown all positions
+ * while these are measured, and at its end fills in the measure's neighbours, spacing, filled and
+ * h_median. If the watched particles lie in a plane that is tilted in space, it is also seen whether all
+ * others do. */
 
-/* Cube sizes for which volumes, areas and gradients are finite numbers above 0. */
-#define MCOR_LEAST_CUBE 1e-100
-#define MCOR_MOST_CUBE 1e100
+#define MCOR_WATCHED 32 /* bits of a mask */
+#define MCOR_WATCH_CELLS 64
+typedef struct mcor_watch
+{
+  /* Intervals along each axis, and the watched particles that may reach each: bit s for particle s.
+   * None reaches the outermost intervals. */
+  double low[3], per_length[3];
+  uint32_t reached[3][MCOR_WATCH_CELLS];
+  int count;
+  const mcor_sample* sample;
+  double support;
+  int64_t neighbours[MCOR_SLICES][MCOR_WATCHED];
+  double nearest[MCOR_SLICES][MCOR_WATCHED]; /* squared distance */
+  double normal[3];                          /* 0: they do not lie in a plane */
+  /* Distances along the normal from the first one: the greatest, and the greatest of their
+   * negatives. */
+  double beyond[MCOR_SLICES][2];
+} mcor_watch;
+
+/* Written to be vectorised. */
+static inline int mcor_watch_cell(const mcor_watch* watch, int axis, double x)
+{
+  const double cell = (x - watch->low[axis]) * watch->per_length[axis];
+  const double above = cell > 0 ? cell : 0;
+  return (int)(above < MCOR_WATCH_CELLS - 1 ? above : MCOR_WATCH_CELLS - 1);
+}
+
+/* ---- A plane that is tilted in space ---- */
+
+/* In smoothing lengths: the greatest extent along the normal, the least one in the plane. */
+#define MCOR_THIN 0.1
+#define MCOR_BROAD 8
+
+/* Finds the normal of the plane through the first watched particle, the one farthest from it,
+ * and the one farthest from the line between these. */
+static void mcor_find_normal(mcor_watch* watch)
+{
+  double from[MCOR_WATCHED][3], along[3] = { 0 }, normal[3] = { 0 }, h = DBL_MAX;
+  for (int s = 0; s < watch->count; ++s)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      from[s][a] = watch->sample[s].x[a] - watch->sample[0].x[a];
+    }
+    h = fmin(h, watch->sample[s].h);
+    if (mcor_dot(from[s], from[s]) > mcor_dot(along, along))
+    {
+      memcpy(along, from[s], sizeof along);
+    }
+  }
+  const double length = sqrt(mcor_dot(along, along));
+  for (int s = 0; s < watch->count; ++s)
+  {
+    double cross[3];
+    mcor_cross(along, from[s], cross);
+    if (mcor_dot(cross, cross) > mcor_dot(normal, normal))
+    {
+      memcpy(normal, cross, sizeof normal);
+    }
+  }
+  const double size = sqrt(mcor_dot(normal, normal));
+  bool in_plane = length > MCOR_BROAD * h && size > MCOR_BROAD * h * length;
+  for (int s = 0; s < watch->count && in_plane; ++s)
+  {
+    in_plane = fabs(mcor_dot(normal, from[s])) < MCOR_THIN * h * size;
+  }
+  for (int a = 0; a < 3 && in_plane; ++a)
+  {
+    watch->normal[a] = normal[a] / size;
+  }
+}
+
+static bool mcor_has_normal(const mcor_watch* watch)
+{
+  return mcor_dot(watch->normal, watch->normal) > 0;
+}
+
+static void mcor_watch_positions(mcor_watch* watch, int slice, int count, double x[3][MCOR_CHUNK])
+{
+  const double *n = watch->normal, from = mcor_dot(n, watch->sample[0].x);
+  double* beyond = watch->beyond[slice];
+  for (int i = 0; i < count && mcor_has_normal(watch); ++i)
+  {
+    const double d = n[0] * x[0][i] + n[1] * x[1][i] + n[2] * x[2][i] - from;
+    beyond[0] = d > beyond[0] ? d : beyond[0];
+    beyond[1] = -d > beyond[1] ? -d : beyond[1];
+  }
+  int cell[3][MCOR_CHUNK];
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      cell[a][i] = mcor_watch_cell(watch, a, x[a][i]);
+    }
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    uint32_t reached =
+      watch->reached[0][cell[0][i]] & watch->reached[1][cell[1][i]] & watch->reached[2][cell[2][i]];
+    for (int s = 0; reached; ++s, reached >>= 1)
+    {
+      const double reach = watch->support * watch->sample[s].h;
+      double square = 0, *nearest = &watch->nearest[slice][s];
+      for (int a = 0; a < 3 && (reached & 1); ++a)
+      {
+        const double d = x[a][i] - watch->sample[s].x[a];
+        square += d * d;
+      }
+      watch->neighbours[slice][s] += (reached & 1) && square < reach * reach;
+      *nearest = square > 0 ? fmin(*nearest, square) : *nearest;
+    }
+  }
+}
+
+/* Takes the medians over the watched particles. */
+static mcor_status mcor_end_watch(mcor_context* context, mcor_watch* watch, int slices)
+{
+  mcor_measure* m = &context->measure;
+  const mcor_space* space = &context->space;
+  int64_t neighbours[MCOR_WATCHED] = { 0 };
+  double nearest[MCOR_WATCHED], count[MCOR_WATCHED], spacing[MCOR_WATCHED], filled[MCOR_WATCHED],
+    h[MCOR_WATCHED], *beyond = watch->beyond[0];
+  for (int s = 0; s < watch->count; ++s)
+  {
+    nearest[s] = DBL_MAX;
+    for (int slice = 0; slice < slices; ++slice)
+    {
+      neighbours[s] += watch->neighbours[slice][s];
+      nearest[s] = fmin(nearest[s], watch->nearest[slice][s]);
+    }
+  }
+  MCOR_TRY(mcor_reduce_counts(context, MCOR_SUM_OF, neighbours, watch->count));
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_LEAST, nearest, watch->count));
+  for (int s = 0; s < watch->count; ++s)
+  {
+    const double reach = watch->support * watch->sample[s].h, distance = sqrt(nearest[s]);
+    count[s] = (double)neighbours[s];
+    filled[s] = count[s] * watch->sample[s].volume / space->ball / mcor_power(reach, space->axes);
+    spacing[s] = distance < reach ? distance : 0;
+    h[s] = watch->sample[s].h;
+  }
+  m->neighbours = mcor_median_of(count, watch->count);
+  m->spacing = mcor_median_of(spacing, watch->count);
+  m->filled = mcor_median_of(filled, watch->count);
+  m->h_median = mcor_median_of(h, watch->count);
+  if (!mcor_has_normal(watch))
+  {
+    return MCOR_OK;
+  }
+  for (int s = 1; s < slices; ++s)
+  {
+    beyond[0] = fmax(beyond[0], watch->beyond[s][0]);
+    beyond[1] = fmax(beyond[1], watch->beyond[s][1]);
+  }
+  MCOR_TRY(mcor_reduce_doubles(context, MCOR_GREATEST, beyond, 2));
+  if (beyond[0] + beyond[1] < MCOR_THIN * m->h_median)
+  {
+    memcpy(m->plane_normal, watch->normal, sizeof m->plane_normal);
+    m->plane_extent = beyond[0] + beyond[1];
+  }
+  return MCOR_OK;
+}
+
+static void mcor_begin_watch(const mcor_context* context, mcor_watch* watch)
+{
+  const mcor_sample_list* fluid = &context->samples[0];
+  *watch = (mcor_watch){ .sample = fluid->of,
+    .count = fluid->count < MCOR_WATCHED ? fluid->count : MCOR_WATCHED,
+    .support = mcor_support_factor(context->run.options->sph_kernel) };
+  for (int a = 0; a < 3; ++a)
+  {
+    double low = DBL_MAX, high = -DBL_MAX;
+    for (int s = 0; s < watch->count; ++s)
+    {
+      const double reach = watch->support * watch->sample[s].h;
+      low = fmin(low, watch->sample[s].x[a] - reach);
+      high = fmax(high, watch->sample[s].x[a] + reach);
+    }
+    const double cell = (high - low) / (MCOR_WATCH_CELLS - 3);
+    watch->low[a] = low - cell;
+    watch->per_length[a] = cell > 0 ? 1 / cell : 0;
+    for (int s = 0; s < watch->count; ++s)
+    {
+      const double x = watch->sample[s].x[a], reach = watch->support * watch->sample[s].h;
+      const int last = mcor_watch_cell(watch, a, x + reach);
+      for (int c = mcor_watch_cell(watch, a, x - reach); c <= last; ++c)
+      {
+        watch->reached[a][c] |= UINT32_C(1) << s;
+      }
+    }
+  }
+  for (int n = 0; n < MCOR_SLICES * MCOR_WATCHED; ++n)
+  {
+    watch->nearest[n / MCOR_WATCHED][n % MCOR_WATCHED] = DBL_MAX;
+  }
+  if (context->space.axes == 3)
+  {
+    mcor_find_normal(watch);
+  }
+}
+
+/* ---- All particles ---- */
 
 /* Findings over all particles: the ranges, and the sums. */
 enum
@@ -188,95 +389,6 @@ static mcor_status mcor_measure_particles(
   m->scalar_min = r->least[MCOR_SCALARS];
   m->scalar_max = r->most[MCOR_SCALARS];
   m->not_finite = r->first;
-  return MCOR_OK;
-}
-
-/* Whether keys have enough bits for all nodes and cells of a lattice, as far as there are
- * surfaces. */
-static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice, int top)
-{
-  const double unit = top > 0 ? ldexp(MCOR_BRICK, top + 1) : MCOR_BLOCK_CUBES;
-  double cells = top > 0 ? 8.0 / 7 : 1; /* counts the bricks of all levels */
-  bool good = true;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double end = m->cut ? m->cut_high[a] : m->high[a];
-    const double nodes = (end - m->low[a]) / lattice->edge[a] + 2 * unit;
-    cells *= a == 2 ? nodes : (m->high[a] - m->low[a]) / lattice->edge[a] + 3 * unit;
-    good = good && nodes <= MCOR_NODE_LIMIT;
-  }
-  return good && cells < MCOR_KEY_LIMIT;
-}
-
-/* Lays the virtual grid over everything that the particles' supports reach. */
-static mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
-{
-  mcor_measure* m = &context->measure;
-  mcor_lattice* lattice = &context->lattice;
-  const double cube =
-    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
-  MCOR_RETURN_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size is %g; it must be between %g and %g. Use another cube size, or another unit of "
-    "length.",
-    cube, MCOR_LEAST_CUBE, MCOR_MOST_CUBE);
-  MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
-    "The cube size %g is more than %g times the smallest support radius %g. Use a smaller cube "
-    "size, or remove particles with such a small smoothing length.",
-    cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
-  int top = mcor_tree_top(m, options);
-  MCOR_TRY(mcor_fit_period(context, options, cube, &top));
-  while (top > 0 && !mcor_has_keys(m, lattice, top))
-  {
-    --top;
-  }
-  lattice->levels = top + 1;
-  /* Whole bricks of all levels, and space around them for finer bricks beside. */
-  const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
-  int64_t extent = 0;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double edge = lattice->edge[a];
-    const double first = floor(m->low[a] / edge) - 1, last = ceil(m->high[a] / edge) + 1;
-    const int limit = m->cut ? MCOR_CUT_LIMIT : MCOR_LATTICE_LIMIT;
-    context->run.is_too_long = !(last - first <= limit);
-    MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
-      "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. Use a "
-      "larger cube size, or remove particles that are far away from the rest.",
-      edge, last - first, mcor_axis_letter(context, a), limit);
-    MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
-    if (a >= context->space.axes) /* one layer of cells */
-    {
-      lattice->origin[a] = lattice->first[a] = 0;
-      lattice->last[a] = lattice->blocks[a] = 1;
-      lattice->period_first[a] = 0;
-      continue;
-    }
-    lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
-    if (unit > 0)
-    {
-      lattice->origin[a] = ((int64_t)floor(first / (double)unit) - 1) * unit;
-    }
-    lattice->first[a] = (int64_t)first - lattice->origin[a];
-    lattice->last[a] = (int64_t)last - lattice->origin[a];
-    lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
-    lattice->period_first[a] = lattice->period[a] > 0
-      ? (int)(ceil(options->periodic[2 * a] / edge - 0.5) - (double)lattice->origin[a])
-      : 0;
-    extent = lattice->last[a] > extent ? lattice->last[a] : extent;
-  }
-  context->run.is_too_long = !mcor_has_keys(m, lattice, top);
-  MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
-    "With cube size %g the virtual grid would be %.3g cells long, which is too long together with "
-    "its other sides. Use a larger cube size, or remove particles that are far away from the rest.",
-    cube, (double)extent);
-  lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
-  /* Needs the last bit: where smoothing lengths differ much, lattices are long. */
-  const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;
-  while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
-  {
-    --lattice->fix_bits;
-  }
-  mcor_fit_steps(context, extent);
   return MCOR_OK;
 }
 

@@ -8,14 +8,8 @@
 
 #include "mcor_internal.h"
 
-/* mcor_period.c. Fails where numbers lack the digits for cubes so far from the origin. */
-mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube);
-/* Makes cubes, or unequal edges, a little smaller so that periods are whole numbers of them, and
- * finds the bounds of all images that may be needed. */
-mcor_status mcor_fit_period(
-  mcor_context* context, const mcor_options* options, double cube, int* top);
-/* Finds the edges in fixed-point units, and a cube as a length. */
-void mcor_fit_steps(mcor_context* context, int64_t extent);
+/* mcor_lattice.c. Lays the virtual grid over everything that the particles' supports reach. */
+mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options);
 
 /* Limits the cells along an axis, [side[0], side[1]), to those of the box. */
 void mcor_place_sides(const mcor_lattice* lattice, int axis, const double* sides, double side[2]);

@@ -1,14 +1,23 @@
 /* SPDX-FileCopyrightText: Copyright (c) The Marching Correctors developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Periodic boxes: one period, which images of the particles reach. See mcor_box.c. */
+/* The virtual grid [III-B], and periodic boxes: one period, which images of the particles reach, see
+ * mcor_box.c. */
 
 #include "mcor_box.h"
 #include "mcor_plane.h"
 #include "mcor_stage.h"
+#include "mcor_tree.h"
 
 #include <float.h>
 #include <math.h>
+
+/* The least support radius, in cubes. Below it, hardly any node would see a particle. */
+#define MCOR_LEAST_SUPPORT 1e-3
+
+/* Cube sizes for which volumes, areas and gradients are finite numbers above 0. */
+#define MCOR_LEAST_CUBE 1e-100
+#define MCOR_MOST_CUBE 1e100
 
 /* By which share a period may miss a whole number of cubes. */
 #define MCOR_PERIOD_ERROR 1e-9
@@ -97,7 +106,7 @@ static mcor_status mcor_fit_edges(
   return MCOR_OK;
 }
 
-mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube)
+static mcor_status mcor_check_digits(mcor_context* context, double low, double high, double cube)
 {
   const double farthest = fmax(fabs(low), fabs(high));
   MCOR_RETURN_IF(!(farthest / cube < MCOR_FARTHEST), context, MCOR_OUT_OF_CAPACITY,
@@ -108,7 +117,7 @@ mcor_status mcor_check_digits(mcor_context* context, double low, double high, do
 }
 
 /* May lower *top, the highest level. */
-mcor_status mcor_fit_period(
+static mcor_status mcor_fit_period(
   mcor_context* context, const mcor_options* options, double cube, int* top)
 {
   mcor_measure* m = &context->measure;
@@ -168,7 +177,7 @@ mcor_status mcor_fit_period(
  * along each axis, so for right distances the edges must be to each other as their numbers of
  * units are. Among the last 1 / MCOR_STEP_RANGE of numbers for the longest edge, takes the one
  * for which they are so best, to about 1e-8. */
-void mcor_fit_steps(mcor_context* context, int64_t extent)
+static void mcor_fit_steps(mcor_context* context, int64_t extent)
 {
   mcor_lattice* lattice = &context->lattice;
   const double* edge = lattice->edge;
@@ -206,4 +215,95 @@ void mcor_fit_steps(mcor_context* context, int64_t extent)
   }
   lattice->cube = longest * ((double)most / (double)best);
   context->measure.cube = lattice->cube;
+}
+
+/* ---- The lattice ---- */
+
+/* Whether keys have enough bits for all nodes and cells of a lattice, as far as there are
+ * surfaces. */
+static bool mcor_has_keys(const mcor_measure* m, const mcor_lattice* lattice, int top)
+{
+  const double unit = top > 0 ? ldexp(MCOR_BRICK, top + 1) : MCOR_BLOCK_CUBES;
+  double cells = top > 0 ? 8.0 / 7 : 1; /* counts the bricks of all levels */
+  bool good = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double end = m->cut ? m->cut_high[a] : m->high[a];
+    const double nodes = (end - m->low[a]) / lattice->edge[a] + 2 * unit;
+    cells *= a == 2 ? nodes : (m->high[a] - m->low[a]) / lattice->edge[a] + 3 * unit;
+    good = good && nodes <= MCOR_NODE_LIMIT;
+  }
+  return good && cells < MCOR_KEY_LIMIT;
+}
+
+/* Lays the virtual grid over everything that the particles' supports reach. */
+mcor_status mcor_measure_lattice(mcor_context* context, const mcor_options* options)
+{
+  mcor_measure* m = &context->measure;
+  mcor_lattice* lattice = &context->lattice;
+  const double cube =
+    options->cube_size > 0 ? options->cube_size : options->cube_size_factor * m->h_min;
+  MCOR_RETURN_IF(!(cube > MCOR_LEAST_CUBE && cube < MCOR_MOST_CUBE), context, MCOR_OUT_OF_CAPACITY,
+    "The cube size is %g; it must be between %g and %g. Use another cube size, or another unit of "
+    "length.",
+    cube, MCOR_LEAST_CUBE, MCOR_MOST_CUBE);
+  MCOR_RETURN_IF(!(m->support_min > MCOR_LEAST_SUPPORT * cube), context, MCOR_OUT_OF_CAPACITY,
+    "The cube size %g is more than %g times the smallest support radius %g. Use a smaller cube "
+    "size, or remove particles with such a small smoothing length.",
+    cube, 1 / MCOR_LEAST_SUPPORT, m->support_min);
+  int top = mcor_tree_top(m, options);
+  MCOR_TRY(mcor_fit_period(context, options, cube, &top));
+  while (top > 0 && !mcor_has_keys(m, lattice, top))
+  {
+    --top;
+  }
+  lattice->levels = top + 1;
+  /* Whole bricks of all levels, and space around them for finer bricks beside. */
+  const int64_t unit = top > 0 ? (int64_t)MCOR_BRICK << (top + 1) : 0;
+  int64_t extent = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double edge = lattice->edge[a];
+    const double first = floor(m->low[a] / edge) - 1, last = ceil(m->high[a] / edge) + 1;
+    const int limit = m->cut ? MCOR_CUT_LIMIT : MCOR_LATTICE_LIMIT;
+    context->run.is_too_long = !(last - first <= limit);
+    MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
+      "With cube size %g the virtual grid would have %.3g cells along %c; the limit is %d. Use a "
+      "larger cube size, or remove particles that are far away from the rest.",
+      edge, last - first, mcor_axis_letter(context, a), limit);
+    MCOR_TRY(mcor_check_digits(context, m->low[a], m->high[a], edge));
+    if (a >= context->space.axes) /* one layer of cells */
+    {
+      lattice->origin[a] = lattice->first[a] = 0;
+      lattice->last[a] = lattice->blocks[a] = 1;
+      lattice->period_first[a] = 0;
+      continue;
+    }
+    lattice->origin[a] = (int64_t)floor(first / MCOR_BLOCK_CUBES) * MCOR_BLOCK_CUBES;
+    if (unit > 0)
+    {
+      lattice->origin[a] = ((int64_t)floor(first / (double)unit) - 1) * unit;
+    }
+    lattice->first[a] = (int64_t)first - lattice->origin[a];
+    lattice->last[a] = (int64_t)last - lattice->origin[a];
+    lattice->blocks[a] = (int)((lattice->last[a] + 4) / MCOR_BLOCK_CUBES + 1);
+    lattice->period_first[a] = lattice->period[a] > 0
+      ? (int)(ceil(options->periodic[2 * a] / edge - 0.5) - (double)lattice->origin[a])
+      : 0;
+    extent = lattice->last[a] > extent ? lattice->last[a] : extent;
+  }
+  context->run.is_too_long = !mcor_has_keys(m, lattice, top);
+  MCOR_RETURN_IF(context->run.is_too_long, context, MCOR_OUT_OF_CAPACITY,
+    "With cube size %g the virtual grid would be %.3g cells long, which is too long together with "
+    "its other sides. Use a larger cube size, or remove particles that are far away from the rest.",
+    cube, (double)extent);
+  lattice->fix_bits = options->precision == MCOR_FLOAT64 ? 40 : 20;
+  /* Needs the last bit: where smoothing lengths differ much, lattices are long. */
+  const int bits = options->precision == MCOR_FLOAT64 ? 62 : top > 0 ? 31 : 30;
+  while ((extent + 64 + 2 * unit) << lattice->fix_bits >= INT64_C(1) << bits)
+  {
+    --lattice->fix_bits;
+  }
+  mcor_fit_steps(context, extent);
+  return MCOR_OK;
 }

@@ -379,13 +379,15 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         options = self._options(choice)
         particles = Particles(choice, data)
         try:
-            if choice.DetectPeriod:
-                period = find_period(data)
-                if not period:
-                    raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
+            period = find_period(data) if choice.DetectPeriod else None
+            if period:
                 options.periodic[:] = period
             particles.collect((Request(self, 0, data), Request(self, 1, data)),
                               [camel(name) for name in OUTPUTS if getattr(options, name) and name != "iso_value"], options)
+            if particles.fluid is None:
+                self._warn_once("type", describe_unused_types(data.GetPointData()))
+            if choice.DetectPeriod and not period:
+                raise Unusable(NO_PERIOD + " Set the periodic bounds, and turn their detection off.")
             particles.estimate_by_neighbours(options)
         except (Unusable, Error) as sentence:
             self._fail(str(sentence))
@@ -393,8 +395,6 @@ class vtkMarchingCorrectors(VTKPythonAlgorithmBase):
         finally:
             self.UsedNames = {camel(quantity): name_of(array) for quantity, array in particles.used.items()}
             self.UsedFluid = particles.describe_fluid()
-        if particles.fluid is None:
-            self._warn_once("type", describe_unused_types(data.GetPointData()))
         why = particles.describe_no_fluid()
         if why:
             self._say(why + ", so there is no fluid and no surface.", "Warning")

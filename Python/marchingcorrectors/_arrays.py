@@ -376,11 +376,14 @@ def take_lines(surface):
 
 
 def take_each(pointers, arguments, shape, more=()):
-    """One array per attribute, float32 as the attribute was; those that the core left out are missing."""
+    """One array per attribute, float32 as the attribute was; those that the core left out are missing. Of a result of
+    nothing, it may give none."""
     arrays = {}
     for i, (name, (components, kind)) in enumerate(arguments.kinds.items()):
-        if pointers and pointers[i]:
-            values = take(pointers[i], shape + components + more)
+        values = take(pointers[i], shape + components + more) if pointers else None
+        if values is None and not all(shape):
+            values = np.empty(shape + components + more)
+        if values is not None:
             arrays[name] = values.astype(np.float32) if kind == FLOATS[np.dtype(np.float32)] else values
     return arrays
 

@@ -146,8 +146,9 @@ def take_surface(surface, arguments):
         arrays["points"] = np.empty((0, 3))
     if arrays["triangles"] is None:
         arrays["triangles"] = np.empty((0, 3), np.int32)
-    return Surface(**arrays, **take_lines(surface), attributes=take_each(surface.attributes, arguments, (count,)),
-                   left_out=left_out(surface, arguments), statistics=statistics(surface.statistics))
+    missing, attributes = left_out(surface, arguments), take_each(surface.attributes, arguments, (count,))
+    return Surface(**arrays, **take_lines(surface), attributes={name: attributes[name] for name in attributes if name not in missing},
+                   left_out=missing, statistics=statistics(surface.statistics))
 
 
 @of_particles(FREE_SURFACE)

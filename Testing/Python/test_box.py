@@ -39,6 +39,7 @@ class TestBox(unittest.TestCase):
         extract, particles = vtkMarchingCorrectors(), read("bunny_splash_small.vtp")
         surface, told = run(extract, particles, FreeSurface=1, UseBox=1, Box=(50, 51, 0, 1, 0, 1))
         self.assertEqual((surface.GetNumberOfCells(), told), (0, []))
+        self.assertTrue(surface.GetPointData().HasArray("Velocity"))
         self.assertEqual(len(run(extract, Box=(1, 0, 0, 1, 0, 1))[1]), 1)
 
 

@@ -83,7 +83,8 @@ def make_cases(folder):
         "period of SPH-EXA": [lattice(folder, "n.vtp", r, {"box": [-0.05, 1.35, 0, 9, -0.05, 1.35],
                                                            "boundaryType": [1, 0, 1]}),
                               "R", 0.6, {"DetectPeriod": 1, "Capping": 1}],
-        "no period": [lattice(folder, "o.vtp", r, {"BoxSize": [-1.0]}), "R", 0.4, {"DetectPeriod": 1}],
+        "no period": [lattice(folder, "o.vtp", {**r, "ParticleType": lambda x: (x[:, 0] < 0.3).astype(np.int32)},
+                              {"BoxSize": [-1.0]}), "R", 0.4, {"DetectPeriod": 1}],
         "lines": [lattice(folder, "p.vtp", r, positions=plane), "R", 1.0, {}],
         "lines of two sizes": [lattice(folder, "q.vtp", two, positions=sizes), "R", 4.5,
                                {"SmoothingLengthArrayName": "wide", "CubeSizeMode": 1}],
@@ -97,7 +98,7 @@ def make_cases(folder):
     }
 
 
-WANTED = {"unused type": "'ParticleType' is not used.*44880 x 0, 55348 x 1", "iso value": "Iso value 99 is outside",
+WANTED = {"no period": "'ParticleType' is not used", "unused type": "'ParticleType' is not used.*44880 x 0, 55348 x 1", "iso value": "Iso value 99 is outside",
           "neighbours": "neighbours within its support", "few neighbours": "not in the unit", "plane": "lie in a plane",
           "tilted plane": "tilted in space",
           "units": "node threshold", "all trimmed": "vertex threshold 5", "bad attribute": "'T' is NaN"}

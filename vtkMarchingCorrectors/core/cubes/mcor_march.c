@@ -51,7 +51,7 @@ static mcor_status mcor_find_used(mcor_context* context)
   MCOR_TRY(mcor_reserve(context, &mesh->used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_copy(context, &bricks->cells, &mesh->used, 0, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_keep_squares(context, &mesh->used));
-  MCOR_TRY(mcor_clip_used(context));
+  MCOR_TRY(mcor_clip_near(context, &mesh->used));
   MCOR_TRY(mcor_reserve(context, &mesh->plain_used, n * sizeof(cl_ulong)));
   MCOR_TRY(mcor_fill(context, &mesh->triangle_base, 0, (n + 1) * sizeof(cl_int)));
   MCOR_TRY(context->adaptive.count > 0 ? mcor_find_hanging(context) : MCOR_OK);

@@ -164,24 +164,10 @@ void mcor_place_box(mcor_context* context, const mcor_options* options)
   }
 }
 
-/* Whether the device lacks particles far from the box, or has images of some. */
-static bool mcor_is_limited(const mcor_context* context)
-{
-  const mcor_box* box = &context->box;
-  const mcor_lattice* lattice = &context->lattice;
-  bool limited = box->is_empty;
-  for (int a = 0; a < 3; ++a)
-  {
-    limited = limited || lattice->period[a] > 0 || box->first[a] > lattice->first[a] ||
-      box->last[a] < lattice->last[a];
-  }
-  return limited;
-}
-
 mcor_status mcor_void_cubes(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
-  return !mcor_is_limited(context)
+  return !context->box.is_part
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_cubes", MCOR_LIGHT, bricks->block_count,
         MCOR_INT(bricks->block_count), MCOR_BUFFER(&context->bricks.rungs),
@@ -192,7 +178,7 @@ mcor_status mcor_void_cubes(mcor_context* context)
 mcor_status mcor_void_bricks(mcor_context* context)
 {
   const mcor_bricks* bricks = &context->bricks;
-  return !mcor_is_limited(context) || mcor_is_adaptive(&context->lattice) /* leaves are in it */
+  return !context->box.is_part || mcor_is_adaptive(&context->lattice) /* leaves are in it */
     ? MCOR_OK
     : MCOR_LAUNCH(context, "mcor_box_void_bricks", MCOR_LIGHT,
         (size_t)bricks->block_count * MCOR_BLOCK_BRICKS, MCOR_INT(bricks->block_count),
@@ -222,13 +208,7 @@ static mcor_status mcor_clip(
 
 mcor_status mcor_clip_near(mcor_context* context, mcor_buffer* cells)
 {
-  return mcor_is_limited(context) ? mcor_clip(context, context->box.ring, cells, cells) : MCOR_OK;
-}
-
-mcor_status mcor_clip_used(mcor_context* context)
-{
-  mcor_buffer* used = &context->mesh.used;
-  return context->box.is_part ? mcor_clip(context, context->box.ring, used, used) : MCOR_OK;
+  return context->box.is_part ? mcor_clip(context, context->box.ring, cells, cells) : MCOR_OK;
 }
 
 mcor_status mcor_find_owned(
@@ -253,7 +233,6 @@ bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]
 {
   const mcor_box* box = &context->box;
   const mcor_lattice* lattice = &context->lattice;
-  bool bounded = box->is_part;
   for (int a = 0; a < 3; ++a)
   {
     first[a] = box->first[a] - (box->of_points ? 1 : 0);
@@ -264,10 +243,9 @@ bool mcor_bound_particles(const mcor_context* context, int first[3], int last[3]
       const int end = box->of_points && box->first[a] > from ? to + 1 : to;
       first[a] = first[a] > from ? first[a] : from;
       last[a] = last[a] < end ? last[a] : end;
-      bounded = true;
     }
   }
-  return bounded;
+  return box->is_part;
 }
 
 int mcor_list_images(
@@ -321,12 +299,11 @@ void mcor_find_evaluated(const mcor_context* context, double low[3], double high
 {
   const mcor_box* box = &context->box;
   const double margin = box->of_points ? MCOR_POINTS_MARGIN : box->ring + MCOR_BOX_MARGIN;
-  const bool limited = mcor_is_limited(context);
   for (int a = 0; a < 3; ++a)
   {
     const double edge = mcor_edge_of(&context->lattice, a);
-    low[a] = limited ? (box->first[a] - margin) * edge : -1e30;
-    high[a] = limited ? (box->last[a] + margin) * edge : 1e30;
+    low[a] = box->is_part ? (box->first[a] - margin) * edge : -1e30;
+    high[a] = box->is_part ? (box->last[a] + margin) * edge : 1e30;
   }
 }
 
@@ -337,7 +314,7 @@ bool mcor_find_reach(const mcor_context* context, mcor_reach_box* reach)
   const mcor_options* options = context->run.options;
   const double support = mcor_support_factor(options->sph_kernel) * options->h_scale;
   const bool pairs = mcor_uses_pairs(context) && !box->of_points;
-  if (!mcor_is_limited(context))
+  if (!box->is_part)
   {
     return false;
   }

@@ -174,43 +174,38 @@ static char* mcor_warn_period(const mcor_suspicion* s)
   return NULL;
 }
 
-static char* mcor_is_flat(const mcor_suspicion* s)
+static char* mcor_warn_plane(const mcor_suspicion* s)
 {
   const mcor_statistics* n = &s->surface->statistics;
-  const double h = n->smoothing_length_median;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double* e = n->fluid_extent;
-    const double other = e[(a + 1) % 3] < e[(a + 2) % 3] ? e[(a + 1) % 3] : e[(a + 2) % 3];
-    if (n->dimension != 2 && n->fluid_particles >= MCOR_FEW_PARTICLES && e[a] < 0.1 * h &&
-      other > 8 * h)
-    {
-      return mcor_text("The fluid particles lie in a plane: their extent along %c is %.3g, %.4g "
-                       "times the smoothing length. The kernels are three-dimensional, so in a "
-                       "two-dimensional simulation the weights in the fluid are not about 1.",
-        "xyz"[a], e[a], e[a] / h);
-    }
-  }
+  const bool many = n->fluid_particles >= MCOR_FEW_PARTICLES;
+  const double h = n->smoothing_length_median, *e = n->fluid_extent;
+  char* flat = NULL;
   double normal[3];
   bool tilted = false;
   for (int a = 0; a < 3; ++a)
   {
+    const double other = e[(a + 1) % 3] < e[(a + 2) % 3] ? e[(a + 1) % 3] : e[(a + 2) % 3];
+    if (!flat && n->dimension != 2 && many && e[a] < 0.1 * h && other > 8 * h)
+    {
+      flat = mcor_text("The fluid particles lie in a plane: their extent along %c is %.3g, %.4g "
+                       "times the smoothing length. The kernels are three-dimensional, so in a "
+                       "two-dimensional simulation the weights in the fluid are not about 1.",
+        "xyz"[a], e[a], e[a] / h);
+    }
     normal[a] = floor(n->plane_normal[a] * 1e4 + 0.5) / 1e4;
     tilted = tilted || normal[a] != 0;
   }
-  return !(tilted && s->options->dimension == 0 && n->fluid_particles >= MCOR_FEW_PARTICLES)
-    ? NULL
-    : mcor_text("The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, "
+  if (!flat && tilted && s->options->dimension == 0 && many)
+  {
+    flat =
+      mcor_text("The particles lie in a plane that is tilted in space: its normal is (%.4g, %.4g, "
                 "%.4g), and their extent along it is %.3g, %.2g times the smoothing length. They "
                 "count as three-dimensional, so the weights in the fluid are not about 1. In a "
                 "two-dimensional simulation, turn them into a plane of constant x, y or z that all "
                 "share exactly; otherwise set the dimension to 3.",
         normal[0], normal[1], normal[2], n->plane_extent, n->plane_extent / h);
-}
-
-static char* mcor_warn_plane(const mcor_suspicion* s)
-{
-  char *flat = mcor_is_flat(s), *coarse = flat ? mcor_warn_coarse(s) : NULL;
+  }
+  char* coarse = flat ? mcor_warn_coarse(s) : NULL;
   if (coarse) /* rounding made it flat */
   {
     free(flat);

@@ -10,6 +10,9 @@ import warnings
 import numpy as np
 
 import marchingcorrectors as mc
+from marchingcorrectors import _options, _structs
+from marchingcorrectors._call import prepare
+from marchingcorrectors._units import Units
 
 N = 14
 H, V = 0.13, 0.001
@@ -85,6 +88,14 @@ class Results(unittest.TestCase):
         self.assertEqual(sorted(set(two.iso_value)), [0.3, 0.4])
         half = sphere(smoothing_length=2 * H, smoothing_length_is_support_radius=True)
         self.assertEqual(half.points.tobytes(), sphere().points.tobytes())
+
+    def test_options_reach_the_core(self):
+        for name, (numbers, _, _) in _structs.OPTIONS.items():
+            if name not in ("periodic", "box", "capping"):
+                kind = _options.Options.__annotations__[name]
+                for value, number in {True: 1}.items() if kind is bool else numbers.items() if numbers else {3: 3}.items():
+                    options = prepare(Units(POSITIONS), {"smoothing_length": H, name: value}).options
+                    self.assertEqual(getattr(options, name), number, name)
 
     def test_components(self):
         away = POSITIONS - 0.65

@@ -72,9 +72,9 @@ static int lattice_reaches(const lattice_descent* descent, int64_t j, const latt
   return field->kernel == ORACLE_M_PRIME_4 || square <= support * support;
 }
 
-static int lattice_is_split(oracle_lattice* lattice, const lattice_brick* brick)
+int oracle_is_split(oracle_lattice* lattice, int level, const int64_t at[3])
 {
-  return oracle_map_find(&lattice->split, brick->at, brick->level, 0) != NULL;
+  return oracle_map_find(&lattice->split, at, level, 0) != NULL;
 }
 
 static void lattice_split(oracle_lattice* lattice, const lattice_brick* brick)
@@ -111,7 +111,7 @@ static int lattice_finer(oracle_lattice* lattice, const lattice_brick* brick, co
       there = there && (step != 0 || !(some >> axis & 1));
       beside.at[axis] += step * lattice_brick_size(brick->level);
     }
-    if (there && lattice_is_split(lattice, &beside))
+    if (there && oracle_is_split(lattice, beside.level, beside.at))
     {
       return 1;
     }
@@ -138,8 +138,8 @@ int oracle_is_plain(oracle_lattice* lattice, int level, const int64_t at[3])
   const int64_t size = lattice_brick_size(level);
   lattice_brick brick = { { at[0] & -size, at[1] & -size, at[2] & -size }, level };
   lattice_brick larger = { { at[0] & -2 * size, at[1] & -2 * size, at[2] & -2 * size }, level + 1 };
-  int plain = !lattice_is_split(lattice, &brick) &&
-    (level >= lattice->top || lattice_is_split(lattice, &larger));
+  int plain = !oracle_is_split(lattice, level, brick.at) &&
+    (level >= lattice->top || oracle_is_split(lattice, level + 1, larger.at));
   for (int n = 0; n < 27 && plain && level > 0; ++n)
   {
     const int place[3] = { n % 3, n / 3 % 3, n / 9 };
@@ -227,29 +227,29 @@ static void lattice_add_brick(
 {
   oracle_lattice* lattice = descent->lattice;
   const int64_t first = lattice->node_count;
-  if (first > descent->node_limit)
-  {
-    return;
-  }
   int64_t capacity = lattice->brick_capacity;
   lattice->corners = oracle_grow(
     lattice->corners, lattice->brick_count, &capacity, LATTICE_CORNERS * sizeof(int64_t));
   lattice->bricks = oracle_grow(
     lattice->bricks, lattice->brick_count, &lattice->brick_capacity, sizeof(lattice_brick));
-  lattice->bricks[lattice->brick_count] = *brick;
+  lattice->bricks[lattice->brick_count++] = *brick;
+  if (first > descent->node_limit)
+  {
+    return;
+  }
   for (int n = 0; n < LATTICE_CORNERS; ++n)
   {
     const int64_t at[3] = { brick->at[0] + ((int64_t)(n % 5) << brick->level),
       brick->at[1] + ((int64_t)(n / 5 % 5) << brick->level),
       brick->at[2] + ((int64_t)(n / 25) << brick->level) };
-    lattice->corners[LATTICE_CORNERS * lattice->brick_count + n] = lattice_node_at(lattice, at, 1);
+    lattice->corners[LATTICE_CORNERS * (lattice->brick_count - 1) + n] =
+      lattice_node_at(lattice, at, 1);
   }
   for (int c = 0; c < 64 && brick->level > 0; ++c)
   {
     lattice_cell cell;
-    oracle_cell_at(lattice, lattice->brick_count, c, 1, &cell);
+    oracle_cell_at(lattice, lattice->brick_count - 1, c, 1, &cell);
   }
-  ++lattice->brick_count;
   for (int64_t node = first; node < lattice->node_count; ++node)
   {
     lattice_evaluate(lattice, descent->field, &lattice->nodes[node], list, count);
@@ -274,7 +274,7 @@ static void lattice_descend(
     }
   }
   const int split = descent->listing
-    ? brick->level > lattice->top || lattice_is_split(lattice, brick)
+    ? brick->level > lattice->top || oracle_is_split(lattice, brick->level, brick->at)
     : brick->level > lattice->top || least < brick->level;
   if (reaching > 0 && split)
   {

@@ -124,7 +124,8 @@ extern "C"
     double unit; /* roundoff of the working precision */
   } oracle_decider;
 
-  /* level_limit: the highest level at most. Evaluates all nodes; 0 if there are more than node_limit. */
+  /* level_limit: the highest level at most. Lists the leaves that particles reach, and evaluates all their nodes;
+   * none after the first leaf with more than node_limit in all, and returns 0 then. */
   int oracle_create_lattice(oracle_lattice* lattice, const oracle_field* field,
     const double edge[3], int level_limit, int64_t node_limit);
   /* Classifies the nodes, finds cells, edges and segments for an iso value. by_field: topology is. */
@@ -132,6 +133,8 @@ extern "C"
     int by_field, double unit);
   void oracle_free_lattice(oracle_lattice* lattice);
 
+  /* Whether the brick of a level with this lowest corner is split. */
+  int oracle_is_split(oracle_lattice* lattice, int level, const int64_t at[3]);
   void oracle_place(const oracle_lattice* lattice, const int64_t at[3], double point[3]);
   /* Cell c of brick b and its nodes. Middles are nodes where finer bricks around the brick make them; these
    * are made if `add`. */

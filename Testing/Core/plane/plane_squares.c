@@ -27,132 +27,22 @@ typedef struct plane_edge
   int64_t next; /* where the line that begins here ends; -1 */
 } plane_edge;
 
-/* All squares of the leaves: bricks of 4 x 4 squares of their level. */
+/* All squares of the leaves of the oracle's lattice: bricks of 4 x 4 squares of their level in the plane z = 0. */
 typedef struct plane_squares
 {
   const plane_field* field;
   double iso, cube;
-  int top;
-  int64_t low[2], size[2]; /* in bricks of the level above the highest */
-  uint8_t* split[MCOR_CUBE_LEVELS + 1];
-  oracle_map node_map, edge_map;
+  oracle_lattice lattice;
   plane_node* nodes;
   plane_edge* edges;
   int64_t node_count, node_capacity, edge_count, edge_capacity;
   int64_t ambiguous, doubtful; /* squares; those where rounding may decide */
 } plane_squares;
 
-/* Whether a brick is split, which is off the lattice where there is none. */
-static uint8_t* plane_split(const plane_squares* s, int level, int64_t x, int64_t y)
-{
-  const int up = s->top + 1 - level;
-  const int64_t i = x - s->low[0] * (INT64_C(1) << up), j = y - s->low[1] * (INT64_C(1) << up);
-  const int64_t nx = s->size[0] << up, ny = s->size[1] << up;
-  return level == 0 || i < 0 || j < 0 || i >= nx || j >= ny ? NULL : s->split[level] + j * nx + i;
-}
-
-static int plane_is_split(const plane_squares* s, int level, int64_t x, int64_t y)
-{
-  const uint8_t* split = plane_split(s, level, x, y);
-  return split && *split;
-}
-
-static void plane_measure(plane_squares* s)
-{
-  const plane_field* f = s->field;
-  double h_min = 1e300, h_max = 0, low[2] = { 1e300, 1e300 }, high[2] = { -1e300, -1e300 };
-  for (int64_t i = 0; i < f->set->count; ++i)
-  {
-    const double h = f->set->smoothing_length[i];
-    const double reach =
-      h * f->options->h_scale * oracle_support((oracle_kernel)f->options->sph_kernel);
-    h_min = fmin(h_min, h);
-    h_max = fmax(h_max, h);
-    for (int a = 0; a < 2; ++a)
-    {
-      low[a] = fmin(low[a], plane_u(f, i, a) - reach);
-      high[a] = fmax(high[a], plane_u(f, i, a) + reach);
-    }
-  }
-  while (s->top < f->options->level_limit && h_max >= ldexp(h_min, s->top + 1))
-  {
-    ++s->top;
-  }
-  const double brick = ldexp(4 * s->cube, s->top + 1);
-  for (int a = 0; a < 2; ++a)
-  {
-    s->low[a] = (int64_t)floor(low[a] / brick) - 1;
-    s->size[a] = (int64_t)floor(high[a] / brick) + 2 - s->low[a];
-  }
-  for (int l = 1; l <= s->top + 1; ++l)
-  {
-    const int up = s->top + 1 - l;
-    s->split[l] = calloc((size_t)(s->size[0] << up) * (size_t)(s->size[1] << up), 1);
-    assert_non_null(s->split[l]);
-  }
-}
-
-/* Each particle splits the bricks of the level above its own that it reaches; a split one those of the next level
- * that touch it. */
-static void plane_split_all(plane_squares* s)
-{
-  const plane_field* f = s->field;
-  const double support =
-    f->options->h_scale * oracle_support((oracle_kernel)f->options->sph_kernel);
-  double h_min = 1e300;
-  for (int64_t i = 0; i < f->set->count; ++i)
-  {
-    h_min = fmin(h_min, f->set->smoothing_length[i]);
-  }
-  for (int64_t i = 0; i < f->set->count; ++i)
-  {
-    const double h = f->set->smoothing_length[i], reach = h * support;
-    int level = 1;
-    while (level <= s->top && h >= ldexp(h_min, level))
-    {
-      ++level;
-    }
-    const double brick = ldexp(4 * s->cube, level), u = plane_u(f, i, 0), v = plane_u(f, i, 1);
-    const int is_square = f->options->sph_kernel == MCOR_M_PRIME_4;
-    for (double y = floor((v - reach) / brick) - 1; y * brick <= v + reach; ++y)
-    {
-      for (double x = floor((u - reach) / brick) - 1; x * brick <= u + reach; ++x)
-      {
-        const double du = fmax(fmax(x * brick - u, u - (x + 1) * brick), 0);
-        const double dv = fmax(fmax(y * brick - v, v - (y + 1) * brick), 0);
-        uint8_t* split = plane_split(s, level, (int64_t)x, (int64_t)y);
-        if (split && (is_square ? fmax(du, dv) : hypot(du, dv)) <= reach)
-        {
-          *split = 1;
-        }
-      }
-    }
-  }
-  for (int l = 1; l <= s->top; ++l)
-  {
-    const int64_t up = INT64_C(1) << (s->top + 1 - l);
-    for (int64_t y = s->low[1] * up; y < (s->low[1] + s->size[1]) * up; ++y)
-    {
-      for (int64_t x = s->low[0] * up; x < (s->low[0] + s->size[0]) * up; ++x)
-      {
-        for (int d = 0; d < 9 && plane_is_split(s, l, x, y); ++d)
-        {
-          uint8_t* above = plane_split(s, l + 1, (int64_t)floor(0.5 * (double)(x + d % 3 - 1)),
-            (int64_t)floor(0.5 * (double)(y + d / 3 - 1)));
-          if (above)
-          {
-            *above = 1;
-          }
-        }
-      }
-    }
-  }
-}
-
 static const plane_node* plane_node_at(plane_squares* s, int64_t x, int64_t y)
 {
   const int64_t at[3] = { x, y, 0 };
-  int64_t* place = oracle_map_find(&s->node_map, at, 0, 1);
+  int64_t* place = oracle_map_find(&s->lattice.node_map, at, 0, 1);
   if (*place >= 0)
   {
     return s->nodes + *place;
@@ -178,7 +68,7 @@ static int64_t plane_edge_at(
   const int axis = a[1] == b[1] ? 0 : 1, forward = b[axis] > a[axis];
   const int64_t* low = forward ? a : b;
   const int64_t at[3] = { low[0], low[1], 0 };
-  int64_t* place = oracle_map_find(&s->edge_map, at, axis, 1);
+  int64_t* place = oracle_map_find(&s->lattice.edge_map, at, axis, 1);
   if (*place < 0)
   {
     *place = s->edge_count;
@@ -251,40 +141,47 @@ static void plane_add_square(plane_squares* s, int64_t x, int64_t y, int64_t siz
   }
 }
 
-static void plane_add_leaf(plane_squares* s, int level, int64_t bx, int64_t by)
+static void plane_add_leaf(plane_squares* s, const lattice_brick* leaf)
 {
-  const int64_t size = INT64_C(1) << level;
-  const int finer[4] = { plane_is_split(s, level, bx, by - 1), plane_is_split(s, level, bx + 1, by),
-    plane_is_split(s, level, bx, by + 1), plane_is_split(s, level, bx - 1, by) };
+  static const int beside[4][2] = { { 0, -1 }, { 1, 0 }, { 0, 1 }, { -1, 0 } };
+  const int64_t size = INT64_C(1) << leaf->level;
+  int finer[4];
+  for (int side = 0; side < 4; ++side)
+  {
+    const int64_t at[3] = { leaf->at[0] + 4 * size * beside[side][0],
+      leaf->at[1] + 4 * size * beside[side][1], 0 };
+    finer[side] = oracle_is_split(&s->lattice, leaf->level, at);
+  }
   for (int i = 0; i < 16; ++i)
   {
     const int x = i % 4, y = i / 4;
     const int half = (y == 0 && finer[0]) | (x == 3 && finer[1]) << 1 | (y == 3 && finer[2]) << 2 |
       (x == 0 && finer[3]) << 3;
-    plane_add_square(s, (4 * bx + x) * size, (4 * by + y) * size, size, half);
+    plane_add_square(s, leaf->at[0] + x * size, leaf->at[1] + y * size, size, half);
   }
 }
 
-static plane_squares plane_create(const plane_field* f, double iso, double cube)
+static void plane_add_squares(plane_squares* s)
 {
-  plane_squares s = { .field = f, .iso = iso, .cube = cube };
-  plane_measure(&s);
-  plane_split_all(&s);
-  for (int l = s.top; l >= 0; --l)
+  const plane_field* f = s->field;
+  const double edge[3] = { s->cube, s->cube, s->cube };
+  CORE_SET flat = { 0 };
+  for (int64_t i = 0; i < f->set->count; ++i)
   {
-    const int64_t up = INT64_C(1) << (s.top + 1 - l);
-    for (int64_t y = s.low[1] * up; y < (s.low[1] + s.size[1]) * up; ++y)
+    const double x[3] = { plane_u(f, i, 0), plane_u(f, i, 1), 0 };
+    particle_set_add(&flat, x, f->set->smoothing_length[i], 0, 0);
+  }
+  const oracle_field reach = { .particles = &flat,
+    .kernel = (oracle_kernel)f->options->sph_kernel,
+    .h_scale = f->options->h_scale };
+  oracle_create_lattice(&s->lattice, &reach, edge, f->options->level_limit, -1); /* no nodes */
+  for (int64_t b = 0; b < s->lattice.brick_count; ++b)
+  {
+    if (s->lattice.bricks[b].at[2] == 0)
     {
-      for (int64_t x = s.low[0] * up; x < (s.low[0] + s.size[0]) * up; ++x)
-      {
-        if (!plane_is_split(&s, l, x, y) && plane_is_split(&s, l + 1, x >> 1, y >> 1))
-        {
-          plane_add_leaf(&s, l, x, y);
-        }
-      }
+      plane_add_leaf(s, &s->lattice.bricks[b]);
     }
   }
-  return s;
 }
 
 /* Whether the field at the edge's crossing has too little fluid for a mean, so that trimming takes it. */
@@ -316,12 +213,12 @@ static int64_t plane_edge_of(plane_squares* s, double u, double v)
   const double off[2] = { fabs(x[0] - floor(x[0] + 0.5)), fabs(x[1] - floor(x[1] + 0.5)) };
   const int axis = off[0] > off[1] ? 0 : 1;
   CORE_CHECK(off[!axis] < 1e-9, "point %g %g is on no line of the lattice", u, v);
-  for (int l = 0; l <= s->top; ++l)
+  for (int l = 0; l <= s->lattice.top; ++l)
   {
     int64_t at[3] = { 0, 0, 0 };
     at[axis] = (int64_t)floor(ldexp(x[axis], -l)) * (INT64_C(1) << l);
     at[!axis] = (int64_t)floor(x[!axis] + 0.5);
-    const int64_t* edge = oracle_map_find(&s->edge_map, at, axis, 0);
+    const int64_t* edge = oracle_map_find(&s->lattice.edge_map, at, axis, 0);
     if (edge && s->edges[*edge].length == INT64_C(1) << l)
     {
       return *edge;
@@ -350,7 +247,7 @@ static void plane_compare_lines(
   const int by_field = s->field->options->topology == MCOR_TOPOLOGY_FIELD;
   CORE_CHECK(lines == same || by_field, "%lld of %lld lines are those of the squares",
     (long long)same, (long long)lines);
-  CORE_CHECK(!by_field || s->top > 0 || s->doubtful > 0 || s->field->region ||
+  CORE_CHECK(!by_field || s->lattice.top > 0 || s->doubtful > 0 || s->field->region ||
       surface->statistics.ambiguous_faces == s->ambiguous,
     "%lld squares are ambiguous, not %lld", (long long)s->ambiguous,
     (long long)surface->statistics.ambiguous_faces);
@@ -358,11 +255,12 @@ static void plane_compare_lines(
 
 int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* surface)
 {
-  plane_squares s = plane_create(field, iso, surface->statistics.cube_size);
+  plane_squares s = { .field = field, .iso = iso, .cube = surface->statistics.cube_size };
   const double range = plane_range(field);
   int64_t crossed = 0, found = 0;
-  int64_t* of = oracle_allocate((surface->point_count + 1), sizeof *of);
-  assert_int_equal(surface->statistics.highest_level, s.top);
+  CORE_FREED int64_t* of = oracle_allocate((surface->point_count + 1), sizeof *of);
+  plane_add_squares(&s);
+  assert_int_equal(surface->statistics.highest_level, s.lattice.top);
   for (int64_t p = 0; p < surface->point_count; ++p)
   {
     const double u = surface->points[3 * p + (field->axis + 1) % 3];
@@ -396,13 +294,7 @@ int64_t plane_compare(const plane_field* field, double iso, const mcor_surface* 
   CORE_CHECK(found == crossed, "%lld edges are crossed, %lld have vertices", (long long)crossed,
     (long long)found);
   plane_compare_lines(&s, of, surface);
-  free(of);
-  for (int l = 1; l <= s.top + 1; ++l)
-  {
-    free(s.split[l]);
-  }
-  oracle_map_free(&s.node_map);
-  oracle_map_free(&s.edge_map);
+  oracle_free_lattice(&s.lattice);
   free(s.nodes);
   free(s.edges);
   return crossed;

@@ -9,78 +9,40 @@
 /* mcor_item is a parameter of each kernel, see CompileAhead.cmake. */
 #define get_global_id(dimension) mcor_item
 
+#define MCOR_FUNCTION(R, name, parameters, value)                                                  \
+  MCOR_DEFINE R name parameters                                                                    \
+  {                                                                                                \
+    return value;                                                                                  \
+  }
+
 /* S: suffix of Clang's functions of T. */
 #define MCOR_DEFINE_REAL(T, S)                                                                     \
-  MCOR_DEFINE T fabs(T x)                                                                          \
-  {                                                                                                \
-    return __builtin_fabs##S(x);                                                                   \
-  }                                                                                                \
-  MCOR_DEFINE T sqrt(T x)                                                                          \
-  {                                                                                                \
-    return __builtin_sqrt##S(x);                                                                   \
-  }                                                                                                \
-  MCOR_DEFINE T floor(T x)                                                                         \
-  {                                                                                                \
-    return __builtin_floor##S(x);                                                                  \
-  }                                                                                                \
-  MCOR_DEFINE T ceil(T x)                                                                          \
-  {                                                                                                \
-    return __builtin_ceil##S(x);                                                                   \
-  }                                                                                                \
-  MCOR_DEFINE T fma(T a, T b, T c)                                                                 \
-  {                                                                                                \
-    return __builtin_fma##S(a, b, c);                                                              \
-  }                                                                                                \
-  MCOR_DEFINE T sign(T x)                                                                          \
-  {                                                                                                \
-    return x > 0 ? (T)1 : x < 0 ? (T)-1 : x == 0 ? x : (T)0;                                       \
-  }                                                                                                \
+  MCOR_FUNCTION(T, fabs, (T x), __builtin_fabs##S(x))                                              \
+  MCOR_FUNCTION(T, sqrt, (T x), __builtin_sqrt##S(x))                                              \
+  MCOR_FUNCTION(T, floor, (T x), __builtin_floor##S(x))                                            \
+  MCOR_FUNCTION(T, ceil, (T x), __builtin_ceil##S(x))                                              \
+  MCOR_FUNCTION(T, fma, (T a, T b, T c), __builtin_fma##S(a, b, c))                                \
+  MCOR_DEFINE_SIGN(T)                                                                              \
   MCOR_DEFINE_RANGE(T, T)
+#define MCOR_DEFINE_SIGN(T)                                                                        \
+  MCOR_FUNCTION(T, sign, (T x), x > 0 ? (T)1 : x < 0 ? (T)-1 : x == 0 ? x : (T)0)
 
 /* These return the other argument if one is NaN. B: T, or a scalar for all lanes of T. */
 #define MCOR_DEFINE_RANGE(T, B)                                                                    \
-  MCOR_DEFINE T fmin(T a, B other)                                                                 \
-  {                                                                                                \
-    const T b = (T)other;                                                                          \
-    return a < b || b != b ? a : b;                                                                \
-  }                                                                                                \
-  MCOR_DEFINE T fmax(T a, B other)                                                                 \
-  {                                                                                                \
-    const T b = (T)other;                                                                          \
-    return a > b || b != b ? a : b;                                                                \
-  }                                                                                                \
-  MCOR_DEFINE T clamp(T x, B low, B high)                                                          \
-  {                                                                                                \
-    return fmin(fmax(x, low), high);                                                               \
-  }
+  MCOR_FUNCTION(T, fmin, (T a, B b), a < (T)b || (T)b != (T)b ? a : (T)b)                          \
+  MCOR_FUNCTION(T, fmax, (T a, B b), a > (T)b || (T)b != (T)b ? a : (T)b)                          \
+  MCOR_FUNCTION(T, clamp, (T x, B low, B high), fmin(fmax(x, low), high))
 
 #define MCOR_DEFINE_INTEGER(T, B)                                                                  \
-  MCOR_DEFINE T min(T a, B other)                                                                  \
-  {                                                                                                \
-    const T b = (T)other;                                                                          \
-    return a < b ? a : b;                                                                          \
-  }                                                                                                \
-  MCOR_DEFINE T max(T a, B other)                                                                  \
-  {                                                                                                \
-    const T b = (T)other;                                                                          \
-    return a > b ? a : b;                                                                          \
-  }                                                                                                \
-  MCOR_DEFINE T clamp(T x, B low, B high)                                                          \
-  {                                                                                                \
-    return min(max(x, low), high);                                                                 \
-  }
+  MCOR_FUNCTION(T, min, (T a, B b), a < (T)b ? a : (T)b)                                           \
+  MCOR_FUNCTION(T, max, (T a, B b), a > (T)b ? a : (T)b)                                           \
+  MCOR_FUNCTION(T, clamp, (T x, B low, B high), min(max(x, low), high))
 
 /* L: suffix of Clang's functions of T; B: bits. */
 #define MCOR_DEFINE_BITS(T, L, B)                                                                  \
   MCOR_DEFINE_INTEGER(T, T)                                                                        \
-  MCOR_DEFINE T popcount(T x)                                                                      \
-  {                                                                                                \
-    return __builtin_popcount##L(x);                                                               \
-  }                                                                                                \
-  MCOR_DEFINE T clz(T x)                                                                           \
-  {                                                                                                \
-    return x ? __builtin_clz##L(x) : B;                                                            \
-  }
+  MCOR_FUNCTION(T, popcount, (T x), __builtin_popcount##L(x))                                      \
+  MCOR_FUNCTION(T, clz, (T x), x ? __builtin_clz##L(x) : B)
 
 MCOR_DEFINE_BITS(int, , 32)
 MCOR_DEFINE_BITS(uint, , 32)
@@ -89,81 +51,47 @@ MCOR_DEFINE_BITS(ulong, l, 64)
 MCOR_DEFINE_INTEGER(int4, int4)
 MCOR_DEFINE_REAL(float, f)
 MCOR_DEFINE_REAL(double, )
+MCOR_FUNCTION(uint, abs, (int x), x < 0 ? -(uint)x : (uint)x)
+MCOR_FUNCTION(float, convert_float, (int x), (float)x)
+MCOR_FUNCTION(float, convert_float, (long x), (float)x)
+MCOR_FUNCTION(double, convert_double, (int x), (double)x)
+MCOR_FUNCTION(double, convert_double, (long x), (double)x)
 
-MCOR_DEFINE uint abs(int x)
-{
-  return x < 0 ? -(uint)x : (uint)x;
-}
-
-#define MCOR_DEFINE_CONVERT(R, T)                                                                  \
-  MCOR_DEFINE R convert_##R(T x)                                                                   \
-  {                                                                                                \
-    return (R)x;                                                                                   \
-  }
-MCOR_DEFINE_CONVERT(float, int)
-MCOR_DEFINE_CONVERT(float, long)
-MCOR_DEFINE_CONVERT(double, int)
-MCOR_DEFINE_CONVERT(double, long)
-
-#define MCOR_DEFINE_ATOMIC(T, NAME, FUNCTION, PARAMETER, VALUE)                                    \
-  MCOR_DEFINE T atomic_##NAME(volatile __global T* p PARAMETER)                                    \
-  {                                                                                                \
-    return __sync_fetch_and_##FUNCTION((volatile __private T*)(size_t)p, VALUE);                   \
-  }
-#define MCOR_COMMA ,
-MCOR_DEFINE_ATOMIC(int, inc, add, , 1)
-MCOR_DEFINE_ATOMIC(int, or, or, MCOR_COMMA int v, v)
-MCOR_DEFINE_ATOMIC(int, and, and, MCOR_COMMA int v, v)
-MCOR_DEFINE_ATOMIC(int, min, min, MCOR_COMMA int v, v)
-MCOR_DEFINE_ATOMIC(int, max, max, MCOR_COMMA int v, v)
-MCOR_DEFINE_ATOMIC(uint, inc, add, , 1)
-MCOR_DEFINE_ATOMIC(uint, or, or, MCOR_COMMA uint v, v)
-MCOR_DEFINE_ATOMIC(uint, and, and, MCOR_COMMA uint v, v)
-MCOR_DEFINE_ATOMIC(uint, min, umin, MCOR_COMMA uint v, v)
-MCOR_DEFINE_ATOMIC(uint, max, umax, MCOR_COMMA uint v, v)
+#define MCOR_ATOMIC(T, operation, p, v)                                                            \
+  __sync_fetch_and_##operation((volatile __private T*)(size_t)p, v)
+#define MCOR_DEFINE_ATOMICS(T, least, most)                                                        \
+  MCOR_FUNCTION(T, atomic_inc, (volatile __global T * p), MCOR_ATOMIC(T, add, p, 1))               \
+  MCOR_FUNCTION(T, atomic_or, (volatile __global T * p, T v), MCOR_ATOMIC(T, or, p, v))            \
+  MCOR_FUNCTION(T, atomic_and, (volatile __global T * p, T v), MCOR_ATOMIC(T, and, p, v))          \
+  MCOR_FUNCTION(T, atomic_min, (volatile __global T * p, T v), MCOR_ATOMIC(T, least, p, v))        \
+  MCOR_FUNCTION(T, atomic_max, (volatile __global T * p, T v), MCOR_ATOMIC(T, most, p, v))
+MCOR_DEFINE_ATOMICS(int, min, max)
+MCOR_DEFINE_ATOMICS(uint, umin, umax)
 
 /* Vectors R of n numbers T. Clang makes one instruction of such a loop; a loop with a choice
  * would become branches. */
-#define MCOR_EACH_LANE(R, n, value)                                                                \
-  R r;                                                                                             \
-  for (int i = 0; i < n; ++i)                                                                      \
+#define MCOR_LANES_FUNCTION(n, R, name, parameters, value)                                         \
+  MCOR_DEFINE R name parameters                                                                    \
   {                                                                                                \
-    r[i] = value;                                                                                  \
-  }                                                                                                \
-  return r
+    R r;                                                                                           \
+    for (int i = 0; i < n; ++i)                                                                    \
+    {                                                                                              \
+      r[i] = value;                                                                                \
+    }                                                                                              \
+    return r;                                                                                      \
+  }
 #define MCOR_DEFINE_REALS(n, R, T)                                                                 \
-  MCOR_DEFINE R fabs(R x)                                                                          \
-  {                                                                                                \
-    MCOR_EACH_LANE(R, n, fabs((T)x[i]));                                                           \
-  }                                                                                                \
-  MCOR_DEFINE R sqrt(R x)                                                                          \
-  {                                                                                                \
-    MCOR_EACH_LANE(R, n, sqrt((T)x[i]));                                                           \
-  }                                                                                                \
-  MCOR_DEFINE R floor(R x)                                                                         \
-  {                                                                                                \
-    MCOR_EACH_LANE(R, n, floor((T)x[i]));                                                          \
-  }                                                                                                \
-  MCOR_DEFINE R ceil(R x)                                                                          \
-  {                                                                                                \
-    MCOR_EACH_LANE(R, n, ceil((T)x[i]));                                                           \
-  }                                                                                                \
-  MCOR_DEFINE R sign(R x)                                                                          \
-  {                                                                                                \
-    return x > 0 ? (R)1 : x < 0 ? (R)-1 : x == 0 ? x : (R)0;                                       \
-  }                                                                                                \
-  MCOR_DEFINE R fma(R a, R b, R c)                                                                 \
-  {                                                                                                \
-    MCOR_EACH_LANE(R, n, fma((T)a[i], (T)b[i], (T)c[i]));                                          \
-  }                                                                                                \
+  MCOR_LANES_FUNCTION(n, R, fabs, (R x), fabs((T)x[i]))                                            \
+  MCOR_LANES_FUNCTION(n, R, sqrt, (R x), sqrt((T)x[i]))                                            \
+  MCOR_LANES_FUNCTION(n, R, floor, (R x), floor((T)x[i]))                                          \
+  MCOR_LANES_FUNCTION(n, R, ceil, (R x), ceil((T)x[i]))                                            \
+  MCOR_LANES_FUNCTION(n, R, fma, (R a, R b, R c), fma((T)a[i], (T)b[i], (T)c[i]))                  \
+  MCOR_DEFINE_SIGN(R)                                                                              \
   MCOR_DEFINE_RANGE(R, R)                                                                          \
   MCOR_DEFINE_RANGE(R, T)
 
 #define MCOR_DEFINE_MEMORY_IN(n, R, T, SPACE)                                                      \
-  MCOR_DEFINE R vload##n(size_t i, SPACE const T* p)                                               \
-  {                                                                                                \
-    return *(SPACE const R##_loose*)(p + n * i);                                                   \
-  }                                                                                                \
+  MCOR_FUNCTION(R, vload##n, (size_t i, SPACE const T* p), *(SPACE const R##_loose*)(p + n * i))   \
   MCOR_DEFINE void vstore##n(R v, size_t i, SPACE T* p)                                            \
   {                                                                                                \
     *(SPACE R##_loose*)(p + n * i) = v;                                                            \
@@ -173,32 +101,25 @@ MCOR_DEFINE_ATOMIC(uint, max, umax, MCOR_COMMA uint v, v)
   MCOR_DEFINE_MEMORY_IN(n, R, T, __global)                                                         \
   MCOR_DEFINE_MEMORY_IN(n, R, T, __private)
 
+/* Whether any, or all, of the n integers F of a mask I are below 0. */
+#define MCOR_DEFINE_TOGETHER(n, I, F, name, first, operator)                                       \
+  MCOR_DEFINE int name(I x)                                                                        \
+  {                                                                                                \
+    F r = first;                                                                                   \
+    for (int i = 0; i < n; ++i)                                                                    \
+    {                                                                                              \
+      r operator x[i];                                                                             \
+    }                                                                                              \
+    return r < 0;                                                                                  \
+  }
+
 /* Vectors with masks I of integers F. */
 #define MCOR_DEFINE_VECTOR(n, R, T, I, F)                                                          \
   MCOR_DEFINE_REALS(n, R, T)                                                                       \
   MCOR_DEFINE_INTEGER(I, F)                                                                        \
-  MCOR_DEFINE int any(I x)                                                                         \
-  {                                                                                                \
-    F r = 0;                                                                                       \
-    for (int i = 0; i < n; ++i)                                                                    \
-    {                                                                                              \
-      r |= x[i];                                                                                   \
-    }                                                                                              \
-    return r < 0;                                                                                  \
-  }                                                                                                \
-  MCOR_DEFINE int all(I x)                                                                         \
-  {                                                                                                \
-    F r = -1;                                                                                      \
-    for (int i = 0; i < n; ++i)                                                                    \
-    {                                                                                              \
-      r &= x[i];                                                                                   \
-    }                                                                                              \
-    return r < 0;                                                                                  \
-  }                                                                                                \
-  MCOR_DEFINE R convert_##R(I x)                                                                   \
-  {                                                                                                \
-    return __builtin_convertvector(x, R);                                                          \
-  }                                                                                                \
+  MCOR_DEFINE_TOGETHER(n, I, F, any, 0, |=)                                                        \
+  MCOR_DEFINE_TOGETHER(n, I, F, all, -1, &=)                                                       \
+  MCOR_FUNCTION(R, convert_##R, (I x), __builtin_convertvector(x, R))                              \
   MCOR_DEFINE_MEMORY(n, R, T)                                                                      \
   MCOR_DEFINE_MEMORY(n, I, F)
 
@@ -216,11 +137,5 @@ MCOR_DEFINE_INTEGER(long8, long8)
 MCOR_DEFINE_VECTOR(16, double16, double, long16, long)
 MCOR_DEFINE_INTEGER(long16, long16)
 
-MCOR_DEFINE int8 convert_int8(uchar8 x)
-{
-  return __builtin_convertvector(x, int8);
-}
-MCOR_DEFINE double4 convert_double4(int4 x)
-{
-  return __builtin_convertvector(x, double4);
-}
+MCOR_FUNCTION(int8, convert_int8, (uchar8 x), __builtin_convertvector(x, int8))
+MCOR_FUNCTION(double4, convert_double4, (int4 x), __builtin_convertvector(x, double4))
